@@ -47,8 +47,8 @@ passed() { sed -n 's/^.*tests passed, \([0-9]*\) tests* failed out of \([0-9]*\)
 version() { as_visitor "build/$1/bin/clogsweep --version" | sed -n "s/^$2: *//p"; }
 
 as_visitor "WARNINGS=errors ./tests/run.sh --exclude-regex '$left_out'" 2>&1 | tee "$root/tmp/open-mpi.log"
-as_visitor "cmake --preset mpich && cmake --build --preset mpich --target clogsweep test_parallel test_scheduler test_isolated_jobs \
-  && ctest --preset mpich -L parallel" 2>&1 | tee "$root/tmp/mpich.log"
+as_visitor "cmake --preset mpich && cmake --build --preset mpich --target clogsweep test_scheduler test_run_tasks test_isolated_jobs \
+  && ctest --preset mpich -L scheduler" 2>&1 | tee "$root/tmp/mpich.log"
 as_visitor "cmake --preset release -B build/clang -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCLOG_TESTS=OFF \
   && cmake --build build/clang" 2>&1 | tee "$root/tmp/clang.log"
 echo "$release: g++ $(inside g++ -dumpfullversion), HDF5 $(version release HDF5), $(version release MPI):" \

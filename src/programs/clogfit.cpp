@@ -11,9 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include "clog/campaign/group_table.hpp"
-#include "clog/campaign/merger.hpp"
-#include "clog/campaign/stored_sweep.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/cli/python_command.hpp"
@@ -21,6 +18,9 @@
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/results/group_table.hpp"
+#include "clog/results/merger.hpp"
+#include "clog/results/stored_sweep.hpp"
 #include "clog/store/run_table.hpp"
 #include "clogfit_compare.hpp"
 #include "clogfit_units.hpp"
@@ -30,7 +30,7 @@ namespace {
 
 using namespace clog;
 using namespace clog::programs;
-using campaign::SharedParameters;
+using results::SharedParameters;
 
 constexpr const char* program = "clogfit";
 constexpr const char* usage =
@@ -97,22 +97,22 @@ int body(int argc, char** argv) {
     if (path.find('=') != std::string::npos && !std::filesystem::exists(path))
       throw Error(fmt::format(
           "no place for '{}' (clogfit reads files; clogsweep select takes some rows of one)", path));
-  const store::SweepFile sweep = campaign::read_together(paths);
+  const store::SweepFile sweep = results::read_together(paths);
   if (sweep.rows.empty()) throw Error(joined(paths) + " has no runs yet; let the sweep finish some first");
-  if (line.has("dwell") && !campaign::has_clogging_length(sweep.rows.front()))
+  if (line.has("dwell") && !results::has_clogging_length(sweep.rows.front()))
     throw Error(
         "no place for --dwell (droplets in a channel or on a wall have no clogging length) leave it out");
   const std::vector<const sweep::Column*> pooled =
-      line.has("pool") ? campaign::pooled_columns(line.get("pool")) : std::vector<const sweep::Column*>();
+      line.has("pool") ? results::pooled_columns(line.get("pool")) : std::vector<const sweep::Column*>();
   const std::vector<double> lines = line.has("lines") ? line.get_positives("lines") : std::vector<double>();
-  std::vector<campaign::Group> groups =
-      campaign::group_runs(sweep.rows, confidence, from_distance, dwell, pooled, lines);
+  std::vector<results::Group> groups =
+      results::group_runs(sweep.rows, confidence, from_distance, dwell, pooled, lines);
   set_scales(line, groups);
   const SharedParameters shared =
       line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;
-  std::cout << (format == "csv"    ? campaign::to_csv(groups)
-                : format == "json" ? campaign::to_json(groups, confidence, sweep.provenance)
-                                   : campaign::to_text(groups, confidence, shared));
+  std::cout << (format == "csv"    ? results::to_csv(groups)
+                : format == "json" ? results::to_json(groups, confidence, sweep.provenance)
+                                   : results::to_text(groups, confidence, shared));
   if (format == "text" && line.has("pool"))
     std::cout << fmt::format("   groups that differ only in {} are joined (--pool)\n", line.get("pool"));
   return console::exit_success;

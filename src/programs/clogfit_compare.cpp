@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "clog/campaign/comparison.hpp"
-#include "clog/campaign/merger.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/cli/python_command.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/results/comparison.hpp"
+#include "clog/results/merger.hpp"
 #include "clog/store/run_table.hpp"
 
 namespace clog::programs {
@@ -32,11 +32,11 @@ fewer than ten pairs differ, where no correlation is certain, and where --by cha
 seeds have no obstacles in common.
 )";
 
-std::vector<campaign::Side> sides(const cli::CommandLine& line, const std::vector<std::string>& paths) {
-  if (line.has("by")) return campaign::sides_of_column(line.get("by"), campaign::read_together(paths));
+std::vector<results::Side> sides(const cli::CommandLine& line, const std::vector<std::string>& paths) {
+  if (line.has("by")) return results::sides_of_column(line.get("by"), results::read_together(paths));
   if (paths.size() < 2)
     throw Error("nothing to compare this file with; give a second one, or --by and a key that varies in it");
-  return campaign::sides_of_files(paths);
+  return results::sides_of_files(paths);
 }
 
 /// Does not return.
@@ -71,10 +71,10 @@ int clogfit_compare(int argc, const char* const* argv) {
   const std::optional<double> within =
       line.has("within") ? std::optional(line.get_positive("within")) : std::nullopt;
   if (line.has("picture")) draw(line, paths);
-  const campaign::Comparisons found = campaign::compare(sides(line, paths), confidence, within);
-  std::cout << (format == "csv"    ? campaign::to_csv(found)
-                : format == "json" ? campaign::to_json(found, confidence)
-                                   : campaign::to_text(found, confidence));
+  const results::Comparisons found = results::compare(sides(line, paths), confidence, within);
+  std::cout << (format == "csv"    ? results::to_csv(found)
+                : format == "json" ? results::to_json(found, confidence)
+                                   : results::to_text(found, confidence));
   return console::exit_success;
 }
 

@@ -21,9 +21,9 @@ int clogrun_array(cli::CommandLine& line) {
   store::refuse_unwritable(output);
   if (line.has("write-obstacles")) store::refuse_unwritable(line.get("write-obstacles"));
 
-  watch::WatchedRun watched(DropletRun(parameters), often);
+  single_run::RecordedRun watched(DropletRun(parameters), often);
   if (line.has("dry-run"))
-    return watch::print_preview(line.settings().to_config(false), watched.measure_cost());
+    return single_run::print_preview(line.settings().to_config(false), watched.measure_cost());
   if (line.has("write-obstacles"))
     cli::write_obstacles(line.get("write-obstacles"), watched.run().obstacles().obstacles());
   say_what_is_unproven(sweep::Plan(line.settings()));

@@ -27,9 +27,9 @@ int clogrun_channel(cli::CommandLine& line) {
   const auto often = intervals(line, *parameters.time_step);
   store::refuse_unwritable(output);
 
-  watch::WatchedRun watched(DropletRun(parameters), often);
+  single_run::RecordedRun watched(DropletRun(parameters), often);
   if (line.has("dry-run"))
-    return watch::print_preview(line.settings().to_config(false), watched.measure_cost());
+    return single_run::print_preview(line.settings().to_config(false), watched.measure_cost());
   say_what_is_unproven(sweep::Plan(line.settings()));
   say_what_is_coarse(parameters);
   console::catch_stop_signals();

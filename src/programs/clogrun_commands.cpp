@@ -23,13 +23,13 @@ void refuse_options(const cli::CommandLine& line, const std::string& system,
       throw Error(fmt::format("--{} has no meaning for clogrun {}; leave it out", option, system));
 }
 
-watch::WatchedRun::Intervals intervals(const cli::CommandLine& line, double time_step) {
+single_run::RecordedRun::Intervals intervals(const cli::CommandLine& line, double time_step) {
   std::optional<double> polygons;
   if (line.has("polygon-interval")) polygons = line.get_positive("polygon-interval");
-  return watch::WatchedRun::every(line.get_positive("sample-interval"), polygons, time_step);
+  return single_run::RecordedRun::every(line.get_positive("sample-interval"), polygons, time_step);
 }
 
-int report(const cli::CommandLine& line, const watch::WatchedRun& watched) {
+int report(const cli::CommandLine& line, const single_run::RecordedRun& watched) {
   const int exit_code = watched.report();
   if (!line.has("lab")) return exit_code;
   const laboratory::Scales scales = laboratory::scales_of(laboratory::read_laboratory(line.get("lab")));

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "clog/cli/command_line.hpp"
+#include "clog/single_run/recorded_run.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
-#include "clog/watch/watched_run.hpp"
 
 namespace clog::programs {
 
@@ -24,10 +24,10 @@ void refuse_options(const cli::CommandLine& line, const std::string& system,
                     std::initializer_list<const char*> options);
 
 /// Reads --sample-interval and --polygon-interval. @throws Error
-watch::WatchedRun::Intervals intervals(const cli::CommandLine& line, double time_step);
+single_run::RecordedRun::Intervals intervals(const cli::CommandLine& line, double time_step);
 /// The settings of the command, with the laboratory of --lab.
 /// Prints what a run came to, with --lab in mm and s, too. Returns the exit code.
-int report(const cli::CommandLine& line, const watch::WatchedRun& watched);
+int report(const cli::CommandLine& line, const single_run::RecordedRun& watched);
 /// On the standard error, what of the runs was not proved sound; nothing if all of it was.
 void say_what_is_unproven(const sweep::Plan& plan);
 

@@ -1,11 +1,11 @@
 #include <string>
 
-#include "clog/campaign/stored_sweep.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
+#include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clogrun_commands.hpp"
 
@@ -28,14 +28,14 @@ int clogrun_replay(cli::CommandLine& line) {
   if (!line.has("file") || !line.has("task"))
     throw Error("missing sweep file or task; try clogrun replay sweep.h5 0 --output run.h5");
   const std::string output = line.require("output");
-  const store::SweepFile file = campaign::read_with_caution(line.get("file"));
-  sweep::RunRow row = campaign::replayable_row(file, line.get("task"));
+  const store::SweepFile file = results::read_with_caution(line.get("file"));
+  sweep::RunRow row = results::replayable_row(file, line.get("task"));
   if (line.has("to-rest")) row.parameters.clog_detection = ClogDetection::threshold;
   const auto often = intervals(line, *row.parameters.time_step);
   store::refuse_unwritable(output);
 
-  watch::WatchedRun watched(DropletRun(row.parameters), often);
-  if (line.has("dry-run")) return watch::print_preview("", watched.measure_cost());
+  single_run::RecordedRun watched(DropletRun(row.parameters), often);
+  if (line.has("dry-run")) return single_run::print_preview("", watched.measure_cost());
   console::catch_stop_signals();
   watched.follow();
   store::write_trajectory(output, watched.trajectory(sweep::describe(row.parameters), cli::origin(line)));

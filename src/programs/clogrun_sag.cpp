@@ -16,11 +16,11 @@
 namespace clog::programs {
 namespace {
 
-int preview(const cli::CommandLine& line, const sweep::Plan& plan, watch::WatchedRun::Intervals often) {
-  watch::MostCost cost;
+int preview(const cli::CommandLine& line, const sweep::Plan& plan, single_run::RecordedRun::Intervals often) {
+  single_run::MostCost cost;
   for (std::int64_t task = 0; task < plan.size(); ++task)
-    cost += watch::WatchedRun(DropletRun(plan.task(task)), often).measure_cost();
-  return watch::print_preview(line.settings().to_config(false), cost);
+    cost += single_run::RecordedRun(DropletRun(plan.task(task)), often).measure_cost();
+  return single_run::print_preview(line.settings().to_config(false), cost);
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ int clogrun_sag(cli::CommandLine& line) {
   bool all_at_rest = true;
   for (std::int64_t task = 0; task < plan.size(); ++task) {
     const RunParameters parameters = plan.task(task);
-    watch::WatchedRun watched(DropletRun(parameters), often);
+    single_run::RecordedRun watched(DropletRun(parameters), often);
     watched.follow();
     const RunResult result = watched.result();
     const bool is_polygon = parameters.model == Model::dp;

@@ -11,22 +11,22 @@
 #include <string_view>
 #include <utility>
 
-#include "clog/campaign/ledger.hpp"
-#include "clog/campaign/preview.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
-#include "clog/conduct/assignment.hpp"
-#include "clog/conduct/lead.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/json_text.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/memory.hpp"
-#include "clog/host/examination.hpp"
-#include "clog/host/limits.hpp"
-#include "clog/parallel/communicator.hpp"
-#include "clog/parallel/isolated_jobs.hpp"
+#include "clog/diagnostics/examination.hpp"
+#include "clog/diagnostics/limits.hpp"
+#include "clog/results/preview.hpp"
+#include "clog/results/sweep_state.hpp"
+#include "clog/scheduler/assignment.hpp"
+#include "clog/scheduler/communicator.hpp"
+#include "clog/scheduler/driver.hpp"
+#include "clog/scheduler/isolated_jobs.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/schema_json.hpp"
@@ -58,9 +58,9 @@ The same command resumes a stopped or killed sweep.
 
 /// @param growing  if the sweep adds runs by itself
 store::Provenance provenance(const cli::CommandLine& line,
-                             const std::optional<campaign::GrowingSweep>& growing, int num_ranks) {
+                             const std::optional<results::GrowingSweep>& growing, int num_ranks) {
   store::Provenance all = cli::origin(line);
-  all.emplace_back("mpi_version", parallel::Communicator::library_version());
+  all.emplace_back("mpi_version", scheduler::Communicator::library_version());
   all.emplace_back("hdf5_version", store::library_version());
   all.emplace_back("num_ranks", std::to_string(num_ranks));
   if (!growing) return all;
@@ -73,28 +73,28 @@ store::Provenance provenance(const cli::CommandLine& line,
 
 /// What rank 0 does before the sweep: everything a user can get wrong is found here, before any rank
 /// computes. Returns the exit code if there is nothing to run.
-std::optional<int> prepare(const cli::CommandLine& line, parallel::IsolatedJobs& isolated) {
+std::optional<int> prepare(const cli::CommandLine& line, scheduler::IsolatedJobs& isolated) {
   if (cli::answer_help_or_version(
-          line, {{"MPI", parallel::Communicator::library_version()}, {"HDF5", store::library_version()}}))
+          line, {{"MPI", scheduler::Communicator::library_version()}, {"HDF5", store::library_version()}}))
     return console::exit_success;
   if (line.has("schema")) {
     std::cout << console::json_text(sweep::schema_json());
     return console::exit_success;
   }
-  lead_options(line);
+  driver_options(line);
   attempts(line);
   assignment(line, line.settings());
-  const std::optional<campaign::GrowingSweep> growing = growing_sweep(line);
+  const std::optional<results::GrowingSweep> growing = growing_sweep(line);
   const sweep::Plan plan(line.settings());
-  if (line.has("print-config")) campaign::print_config(line.settings(), plan);
+  if (line.has("print-config")) results::print_config(line.settings(), plan);
   if (line.has("dry-run")) {
-    campaign::print_tasks(plan);
+    results::print_tasks(plan);
     console::flush_output();
     if (console::stop_signalled()) return console::exit_incomplete;
-    campaign::print_limits(plan);
+    results::print_limits(plan);
     // In the process that was forked before MPI began.
     const sweep::JobFactory jobs = isolated.jobs(assignment(line, line.settings()).text());
-    return campaign::print_cost(plan, lead_options(line).output, growing ? &growing->rule : nullptr, jobs);
+    return results::print_cost(plan, driver_options(line).output, growing ? &growing->rule : nullptr, jobs);
   }
   if (line.has("print-config")) return console::exit_success;
   line.require("output");
@@ -103,49 +103,54 @@ std::optional<int> prepare(const cli::CommandLine& line, parallel::IsolatedJobs&
 
 /// Rank 0's state of a sweep.
 struct Led {
-  std::optional<campaign::GrowingSweep> growing;
+  std::optional<results::GrowingSweep> growing;
   sweep::Plan plan;
-  campaign::Ledger ledger;
+  results::SweepState state;
 
   Led(const cli::CommandLine& line, int num_ranks)
       : growing(growing_sweep(line)),
         plan(settings(line)),
-        ledger(line.get("output"), plan, settings(line), provenance(line, growing, num_ranks),
-               growing ? growing->num_first : plan.size(), attempts(line)) {}
+        state(line.get("output"), plan, settings(line), provenance(line, growing, num_ranks),
+              growing ? growing->num_first : plan.size(), attempts(line)) {}
 
   const sweep::Settings& settings(const cli::CommandLine& line) const {
     return growing ? growing->settings : line.settings();
   }
 };
 
-int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJobs& isolated, int argc,
+/// In place of an exit code: the sweep begins.
+constexpr int go_on = -1;
+
+int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::IsolatedJobs& isolated, int argc,
                        char** argv) {
-  // Rank 0 reads and checks; the others wait for its word: an assignment, or an exit code.
+  // Rank 0 reads and checks; the others wait for its exit code, or its assignment.
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
   std::optional<Led> led;
-  std::string word;
+  std::string task;  // of all ranks, see scheduler::Assignment::text()
+  int exit_code = go_on;
   if (ranks.rank() == 0) {
-    const int exit_code = cli::run_program(program, [&] {
+    exit_code = cli::run_program(program, [&] {
       parse_sweep_options(line, argc, argv);
       if (const auto over = prepare(line, isolated)) return *over;
-      host::refuse_to_be_alone(ranks.size());
+      diagnostics::refuse_to_be_alone(ranks.size());
       led.emplace(line, ranks.size());
-      word = assignment(line, led->settings(line)).text();
+      task = assignment(line, led->settings(line)).text();
       return console::exit_success;
     });
-    if (!led || exit_code != console::exit_success) word = fmt::format("exit {}", exit_code);
+    if (led && exit_code == console::exit_success) exit_code = go_on;
   }
-  word = ranks.broadcast(word);
-  if (word.starts_with("exit ")) return std::stoi(word.substr(5));
+  exit_code = ranks.broadcast(exit_code);
+  if (exit_code != go_on) return exit_code;
+  task = ranks.broadcast(task);
 
-  const conduct::JobsOf jobs_of = [&](const std::string& assignment) {
-    return conduct::Assignment::from(assignment).is_isolated ? isolated.jobs(assignment)
-                                                             : conduct::assigned_jobs(assignment);
+  const scheduler::JobsOf jobs_of = [&](const std::string& assignment) {
+    return scheduler::Assignment::from(assignment).is_isolated ? isolated.jobs(assignment)
+                                                               : scheduler::assigned_jobs(assignment);
   };
   if (ranks.rank() == 0)
-    return conduct::lead_sweep(ranks, lead_options(line), led->plan, jobs_of, word, led->ledger,
-                               led->growing ? &led->growing->rule : nullptr);
-  conduct::follow_sweep(ranks, jobs_of, word);
+    return scheduler::drive_sweep(ranks, driver_options(line), led->plan, jobs_of, task, led->state,
+                                  led->growing ? &led->growing->rule : nullptr);
+  scheduler::follow_sweep(ranks, jobs_of, task);
   return console::exit_success;
 }
 
@@ -169,24 +174,24 @@ int main(int argc, char** argv) {
       return cli::run_program(std::string(program) + ' ' + command.name,
                               [&] { return command.call(argc, argv); });
   console::catch_stop_signals();  // one that comes before the sweep begins stops it then
-  std::optional<parallel::IsolatedJobs> isolated;
+  std::optional<scheduler::IsolatedJobs> isolated;
   const int exit_code = cli::run_program(program, [&] {
     require_memory("start MPI", memory_of_mpi);
-    host::require_open_files();
+    diagnostics::require_open_files();
     // Before MPI begins.
-    isolated.emplace(conduct::assigned_jobs);
-    if (parallel::Communicator::may_be_rank_0()) store::try_before_mpi(named_output(argc, argv));
+    isolated.emplace(scheduler::assigned_jobs);
+    if (scheduler::Communicator::may_be_rank_0()) store::try_before_mpi(named_output(argc, argv));
     return console::exit_success;
   });
   if (exit_code != console::exit_success) return exit_code;
-  const parallel::Communicator ranks(argc, argv);
+  const scheduler::Communicator ranks(argc, argv);
   try {
     if (argc > 1 && std::string_view(argv[1]) == "doctor") return clogsweep_doctor(ranks, argc, argv);
     return sweep_on_all_ranks(ranks, *isolated, argc, argv);
   } catch (const std::exception& error) {
     // Once the sweep runs, ranks wait for each other: a fault of one must end all.
     console::say(fmt::format("{}: rank {} on {}: {}", program, ranks.rank(),
-                             parallel::Communicator::host_name(), error.what()));
+                             scheduler::Communicator::host_name(), error.what()));
     if (ranks.size() > 1)
       ranks.abort(dynamic_cast<const Error*>(&error) ? console::exit_user_fault
                                                      : console::exit_internal_fault);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "clog/parallel/communicator.hpp"
+#include "clog/scheduler/communicator.hpp"
 
 namespace clog::programs {
 
@@ -23,6 +23,6 @@ inline constexpr FileCommand file_commands[] = {{"status", clogsweep_status},   
 
 /// `clogsweep doctor`, on one rank or under mpirun. Collective. Returns the exit code on rank 0, 1 if there
 /// is something to fix. @throws Error
-int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* const* argv);
+int clogsweep_doctor(const scheduler::Communicator& ranks, int argc, const char* const* argv);
 
 }  // namespace clog::programs

@@ -6,15 +6,15 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
-#include "clog/host/examination.hpp"
+#include "clog/diagnostics/examination.hpp"
 #include "clog/store/regular_file.hpp"
 #include "clogsweep_commands.hpp"
 
 namespace clog::programs {
 namespace {
 
-using host::Finding;
-using host::RankFacts;
+using diagnostics::Finding;
+using diagnostics::RankFacts;
 
 constexpr const char* doctor_program = "clogsweep doctor";
 constexpr const char* doctor_usage =
@@ -39,7 +39,7 @@ int print_findings(const std::vector<Finding>& findings) {
 
 }  // namespace
 
-int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* const* argv) {
+int clogsweep_doctor(const scheduler::Communicator& ranks, int argc, const char* const* argv) {
   namespace po = boost::program_options;
   // Rank 0 reads the command line; the others wait for its word.
   cli::CommandLine line(doctor_program, doctor_usage, cli::CommandLine::SweepKeys::none);
@@ -55,17 +55,17 @@ int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* 
       return console::exit_success;
     });
   const bool is_over = is_answered || exit_code != console::exit_success;
-  if (ranks.broadcast(is_over ? "over" : "go on") == "over") return exit_code;
+  if (ranks.broadcast(int{is_over}) != 0) return exit_code;
 
   constexpr double seconds_of_steps = 0.5;
   const std::vector<std::string> texts =
-      ranks.gather(to_text(host::find_rank_facts(ranks.rank(), seconds_of_steps)));
+      ranks.gather(to_text(diagnostics::find_rank_facts(ranks.rank(), seconds_of_steps)));
   if (ranks.rank() != 0) return console::exit_success;
   std::vector<RankFacts> facts;
   facts.reserve(texts.size());
-  for (const std::string& text : texts) facts.push_back(host::rank_facts_from(text));
+  for (const std::string& text : texts) facts.push_back(diagnostics::rank_facts_from(text));
   return cli::run_program(doctor_program,
-                          [&] { return print_findings(host::examine(facts, line.get("output"))); });
+                          [&] { return print_findings(diagnostics::examine(facts, line.get("output"))); });
 }
 
 }  // namespace clog::programs

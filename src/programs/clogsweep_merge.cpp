@@ -2,13 +2,13 @@
 #include <string>
 #include <vector>
 
-#include "clog/campaign/merger.hpp"
-#include "clog/campaign/salvage.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/results/merger.hpp"
+#include "clog/results/salvage.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
@@ -27,7 +27,7 @@ runs, which you can resume and enlarge like any other.
 )";
 
 void print_merged(const std::string& output, const std::vector<std::string>& paths,
-                  const campaign::MergedSweep& merged) {
+                  const results::MergedSweep& merged) {
   std::cout << console::printable(output) << ": "
             << sweep::counted(static_cast<std::int64_t>(merged.table.rows.size()), "row") << " of "
             << sweep::counted(static_cast<std::int64_t>(paths.size()), "file");
@@ -57,8 +57,8 @@ int clogsweep_merge(int argc, const char* const* argv) {
   if (paths.size() < 2) throw Error("missing sweep files; try clogsweep merge a.h5 b.h5 --output c.h5");
   const std::string output = line.require("output");
   store::refuse_existing(output);
-  const campaign::MergedSweep merged = campaign::merge(paths, origin_of_table(line));
-  campaign::write(merged.table, merged.snapshots, output);
+  const results::MergedSweep merged = results::merge(paths, origin_of_table(line));
+  results::write(merged.table, merged.snapshots, output);
   print_merged(output, paths, merged);
   return console::exit_success;
 }

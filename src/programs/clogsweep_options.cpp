@@ -22,10 +22,10 @@
 namespace clog::programs {
 namespace {
 
-parallel::MasterComputes master_computes(const std::string& word) {
-  if (word == "auto") return parallel::MasterComputes::automatic;
-  if (word == "yes") return parallel::MasterComputes::yes;
-  if (word == "no") return parallel::MasterComputes::no;
+scheduler::MasterComputes master_computes(const std::string& word) {
+  if (word == "auto") return scheduler::MasterComputes::automatic;
+  if (word == "yes") return scheduler::MasterComputes::yes;
+  if (word == "no") return scheduler::MasterComputes::no;
   throw Error("invalid --master-computes=" + word + " (is not one of auto, yes, no)");
 }
 
@@ -35,12 +35,12 @@ bool is_isolated(const cli::CommandLine& line) {
   return word == "yes";
 }
 
-conduct::Log::Level log_level(const cli::CommandLine& line) {
+scheduler::Log::Level log_level(const cli::CommandLine& line) {
   if (line.has("verbose") && line.has("quiet"))
     throw Error("--verbose and --quiet exclude each other; give one");
-  return line.has("verbose") ? conduct::Log::Level::verbose
-         : line.has("quiet") ? conduct::Log::Level::quiet
-                             : conduct::Log::Level::normal;
+  return line.has("verbose") ? scheduler::Log::Level::verbose
+         : line.has("quiet") ? scheduler::Log::Level::quiet
+                             : scheduler::Log::Level::normal;
 }
 
 std::chrono::milliseconds report_interval(const cli::CommandLine& line) {
@@ -167,7 +167,7 @@ void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
   refuse_other_droplets(line);
 }
 
-conduct::LeadOptions lead_options(const cli::CommandLine& line) {
+scheduler::DriverOptions driver_options(const cli::CommandLine& line) {
   return {.output = line.has("output") ? line.get("output") : "",
           .master_computes = master_computes(line.get("master-computes")),
           .report_interval = report_interval(line),
@@ -175,7 +175,7 @@ conduct::LeadOptions lead_options(const cli::CommandLine& line) {
           .log = log_level(line)};
 }
 
-conduct::Assignment assignment(const cli::CommandLine& line, const sweep::Settings& settings) {
+scheduler::Assignment assignment(const cli::CommandLine& line, const sweep::Settings& settings) {
   return {.report_interval = report_interval(line),
           .instruction_set = line.has("instruction-set") ? line.get("instruction-set") : "auto",
           .is_isolated = is_isolated(line),
@@ -189,14 +189,14 @@ std::int64_t attempts(const cli::CommandLine& line) {
   return static_cast<std::int64_t>(number);
 }
 
-std::optional<campaign::GrowingSweep> growing_sweep(const cli::CommandLine& line) {
+std::optional<results::GrowingSweep> growing_sweep(const cli::CommandLine& line) {
   if (!line.has("until-precision")) {
     if (line.has("most-seeds")) throw Error("--most-seeds needs --until-precision");
     return std::nullopt;
   }
   const auto first_seeds = static_cast<std::int64_t>(line.settings().values("seeds").size());
   const std::int64_t most = most_seeds(line, first_seeds);
-  return campaign::growing_sweep(line.settings(), precision(line), most);
+  return results::growing_sweep(line.settings(), precision(line), most);
 }
 
 }  // namespace clog::programs

@@ -3,11 +3,11 @@
 #include <iostream>
 #include <string>
 
-#include "clog/campaign/repetition.hpp"
-#include "clog/campaign/stored_sweep.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/results/repetition.hpp"
+#include "clog/results/stored_sweep.hpp"
 #include "clogsweep_commands.hpp"
 #include "file_command.hpp"
 
@@ -28,9 +28,9 @@ that went on under another set than it began with cannot be repeated.
   line.add_positional("task", 1);
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
   if (!line.has("task")) throw Error("missing task; try clogsweep replay " + line.get("file") + " 0");
-  const store::SweepFile file = campaign::read_with_caution(line.get("file"));
-  const sweep::RunRow row = campaign::replayable_row(file, line.get("task"));
-  const auto [again, differing] = campaign::repeat(row);
+  const store::SweepFile file = results::read_with_caution(line.get("file"));
+  const sweep::RunRow row = results::replayable_row(file, line.get("task"));
+  const auto [again, differing] = results::repeat(row);
   fmt::print(std::cout, "task {}: {}, distance {:.17g}, {:.3g} s\n", line.get("task"), name(again.status),
              again.distance, again.wall_seconds);
   if (differing.empty()) {

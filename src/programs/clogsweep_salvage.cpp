@@ -1,12 +1,12 @@
 #include <iostream>
 #include <string>
 
-#include "clog/campaign/salvage.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/results/salvage.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
@@ -37,10 +37,10 @@ int clogsweep_salvage(int argc, const char* const* argv) {
   if (!line.has("file")) throw Error("missing sweep file; try clogsweep salvage sweep.h5 --output whole.h5");
   const std::string output = line.require("output");
   store::refuse_existing(output);
-  campaign::Salvage found = campaign::salvage(line.get("file"));
-  campaign::drop_what_verify_refuses(line.get("file"), found);
+  results::Salvage found = results::salvage(line.get("file"));
+  results::drop_what_verify_refuses(line.get("file"), found);
   for (const std::string& damage : found.damage) std::cout << console::printable(damage) << '\n';
-  campaign::write(found.table, found.snapshots, output);
+  results::write(found.table, found.snapshots, output);
   const auto num_rows = static_cast<std::int64_t>(found.table.rows.size());
   std::cout << console::printable(output) << ": " << sweep::counted(num_rows, "undamaged row");
   if (found.num_from_journal > 0)

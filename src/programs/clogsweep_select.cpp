@@ -2,12 +2,12 @@
 #include <string>
 #include <vector>
 
-#include "clog/campaign/salvage.hpp"
-#include "clog/campaign/selection.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/results/salvage.hpp"
+#include "clog/results/selection.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
@@ -36,8 +36,8 @@ sample.
     throw Error("missing condition; try clogsweep select sweep.h5 'line_tension>1' --output stiff.h5");
   const std::string output = line.require("output");
   store::refuse_existing(output);
-  const store::SweepFile selected = campaign::select(line.get("file"), conditions, origin_of_table(line));
-  campaign::write(selected, {}, output);
+  const store::SweepFile selected = results::select(line.get("file"), conditions, origin_of_table(line));
+  results::write(selected, {}, output);
   std::cout << console::printable(output) << ": "
             << sweep::counted(static_cast<std::int64_t>(selected.rows.size()), "row") << '\n';
   return console::exit_success;

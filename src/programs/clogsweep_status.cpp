@@ -6,14 +6,14 @@
 #include <string>
 #include <thread>
 
-#include "clog/campaign/events.hpp"
-#include "clog/campaign/status.hpp"
-#include "clog/campaign/stored_sweep.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/results/events.hpp"
+#include "clog/results/status.hpp"
+#include "clog/results/stored_sweep.hpp"
 #include "clog/store/journal.hpp"
-#include "clog/store/place.hpp"
+#include "clog/store/output_path.hpp"
 #include "clog/store/run_table.hpp"
 #include "clogsweep_commands.hpp"
 #include "file_command.hpp"
@@ -21,8 +21,8 @@
 namespace clog::programs {
 
 namespace po = boost::program_options;
-using campaign::SharedParameters;
-using campaign::Status;
+using results::SharedParameters;
+using results::Status;
 
 namespace {
 
@@ -39,15 +39,15 @@ bool wait(std::chrono::milliseconds time) {
 int follow(const std::string& path) {
   constexpr int rest = 10;
   constexpr std::chrono::milliseconds shortest{200};
-  campaign::Events events(path);
+  results::Events events(path);
   std::string stamp;
   for (bool is_first = true;; is_first = false) {
     const bool is_alive =
         store::Journal::is_open(store::journal_path(path));  // asked before reading: no event is missed
     const auto begin = std::chrono::steady_clock::now();
-    const std::string now = store::Place(path).stamp();
+    const std::string now = store::OutputPath(path).stamp();
     if (now != stamp || is_first || !is_alive) {
-      const store::SweepFile file = is_first ? campaign::read_with_caution(path) : store::read_sweep(path);
+      const store::SweepFile file = is_first ? results::read_with_caution(path) : store::read_sweep(path);
       for (const std::string& line : events.look(file)) std::cout << line;
       std::cout << std::flush;
       stamp = now;
@@ -93,11 +93,11 @@ would give too short ones, since runs that clog early finish first.
   if (line.has("follow") && format != "json") throw Error("--follow prints lines of JSON; add --format json");
   if (line.has("follow")) return follow(path);
   for (bool is_first = true;; is_first = false) {
-    const Status status = campaign::status_of(
-        path, is_first ? campaign::read_with_caution(path) : store::read_sweep(path), confidence);
+    const Status status = results::status_of(
+        path, is_first ? results::read_with_caution(path) : store::read_sweep(path), confidence);
     if (line.has("watch") && format == "text" && isatty(STDOUT_FILENO)) std::cout << clear_screen;
-    std::cout << (format == "json" ? campaign::to_json(status, confidence)
-                                   : campaign::to_text(path, status, confidence, shared))
+    std::cout << (format == "json" ? results::to_json(status, confidence)
+                                   : results::to_text(path, status, confidence, shared))
               << std::flush;
     if (!line.has("watch") || !status.is_alive) return console::exit_success;
     if (wait(std::chrono::seconds(2))) return console::exit_success;

@@ -1,9 +1,9 @@
 #include <iostream>
 #include <string>
 
-#include "clog/campaign/verification.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
+#include "clog/results/verification.hpp"
 #include "clogsweep_commands.hpp"
 #include "file_command.hpp"
 
@@ -22,7 +22,7 @@ journal is damaged. 1: there is damage; `clogsweep salvage` copies the undamaged
 be read.
 )");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
-  const campaign::Verification found = campaign::verify(line.get("file"));
+  const results::Verification found = results::verify(line.get("file"));
   for (const std::string& finding : found.findings) std::cout << console::printable(finding) << '\n';
   return found.num_faults == 0 ? console::exit_success : console::exit_internal_fault;
 }

@@ -13,7 +13,7 @@
 namespace clog::programs {
 namespace {
 
-campaign::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
+results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
   constexpr double milli = 1e-3;
   const laboratory::Scales scales = laboratory::scales_of(lab);
   return {.length = scales.length / milli,
@@ -41,11 +41,11 @@ void refuse_other_droplets(const cli::CommandLine& line) {
                               line.get("lab"), diameter / micro, file, *circles.droplet() / micro));
 }
 
-void set_scales(const cli::CommandLine& line, std::vector<campaign::Group>& groups) {
+void set_scales(const cli::CommandLine& line, std::vector<results::Group>& groups) {
   std::optional<laboratory::Laboratory> of_all;
   if (line.has("lab")) of_all = laboratory::read_laboratory(line.get("lab"));
   bool replaces = false;
-  for (campaign::Group& group : groups) {
+  for (results::Group& group : groups) {
     const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory;
     if (of_all) {
       group.laboratory = scale_of(*of_all);

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "clog/campaign/groups.hpp"
 #include "clog/cli/command_line.hpp"
+#include "clog/results/groups.hpp"
 
 namespace clog::programs {
 
@@ -14,6 +14,6 @@ void use_laboratory(cli::CommandLine& line);
 void refuse_other_droplets(const cli::CommandLine& line);
 
 /// Gives each group the scale of --lab, or else of its own laboratory. @throws Error
-void set_scales(const cli::CommandLine& line, std::vector<campaign::Group>& groups);
+void set_scales(const cli::CommandLine& line, std::vector<results::Group>& groups);
 
 }  // namespace clog::programs

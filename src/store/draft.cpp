@@ -18,7 +18,7 @@ namespace clog::store {
 
 namespace {
 
-Place draft_place(const Place& place, int number) {
+OutputPath draft_place(const OutputPath& place, int number) {
   return place.beside(".clogsweep-draft" + std::to_string(number));
 }
 
@@ -29,7 +29,7 @@ bool begins_with(int descriptor, std::string_view mark) {
   return size >= 0 && mark.starts_with(std::string_view(bytes.data(), static_cast<std::size_t>(size)));
 }
 
-void remove_if_stale(const Place& place, std::string_view mark) {
+void remove_if_stale(const OutputPath& place, std::string_view mark) {
   const int descriptor = place.open(O_RDWR | O_NONBLOCK);
   if (descriptor < 0) return;
   if (begins_with(descriptor, mark) && flock(descriptor, LOCK_EX | LOCK_NB) == 0 && place.holds(descriptor))
@@ -39,12 +39,12 @@ void remove_if_stale(const Place& place, std::string_view mark) {
 
 }  // namespace
 
-void remove_stale_drafts(const Place& place, std::string_view mark) {
+void remove_stale_drafts(const OutputPath& place, std::string_view mark) {
   for (int number = 1; draft_place(place, number).exists(); ++number)
     remove_if_stale(draft_place(place, number), mark);
 }
 
-Draft::Draft(Place place, std::string_view mark) : place_(std::move(place)), draft_(place_) {
+Draft::Draft(OutputPath place, std::string_view mark) : place_(std::move(place)), draft_(place_) {
   const mode_t mode = place_.exists() ? 0600 : 0666;  // nobody reads it before it has its place's access
   for (int number = 1;; ++number) {
     draft_ = draft_place(place_, number);

@@ -7,14 +7,14 @@
 #include <string>
 #include <string_view>
 
-#include "clog/store/place.hpp"
+#include "clog/store/output_path.hpp"
 
 /// Files that come to be as a whole: made under a name of their own, brought to the disk, then renamed.
 namespace clog::store {
 
 /// Removes the drafts of this place that killed processes left behind.
 /// @param mark  with which the content of every draft of this kind begins
-void remove_stale_drafts(const Place& place, std::string_view mark);
+void remove_stale_drafts(const OutputPath& place, std::string_view mark);
 
 /// A file that is not yet complete, beside the place that it is for, under a name that nobody
 /// has. It is locked as long as it is open, or until unlock(); one that is not, and begins as ours do, was
@@ -24,7 +24,7 @@ class Draft {
  public:
   /// @param mark  see remove_stale_drafts(); to be written first
   /// @throws Error if no file can be made there
-  Draft(Place place, std::string_view mark);
+  Draft(OutputPath place, std::string_view mark);
   Draft(Draft&&) = delete;
   /// Removes it, unless it has been published.
   ~Draft();
@@ -41,9 +41,9 @@ class Draft {
   /// owner, group and access list. Returns whether a power cut leaves the name as it is now. @throws Error if
   /// the file could not be put there
   bool publish();
-  /// The same, but only in place of the file with this Place::stamp(), or of none. Returns the stamp of what
-  /// was published, which somebody may have replaced meanwhile; nothing if a different file is there, which
-  /// stays. @throws Error
+  /// The same, but only in place of the file with this OutputPath::stamp(), or of none. Returns the stamp of
+  /// what was published, which somebody may have replaced meanwhile; nothing if a different file is there,
+  /// which stays. @throws Error
   std::optional<std::string> publish_over(const std::string& stamp);
   /// The same, but never onto a file that somebody else has made. @throws Error
   void publish_new();
@@ -51,8 +51,8 @@ class Draft {
   int release();
 
  private:
-  Place place_;
-  Place draft_;
+  OutputPath place_;
+  OutputPath draft_;
   bool is_published_ = false;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;

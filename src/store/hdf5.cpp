@@ -93,13 +93,13 @@ void create_whole(const std::string& path, const std::function<void(hid_t file)>
   draft.publish_new();
 }
 
-bool replace_whole(const Place& place, const std::function<void(hid_t file)>& fill) {
+bool replace_whole(const OutputPath& place, const std::function<void(hid_t file)>& fill) {
   Draft draft(place, hdf5_mark);
   write_draft(draft, place.path(), fill);
   return draft.publish();
 }
 
-std::optional<std::string> replace_whole(const Place& place, const std::string& stamp,
+std::optional<std::string> replace_whole(const OutputPath& place, const std::string& stamp,
                                          const std::function<void(hid_t file)>& fill) {
   Draft draft(place, hdf5_mark);
   write_draft(draft, place.path(), fill);

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "clog/store/place.hpp"
+#include "clog/store/output_path.hpp"
 
 /// Thin ownership of HDF5 identifiers; only src/store includes this.
 namespace clog::store {
@@ -59,9 +59,9 @@ void require_memory_of_file(const std::string& purpose, std::size_t size, int co
 /// publishes it: the path never holds half a file. @throws Error if the path exists or cannot be written
 void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
 /// The same, replacing a file that is there: Draft::publish(). One process at a time.
-bool replace_whole(const Place& place, const std::function<void(hid_t file)>& fill);
-/// The same, but only in place of the file with this Place::stamp(), or of none: Draft::publish_over().
-std::optional<std::string> replace_whole(const Place& place, const std::string& stamp,
+bool replace_whole(const OutputPath& place, const std::function<void(hid_t file)>& fill);
+/// The same, but only in place of the file with this OutputPath::stamp(), or of none: Draft::publish_over().
+std::optional<std::string> replace_whole(const OutputPath& place, const std::string& stamp,
                                          const std::function<void(hid_t file)>& fill);
 
 /// All that a regular file holds. @throws Error that says what is wrong with the path

@@ -130,9 +130,9 @@ Journal::Contents parse(std::span<const std::byte> bytes) {
 
 std::string journal_path(const std::string& table) { return journal_place(table).path(); }
 
-Place journal_place(const Place& table) {
-  Place journal = table.beside(".journal");
-  return journal.is_link() ? Place(journal.path()) : journal;
+OutputPath journal_place(const OutputPath& table) {
+  OutputPath journal = table.beside(".journal");
+  return journal.is_link() ? OutputPath(journal.path()) : journal;
 }
 
 std::optional<Journal::Contents> Journal::look(const std::string& path) {
@@ -151,7 +151,7 @@ std::optional<Journal::Contents> Journal::look(const std::string& path) {
   return parse(bytes);
 }
 
-Journal::Journal(Place place, const Place* table) : place_(std::move(place)) {
+Journal::Journal(OutputPath place, const OutputPath* table) : place_(std::move(place)) {
   require_regular(place_.path());
   try {
     open_and_lock(table);
@@ -167,7 +167,7 @@ Journal::Journal(Place place, const Place* table) : place_(std::move(place)) {
 
 Journal::~Journal() { close_file(); }
 
-void Journal::open_and_lock(const Place* table) {
+void Journal::open_and_lock(const OutputPath* table) {
   // is_open() of another process holds the lock for a moment, and the file may be removed in between: retry.
   constexpr int most_attempts = 10;
   bool is_busy = false;
@@ -224,7 +224,7 @@ void Journal::check_place() const {
               "when no other sweep is writing to it, the same command resumes the sweep");
 }
 
-bool Journal::make_anew(const Place& table) {
+bool Journal::make_anew(const OutputPath& table) {
   close(std::exchange(descriptor_, -1));
   descriptor_ = place_.open(O_RDWR | O_CREAT | O_EXCL, table.exists() ? 0600 : 0666);
   if (descriptor_ < 0 && errno == EEXIST) return false;

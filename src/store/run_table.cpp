@@ -162,7 +162,7 @@ std::string library_version() {
 
 namespace {
 
-std::function<void(hid_t file)> writer(const Place& place, std::span<const RunRow> rows,
+std::function<void(hid_t file)> writer(const OutputPath& place, std::span<const RunRow> rows,
                                        const Provenance& provenance, std::span<const CircleFile> circles) {
   require_memory_of_file("write " + place.path(), rows.size() * RowLayout::present().size());
   return [=, &provenance, path = place.path()](hid_t file) {
@@ -173,12 +173,12 @@ std::function<void(hid_t file)> writer(const Place& place, std::span<const RunRo
 
 }  // namespace
 
-bool publish_sweep(const Place& place, std::span<const RunRow> rows, const Provenance& provenance,
+bool publish_sweep(const OutputPath& place, std::span<const RunRow> rows, const Provenance& provenance,
                    std::span<const CircleFile> circles) {
   return replace_whole(place, writer(place, rows, provenance, circles));
 }
 
-std::optional<std::string> publish_sweep_over(const std::string& stamp, const Place& place,
+std::optional<std::string> publish_sweep_over(const std::string& stamp, const OutputPath& place,
                                               std::span<const RunRow> rows, const Provenance& provenance,
                                               std::span<const CircleFile> circles) {
   return replace_whole(place, stamp, writer(place, rows, provenance, circles));

@@ -20,9 +20,9 @@
 #include <thread>
 #include <vector>
 
-#include "clog/campaign/ledger.hpp"
-#include "clog/campaign/progress.hpp"
-#include "clog/parallel/scheduler.hpp"
+#include "clog/results/progress.hpp"
+#include "clog/results/sweep_state.hpp"
+#include "clog/scheduler/scheduler.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/run_row.hpp"
 
@@ -68,7 +68,7 @@ class SleepingJob final : public sweep::Job {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const parallel::Communicator ranks(argc, argv);
+  const scheduler::Communicator ranks(argc, argv);
   const double rate = argc > 1 ? std::atof(argv[1]) : 1000;
   const double duration = argc > 2 ? std::atof(argv[2]) : 10;
   const int num_workers = ranks.size() - 1;
@@ -89,42 +89,42 @@ int main(int argc, char** argv) {
   settings.set("line-tension", "lin(0.1,10," + std::to_string(num_groups) + ")");
   settings.set("seeds", "1.." + std::to_string(num_tasks / num_groups));
   const sweep::Plan plan(settings);
-  std::optional<campaign::Ledger> ledger;
+  std::optional<results::SweepState> state;
   std::ostringstream screen;  // progress goes nowhere, but is made
-  campaign::Progress progress(screen, campaign::Progress::Screen::terminal, num_workers,
-                              [num_groups](std::int64_t task) { return task % num_groups; });
+  results::Progress progress(screen, results::Progress::Screen::terminal, num_workers,
+                             [num_groups](std::int64_t task) { return task % num_groups; });
   std::vector<std::int64_t> tasks(num_tasks);
   std::iota(tasks.begin(), tasks.end(), std::int64_t{0});
   progress.expect(tasks, num_tasks);
-  parallel::SweepEvents events;
+  scheduler::SweepEvents events;
   if (ranks.rank() == 0) {
-    ledger.emplace(path, plan, settings, store::Provenance(), plan.size(), 1);
+    state.emplace(path, plan, settings, store::Provenance(), plan.size(), 1);
     events.started = [&](std::int64_t task, int rank) {
       progress.started(task);
-      return ledger->start(task, rank);
+      return state->start(task, rank);
     };
-    events.progressed = [&](const parallel::Report& report) { ledger->report(report); };
-    events.ended = [&](const parallel::Report& report) {
-      ledger->report(report);
+    events.progressed = [&](const scheduler::Report& report) { state->report(report); };
+    events.ended = [&](const scheduler::Report& report) {
+      state->report(report);
       progress.ended(report.row);
     };
     events.idle = [&] {
-      ledger->tick();
+      state->tick();
       progress.tick();
       screen.str("");
     };
   }
   const Clock::time_point begin = Clock::now();
   const double cpu_before = cpu_seconds();
-  parallel::Schedule schedule(parallel::TaskOrder(plan.size(), plan.num_groups()), ranks.size(), false);
-  parallel::run_tasks(
+  scheduler::Schedule schedule(scheduler::TaskOrder(plan.size(), plan.num_groups()), ranks.size(), false);
+  scheduler::run_tasks(
       ranks, schedule,
       [&](std::int64_t task, std::span<const std::byte>) {
         return std::make_unique<SleepingJob>(plan, task, task_seconds);
       },
       events);
   if (ranks.rank() != 0) return 0;
-  ledger->finish();
+  state->finish();
   const double cpu = cpu_seconds() - cpu_before;
   const double wall = seconds_since(begin);
   if (rate > 0)

@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "clog/parallel/task_order.hpp"
+#include "clog/scheduler/task_order.hpp"
 
 namespace {
 
-using clog::parallel::TaskOrder;
+using clog::scheduler::TaskOrder;
 
 constexpr int num_groups = 20;  // parameter sets of both tables
 

@@ -18,11 +18,11 @@
 #include <optional>
 #include <string>
 
-#include "clog/campaign/stored_sweep.hpp"
 #include "clog/core/model/model.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/results/stored_sweep.hpp"
 
 namespace {
 
@@ -101,13 +101,13 @@ void try_finer(const sweep::RunRow& row) {
 int main(int argc, char** argv) try {
   if (argc != 2 && argc != 4) throw Error("give a sweep file");
   const std::int64_t part = argc == 4 ? std::atoi(argv[2]) : 0, parts = argc == 4 ? std::atoi(argv[3]) : 1;
-  const store::SweepFile file = campaign::read_with_caution(argv[1]);
+  const store::SweepFile file = results::read_with_caution(argv[1]);
   fmt::print(
       "task,vertices,line_tension,friction,distance,mechanism,mesh_hold,moved,status,time,"
       "moved_without_more_vertices\n");
   for (const sweep::RunRow& row : file.rows)
     if (row.status == RunStatus::clogged && row.task % parts == part)
-      try_finer(campaign::replayable_row(file, std::to_string(row.task)));
+      try_finer(results::replayable_row(file, std::to_string(row.task)));
   return EXIT_SUCCESS;
 } catch (const std::exception& error) {
   fmt::print(stderr, "holds_finer: {}\n", error.what());

@@ -23,10 +23,10 @@ SOUND = {
 
 
 def page(cpp, python):
-    def rows(rooms):
-        return "\n".join(f"| `{room}` | what? | {uses} |" for room, uses in rooms)
+    def rows(layers):
+        return "\n".join(f"| `{layer}` | what? | {uses} |" for layer, uses in layers)
 
-    return f"# Rooms\n\n{rows(cpp)}\n\n## Rooms of the Python package\n\n{rows(python)}\n\n## Others\n"
+    return f"# Modules\n\n{rows(cpp)}\n\n## Modules of the Python package\n\n{rows(python)}\n\n## Others\n"
 
 
 class Layers(unittest.TestCase):
@@ -52,30 +52,30 @@ class Layers(unittest.TestCase):
                               self.found({"analysis/clogsweep/tools/names.py": text}))
         self.assertIn("src/base/more.cpp:1: base must not use clog/top/top.hpp", self.found({"src/base/more.cpp": "#include <clog/top/top.hpp>\n"}))
 
-    def test_the_names_of_the_whole_package_are_not_for_its_rooms(self):
+    def test_the_names_of_the_whole_package_are_not_for_its_layers(self):
         self.assertIn("reading/more.py:1: reading must not use __init__.py", self.found({"analysis/clogsweep/reading/more.py": "from .. import open\n"}))
         self.assertIn("reading/more.py:1: imports clogsweep.tools as a stranger does",
                       self.found({"analysis/clogsweep/reading/more.py": "from clogsweep.tools import errors\n"}))
 
-    def test_undeclared_rooms_are_refused(self):
-        self.assertIn("attic/old.py: the room attic is not in", self.found({"analysis/clogsweep/attic/old.py": ""}))
-        self.assertIn("analysis/clogsweep/loose.py: lies in no room", self.found({"analysis/clogsweep/loose.py": ""}))
-        self.assertIn("src/attic/old.cpp: the room attic is not in", self.found({"src/attic/old.cpp": "#include <vector>\n"}))
+    def test_undeclared_layers_are_refused(self):
+        self.assertIn("attic/old.py: the layer attic is not in", self.found({"analysis/clogsweep/attic/old.py": ""}))
+        self.assertIn("analysis/clogsweep/loose.py: lies in no layer", self.found({"analysis/clogsweep/loose.py": ""}))
+        self.assertIn("src/attic/old.cpp: the layer attic is not in", self.found({"src/attic/old.cpp": "#include <vector>\n"}))
 
     def test_tables_say_what_there_is(self):
-        self.assertIn("there is no room cellar", self.found(python=[*PYTHON, ("cellar", "")]))
-        self.assertIn("there is no room cellar", self.found(cpp=[*CPP, ("cellar", "")]))
+        self.assertIn("there is no layer cellar", self.found(python=[*PYTHON, ("cellar", "")]))
+        self.assertIn("there is no layer cellar", self.found(cpp=[*CPP, ("cellar", "")]))
         self.assertIn("commands does not use attic", self.found({"analysis/clogsweep/attic/old.py": ""}, python=[*PYTHON, ("attic", "")]))
 
     def test_circles_are_refused(self):
         circle = {"analysis/clogsweep/reading/one.py": "from . import two\n", "analysis/clogsweep/reading/two.py": "def late():\n    from .one import name\n"}
         self.assertRegex(self.found(circle), r"imports form a circle: reading/(one|two)\.py -> reading/(one|two)\.py -> reading/(one|two)\.py\n")
         back = {"analysis/clogsweep/tools/names.py": "from ..reading import more\n", "analysis/clogsweep/reading/more.py": ""}
-        rooms = r"rooms form a circle: (tools -> reading -> tools|reading -> tools -> reading)\n"
-        self.assertRegex(self.found(back, python=[("tools", "`reading`"), *PYTHON[1:]]), rooms)
-        self.assertRegex(self.found(cpp=[("base", "`top`"), CPP[1]]), "rooms form a circle: (base -> top -> base|top -> base -> top)\n")
+        layers = r"layers form a circle: (tools -> reading -> tools|reading -> tools -> reading)\n"
+        self.assertRegex(self.found(back, python=[("tools", "`reading`"), *PYTHON[1:]]), layers)
+        self.assertRegex(self.found(cpp=[("base", "`top`"), CPP[1]]), "layers form a circle: (base -> top -> base|top -> base -> top)\n")
 
-    def test_libraries_stay_in_their_rooms(self):
+    def test_libraries_stay_in_their_layers(self):
         for text in ("import h5py\n", "from h5py import File\n"):
             self.assertIn("tools/names.py:1: tools must not import h5py", self.found({"analysis/clogsweep/tools/names.py": text}))
         self.assertIn("must not import matplotlib", self.found({"analysis/clogsweep/reading/more.py": "import matplotlib.axes\n"}))

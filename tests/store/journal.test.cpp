@@ -198,7 +198,7 @@ TEST_F(JournalTest, IsReadByThoseWhoMayReadItsTable) {
   write_text("sweep.h5", "a table");
   for (const fs::perms mode : {fs::perms{0600}, fs::perms{0640}, fs::perms{0666}}) {
     fs::permissions(table, mode);
-    const Place place(table);
+    const OutputPath place(table);
     Journal journal(journal_place(place), &place);
     EXPECT_EQ(fs::status(path()).permissions(), mode);
     add_entries(journal, 0, 2);

@@ -102,7 +102,7 @@ TEST_F(RunTableTest, LeavesNothingBehindWhereItCannotWrite) {
 
 TEST_F(RunTableTest, IsPublishedOnlyInPlaceOfTheFileThatIsKnown) {
   publish_sweep(path(), some_rows(1), {});
-  const std::string stamp = Place(path()).stamp();
+  const std::string stamp = OutputPath(path()).stamp();
   EXPECT_TRUE(publish_sweep_over(stamp, path(), some_rows(2), {}, {}));
   EXPECT_EQ(read_sweep(path()).rows.size(), 2u);
   // Somebody has put another file there.
@@ -120,12 +120,12 @@ TEST_F(RunTableTest, IsPublishedOnlyInPlaceOfTheFileThatIsKnown) {
 TEST_F(RunTableTest, IsTheSameUnderAnotherInode) {
   // As some network file systems show it after a while.
   publish_sweep(path(), some_rows(2), {});
-  const std::string stamp = Place(path()).stamp();
+  const std::string stamp = OutputPath(path()).stamp();
   fs::rename(path(), path("earlier.h5"));
   fs::copy_file(path("earlier.h5"), path());
-  EXPECT_EQ(Place(path()).stamp(), stamp);
+  EXPECT_EQ(OutputPath(path()).stamp(), stamp);
   EXPECT_TRUE(publish_sweep_over(stamp, path(), some_rows(3), {}, {}));
-  EXPECT_NE(Place(path()).stamp(), stamp);
+  EXPECT_NE(OutputPath(path()).stamp(), stamp);
 }
 
 TEST_F(RunTableTest, RemovesItsStaleDraftsAndNoOthers) {

@@ -8,14 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "clog/store/place.hpp"
+#include "clog/store/output_path.hpp"
 #include "clog/sweep/messages.hpp"
 
 namespace clog::store {
 
 /// The journal of the table at this path lies beside it (if the path is a link, beside what it leads to).
 std::string journal_path(const std::string& table);
-Place journal_place(const Place& table);
+OutputPath journal_place(const OutputPath& table);
 
 /// The records of a sweep since its table was last published, appended to a file beside the table: finished
 /// rows, and rows of running tasks with their snapshots. A record survives the death of the process once
@@ -36,7 +36,7 @@ class Journal {
 
   /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, something else, or
   /// cannot be written. @param table  whose mode, owner, group and access list a new one gets
-  explicit Journal(Place place, const Place* table = nullptr);
+  explicit Journal(OutputPath place, const OutputPath* table = nullptr);
   Journal(Journal&&) = delete;
   ~Journal();
 
@@ -51,7 +51,7 @@ class Journal {
   bool is_there() const { return place_.holds(descriptor_); }
   /// Creates and locks an empty journal where the old one was removed. Returns false if another sweep has
   /// started there. @throws Error if it cannot be written
-  bool make_anew(const Place& table);
+  bool make_anew(const OutputPath& table);
 
   /// What the file held when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(contents_.entries); }
@@ -70,13 +70,13 @@ class Journal {
   bool remove();
 
  private:
-  Place place_;
+  OutputPath place_;
   int descriptor_ = -1;
   Contents contents_;  ///< contents at opening; num_bytes is kept up to date
   std::uint64_t num_rewritten_bytes_ = 0;
   bool has_begun_ = false;
 
-  void open_and_lock(const Place* table);
+  void open_and_lock(const OutputPath* table);
   void begin();
   void check_place() const;
   void close_file();

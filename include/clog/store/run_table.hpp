@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "clog/store/place.hpp"
+#include "clog/store/output_path.hpp"
 #include "clog/sweep/run_row.hpp"
 
 namespace clog::store {
@@ -35,12 +35,12 @@ struct CircleFile {
 /// Makes the sweep's file, or replaces it: at every moment the path names a complete table, the old or the
 /// new, so it can be read at any time. It is on the disk when this returns. Returns whether its folder is,
 /// too: some file systems cannot. @throws Error, and the old file stays
-bool publish_sweep(const Place& place, std::span<const sweep::RunRow> rows, const Provenance& provenance,
+bool publish_sweep(const OutputPath& place, std::span<const sweep::RunRow> rows, const Provenance& provenance,
                    std::span<const CircleFile> circles = {});
-/// The same, but only in place of the file with this Place::stamp(), or of none. Returns the stamp of the
-/// file that it wrote, even if somebody has replaced that since; nothing if a different file was there, which
-/// stays.
-std::optional<std::string> publish_sweep_over(const std::string& stamp, const Place& place,
+/// The same, but only in place of the file with this OutputPath::stamp(), or of none. Returns the stamp of
+/// the file that it wrote, even if somebody has replaced that since; nothing if a different file was there,
+/// which stays.
+std::optional<std::string> publish_sweep_over(const std::string& stamp, const OutputPath& place,
                                               std::span<const sweep::RunRow> rows,
                                               const Provenance& provenance,
                                               std::span<const CircleFile> circles);

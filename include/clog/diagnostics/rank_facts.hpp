@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace clog::diagnostics {
+
+/// Facts about the place where a rank runs.
+struct RankFacts {
+  int rank = 0;
+  std::string host;
+  std::string version;              ///< with what git says of the sources
+  std::string instruction_set;      ///< the widest
+  std::vector<int> cores;           ///< that the rank may run on
+  double cores_granted = 0;         ///< by control groups, to all of their processes; 0: no limit
+  double memory = 0;                ///< still available, on the host and in control groups [bytes]
+  double nanoseconds_per_step = 0;  ///< per step and vertex, while all ranks compute
+};
+
+/// Takes about `seconds` of computing.
+RankFacts find_rank_facts(int rank, double seconds);
+
+std::string to_text(const RankFacts& facts);
+RankFacts rank_facts_from(const std::string& text);
+
+}  // namespace clog::diagnostics

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace clog::results {
+
+/// How many ranks were busy, over the time of one session of a sweep: as means over equal stretches of time,
+/// which get longer as the session does.
+class Activity {
+ public:
+  /// @param num_ranks  that compute
+  explicit Activity(int num_ranks) : num_ranks_(num_ranks) {}
+
+  /// A rank begins, or ends, a task. @param now  since the session began, never less than before [s]
+  void started(double now);
+  void ended(double now);
+
+  /// One line of JSON. Its `idle_seconds` are those of all ranks; `tail_seconds` are the part of them after
+  /// the last start of a task, when ranks without work waited for the last ones.
+  /// @param start_time  when the session began
+  std::string line(const std::string& start_time, double now) const;
+
+ private:
+  int num_ranks_;
+  int num_busy_ = 0;
+  double stretch_ = 1;        // [s]
+  std::vector<double> busy_;  // seconds of ranks in each stretch
+  double last_ = 0;
+  double last_start_ = 0;
+  double busy_seconds_ = 0;
+  double tail_busy_seconds_ = 0;  // since the last start
+
+  void go_on(double now);
+  void lengthen();
+};
+
+/// Adds a session's line to the lines of earlier sessions; only those of the latest sessions are kept.
+std::string with_session(const std::string& lines, const std::string& line);
+
+}  // namespace clog::results

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clog/fit/clogging_length.hpp"
+#include "clog/fit/length_ratio.hpp"
+#include "clog/results/groups.hpp"
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/run_row.hpp"
+
+namespace clog::results {
+
+/// Runs that are compared with others: those of a file, or those with one value of a parameter.
+struct Side {
+  std::string name;
+  std::vector<sweep::RunRow> rows;
+  std::vector<std::string> lists;  ///< see listed_columns()
+};
+
+/// A parameter set of one side, and the one that it is compared with.
+struct Comparison {
+  std::string here, there;    ///< names of the sides
+  std::vector<Value> common;  ///< see Comparisons::columns
+  fit::CloggingLength length_here{}, length_there{};
+  fit::LengthRatio ratio{};  ///< of the length here over that there
+  int num_both_clogged = 0;  ///< pairs
+  int num_same_place = 0;    ///< of these, pairs that clogged at the same place
+};
+struct Comparisons {
+  std::vector<std::string> columns;    ///< on either side's list, with a common value; they name a comparison
+  std::vector<std::string> differing;  ///< columns with other values here than there
+  std::vector<Comparison> all;
+  double within = 0;  ///< clogs no farther apart are at the same place [sigma]; 0: half a spacing
+};
+
+/// The sides of a comparison of files: the first is what the others are compared with.
+/// @throws Error as read_with_caution()
+std::vector<Side> sides_of_files(const std::vector<std::string>& paths);
+/// The sides of a comparison of a column's values, in the order of numbers or words: the others are compared
+/// with the first.
+/// @throws Error if there is no such column of parameters, or only one value
+std::vector<Side> sides_of_column(const std::string& name, const store::SweepFile& file);
+
+/// Compares each side with the first one: parameter sets with the same values of Comparisons::columns. Runs
+/// of the same seed are pairs.
+/// @param sides  two or more
+/// @param within  see Comparisons; nothing: half an obstacle spacing
+/// @throws std::invalid_argument if there are fewer than two sides
+/// @throws Error if they have no value in common, or if it is not clear which parameter sets belong together
+Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within);
+
+std::string to_text(const Comparisons& comparisons, double confidence);
+std::string to_csv(const Comparisons& comparisons);
+std::string to_json(const Comparisons& comparisons, double confidence);
+
+}  // namespace clog::results

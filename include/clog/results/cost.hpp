@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace clog::results {
+
+/// The cost of one run so far. Work is counted in steps times vertices.
+struct RunCost {
+  std::int64_t parameter_set = 0;
+  double begin_seconds = 0;  ///< until it moved: its obstacles, its release
+  double seconds = 0;        ///< since then
+  double work = 0;           ///< done in these seconds
+  double longest_work = 0;   ///< if it lasts to max-time
+  bool is_over = false;
+};
+
+/// Runs of one parameter set that have not begun.
+struct WaitingRuns {
+  std::int64_t parameter_set = 0;
+  std::int64_t number = 0;
+  double longest_work = 0;  ///< of each
+};
+
+/// Computing time of a whole sweep, or of the rest of it [s].
+struct SweepCost {
+  double seconds_per_work = 0;
+  double bound = 0;  ///< if every run lasts to max-time
+  /// The estimate, and roughly its 95 % interval.
+  double expected = 0;
+  double lower = 0;
+  double upper = 0;
+};
+
+/// Cost of a sweep, estimated from some of its runs, which were chosen as if at random.
+///
+/// The remaining time of unfinished runs is estimated from late ends: those after half the shortest time that
+/// an unfinished run has taken, since earlier ends say little about it. The lower limit assumes that late
+/// ends are exponentially distributed; the upper limit, that they come from a mixture of short and long runs
+/// and become rarer with time; the estimate is the geometric mean of both. If no run of a parameter set has
+/// ended, all may last to max-time: this is the upper limit, and for the estimate every order of magnitude of
+/// the remaining time is equally likely. The interval combines the error of each law with that of the sample.
+/// @param sample  of at least one run that has done some work, in some time
+/// @param all_work  of all runs of the sweep, if every run lasts to max-time
+SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int64_t num_runs);
+
+/// Remaining cost of a sweep, from all its runs that have begun. They are not a random sample, because long
+/// runs start first. So each parameter set is estimated separately, as above: the remaining time of its
+/// unfinished runs from its own runs if one of them has ended, otherwise from all runs. A set without a
+/// started run is assumed to cost the same fraction of its bound as the others, with an error as large as
+/// that estimate.
+/// @param begun  at least one that has done some work, in some time
+SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting);
+
+}  // namespace clog::results

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/run_row.hpp"
+
+namespace clog::results {
+
+/// Events of a sweep, found by reading its file repeatedly: a line of JSON for every start, end and
+/// interruption of a task, every new attempt, every round. A task that starts and ends between two looks has
+/// both lines.
+class Events {
+ public:
+  /// @param path  of the file, for messages
+  explicit Events(std::string path) : path_(std::move(path)) {}
+
+  /// Events since the last look; the first look returns only how many runs there are, and how many are over.
+  /// @throws Error as stored_plan()
+  std::vector<std::string> look(const store::SweepFile& file);
+  /// The last line, when no sweep writes to the file any more.
+  std::string end() const;
+
+ private:
+  struct Known {
+    RunStatus status;
+    std::int64_t attempt;
+  };
+
+  std::string path_;
+  bool has_looked_ = false;
+  std::string config_;
+  std::string num_wanted_;
+  std::int64_t num_runs_ = 0;
+  std::int64_t num_finished_ = 0;
+  std::map<std::int64_t, Known> known_;
+  std::vector<std::string> columns_;  // that events name, see listed_columns()
+
+  bool count_runs(const store::SweepFile& file);
+  std::vector<std::string> of_row(const sweep::RunRow& row) const;
+};
+
+}  // namespace clog::results

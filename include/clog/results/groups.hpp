@@ -1,0 +1,192 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "clog/fit/clogging_length.hpp"
+#include "clog/fit/incidence.hpp"
+#include "clog/fit/mean_speed.hpp"
+#include "clog/fit/migration.hpp"
+#include "clog/fit/survival.hpp"
+#include "clog/sweep/columns.hpp"
+
+namespace clog::results {
+
+/// What may spoil a group's clogging length.
+enum class Doubt {
+  few_clogs,         ///< fewer than five: the interval is wide and its coverage wavers
+  not_exponential,   ///< Weibull's law fits better, p < 0.05 by Holm's test of all groups with ten clogs or
+                     ///< more
+  censored_by_time,  ///< runs ended by max-time, slow ones nearer than fast ones
+  incomplete,        ///< runs are unfinished or failed
+  damaged,           ///< rows hold what cannot be (sweep::fault_of)
+  held_by_mesh,      ///< the polygon's corners may hold a tenth of the clogs or more
+  array_repeats,     ///< runs went farther than the period of their array (sweep::has_met_repetition)
+  met_none,          ///< droplets touched no obstacle on their way
+  below_spacing,     ///< lambda is shorter than one obstacle spacing (sweep::obstacle_spacing)
+  not_proved_sound,  ///< sweep::unproven_parameters
+};
+/// One letter each for tables, a word for files, a sentence for readers.
+struct DoubtText {
+  Doubt doubt;
+  char letter;
+  const char* word;
+  const char* sentence;
+};
+inline constexpr DoubtText doubt_texts[] = {
+    {Doubt::few_clogs, 'f', "few_clogs", "fewer than 5 clogs: more seeds are needed"},
+    {Doubt::not_exponential, 'x', "not_exponential",
+     "P(r) is not exponential (p < 0.05, Holm's test of all groups of ten clogs or more): one length does "
+     "not describe these runs"},
+    {Doubt::censored_by_time, 't', "censored_by_time",
+     "runs ended by max-time: lambda is right only if slow droplets clog as often per distance as fast ones"},
+    {Doubt::incomplete, 'i', "incomplete",
+     "some runs are in progress or interrupted (they count as not clogged so far) or failed (excluded)"},
+    {Doubt::damaged, 'd', "damaged", "damaged rows were excluded (clogsweep verify lists them)"},
+    {Doubt::held_by_mesh, 'm', "held_by_mesh",
+     "in a tenth of the clogs or more, the polygon's edges are so long that its corners may hold the droplet "
+     "(corner pinning, column mesh_hold): use more vertices"},
+    {Doubt::array_repeats, 'r', "array_repeats",
+     "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
+     "again"},
+    {Doubt::met_none, 'n', "met_none",
+     "droplets met no obstacle: lambda includes the way that they sank freely; lambda_met is that of the "
+     "others, from their first obstacle on"},
+    {Doubt::below_spacing, 'v', "below_spacing",
+     "lambda is below one obstacle spacing (diameter + gap): it reflects the release void, not how often "
+     "gaps clog droplets (for user-supplied circles the spacing is 1/sqrt(circles per area))"},
+    {Doubt::not_proved_sound, 'u', "not_proved_sound",
+     "line tension, preset, vertices or obstacles are outside the range tested for soundness: droplets may "
+     "cross themselves or obstacles (handbook, Which droplets are sound)"}};
+const DoubtText& text_of(Doubt doubt);
+
+/// The ways in which a run may end, competing risks: the mechanism that holds a clog (`other`: none of them),
+/// or the droplet's break-up.
+enum class Cause { wrapped, squeezed, hybrid, other, broken };
+/// Names in files: the number of runs that it ended, their length (S over that number), and the interval of
+/// that length.
+struct CauseText {
+  Cause cause;
+  bool is_clog;
+  const char *count, *length, *lower, *upper;
+};
+inline constexpr CauseText cause_texts[] = {
+    {Cause::wrapped, true, "wrapped", "clogging_length_wrapped", "clogging_length_wrapped_lower",
+     "clogging_length_wrapped_upper"},
+    {Cause::squeezed, true, "squeezed", "clogging_length_squeezed", "clogging_length_squeezed_lower",
+     "clogging_length_squeezed_upper"},
+    {Cause::hybrid, true, "hybrid", "clogging_length_hybrid", "clogging_length_hybrid_lower",
+     "clogging_length_hybrid_upper"},
+    {Cause::other, true, "other", "clogging_length_other", "clogging_length_other_lower",
+     "clogging_length_other_upper"},
+    {Cause::broken, false, "broken", "break_up_length", "break_up_length_lower", "break_up_length_upper"}};
+
+/// The model's units in a laboratory; NaN where they are not known.
+struct LaboratoryScale {
+  double length = std::numeric_limits<double>::quiet_NaN();   ///< of sigma [mm]
+  double time = std::numeric_limits<double>::quiet_NaN();     ///< of t0 [s]
+  double speed = std::numeric_limits<double>::quiet_NaN();    ///< of v_t [mm/s]
+  double tension = std::numeric_limits<double>::quiet_NaN();  ///< of a droplet with Gamma = 1 [mN/m]
+};
+
+/// Droplets of a device and a line across the flow.
+struct Passage {
+  double x;  ///< of the line, in the coordinates of the circles [sigma]
+  int num_passed;
+  int num_stopped;      ///< clogged or broke up before it; others were still on their way
+  fit::Interval share;  ///< of num_passed in both
+};
+
+/// The runs of a sweep that differ in their seed only, and what they say together.
+struct Group {
+  sweep::RunRow first_row;                                 ///< its parameters are those of all
+  double dwell = std::numeric_limits<double>::infinity();  ///< see group_runs() [t0]
+  double dwells_known_from = 0;                            ///< of all its runs, NaN if not of all [t0]
+  fit::CloggingLength clogging;
+  double least_squares_length = 0;  ///< the published way, biased; NaN for fewer than two clogs
+  fit::WeibullTest weibull;
+  /// The runs that met an obstacle, each from its first one on. Runs of files without contacts are excluded.
+  fit::CloggingLength clogging_met;
+  double contacts_per_length = std::numeric_limits<double>::quiet_NaN();  ///< of all that tell [1/sigma]
+  std::vector<fit::SurvivalStep> survival;
+  std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
+  /// One of each Cause, in their order: the runs that it ended, all others censored. Empty if the mechanism
+  /// of a clog is not known.
+  struct EndsBy {
+    const CauseText* text;
+    fit::CloggingLength ends;
+    std::vector<fit::IncidenceStep> incidence;  ///< empty where there is no clogging length
+  };
+  std::vector<EndsBy> causes;
+  fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
+  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, way over time of all runs together
+  /// v_g/v_t, way over time of all runs until they ended or came to their arrest, however short their way
+  /// was. Where droplets clog, only the faster runs go far enough to have an individual mean speed.
+  fit::MeanSpeed relative_speed_all;
+  fit::Migration migration;
+  std::vector<std::uint32_t> seeds;  ///< of the runs behind the clogging length
+  int num_passed = 0;                ///< came to the exit of their device
+  int num_flowing = 0;               ///< ended by max-time
+  /// Of num_flowing: runs whose droplet had rested for longer than a free droplet takes to fall ten
+  /// diameters; and the shortest such rest [t0].
+  int num_resting = 0;
+  double shortest_rest = std::numeric_limits<double>::infinity();
+  int num_interrupted = 0;
+  int num_repeated = 0;   ///< shorter runs of a droplet that counts with a longer one (pooled)
+  int num_failed = 0;     ///< left out of all fits
+  int num_damaged = 0;    ///< likewise
+  int num_left_out = 0;   ///< ended before distances are counted, see group_runs(); likewise
+  int num_on_mesh = 0;    ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
+  int num_free = 0;       ///< met no obstacle
+  int num_repeating = 0;  ///< went farther than their array's period
+  std::vector<Passage> passages;  ///< of a device, downstream; the exit is the last
+  std::vector<Doubt> doubts;
+  std::optional<LaboratoryScale> laboratory = {};  ///< in whose units results are wanted, too
+};
+
+/// Are there user-supplied circles that droplets enter on a line, or leave at an exit?
+bool is_device(const RunParameters& run);
+
+/// Groups rows by everything but the seed, in the order of their parameters. In a device distances count from
+/// the first obstacle that a droplet met; one that met none does not count.
+/// @param from_distance  distances are measured from here [sigma]: runs that ended earlier are excluded, the
+/// others count with the distance beyond it (left truncation)
+/// @param dwell  a droplet that has stood for longer than this counts as clogged where it did so first [t0].
+/// One that has neither stood so long nor clogged is censored where its last dwell began, because the full
+/// length of that dwell is not known. A value of max-time or more changes nothing.
+/// @param pooled  columns of max-time and boxes that do not separate groups. Of the runs of one seed in the
+/// same array the one with the largest max-time counts; with other boxes the array is another one
+/// @param lines  x of the passages in devices; by default those of the rows of posts [sigma]
+/// @throws Error if the rows do not tell which droplets stood for so long
+std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
+                              double from_distance = 0,
+                              double dwell = std::numeric_limits<double>::infinity(),
+                              std::span<const sweep::Column* const> pooled = {},
+                              std::span<const double> lines = {});
+/// The columns of keys such as `max-time,boxes`. @throws Error for any other key
+std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
+/// Can a droplet of this group have stood for so long?
+bool is_dwell_possible(const Group& group);
+
+using sweep::Value;
+using Field = std::pair<const char*, Value>;
+/// Columns that make a group: all parameters but the seed. Physical parameters come first, and among
+/// them those that shape the array.
+std::span<const sweep::Column* const> group_columns();
+/// The values of a row in these columns.
+std::vector<Field> parameter_fields(const sweep::RunRow& row);
+/// False in a channel and on a wall, where nothing is random: each group is one run there, and its row has
+/// the results.
+bool has_clogging_length(const sweep::RunRow& row);
+/// The results of a group, by name.
+std::vector<Field> result_fields(const Group& group);
+/// The unit of one of these fields, e.g. "sigma"; empty for counts, words and numbers without a unit.
+std::string_view unit_of(std::string_view field);
+
+}  // namespace clog::results

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "clog/sweep/plan.hpp"
+#include "clog/sweep/run_row.hpp"
+#include "clog/sweep/settings.hpp"
+
+/// A sweep may grow along physical parameters that are numbers, and in seeds. All other keys are fixed: for
+/// each of them, a file and the sweep that resumes it must share a value.
+namespace clog::results {
+
+/// Names the fixed keys for which two sweeps have no value in common; empty if the one may continue the
+/// other.
+std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here);
+
+/// The plan's values of fixed keys, by which rows of other sweeps are recognised. Automatic values are not
+/// compared: they may follow from line tensions and gaps that only an earlier plan of the sweep had.
+class FixedValues {
+ public:
+  FixedValues(const sweep::Plan& plan, sweep::Settings settings);
+
+  /// Names the keys whose value in this row no task has; or the model version, if it differs.
+  std::string differing_keys(const sweep::RunRow& row) const;
+
+ private:
+  struct Fixed {
+    const sweep::Key* key;
+    std::set<ParameterValue> values;
+  };
+  sweep::Settings settings_;
+  std::vector<Fixed> keys_;
+};
+
+}  // namespace clog::results

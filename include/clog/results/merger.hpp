@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "clog/store/journal.hpp"
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/settings.hpp"
+
+namespace clog::results {
+
+/// Rows of several files as those of one sweep. A run that several files have is there once: a result rather
+/// than an unfinished or failed row, an unfinished row rather than a failed one, otherwise the row with more
+/// steps. Of results that differ by instruction set, those of the file named first are kept.
+struct MergedSweep {
+  store::SweepFile table;
+  std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs
+  std::int64_t num_shared = 0;                   ///< runs that several files have
+  std::int64_t num_differing = 0;                ///< of these, runs whose results differ by instruction set
+  std::int64_t num_faulty = 0;                   ///< excluded rows: physically impossible
+};
+
+/// Merges complete or stopped sweeps, to be written to a new file.
+/// @param maker  provenance of the program that makes the new file, from cli::origin()
+/// @throws Error that names the files and the task, if two rows of a run contradict each other, a file is
+/// damaged or being written, or has other circles under the same name
+MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance& maker);
+
+/// The rows of several files together, for reading only: also those of running sweeps, and of files whose
+/// config cannot be read any more. A single file is returned as it is.
+store::SweepFile read_together(const std::vector<std::string>& paths);
+
+/// Gives tasks the numbers, and circles the names, that they have in the settings; rows of runs outside the
+/// settings follow at the end.
+void number_tasks(const sweep::Settings& settings, store::SweepFile& table);
+
+/// Provenance of a file that is made from rows of other files.
+/// @param maker  the program that makes the file, as cli::origin() says it
+/// @param config  of the new file
+/// @param parts  a line for each part, see part_line()
+store::Provenance joint_provenance(const store::Provenance& maker, const std::string& config,
+                                   const std::vector<const store::SweepFile*>& files,
+                                   const std::string& parts);
+/// One part as a line of JSON (file name, number of rows, versions, hosts, command line), followed by the
+/// lines of its own parts.
+std::string part_line(const std::string& path, const store::SweepFile& file,
+                      const std::string& condition = "");
+
+}  // namespace clog::results

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <iosfwd>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "clog/console/status_line.hpp"
+#include "clog/results/time_left.hpp"
+#include "clog/sweep/plan.hpp"
+#include "clog/sweep/run_row.hpp"
+
+namespace clog::results {
+
+/// Tells the user how a sweep is getting on: one line that is renewed on a terminal, now and then a new line
+/// elsewhere.
+class Progress {
+ public:
+  using Screen = console::StatusLine::Screen;
+
+  /// @param set_of  parameter set of a task
+  Progress(std::ostream& out, Screen screen, int num_computing_ranks, sweep::GroupOf set_of);
+
+  /// Adds tasks to the total against which progress is measured.
+  /// @param num_wanted  runs of the whole sweep; those that are not expected were done before
+  void expect(std::span<const std::int64_t> tasks, std::int64_t num_wanted);
+
+  void started(std::int64_t task);
+  void ended(const sweep::RunRow& row);
+  /// An attempt failed; the task will be tried again.
+  void tried(std::int64_t task) { running_.erase(task); }
+  /// A task that ended as failed will run again.
+  void not_ended(const sweep::RunRow& failed);
+  /// Prints a line that stays, whatever the screen.
+  void say(const std::string& text) { status_.say(text); }
+  /// Prints if it is time to.
+  void tick();
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  console::StatusLine status_;
+  sweep::GroupOf number_of_set_;
+  std::vector<SetTimes> sets_;  // without those that run: these are in running_, and wait here
+  std::int64_t num_tasks_ = 0;
+  std::int64_t num_before_ = 0;
+  int num_ranks_;
+  Clock::time_point begin_ = Clock::now();
+  std::map<std::int64_t, Clock::time_point> running_;
+  std::map<RunStatus, std::int64_t> ended_by_status_;
+  std::int64_t num_ended_ = 0;  // of all sets
+
+  SetTimes& set_of(std::int64_t task);
+  std::string line() const;
+  std::string time_left() const;
+};
+
+}  // namespace clog::results

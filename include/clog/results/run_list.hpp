@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "clog/sweep/plan.hpp"
+#include "clog/sweep/run_row.hpp"
+#include "clog/sweep/settings.hpp"
+
+namespace clog::results {
+
+/// Runs of one or several sweeps, and the settings of a sweep that has just these.
+class RunList {
+ public:
+  /// All runs of a plan. @throws Error if another plan has other circles under the same name
+  void add(const sweep::Plan& plan);
+  /// Adds a run that may be outside the plan, for instance one of an earlier command of the sweep. It gets
+  /// the texts of the plan's first parameter set, with the row's own numbers in place of theirs. Returns
+  /// whether these texts describe this run.
+  bool add(const sweep::Plan& plan, const sweep::RunRow& row);
+
+  bool empty() const { return sets_.empty(); }
+  /// Lists, if the runs are their product, otherwise points; values increase.
+  sweep::Settings settings() const;
+
+ private:
+  struct ParameterSet {
+    std::vector<std::string> texts;  // by place in sweep::keys(); empty for the seeds
+    std::set<std::uint32_t> seeds;
+  };
+  std::vector<ParameterSet> sets_;
+  std::unordered_map<std::string, std::size_t> places_;  // in sets_, by what they are
+  sweep::CircleFiles circle_files_;
+
+  ParameterSet& set_of(const sweep::Plan& plan, const sweep::RunRow& run, std::vector<std::string> texts);
+  sweep::Points points(const std::vector<std::size_t>& differing) const;
+};
+
+/// Which task of the plan a run is; nothing if it has none.
+class TaskNumbers {
+ public:
+  explicit TaskNumbers(const sweep::Plan& plan);
+  std::optional<std::int64_t> of(const sweep::RunRow& row) const;
+
+ private:
+  std::unordered_map<std::string, std::int64_t> tasks_;
+};
+
+}  // namespace clog::results

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clog/store/journal.hpp"
+#include "clog/store/run_table.hpp"
+
+namespace clog::results {
+
+/// The undamaged rows of a damaged sweep file and of the journal beside it.
+struct Salvage {
+  store::SweepFile table;                        ///< with the results that only the journal had
+  std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs
+  std::int64_t num_from_journal = 0;             ///< rows of the table
+  std::vector<std::string> damage;               ///< a sentence each
+};
+
+/// Reads, and changes nothing. @throws Error if the table is missing, not ours, or nothing of it can be read
+Salvage salvage(const std::string& path);
+/// Removes rows that are physically impossible, or of a run that an earlier row has. Returns a line for each.
+std::vector<std::string> drop_faulty(std::vector<sweep::RunRow>& rows);
+/// Removes rows and attributes, written as they are, with which verify() refuses a file. Each is named in the
+/// damage.
+void drop_what_verify_refuses(const std::string& path, Salvage& found);
+/// Makes the table, and a journal beside it if there are snapshots. @throws Error if the table exists
+void write(const store::SweepFile& table, const std::vector<store::Journal::Entry>& snapshots,
+           const std::string& path);
+
+}  // namespace clog::results

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "clog/sweep/plan.hpp"
+#include "clog/sweep/settings.hpp"
+
+namespace clog::results {
+
+/// Adds seeds to a sweep until the clogging length of every parameter set is known well enough: in rounds.
+/// Each round is determined when the previous one has ended, from the number of clogs alone. So the runs of a
+/// sweep depend neither on the ranks nor on interruptions, and lambda stays unbiased (stopping at a number of
+/// clogs is inverse sampling; the relative width of the interval depends on nothing else).
+class SeedRule {
+ public:
+  /// @param precision  half the 95 % interval's width over lambda, to be reached
+  /// @param first_seeds, most_seeds  per parameter set, to begin with and at most
+  SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds, std::int64_t most_seeds);
+
+  /// Tasks of the next round, once all tasks so far are over; empty at the end. Task s num_groups + g is the
+  /// s-th seed of parameter set g. A set that is not precise enough gets as many more seeds as its fraction
+  /// of clogs so far requires, but at most as many as it has already.
+  /// @param has_clogged  of a task that is over
+  std::vector<std::int64_t> next_round(const std::function<bool(std::int64_t task)>& has_clogged);
+
+  std::int64_t num_groups() const { return static_cast<std::int64_t>(num_seeds_.size()); }
+  /// Number of clogs of a parameter set that is precise enough.
+  std::int64_t clogs_needed() const;
+  double precision() const { return precision_; }
+  std::int64_t most_seeds() const { return most_seeds_; }
+  /// Parameter sets that were precise enough when next_round() looked last.
+  std::int64_t num_reached() const { return num_reached_; }
+  /// The clogs and seeds of a parameter set that was not measured as precisely.
+  struct Unreached {
+    std::int64_t group, num_clogs, num_seeds;
+  };
+  const std::vector<Unreached>& unreached() const { return unreached_; }
+  /// The rule in words, as it is stored with the result.
+  std::string text() const;
+
+ private:
+  double precision_;
+  std::int64_t most_seeds_;
+  std::vector<std::int64_t> num_seeds_;  // by parameter set, of all rounds so far
+  std::int64_t num_reached_ = 0;
+  std::vector<Unreached> unreached_;
+};
+
+/// One line: which parameter sets ran out of seeds before they reached the rule's precision, and what to do;
+/// if all reached it, how many there are.
+std::string outcome(const SeedRule& rule, const sweep::Plan& plan);
+
+/// A sweep that a rule may enlarge: its settings have all seeds that it may come to, those given first.
+struct GrowingSweep {
+  sweep::Settings settings;
+  std::int64_t num_first = 0;  ///< tasks to begin with
+  SeedRule rule;
+};
+/// @param precision, most_seeds  see SeedRule
+/// @throws Error if there are not so many seeds
+GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, std::int64_t most_seeds);
+
+}  // namespace clog::results

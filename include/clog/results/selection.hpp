@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/columns.hpp"
+#include "clog/sweep/run_row.hpp"
+
+namespace clog::results {
+
+/// A condition on a column: `line_tension>=0.5`, `status=clogged,broken`, `preset!=robust`.
+class Condition {
+ public:
+  /// @throws Error if `text` is not a condition, its column does not exist, a number cannot be read, or the
+  /// relation orders words or a list
+  explicit Condition(const std::string& text);
+
+  /// A row that has no value in the column holds to no condition.
+  bool holds(const sweep::RunRow& row) const;
+
+  /// A misspelt word would be equal to no row's, and so select none or all.
+  /// @throws Error if no row has one of the words
+  void require_known_words(std::span<const sweep::RunRow> rows) const;
+
+ private:
+  enum class Relation { equal, unequal, less, at_most, more, at_least };
+
+  std::string text_;
+  const sweep::Column* column_;
+  Relation relation_;
+  std::vector<std::string> words_;  // one of them
+  std::vector<double> numbers_;
+
+  template <class T>
+  bool compare(const T& value, const std::vector<T>& others) const;
+};
+
+/// The rows of a file that hold to all conditions, as a sweep that has just these runs.
+/// @param maker  the program that makes the file, as cli::origin() says it
+/// @throws Error if no row does, or a word is in no row
+store::SweepFile select(const std::string& path, const std::vector<std::string>& conditions,
+                        const store::Provenance& maker);
+
+}  // namespace clog::results

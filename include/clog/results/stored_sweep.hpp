@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/plan.hpp"
+
+namespace clog::results {
+
+/// The description of a sweep in its file, apart from the rows.
+
+/// Opens a sweep for reading; warns on stderr about anything that could not be verified. Rows know their
+/// circles, with the name of the file that these are from.
+/// @throws Error as store::read_sweep()
+store::SweepFile read_with_caution(const std::string& path);
+
+/// Text of an attribute; empty if there is none.
+std::string attribute(const store::Provenance& provenance, const std::string& name);
+/// @throws Error, which names the file, if the attribute is missing or cannot be parsed; so does
+/// stored_plan()
+sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance);
+sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file);
+/// Columns of the keys that its config has lists for; none if that cannot be read.
+std::vector<std::string> listed_columns(const store::Provenance& provenance);
+/// How many runs are wanted so far: of --until-precision those asked for, otherwise all of the plan.
+/// @throws Error, which names the file, if the attribute cannot be parsed
+std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
+                               const sweep::Plan& plan);
+/// The number of runs of a file's sweep: those that are wanted, and others that the file holds.
+struct RunCount {
+  std::int64_t num_runs = 0;
+  std::int64_t num_beyond = 0;  ///< of these, runs that the lists of its last command do not have
+
+  /// The latter in brackets, with a space before; empty for none.
+  std::string text_of_beyond() const;
+};
+RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);
+
+/// The row of a task to be replayed. Switches to its instruction set.
+/// @throws Error if there is none, it is not over, or this program would come to something else
+sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& task);
+
+}  // namespace clog::results

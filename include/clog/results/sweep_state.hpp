@@ -1,0 +1,128 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "clog/results/activity.hpp"
+#include "clog/store/journal.hpp"
+#include "clog/store/output_path.hpp"
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/messages.hpp"
+#include "clog/sweep/plan.hpp"
+
+namespace clog::results {
+
+/// The state of a sweep's runs, on rank 0 and on disk: the table, which is published as a whole from time to
+/// time, and the journal beside it, which holds later results and the snapshots of running tasks. A stopped
+/// or killed sweep resumes from these files. A run is identified by its parameters and seed
+/// (sweep::identity), not by its task number.
+class SweepState {
+ public:
+  /// Reads what is there, and checks that it belongs to this sweep.
+  /// @param num_wanted  number of tasks, from the start of the plan, that are requested at first (rounds may
+  /// request more)
+  /// @param attempts  how often a run that fails is tried, over all sessions
+  /// @throws Error if the file is not a sweep's, has another model version or other settings, or another
+  /// sweep is writing to it
+  SweepState(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
+             store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts);
+
+  /// Requests more of the plan's tasks; tasks_left() then returns the unfinished ones among these.
+  void want(const std::vector<std::int64_t>& tasks);
+  std::int64_t num_wanted() const { return num_wanted_; }
+  /// Tasks that have begun and are not over, wanted or not.
+  std::vector<std::int64_t> tasks_begun() const;
+
+  /// Tasks that are wanted and not over.
+  const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
+  /// How many of these resume from a snapshot.
+  std::int64_t num_resumed() const;
+  /// Runs in the file that are outside this plan; the file keeps them.
+  std::int64_t num_beyond() const { return static_cast<std::int64_t>(other_runs_.size()); }
+  /// Physically impossible rows; their runs are recomputed.
+  std::int64_t num_faulty() const { return num_faulty_; }
+  /// Damaged records of the journal: their runs resume from an earlier record, or restart.
+  std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
+
+  /// Names what could not be checked in the file that the sweep resumes from; empty if all was checked.
+  const std::string& caution() const { return caution_; }
+
+  /// Starts to record in the table how many of `num_ranks` ranks are busy (Activity).
+  void watch_ranks(int num_ranks);
+  /// A rank has ended its task, whatever the outcome.
+  void rank_is_free();
+  sweep::Start start(std::int64_t task, int rank);
+  void report(const sweep::Report& report);
+  /// Row of a run that has begun.
+  const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task).row; }
+  /// The rows of all runs, including those outside this plan.
+  std::vector<sweep::RunRow> rows() const;
+  /// The first run if all that have begun have failed, otherwise nullptr.
+  const sweep::RunRow* first_if_all_failed() const;
+  /// Discards a failure: the task runs again with the same attempt number.
+  void withdraw_failure(std::int64_t task);
+  bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
+  /// Publishes the table if it is time to.
+  void tick();
+  /// Publishes the table, and removes the journal of a complete sweep. Returns a message if that fails.
+  std::string finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Entry = store::Journal::Entry;
+
+  store::OutputPath place_;
+  std::string path_;   // for messages and readers: links followed
+  std::string stamp_;  // of the table as this sweep read or wrote it last; empty if there was none
+  const sweep::Plan* plan_;
+  store::Provenance provenance_;
+  std::int64_t attempts_;
+  store::Journal journal_;
+  std::map<std::int64_t, Entry> runs_;      // by task; those that have begun
+  std::vector<Entry> other_runs_;           // in the file, but not of this plan
+  std::vector<store::CircleFile> circles_;  // that runs are among
+  std::int64_t num_wanted_;
+  std::int64_t num_faulty_ = 0;
+  std::vector<std::int64_t> tasks_left_;
+  /// Known results of a task, from earlier sessions or attempts.
+  struct Past {
+    double wall_seconds = 0, processor_seconds = 0;  // spent on it
+    std::string instruction_set;  // of the snapshot that it resumes from; empty if it restarts
+    void take_costs(const sweep::RunRow& row) {
+      wall_seconds = row.wall_seconds;
+      processor_seconds = row.processor_seconds;
+    }
+  };
+  std::unordered_map<std::int64_t, Past> past_;
+  std::string caution_;
+  std::optional<Activity> activity_;
+  std::string earlier_activity_;  // of other sessions
+  std::string session_time_;
+  Clock::time_point begin_ = Clock::now();
+  bool is_published_ = false;
+  Clock::time_point last_publication_;
+  Clock::duration publication_time_{0};
+
+  bool is_over(const sweep::RunRow& row) const;
+  sweep::RunRow new_row(std::int64_t task) const;
+  void keep_circles(const store::SweepFile& file);
+  store::SweepFile read_table();
+  void adopt(const store::SweepFile& file, const sweep::Settings& settings);
+  std::string settings_that_differ(const store::SweepFile& file, const sweep::Settings& settings) const;
+  void refuse_foreign(const std::vector<Entry>& entries, const std::unordered_map<std::string, Entry>& known,
+                      const sweep::Settings& settings) const;
+  void find_tasks(std::unordered_map<std::string, Entry> known);
+  double seconds_so_far() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  sweep::RunRow published(const sweep::RunRow& row) const;
+  void write_down(const Entry& entry);
+  void publish();
+  [[noreturn]] void rescue(const std::vector<sweep::RunRow>& rows);
+  void rewrite_journal(bool with_all);
+};
+
+}  // namespace clog::results

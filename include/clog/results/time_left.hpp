@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace clog::results {
+
+/// How long a sweep still takes, as a range [s].
+struct TimeLeft {
+  bool is_known = false;
+  double shortest = 0;
+  double longest = 0;
+
+  std::string text() const;
+};
+/// Runs that differ in their seed only.
+struct SetTimes {
+  std::int64_t num_finished = 0;
+  std::int64_t num_running = 0;
+  std::int64_t num_waiting = 0;
+  double seconds = 0;  ///< that finished ones took and running ones have taken, together
+};
+/// Short runs end first, so the mean over finished runs alone is too small: running ones count as censored,
+/// as for the clogging length. Each parameter set has its own mean; a set without a finished run gets the
+/// mean of all, with an error as large. The time left is then each rank's share of the waiting runs, plus a
+/// tail in which ranks run out of tasks one by one (the largest of W exponential times is 1 + 1/2 + ... + 1/W
+/// means). The range is that of the means, 80 %.
+TimeLeft time_left(std::span<const SetTimes> sets, std::size_t num_ranks);
+
+}  // namespace clog::results

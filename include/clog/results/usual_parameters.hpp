@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "clog/results/groups.hpp"
+
+namespace clog::results {
+
+/// The parameter_fields() of these runs as they would be by default: with the row's model and preset, where
+/// `auto` stands for what follows from the row's other parameters. Empty if the row's parameters are
+/// impossible.
+std::vector<Field> usual_parameters(const sweep::RunRow& row);
+
+/// Is this value what `auto` gives for the row's other parameters, or what its preset sets?
+bool is_automatic(const sweep::Column& column, const sweep::RunRow& row);
+
+/// The value by which a column separates curves and comparisons: unset where it is automatic or follows from
+/// the array; for springs to the rest length the ratio K_l/Gamma, which `perimeter-stiffness-ratio` sets.
+Value separating_value(const sweep::Column& column, const sweep::RunRow& row);
+
+}  // namespace clog::results

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "clog/sweep/job.hpp"
+#include "clog/sweep/settings.hpp"
+
+namespace clog::scheduler {
+
+/// Rank 0's message to the others before a sweep: what to compute, and how.
+struct Assignment {
+  std::chrono::milliseconds report_interval{10'000};
+  std::string instruction_set = "auto";
+  bool is_isolated = true;  ///< do tasks run in processes of their own?
+  std::string settings;     ///< see sweep::Settings::packed()
+
+  /// Serialised form, for messages.
+  std::string text() const;
+  static Assignment from(const std::string& text);
+};
+
+/// The jobs of an assignment, in whichever process they are to be worked on.
+/// @param text  see Assignment::text()
+sweep::JobFactory assigned_jobs(const std::string& text);
+
+}  // namespace clog::scheduler

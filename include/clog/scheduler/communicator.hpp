@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace clog::scheduler {
+
+/// MPI for the duration of a program: initialised on construction, finalised on destruction. Works without
+/// mpirun as a single rank. Ranks talk in short messages of plain bytes, marked by a tag; all ranks run the
+/// same binary on the same kind of machine.
+class Communicator {
+ public:
+  Communicator(int& argc, char**& argv);
+  ~Communicator();
+  Communicator(const Communicator&) = delete;
+  Communicator& operator=(const Communicator&) = delete;
+
+  /// Before MPI begins, by what the launcher says: true of rank 0, and of others whose launcher says nothing.
+  static bool may_be_rank_0();
+
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+  /// Version of the MPI library, one line.
+  static std::string library_version();
+  static std::string host_name();
+
+  /// Collective: every rank returns rank 0's text or number.
+  std::string broadcast(std::string text) const;
+  int broadcast(int number) const;
+  /// Collective: rank 0 returns every rank's text, in the order of ranks; the others return nothing.
+  std::vector<std::string> gather(const std::string& text) const;
+  /// Collective: returns when all ranks have come, sleeping meanwhile (MPI's own barrier spins).
+  void wait_for_all() const;
+
+  struct Envelope {
+    int source;
+    int tag;
+    std::size_t num_bytes;
+  };
+  static constexpr int any = -1;
+  /// Sends and returns when the bytes may be reused.
+  void send(int destination, int tag, std::span<const std::byte> bytes) const;
+  /// Is a message waiting? Never blocks.
+  std::optional<Envelope> probe(int source, int tag) const;
+  /// Receives the message that probe() saw.
+  std::vector<std::byte> receive(const Envelope& envelope) const;
+
+  /// Ends all ranks at once; for faults after which they could only wait for each other.
+  [[noreturn]] void abort(int exit_code) const;
+
+ private:
+  int rank_ = 0;
+  int size_ = 1;
+};
+
+}  // namespace clog::scheduler

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "clog/results/seed_rule.hpp"
+#include "clog/results/sweep_state.hpp"
+#include "clog/scheduler/communicator.hpp"
+#include "clog/scheduler/log.hpp"
+#include "clog/scheduler/scheduler.hpp"
+#include "clog/sweep/job.hpp"
+#include "clog/sweep/plan.hpp"
+
+namespace clog::scheduler {
+
+struct DriverOptions {
+  std::string output;
+  scheduler::MasterComputes master_computes = scheduler::MasterComputes::automatic;
+  std::chrono::milliseconds report_interval{10'000};
+  double max_hours = std::numeric_limits<double>::infinity();
+  Log::Level log = Log::Level::normal;
+};
+
+/// Makes the jobs of a rank from the text of an Assignment.
+using JobsOf = std::function<sweep::JobFactory(const std::string& assignment)>;
+
+/// Rank 0's part of a sweep, while the other ranks are in follow_sweep(): connects the scheduler with the
+/// state, the log and the progress line. Returns the exit code.
+/// @param assignment  of all ranks, as text
+/// @param rule  which requests more of the plan's tasks when those requested are over; nullptr: none
+int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& options, const sweep::Plan& plan,
+                const JobsOf& jobs_of, const std::string& assignment, results::SweepState& state,
+                results::SeedRule* rule);
+
+/// The part of the other ranks.
+void follow_sweep(const scheduler::Communicator& ranks, const JobsOf& jobs_of, const std::string& assignment);
+
+}  // namespace clog::scheduler

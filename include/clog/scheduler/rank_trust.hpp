@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace clog::scheduler {
+
+/// Whose fault is a failed task: its own, or that of the rank (a broken node)? A task's result depends on no
+/// rank, so the way to know is to try it elsewhere:
+///
+/// - A failure counts against its rank until the rank succeeds with another task, or until the task also
+///   fails on a trusted rank: then the task is at fault. A rank is trusted if it has succeeded and is not on
+///   hold.
+/// - Three failures that count against a rank put it on hold: it gets no more tasks until their cause is
+///   known.
+/// - If one of the three tasks then succeeds elsewhere, the rank is set aside for good.
+/// - The last rank left of several cannot be compared with any: three failures set it aside at once. A rank
+///   that was alone from the beginning is never set aside.
+class RankTrust {
+ public:
+  explicit RankTrust(const std::vector<int>& ranks);
+
+  /// Returns the ranks that this sets aside.
+  std::vector<int> succeeded(std::int64_t task, int rank);
+  std::vector<int> failed(std::int64_t task, int rank);
+  /// Releases all ranks on hold that are still in service, when no rank is left that could decide whether
+  /// rank or task is at fault.
+  void let_go();
+
+  int num_in_service() const { return num_in_service_; }
+  bool may_work(int rank) const { return records_.at(rank).in_service && !is_on_hold(rank); }
+  /// Is this the place for another attempt of a task that failed? Not while another rank has not tried it.
+  bool is_next_for(std::int64_t task, int rank) const;
+  bool is_trusted(int rank) const;
+  /// Tasks that failed on this rank, without having failed on a trusted one or succeeded on any.
+  std::vector<std::int64_t> unsettled_tasks(int rank) const;
+  /// Unsettled tasks of this rank that other ranks should try, to decide whether it may be released: those
+  /// that some rank in service has not tried yet. Empty if this rank is not on hold, or if all tasks seem to
+  /// fail on all ranks.
+  std::vector<std::int64_t> tasks_in_doubt(int rank) const;
+
+ private:
+  struct Record {
+    bool in_service = true;
+    bool has_succeeded = false;
+    bool is_refuted = false;                 // a task held against it has succeeded elsewhere
+    std::vector<std::int64_t> held_against;  // tasks
+  };
+  static constexpr std::size_t most_failures = 3;
+
+  std::unordered_map<int, Record> records_;                       // by rank
+  std::unordered_map<std::int64_t, std::vector<int>> failed_on_;  // by task, until it succeeds: ranks
+  int num_in_service_;
+  int num_ranks_;
+  bool has_let_go_ = false;
+
+  bool is_on_hold(int rank) const;
+  static bool has_many_failures(const Record& record) { return record.held_against.size() >= most_failures; }
+  bool set_aside_if_due(Record& record);
+};
+
+}  // namespace clog::scheduler

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "clog/scheduler/communicator.hpp"
+#include "clog/scheduler/rank_trust.hpp"
+#include "clog/scheduler/task_order.hpp"
+#include "clog/sweep/job.hpp"
+#include "clog/sweep/messages.hpp"
+
+namespace clog::scheduler {
+
+enum class MasterComputes { automatic, yes, no };
+
+using sweep::Report;
+using sweep::Start;
+
+/// Callbacks by which the scheduler informs and queries its caller during a sweep. Called on rank 0 only,
+/// between slices of its own work.
+struct SweepEvents {
+  std::function<Start(std::int64_t task, int rank)> started = [](std::int64_t, int) { return Start(); };
+  /// Called from time to time for a running task; the status of its row is `running`.
+  std::function<void(const Report&)> progressed = [](const Report&) {};
+  /// Every task that was started ends here once for each attempt; `interrupted` after a stop.
+  std::function<void(const Report&)> ended = [](const Report&) {};
+  /// Should a task that ended as `failed` be tried again?
+  std::function<bool(const sweep::RunRow&)> tries_again = [](const sweep::RunRow&) { return false; };
+  /// Called for a task that `failed` when the rank may be at fault (see RankTrust): the attempt does not
+  /// count, and the task is tried once more whatever tries_again() returned.
+  std::function<void(std::int64_t task)> failure_withdrawn = [](std::int64_t) {};
+  /// Called when a rank gets no more tasks. The row is that of the last task that failed on it, with rank and
+  /// host.
+  std::function<void(const sweep::RunRow& failed)> set_aside = [](const sweep::RunRow&) {};
+  /// About every 0.1 s; less often while this rank samples an array or releases a droplet (a second, in large
+  /// boxes).
+  std::function<void()> idle = [] {};
+  /// Should the sweep stop now? Running tasks are then ended as interrupted, no more are handed out.
+  std::function<bool()> stop_requested = [] { return false; };
+};
+
+/// Does rank 0 compute? `automatic`: with up to 16 ranks. With more, the gain of one rank is not worth the
+/// delay that its slices add before each worker's next task.
+bool computes(int num_ranks, MasterComputes choice);
+
+/// Rank 0's state of a sweep's tasks and ranks, kept over all rounds: ranks that were set aside stay set
+/// aside, and measured run times remain in use.
+struct Schedule {
+  /// @param first  tasks of the first round
+  Schedule(TaskOrder first, int num_ranks, bool with_master);
+
+  TaskOrder tasks;
+  bool master_computes;
+  RankTrust trust;
+  std::unordered_map<int, sweep::RunRow> last_failures;  ///< by rank
+};
+
+enum class SweepEnd {
+  complete,      ///< all tasks were handed out
+  stopped,       ///< as stop_requested() said
+  no_rank_left,  ///< every rank was set aside
+};
+
+/// Works through all tasks with all ranks, a round of a sweep; collective.
+///
+/// Rank 0 hands out one task at a time, since tasks differ a thousandfold in length, and gathers the rows.
+/// Rows do not depend on the order of the tasks. A task that failed is tried again on another rank, if there
+/// is one, before new tasks start. A rank on which everything fails is set aside: see RankTrust. Rank 0, if
+/// it computes, does so in slices between polls. No rank spins: an idle rank sleeps, with a backoff of up to
+/// a few milliseconds. A stopped task has two seconds to report its progress; otherwise its previous report
+/// is used.
+/// @param schedule  matters on rank 0
+/// @param make_job  called on the rank that works on the task
+/// @param report_interval  time between two reports of a running task
+/// @return how it ended (rank 0; complete elsewhere)
+SweepEnd run_tasks(const Communicator& ranks, Schedule& schedule, const sweep::JobFactory& make_job,
+                   const SweepEvents& events,
+                   std::chrono::milliseconds report_interval = std::chrono::seconds(10));
+
+}  // namespace clog::scheduler

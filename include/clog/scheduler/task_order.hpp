@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace clog::scheduler {
+
+/// Which task to hand out next: the one expected to run longest, so that no long one is left for the end,
+/// when ranks without work would wait for it.
+///
+/// The tasks of a group differ in their seed only, and are handed out in order. A group's expected run time
+/// is the mean of an exponential distribution fitted to its finished and, as censored, its running tasks: all
+/// their time over the number that ended. A group of which none has ended is expected to be longer than any
+/// other; among those the one with fewest tasks handed out is next.
+class TaskOrder {
+ public:
+  using GroupOf = std::function<std::int64_t(std::int64_t task)>;
+
+  /// No tasks yet.
+  explicit TaskOrder(GroupOf group_of) : number_of_group_(std::move(group_of)) {}
+  /// Tasks from 0 on, task i of group i % num_groups.
+  explicit TaskOrder(std::int64_t num_tasks, std::int64_t num_groups = 1);
+  /// Some of its tasks.
+  TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups);
+
+  /// More of them, for another round; maybe of new groups.
+  void add(const std::vector<std::int64_t>& tasks);
+
+  bool empty() const { return num_left_ == 0; }
+  /// Hands out a task; there must be one. Costs a look at every group.
+  /// @param now  time [s], from any moment on, the same in all calls
+  std::int64_t take(double now);
+  void ended(std::int64_t task, double now);
+  /// A task that ended before starts again.
+  void begun_again(std::int64_t task, double now);
+
+ private:
+  struct Group {
+    std::deque<std::int64_t> waiting;
+    std::int64_t num_taken = 0;
+    std::int64_t num_ended = 0;
+    double time_ended = 0;     // run times of the tasks that ended [s]
+    double start_running = 0;  // sum of the starts of those that run
+  };
+  GroupOf number_of_group_;
+  std::int64_t num_left_ = 0;
+  std::vector<Group> groups_;
+  std::unordered_map<std::int64_t, double> running_since_;  // by task
+
+  void begin(Group& group, std::int64_t task, double now);
+  Group& group_of(std::int64_t task);
+  double expected_time(const Group& group, double now) const;
+};
+
+}  // namespace clog::scheduler

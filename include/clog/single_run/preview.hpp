@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+namespace clog::single_run {
+
+/// The duration of runs of which none ends before max-time.
+struct MostCost {
+  double time = 0;  ///< [t0]
+  double steps = 0;
+  double seconds = 0;  ///< of computing, on this machine
+  double samples = 0;
+  double polygons = 0;
+  double polygon_bytes = 0;
+
+  MostCost& operator+=(const MostCost& other);
+};
+/// The config, and the cost as comments, on the standard output. Returns the exit code.
+int print_preview(const std::string& config, const MostCost& cost);
+
+}  // namespace clog::single_run

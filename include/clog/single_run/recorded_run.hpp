@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clog/core/run/droplet_run.hpp"
+#include "clog/single_run/preview.hpp"
+#include "clog/store/trajectory_file.hpp"
+
+namespace clog::single_run {
+
+/// Follows one droplet to its end, or to a signal, and keeps samples of it on the way.
+class RecordedRun {
+ public:
+  /// How often, in checks of the run (0: no polygons).
+  struct Intervals {
+    std::int64_t samples = 1;
+    std::int64_t polygons = 0;
+  };
+  /// @param samples, polygons  [t0]; without polygons none are kept
+  static Intervals every(double samples, std::optional<double> polygons, double time_step);
+
+  RecordedRun(DropletRun run, Intervals intervals);
+
+  void follow();
+  /// Advances the run by a short piece, to see what a step costs. The run is good for nothing else then.
+  MostCost measure_cost();
+
+  const DropletRun& run() const { return run_; }
+  /// The run's result; its status is `interrupted` if a signal ended it.
+  RunResult result() const;
+  /// Samples, polygons, the obstacles near them, and the row's columns of results.
+  /// @param row  the columns of what was run, see sweep::describe()
+  /// @param origin  where the trajectory comes from
+  store::Trajectory trajectory(sweep::RunRow row, store::Provenance origin) const;
+  /// Two lines on how it ended. Returns the exit code.
+  int report() const;
+
+ private:
+  struct Column {
+    store::TrajectoryColumn data;
+    std::function<double(const DropletRun&)> measure;
+  };
+  DropletRun run_;
+  Intervals intervals_;
+  std::vector<Column> columns_;
+  std::vector<store::PolygonFrame> polygons_;
+  bool interrupted_ = false;
+  double seconds_ = 0, processor_seconds_ = 0;
+
+  void add_column(std::string name, std::string meaning, std::function<double(const DropletRun&)> measure) {
+    columns_.push_back({{std::move(name), std::move(meaning), {}}, std::move(measure)});
+  }
+  void add_common_columns();
+  void add_columns_of_channel();
+  void take_sample();
+  void take_polygon();
+};
+
+}  // namespace clog::single_run

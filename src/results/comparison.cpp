@@ -1,0 +1,231 @@
+#include "clog/results/comparison.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "clog/console/printable.hpp"
+#include "clog/console/rounded.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
+#include "clog/results/stored_sweep.hpp"
+#include "clog/results/usual_parameters.hpp"
+#include "clog/sweep/columns.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/row_limits.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::results {
+namespace {
+
+using sweep::RunRow;
+
+/// Runs that differ in their seed.
+struct ParameterSet {
+  RunRow first;
+  std::map<std::uint32_t, const RunRow*> by_seed;
+};
+
+std::vector<Value> column_values(const RunRow& row, const std::vector<std::string>& columns) {
+  std::vector<Value> values;
+  values.reserve(columns.size());
+  for (const std::string& name : columns) values.push_back(sweep::column(name).get(row));
+  return values;
+}
+
+bool counts(const RunRow& row) { return row.status != RunStatus::failed && sweep::fault_of(row).empty(); }
+
+std::vector<ParameterSet> sets_of(const std::vector<RunRow>& rows) {
+  std::map<std::vector<Value>, ParameterSet> sets;
+  for (const RunRow& row : rows) {
+    if (!counts(row)) continue;
+    std::vector<Value> values;
+    for (const Field& field : parameter_fields(row)) values.push_back(field.second);
+    ParameterSet& set = sets.try_emplace(values, ParameterSet{row, {}}).first->second;
+    set.by_seed.emplace(row.parameters.seed, &row);
+  }
+  std::vector<ParameterSet> all;
+  all.reserve(sets.size());
+  for (auto& [values, set] : sets) all.push_back(std::move(set));
+  return all;
+}
+
+std::set<Value> values_in(const std::vector<ParameterSet>& sets, const std::string& column) {
+  std::set<Value> values;
+  for (const ParameterSet& set : sets) values.insert(sweep::column(column).get(set.first));
+  return values;
+}
+
+/// Columns that vary within a side, and of which both have a value: by these parameter sets belong together.
+std::vector<std::string> common_columns(const Side& there, const Side& here,
+                                        const std::vector<ParameterSet>& sets_there,
+                                        const std::vector<ParameterSet>& sets_here) {
+  std::vector<std::string> columns;
+  for (const sweep::Column* column : group_columns()) {
+    const auto is_listed = [&](const Side& side) {
+      return std::ranges::find(side.lists, column->name) != side.lists.end();
+    };
+    if (!is_listed(there) && !is_listed(here)) continue;
+    const std::set<Value> values = values_in(sets_there, column->name);
+    const bool is_common = std::ranges::any_of(values_in(sets_here, column->name),
+                                               [&](const Value& value) { return values.contains(value); });
+    if (is_common) columns.push_back(column->name);
+  }
+  return columns;
+}
+
+using ByValues = std::map<std::vector<Value>, const ParameterSet*>;
+
+ByValues by_values(const std::vector<ParameterSet>& sets, const std::vector<std::string>& columns,
+                   const Side& side) {
+  ByValues all;
+  for (const ParameterSet& set : sets) {
+    const auto [known, is_new] = all.emplace(column_values(set.first, columns), &set);
+    if (is_new) continue;
+    std::vector<std::string> differing;
+    for (const sweep::Column* column : group_columns())
+      if (column->get(known->second->first) != column->get(set.first)) differing.push_back(column->name);
+    throw Error(fmt::format(
+        "cannot compare (several parameter sets of {0} differ only in {1}, and the other side has none of "
+        "these values: it is not clear which set to compare); choose one with clogsweep select",
+        side.name, joined(differing)));
+  }
+  return all;
+}
+
+fit::Observation observation(const RunRow& row) { return {row.distance, row.status == RunStatus::clogged}; }
+
+std::vector<fit::Observation> observations(const ParameterSet& set) {
+  std::vector<fit::Observation> all;
+  all.reserve(set.by_seed.size());
+  for (const auto& [seed, row] : set.by_seed) all.push_back(observation(*row));
+  return all;
+}
+
+Comparison compare_sets(const ParameterSet& here, const ParameterSet& there, double confidence,
+                        double within) {
+  Comparison comparison;
+  std::vector<fit::Pair> pairs;
+  for (const auto& [seed, row] : here.by_seed) {
+    const auto found = there.by_seed.find(seed);
+    if (found == there.by_seed.end()) continue;
+    const RunRow& other = *found->second;
+    const fit::Pair pair{observation(*row), observation(other)};
+    const bool have_both = pair.here.clogged && pair.there.clogged;
+    const bool is_same_place = have_both && std::abs(row->distance - other.distance) <= within &&
+                               std::abs(row->lateral_displacement - other.lateral_displacement) <= within;
+    comparison.num_both_clogged += have_both;
+    comparison.num_same_place += is_same_place;
+    pairs.push_back(pair);
+    pairs.back().is_alike = is_same_place || (!pair.here.clogged && !pair.there.clogged);
+  }
+  const std::vector<fit::Observation> all_here = observations(here), all_there = observations(there);
+  comparison.length_here = fit::fit_clogging_length(all_here, confidence);
+  comparison.length_there = fit::fit_clogging_length(all_there, confidence);
+  comparison.ratio = fit::fit_length_ratio(all_here, all_there, pairs, confidence);
+  return comparison;
+}
+
+/// Columns in which all compared sets differ, automatic values excepted.
+std::vector<std::string> differing_columns(
+    const std::vector<std::pair<const RunRow*, const RunRow*>>& pairs) {
+  std::vector<std::string> columns;
+  for (const sweep::Column* column : group_columns())
+    if (std::ranges::all_of(pairs, [&](const auto& pair) {
+          return separating_value(*column, *pair.first) != separating_value(*column, *pair.second);
+        }))
+      columns.push_back(column->name);
+  return columns;
+}
+
+void require_lengths(const Side& side) {
+  if (side.rows.empty()) throw Error(side.name + " has no runs yet; let the sweep finish some first");
+  if (!has_clogging_length(side.rows.front()))
+    throw Error("cannot compare " + side.name +
+                " (droplets in a channel or on a wall have no clogging length)");
+}
+
+}  // namespace
+
+std::vector<Side> sides_of_files(const std::vector<std::string>& paths) {
+  std::vector<Side> sides;
+  for (const std::string& path : paths) {
+    store::SweepFile file = read_with_caution(path);
+    sides.push_back({console::printable(path), std::move(file.rows), listed_columns(file.provenance)});
+  }
+  return sides;
+}
+
+std::vector<Side> sides_of_column(const std::string& name, const store::SweepFile& file) {
+  std::string column = name;
+  std::ranges::replace(column, '-', '_');
+  const auto columns = group_columns();
+  if (std::ranges::none_of(columns, [&](const sweep::Column* one) { return one->name == column; })) {
+    std::vector<std::string> names;
+    for (const sweep::Column* one : columns) names.push_back(one->name);
+    const std::string meant = sweep::did_you_mean(column, names);
+    throw Error(fmt::format(
+        "invalid --by={} (no parameter of a run){}", name,
+        meant.empty() ? "; clogsweep --schema lists them" : fmt::format("; did you mean {}?", meant)));
+  }
+  std::map<Value, std::vector<RunRow>> rows;
+  for (const RunRow& row : file.rows) rows[sweep::column(column).get(row)].push_back(row);
+  if (rows.size() < 2)
+    throw Error(fmt::format(
+        "invalid --by={} (all runs have the same) give a parameter that varies, or another file", name));
+  std::vector<std::string> lists = listed_columns(file.provenance);
+  std::erase(lists, column);
+  std::vector<Side> sides;
+  sides.reserve(rows.size());
+  for (auto& [value, own] : rows)
+    sides.push_back(
+        {fmt::format("{}={}", column, console::printable(sweep::text_of(value))), std::move(own), lists});
+  return sides;
+}
+
+Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within) {
+  if (sides.size() < 2) throw std::invalid_argument("a comparison has two sides or more");
+  for (const Side& side : sides) require_lengths(side);
+  Comparisons comparisons;
+  comparisons.within = within.value_or(0);
+  std::vector<std::pair<const RunRow*, const RunRow*>> compared;
+  const Side& there = sides.front();
+  const std::vector<ParameterSet> sets_there = sets_of(there.rows);
+  std::vector<std::vector<ParameterSet>> sets_here;
+  sets_here.reserve(sides.size());  // `compared` points into them
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    const Side& here = sides[i];
+    sets_here.push_back(sets_of(here.rows));
+    const std::vector<std::string> columns = common_columns(there, here, sets_there, sets_here.back());
+    if (i == 1) comparisons.columns = columns;
+    if (columns != comparisons.columns)
+      throw Error(fmt::format("cannot compare {} (it varies {}, but {} varies {}); compare two at a time",
+                              here.name, joined(columns), sides[1].name, joined(comparisons.columns)));
+    const ByValues all_there = by_values(sets_there, columns, there);
+    for (const auto& [values, set] : by_values(sets_here.back(), columns, here)) {
+      const auto other = all_there.find(values);
+      if (other == all_there.end()) continue;
+      const double near = within.value_or(sweep::obstacle_spacing(set->first) / 2);
+      Comparison one = compare_sets(*set, *other->second, confidence, near);
+      one.here = here.name;
+      one.there = there.name;
+      one.common = values;
+      comparisons.all.push_back(std::move(one));
+      compared.emplace_back(&set->first, &other->second->first);
+    }
+  }
+  if (comparisons.all.empty())
+    throw Error(fmt::format(
+        "cannot compare {} with {} (no parameter set of one has the values of any set of the other)",
+        sides[1].name, there.name));
+  comparisons.differing = differing_columns(compared);
+  return comparisons;
+}
+
+}  // namespace clog::results

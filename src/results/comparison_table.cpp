@@ -1,0 +1,143 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "clog/console/build_info.hpp"
+#include "clog/console/json_text.hpp"
+#include "clog/console/rounded.hpp"
+#include "clog/console/table.hpp"
+#include "clog/core/tools/joined.hpp"
+#include "clog/results/comparison.hpp"
+#include "clog/sweep/columns.hpp"
+#include "value_json.hpp"
+
+namespace clog::results {
+namespace {
+
+Value finite_value(double number) { return std::isfinite(number) ? Value(number) : Value(); }
+Value finite_value(int count) { return std::int64_t{count}; }
+
+using NamedValues = std::vector<std::pair<std::string, Value>>;
+
+void append_length(const std::string& side, const fit::CloggingLength& length, NamedValues& fields) {
+  fields.emplace_back("runs_" + side, finite_value(length.num_runs));
+  fields.emplace_back("clogs_" + side, finite_value(length.num_clogs));
+  fields.emplace_back("clogging_length_" + side, finite_value(length.length));
+  fields.emplace_back("clogging_length_" + side + "_lower", finite_value(length.interval.lower));
+  fields.emplace_back("clogging_length_" + side + "_upper", finite_value(length.interval.upper));
+}
+
+NamedValues fields_of(const Comparison& one, const std::vector<std::string>& columns) {
+  NamedValues fields = {{"here", one.here}, {"there", one.there}};
+  for (std::size_t i = 0; i < columns.size(); ++i) fields.emplace_back(columns[i], one.common[i]);
+  append_length("here", one.length_here, fields);
+  append_length("there", one.length_there, fields);
+  const fit::LengthRatio& ratio = one.ratio;
+  fields.emplace_back("ratio", finite_value(ratio.ratio));
+  fields.emplace_back("ratio_lower", finite_value(ratio.interval.lower));
+  fields.emplace_back("ratio_upper", finite_value(ratio.interval.upper));
+  fields.emplace_back("interval", std::string(ratio.is_paired ? "paired" : "unpaired"));
+  fields.emplace_back("unpaired_lower", finite_value(ratio.unpaired.lower));
+  fields.emplace_back("unpaired_upper", finite_value(ratio.unpaired.upper));
+  fields.emplace_back("pairs", finite_value(ratio.num_pairs));
+  fields.emplace_back("unlike_pairs", finite_value(ratio.num_unlike));
+  fields.emplace_back("paired_ratio", finite_value(ratio.paired_ratio));
+  fields.emplace_back("paired_lower", finite_value(ratio.paired.lower));
+  fields.emplace_back("paired_upper", finite_value(ratio.paired.upper));
+  fields.emplace_back("correlation", finite_value(ratio.correlation));
+  fields.emplace_back("gain", finite_value(ratio.gain));
+  fields.emplace_back("both_clogged", finite_value(one.num_both_clogged));
+  fields.emplace_back("same_place", finite_value(one.num_same_place));
+  return fields;
+}
+
+std::string bounded_length(const fit::CloggingLength& length) {
+  return length.num_clogs == 0
+             ? "> " + console::plain(length.interval.lower)
+             : console::with_interval(length.length, length.interval.lower, length.interval.upper).value;
+}
+
+std::string clogs_text(const Comparison& one) {
+  return fmt::format("{}/{}", one.length_here.num_clogs, one.length_there.num_clogs);
+}
+
+std::vector<std::string> cells(const Comparison& one) {
+  const fit::LengthRatio& ratio = one.ratio;
+  std::vector<std::string> all = {clogs_text(one), bounded_length(one.length_here),
+                                  bounded_length(one.length_there)};
+  if (std::isnan(ratio.interval.lower)) {
+    all.insert(all.end(), {"-", "-"});
+  } else {
+    const auto rounded = console::with_interval(ratio.ratio, ratio.interval.lower, ratio.interval.upper);
+    all.insert(all.end(), {rounded.value, rounded.lower + " .. " + rounded.upper});
+  }
+  all.emplace_back(ratio.is_paired ? "yes" : "no");
+  all.push_back(std::isnan(ratio.gain) ? "-" : fmt::format("{:.2f}", ratio.gain));
+  all.push_back(fmt::format("{}/{}", one.num_same_place, one.num_both_clogged));
+  return all;
+}
+
+}  // namespace
+
+std::string to_text(const Comparisons& comparisons, double confidence) {
+  std::string text = fmt::format("lambda of each over that of {}", comparisons.all.front().there);
+  if (!comparisons.differing.empty()) text += "; they differ in " + joined(comparisons.differing);
+  std::vector<std::vector<std::string>> lines = {{"of"}};
+  lines[0].insert(lines[0].end(), comparisons.columns.begin(), comparisons.columns.end());
+  lines[0].insert(lines[0].end(),
+                  {"clogs", "lambda", "lambda there", "ratio", fmt::format("{:.4g} %", 100 * confidence),
+                   "paired", "gain", "same place"});
+  for (const Comparison& one : comparisons.all) {
+    std::vector<std::string>& line = lines.emplace_back(1, one.here);
+    for (const Value& value : one.common) line.push_back(short_text(value));
+    for (std::string& cell : cells(one)) line.push_back(std::move(cell));
+  }
+  text += "\n\n" + console::aligned(lines) +
+          "\npaired: the interval is from pairs of the same seed; gain: how many times smaller the error of "
+          "the ratio is "
+          "with\npairs than without; same place: pairs that clogged within ";
+  text +=
+      comparisons.within > 0 ? fmt::format("{:.4g} sigma", comparisons.within) : "half an obstacle spacing";
+  return text + " of each other, of those in which both clogged\n";
+}
+
+std::string to_csv(const Comparisons& comparisons) {
+  std::string table;
+  for (const Comparison& one : comparisons.all) {
+    std::vector<std::string> names, texts;
+    for (const auto& [name, value] : fields_of(one, comparisons.columns)) {
+      names.push_back(name);
+      texts.push_back(csv_cell(value));
+    }
+    if (table.empty()) table = joined(names, ",") + '\n';
+    table += joined(texts, ",") + '\n';
+  }
+  return table;
+}
+
+std::string to_json(const Comparisons& comparisons, double confidence) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Comparison& one : comparisons.all) {
+    nlohmann::ordered_json entry;
+    for (const auto& [name, value] : fields_of(one, comparisons.columns)) entry[name] = json_of(value);
+    list.push_back(std::move(entry));
+  }
+  const console::BuildInfo build = console::build_info();
+  const nlohmann::ordered_json document = {
+      {"version", build.version},
+      {"git_describe", build.git_describe},
+      {"confidence", confidence},
+      {"columns", comparisons.columns},
+      {"differing", comparisons.differing},
+      {"within",
+       comparisons.within > 0 ? nlohmann::ordered_json(comparisons.within) : nlohmann::ordered_json()},
+      {"comparisons", list}};
+  return console::json_text(document);
+}
+
+}  // namespace clog::results

@@ -1,0 +1,259 @@
+#include "clog/results/merger.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "clog/console/json_text.hpp"
+#include "clog/console/printable.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
+#include "clog/results/repetition.hpp"
+#include "clog/results/run_list.hpp"
+#include "clog/results/salvage.hpp"
+#include "clog/results/stored_sweep.hpp"
+#include "clog/sweep/row_check.hpp"
+
+namespace clog::results {
+namespace {
+
+using sweep::RunRow;
+
+/// One of the files.
+struct Part {
+  std::string path;
+  store::SweepFile table;
+  std::vector<store::Journal::Entry> snapshots;
+};
+
+Part whole_part(const std::string& path) {
+  if (store::Journal::is_open(store::journal_path(path)))
+    throw Error("cannot merge " + path + " (a sweep is writing to it); wait for it to end, or stop it");
+  store::read_sweep(path);  // refuses a damaged one
+  Salvage found = salvage(path);
+  if (!found.damage.empty())
+    throw Error(fmt::format("cannot merge {} (damaged: {}); `clogsweep salvage` keeps what is whole", path,
+                            found.damage.front()));
+  return {path, std::move(found.table), std::move(found.snapshots)};
+}
+
+/// The rows of all parts, each run once.
+class Rows {
+ public:
+  void add(const Part& part) {
+    for (const RunRow& row : part.table.rows) add(row, part.path);
+  }
+  std::vector<RunRow> take() { return std::move(rows_); }
+  std::int64_t num_shared() const { return static_cast<std::int64_t>(shared_.size()); }
+  std::int64_t num_differing() const { return static_cast<std::int64_t>(differing_.size()); }
+  std::int64_t num_faulty() const { return num_faulty_; }
+
+ private:
+  std::vector<RunRow> rows_;
+  std::vector<std::string> paths_;                       // that rows are from
+  std::unordered_map<std::string, std::size_t> places_;  // by what runs are
+  std::set<std::size_t> shared_, differing_;
+  std::int64_t num_faulty_ = 0;
+
+  void add(const RunRow& row, const std::string& path) {
+    if (!sweep::fault_of(row).empty()) {
+      ++num_faulty_;
+      return;
+    }
+    if (!rows_.empty() && row.model_version != rows_.front().model_version)
+      throw Error(fmt::format(
+          "cannot join {} and {} (their runs are of model versions {} and {}: the same parameters "
+          "give other results)",
+          paths_.front(), path, rows_.front().model_version, row.model_version));
+    const auto [known, is_new] = places_.emplace(sweep::identity(row), rows_.size());
+    if (is_new) {
+      rows_.push_back(row);
+      paths_.push_back(path);
+      return;
+    }
+    const std::size_t place = known->second;
+    shared_.insert(place);
+    if (!is_better(row, place, path)) return;
+    rows_[place] = row;
+    paths_[place] = path;
+  }
+
+  /// Is it to replace the row that there is? @throws Error if they contradict each other
+  bool is_better(const RunRow& row, std::size_t place, const std::string& path) {
+    const RunRow& known = rows_[place];
+    if (!sweep::is_result(row.status) || !sweep::is_result(known.status)) {
+      if (sweep::is_result(row.status) != sweep::is_result(known.status)) return sweep::is_result(row.status);
+      const bool is_failed = row.status == RunStatus::failed;
+      return is_failed == (known.status == RunStatus::failed) ? row.steps > known.steps : !is_failed;
+    }
+    const std::vector<std::string> differing = differing_results(known, row);
+    if (differing.empty()) return false;
+    // A run under two instruction sets is reproduced by none.
+    const bool is_mixed = row.instruction_set == sweep::mixed_instruction_sets;
+    if (known.instruction_set == row.instruction_set && !is_mixed)
+      throw Error(fmt::format(
+          "cannot join {} and {} (task {} of the first and task {} of the second are the same run, but their "
+          "results differ: {}); exclude the wrong file, `clogsweep replay` tells which",
+          paths_[place], path, known.task, row.task, joined(differing)));
+    differing_.insert(place);
+    return false;
+  }
+};
+
+/// Adds circles that are not there yet.
+void add_circles(const store::SweepFile& file, std::vector<store::CircleFile>& all) {
+  for (const store::CircleFile& one : file.circles) {
+    const auto known =
+        std::ranges::find_if(all, [&](const auto& other) { return other.circles == one.circles; });
+    if (known == all.end())
+      all.push_back(one);
+    else if (known->name.empty())
+      known->name = one.name;
+  }
+}
+
+/// Adds all runs of the plan (with --until-precision only those that have begun), and those outside it.
+void add_runs(const Part& part, RunList& runs) {
+  const sweep::Plan plan = stored_plan(part.path, part.table);
+  if (attribute(part.table.provenance, "stopping_rule").empty()) runs.add(plan);
+  for (const RunRow& row : part.table.rows) runs.add(plan, row);
+}
+
+std::vector<const store::SweepFile*> tables_of(const std::vector<Part>& parts) {
+  std::vector<const store::SweepFile*> tables;
+  tables.reserve(parts.size());
+  for (const Part& part : parts) tables.push_back(&part.table);
+  return tables;
+}
+
+std::string lines_of(const std::vector<Part>& parts) {
+  std::string lines;
+  for (const Part& part : parts) lines += part_line(part.path, part.table);
+  return lines;
+}
+
+MergedSweep join(const std::vector<Part>& parts) {
+  MergedSweep merged;
+  Rows rows;
+  for (const Part& part : parts) rows.add(part);
+  for (const Part& part : parts) add_circles(part.table, merged.table.circles);
+  merged.num_shared = rows.num_shared();
+  merged.num_differing = rows.num_differing();
+  merged.num_faulty = rows.num_faulty();
+  merged.table.rows = rows.take();
+  return merged;
+}
+
+}  // namespace
+
+void number_tasks(const sweep::Settings& settings, store::SweepFile& table) {
+  for (store::CircleFile& one : table.circles) {
+    const auto named = std::ranges::find_if(settings.circle_files(),
+                                            [&](const auto& file) { return file.second == one.circles; });
+    one.name = named == settings.circle_files().end() ? "" : named->first;
+  }
+  const sweep::Plan plan(settings);
+  const TaskNumbers numbers(plan);
+  std::int64_t next = plan.size();
+  for (RunRow& row : table.rows) {
+    const std::optional<std::int64_t> task = numbers.of(row);
+    row.task = task ? *task : next++;
+  }
+  std::ranges::sort(table.rows, {}, &RunRow::task);
+}
+
+std::string part_line(const std::string& path, const store::SweepFile& file, const std::string& condition) {
+  nlohmann::ordered_json part;
+  part["file"] = console::printable(path);
+  if (!condition.empty()) part["selected"] = condition;
+  part["rows"] = file.rows.size();
+  for (const char* name : {"program", "version", "git_describe", "git_hash", "compiler", "mpi_version",
+                           "start_time", "command_line", "stopping_rule"})
+    if (const std::string text = attribute(file.provenance, name); !text.empty()) part[name] = text;
+  std::set<std::string> hosts;
+  for (const RunRow& row : file.rows) hosts.insert(row.host);
+  part["hosts"] = hosts;
+  return console::json_text(part, -1) + attribute(file.provenance, "parts");
+}
+
+/// Attributes about the program's call: a new file has its own, which summarise those of its parts.
+static constexpr std::string_view replaced_attributes[] = {"config", "sessions", "parts", "stopping_rule",
+                                                           "num_wanted"};
+
+store::Provenance joint_provenance(const store::Provenance& maker, const std::string& config,
+                                   const std::vector<const store::SweepFile*>& files,
+                                   const std::string& parts) {
+  store::Provenance all = maker;
+  std::set<std::string> sessions;  // each begins with its time
+  if (attribute(maker, "sessions").empty())
+    sessions.insert(fmt::format("{} {} {} 1 {}", attribute(maker, "start_time"), attribute(maker, "version"),
+                                attribute(maker, "git_describe"), attribute(maker, "command_line")));
+  std::erase_if(all, [](const auto& attribute) {
+    return std::ranges::find(replaced_attributes, attribute.first) != std::end(replaced_attributes);
+  });
+  if (!config.empty()) all.emplace_back("config", config);
+  for (const store::SweepFile* file : files) {
+    std::istringstream lines(attribute(file->provenance, "sessions"));
+    for (std::string line; std::getline(lines, line);) sessions.insert(line);
+  }
+  std::string text;
+  for (const std::string& line : sessions) text += line + '\n';
+  all.emplace_back("sessions", text);
+  all.emplace_back("parts", parts);
+  return all;
+}
+
+MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance& maker) {
+  std::vector<Part> parts;
+  parts.reserve(paths.size());
+  for (const std::string& path : paths) parts.push_back(whole_part(path));
+  MergedSweep merged = join(parts);
+  RunList runs;
+  for (const Part& part : parts) add_runs(part, runs);
+  if (runs.empty()) throw Error("there is nothing to merge: the files have no runs");
+  const sweep::Settings settings = runs.settings();
+  number_tasks(settings, merged.table);
+  std::unordered_map<std::string, const RunRow*> unfinished;
+  for (const RunRow& row : merged.table.rows)
+    if (sweep::is_unfinished(row.status)) unfinished.emplace(sweep::identity(row), &row);
+  for (Part& part : parts)
+    for (store::Journal::Entry& entry : part.snapshots)
+      if (const auto row = unfinished.find(sweep::identity(entry.row));
+          row != unfinished.end() && row->second->steps == entry.row.steps) {
+        entry.row = *row->second;
+        merged.snapshots.push_back(std::move(entry));
+        unfinished.erase(row);
+      }
+  merged.table.provenance =
+      joint_provenance(maker, settings.to_config(false), tables_of(parts), lines_of(parts));
+  return merged;
+}
+
+store::SweepFile read_together(const std::vector<std::string>& paths) {
+  if (paths.size() == 1) return read_with_caution(paths.front());
+  std::vector<Part> parts;
+  parts.reserve(paths.size());
+  for (const std::string& path : paths) parts.push_back({path, read_with_caution(path), {}});
+  MergedSweep merged = join(parts);
+  std::string config;
+  try {
+    RunList runs;
+    for (const Part& part : parts) add_runs(part, runs);
+    const sweep::Settings settings = runs.settings();
+    config = settings.to_config(false);
+    number_tasks(settings, merged.table);
+  } catch (const Error&) {  // of a version that had other keys
+  }
+  merged.table.provenance =
+      joint_provenance(parts.front().table.provenance, config, tables_of(parts), lines_of(parts));
+  return std::move(merged.table);
+}
+
+}  // namespace clog::results

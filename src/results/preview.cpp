@@ -1,0 +1,351 @@
+#include "clog/results/preview.hpp"
+
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/printable.hpp"
+#include "clog/console/signals.hpp"
+#include "clog/console/streams.hpp"
+#include "clog/core/model/model.hpp"
+#include "clog/results/cost.hpp"
+#include "clog/results/stored_sweep.hpp"
+#include "clog/sweep/columns.hpp"
+#include "clog/sweep/obstacle_arrays.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/row_limits.hpp"
+#include "clog/sweep/run_row.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::results {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The columns that differ between tasks.
+std::vector<const sweep::Column*> varying_columns(const sweep::Plan& plan) {
+  const sweep::RunRow first = sweep::describe(plan.task(0));
+  std::vector<bool> varies;
+  for (const sweep::Column& column : sweep::columns())
+    varies.push_back(column.parameter && column.parameter->role == ParameterRole::ensemble);
+  for (std::int64_t group = 1; group < plan.num_groups(); ++group) {
+    const sweep::RunRow row = sweep::describe(plan.group(group));
+    for (std::size_t i = 0; i < varies.size(); ++i) {
+      const sweep::Column& column = sweep::columns()[i];
+      if (column.role == sweep::ColumnRole::parameter && !varies[i])
+        varies[i] = column.get(row) != column.get(first);
+    }
+  }
+  std::vector<const sweep::Column*> varying;
+  for (std::size_t i = 0; i < varies.size(); ++i)
+    if (varies[i]) varying.push_back(&sweep::columns()[i]);
+  return varying;
+}
+
+void print_task(const sweep::Plan& plan, std::int64_t task,
+                const std::vector<const sweep::Column*>& columns) {
+  const sweep::RunRow row = sweep::describe(plan.task(task));
+  std::cout << task;
+  for (const sweep::Column* column : columns) {
+    const std::string text = sweep::text_of(column->get(row));
+    std::cout << ' ' << (text.empty() ? "-" : text);
+  }
+  std::cout << '\n';
+}
+
+double work_per_step(const RunParameters& run) { return model_of(run).num_points(run); }
+double longest_work(const RunParameters& run) { return run.max_time / *run.time_step * work_per_step(run); }
+
+/// Sample of a sweep's runs from which its cost is estimated.
+struct Sample {
+  std::vector<RunCost> costs;
+  std::string source;
+  std::string failure;  ///< of the first that could not begin; these are not among the costs
+  std::int64_t num_clogged = 0;
+  std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
+  double spacing = 0;          ///< of the obstacles of such a run [sigma]
+  bool has_own_circles = false;
+
+  void count(const sweep::RunRow& row) {
+    if (row.status != RunStatus::clogged) return;
+    ++num_clogged;
+    if (!(row.distance < sweep::obstacle_spacing(row))) return;
+    ++num_short;
+    spacing = sweep::obstacle_spacing(row);
+    has_own_circles |= row.parameters.obstacles.layout == ObstacleLayout::file;
+  }
+};
+
+/// Cost of a run up to `row`. @param first  row of the same run when it had just started
+RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunParameters& run,
+                std::int64_t parameter_set) {
+  return {.parameter_set = parameter_set,
+          .begin_seconds = sweep::cost_seconds(first),
+          .seconds = sweep::cost_seconds(row) - sweep::cost_seconds(first),
+          .work = static_cast<double>(row.steps - first.steps) * work_per_step(run),
+          .longest_work = longest_work(run),
+          .is_over = !sweep::is_unfinished(row.status)};
+}
+
+constexpr std::size_t fewest_stored_runs = 5;
+constexpr double hour = 3600;
+
+/// The runs in the sweep's own file; empty if there is no file.
+struct Stored {
+  Sample sample;
+  std::vector<WaitingRuns> waiting;  ///< runs of each parameter set that are not in the sample
+  std::int64_t num_done = 0;         ///< tasks that need not run again
+  double seconds = 0;                ///< that its tasks have taken so far
+
+  bool knows_enough() const { return sample.costs.size() >= fewest_stored_runs; }
+};
+Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
+  Stored stored;
+  stored.sample.source = "in " + path;
+  if (path.empty() || !std::filesystem::exists(path)) return stored;
+  std::unordered_map<std::string, sweep::RunRow> rows;
+  for (const sweep::RunRow& row : read_with_caution(path).rows)
+    if (sweep::fault_of(row).empty()) rows.emplace(sweep::identity(row), row);
+  for (std::int64_t set = 0; set < plan.num_groups(); ++set)
+    stored.waiting.push_back({set, plan.num_seeds(set), longest_work(plan.group(set))});
+  for (std::int64_t task = 0; task < plan.size() && !rows.empty(); ++task) {
+    const RunParameters run = plan.task(task);
+    const auto found = rows.extract(sweep::identity(sweep::describe(run)));
+    if (found.empty()) continue;
+    const sweep::RunRow& row = found.mapped();
+    const std::int64_t set = plan.group_of(task);
+    const bool is_over = !sweep::is_unfinished(row.status);
+    const bool has_moved = row.steps > 0 && sweep::cost_seconds(row) > 0;
+    stored.num_done += is_over;
+    stored.seconds += sweep::cost_seconds(row);
+    if (has_moved) stored.sample.costs.push_back(cost_of(row, {}, run, set));
+    stored.sample.count(row);
+    if (is_over || has_moved) --stored.waiting[set].number;
+  }
+  return stored;
+}
+
+/// Tasks spread over parameter sets and, where these are few, over seeds; those of the same array together.
+std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
+  constexpr std::int64_t most_tasks = 24;
+  constexpr std::int64_t most_seeds = 4;  // of many parameter sets: arrays may take long to make
+  const std::int64_t num_tasks = std::min(plan.size(), most_tasks);
+  const std::int64_t num_groups = plan.num_groups();
+  std::vector<std::int64_t> tasks;
+  for (std::int64_t i = 0; i < num_tasks; ++i) {
+    const std::int64_t group = i * num_groups / num_tasks;
+    tasks.push_back(
+        num_groups <= num_tasks ? i : plan.task_of(group, i % std::min(most_seeds, plan.num_seeds(group))));
+  }
+  std::stable_sort(tasks.begin(), tasks.end(), [&](std::int64_t a, std::int64_t b) {
+    const auto array = [&](std::int64_t task) {
+      const RunParameters run = plan.task(task);
+      return sweep::array_key(run);
+    };
+    return array(a) < array(b);
+  });
+  return tasks;
+}
+
+constexpr double seconds_to_try = 10;
+
+/// Runs short pieces of these tasks. The jobs may be those of another process, which answers between slices
+/// of its work; one that takes too long, as a release that does not come to rest, is dropped.
+Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
+  constexpr double fewest_seconds = 0.1;  // for a run whose array took all of its share
+  constexpr double grace = 0.5;           // for the last answer
+  const Clock::time_point begin = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const auto advance_until = [&](sweep::Job& job, double end, const auto& is_enough) {
+    while (!job.advance())
+      if (is_enough() || elapsed() >= end || console::stop_signalled()) return;
+  };
+  Sample sample;
+  const std::vector<std::int64_t> tasks = tasks_to_try(plan);
+  for (std::size_t i = 0; i < tasks.size() && elapsed() < seconds_to_try && !console::stop_signalled(); ++i) {
+    const double share = (seconds_to_try - elapsed()) / static_cast<double>(tasks.size() - i);
+    const double end = elapsed() + share;
+    const auto job = jobs(tasks[i], {});
+    const auto answers = [&] { return job->refresh(); };
+    advance_until(*job, seconds_to_try + grace, answers);  // its array and its release
+    const sweep::RunRow first = job->row();
+    advance_until(*job, std::max(end, elapsed() + fewest_seconds), [] { return false; });
+    advance_until(*job, seconds_to_try + grace, answers);
+    const sweep::RunRow row = job->row();
+    const bool is_short = !sweep::is_unfinished(row.status) && !sweep::is_unfinished(first.status);
+    sample.count(row);
+    if (row.steps > 0)
+      sample.costs.push_back(
+          cost_of(row, is_short ? sweep::RunRow() : first, plan.task(tasks[i]), plan.group_of(tasks[i])));
+    else if (sample.failure.empty())
+      sample.failure = row.message;
+  }
+  if (sample.failure.empty())
+    sample.failure = fmt::format("its release takes longer than {:.2g} s", seconds_to_try);
+  sample.source = fmt::format("tried for {:.2g} s in total", elapsed());
+  return sample;
+}
+
+SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample) {
+  double all_work = 0;
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group)
+    all_work += longest_work(plan.group(group)) * static_cast<double>(plan.num_seeds(group));
+  return sweep_cost(sample.costs, all_work, plan.size());
+}
+
+/// Adds time that was spent before, or subtracts it.
+SweepCost plus(SweepCost cost, double seconds) {
+  for (double* part : {&cost.bound, &cost.expected, &cost.lower, &cost.upper})
+    *part = std::max(0.0, *part + seconds);
+  return cost;
+}
+
+/// What is known better than its interval, which stays as wide as it is.
+SweepCost with_expected(SweepCost cost, double expected) {
+  cost.lower *= expected / cost.expected;
+  cost.upper *= expected / cost.expected;
+  cost.expected = expected;
+  return cost;
+}
+
+void print_expected(const sweep::Plan& plan, const Sample& sample, const SweepCost& cost) {
+  const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
+  fmt::print(
+      std::cout,
+      "# at most {:.3g} core-hours on this machine, {:.3g} us per step measured; runs that clog end sooner\n",
+      cost.bound / hour, us_per_step);
+  const auto num_finished =
+      std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
+  const auto num_runs = static_cast<std::int64_t>(sample.costs.size());
+  fmt::print(std::cout,
+             "# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them ended\n",
+             cost.expected / hour, cost.lower / hour, cost.upper / hour, sweep::counted(num_runs, "run"),
+             sample.source, num_finished);
+}
+
+/// @param cost  of the whole plan
+void print_left(const sweep::Plan& plan, const std::string& output, const Stored& stored,
+                const SweepCost& cost) {
+  const SweepCost left = plus(cost, -stored.seconds);
+  fmt::print(std::cout,
+             "# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})\n",
+             console::printable(output), stored.num_done, sweep::counted(plan.size(), "task"),
+             plan.size() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
+}
+
+/// Clogging lengths below an obstacle spacing would be doubted (`v`): warns before the runs, not after.
+void print_short_lengths(const Sample& sample) {
+  constexpr std::int64_t fewest = 3;
+  constexpr std::int64_t one_in = 4;  // of lengths of five spacings one clog in six is that short
+  if (sample.num_short < fewest || one_in * sample.num_short < sample.num_clogged) return;
+  fmt::print(std::cout,
+             "# {} of {} clogged within one obstacle spacing ({:.3g} sigma) of their release: such lengths "
+             "reflect the release void, not clogging (v); {}\n",
+             sample.num_short, sweep::counted(sample.num_clogged, "run"), sample.spacing,
+             sample.has_own_circles ? "the share of droplets that got past says more"
+                                    : "give fewer obstacles, e.g. the default obstacle-density");
+}
+
+/// Limits of the cost of a sweep that adds seeds.
+/// @param cost  of its first round
+void print_rounds(const SeedRule& rule, std::int64_t first_seeds, const SweepCost& cost) {
+  const std::int64_t needed = rule.clogs_needed();
+  fmt::print(std::cout, "# this is the first round: +-{} % needs {} per parameter set\n",
+             sweep::shortest(100 * rule.precision()), sweep::counted(needed, "clog"));
+  if (rule.most_seeds() < needed)
+    fmt::print(std::cout, "# --most-seeds={} ends it before that; give {} or more\n", rule.most_seeds(),
+               needed);
+  const auto hours = [&](double seconds, std::int64_t num_seeds) {
+    return seconds / hour * static_cast<double>(num_seeds) / static_cast<double>(first_seeds);
+  };
+  const auto expected = [&](std::int64_t num_seeds) {
+    return fmt::format("expected {:.2g} core-hours (95 %: {:.2g} to {:.2g})", hours(cost.expected, num_seeds),
+                       hours(cost.lower, num_seeds), hours(cost.upper, num_seeds));
+  };
+  const std::int64_t fewest = std::clamp(needed, first_seeds, rule.most_seeds());
+  fmt::print(
+      std::cout,
+      "# all rounds: {} each if every run clogs, {}; {} each (--most-seeds) if few do, {}, at most {:.3g}\n",
+      sweep::counted(fewest, "seed"), expected(fewest), sweep::counted(rule.most_seeds(), "seed"),
+      expected(rule.most_seeds()), hours(cost.bound, rule.most_seeds()));
+}
+
+std::string seeds_in_words(const sweep::Plan& plan) {
+  std::int64_t fewest = plan.num_seeds(0), most = 0;
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
+    fewest = std::min(fewest, plan.num_seeds(group));
+    most = std::max(most, plan.num_seeds(group));
+  }
+  return fewest == most ? sweep::counted(most, "seed") : fmt::format("{} to {} seeds", fewest, most);
+}
+
+}  // namespace
+
+void print_tasks(const sweep::Plan& plan) {
+  constexpr std::int64_t most_lines = 1000;
+  constexpr std::int64_t lines_at_an_end = 20;
+  const std::int64_t num_skipped = plan.size() > most_lines ? plan.size() - 2 * lines_at_an_end : 0;
+  const std::vector<const sweep::Column*> columns = varying_columns(plan);
+  std::cout << "# task";
+  for (const sweep::Column* column : columns) std::cout << ' ' << column->name;
+  std::cout << '\n';
+  for (std::int64_t task = 0; task < plan.size() && !console::stop_signalled(); ++task) {
+    if (num_skipped > 0 && task == lines_at_an_end) {
+      fmt::print(std::cout, "# ... {} more ...\n", num_skipped);
+      task += num_skipped;
+    }
+    print_task(plan, task, columns);
+  }
+  if (console::stop_signalled()) return;
+  fmt::print(std::cout, "# {}: {}, {} each\n", sweep::counted(plan.size(), "task"),
+             sweep::counted(plan.num_groups(), "parameter set"), seeds_in_words(plan));
+}
+
+void print_limits(const sweep::Plan& plan) {
+  for (const std::string& words : sweep::limits_of_results(plan))
+    std::cout << "# " << console::printable(words) << '\n';
+}
+
+int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule,
+               const sweep::JobFactory& jobs) {
+  const Stored stored = stored_runs(plan, output);
+  const bool is_done = stored.num_done == plan.size();
+  if (is_done)
+    fmt::print(std::cout, "# {} has all {}, which took {:.2g} core-hours{}\n", console::printable(output),
+               sweep::counted(plan.size(), "task"), stored.seconds / hour,
+               rule ? "" : "; nothing is left to do");
+  if (is_done && !rule) return console::exit_success;
+  const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan, jobs);
+  if (console::stop_signalled()) return console::exit_incomplete;
+  if (sample.costs.empty()) {
+    console::say("clogsweep: no trial run can start; the first one: " + sample.failure);
+    return console::exit_internal_fault;
+  }
+  const SweepCost alike = tried_cost(plan, sample);
+  const SweepCost cost =
+      stored.knows_enough() ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : alike;
+  if (!is_done) print_short_lengths(sample);
+  if (!is_done) print_expected(plan, sample, cost);
+  if (!is_done && stored.seconds > 0) print_left(plan, output, stored, cost);
+  if (rule) print_rounds(*rule, plan.size() / plan.num_groups(), with_expected(alike, cost.expected));
+  return console::exit_success;
+}
+
+void print_config(const sweep::Settings& settings, const sweep::Plan& plan) {
+  const RunParameters first = plan.task(0);
+  std::cout << settings.to_config(true) << "\n# Values behind `auto` in the first task:\n";
+  for (const Parameter& parameter : parameter_schema())
+    if (parameter.may_be_automatic(first))
+      if (const ParameterValue value = parameter.get(first); value != ParameterValue())
+        fmt::print(std::cout, "# {} = {}\n", parameter.key, sweep::text_of(value));
+}
+
+}  // namespace clog::results

@@ -1,0 +1,210 @@
+#include "clog/results/run_list.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::results {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+constexpr const char* seeds_key = "seeds";
+constexpr std::size_t longest_list = 2500;  // of a key's text; longer ones become points
+
+std::string identity_without_seed(sweep::RunRow run) {
+  run.parameters.seed = 0;
+  return sweep::identity(run);
+}
+
+double number_or_infinity(const std::string& text) try {
+  return sweep::to_number(text);
+} catch (const Error&) {
+  return std::numeric_limits<double>::infinity();
+}
+
+/// Numbers by their size, then other texts.
+bool is_less(const std::string& a, const std::string& b) {
+  return std::pair(number_or_infinity(a), a) < std::pair(number_or_infinity(b), b);
+}
+
+/// `1..10,15`; of many seeds that do not follow each other several texts.
+Texts texts_of(const std::set<std::uint32_t>& seeds) {
+  Texts texts;
+  std::string text;
+  for (auto first = seeds.begin(); first != seeds.end();) {
+    auto last = first;
+    while (std::next(last) != seeds.end() && *std::next(last) == *last + 1) ++last;
+    if (text.size() > longest_list) texts.push_back(std::exchange(text, ""));
+    if (!text.empty()) text += ',';
+    text += *first == *last ? std::to_string(*first) : fmt::format("{}..{}", *first, *last);
+    first = std::next(last);
+  }
+  texts.push_back(text);
+  return texts;
+}
+
+void set_all(sweep::Settings& settings, const Texts& texts) {
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    if (!texts[i].empty()) settings.set(sweep::keys()[i].name, texts[i]);
+}
+
+/// What the texts of a plan's first parameter set become for another run; nothing if a file's name is needed.
+std::optional<Texts> texts_of(const sweep::RunRow& row, const sweep::Plan& plan) {
+  const sweep::RunRow first = sweep::describe(plan.group(0));
+  Texts texts = plan.texts(0);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const sweep::Key& key = sweep::keys()[i];
+    if (key.name == seeds_key) continue;
+    if (!key.parameter) {
+      texts[i] = row.preset == first.preset || row.preset == "none" || row.preset == "custom" ? texts[i]
+                                                                                              : row.preset;
+      continue;
+    }
+    const ParameterValue value = key.parameter->get(row.parameters);
+    if (value == key.parameter->get(first.parameters)) continue;
+    if (key.kind == ValueKind::file) return std::nullopt;
+    texts[i] = sweep::written(value, *key.parameter);
+  }
+  return texts;
+}
+
+}  // namespace
+
+void RunList::add(const sweep::Plan& plan) {
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
+    ParameterSet& set = set_of(plan, sweep::describe(plan.group(group)), plan.texts(group));
+    const std::vector<std::uint32_t> seeds = plan.seeds(group);
+    set.seeds.insert(seeds.begin(), seeds.end());
+  }
+}
+
+RunList::ParameterSet& RunList::set_of(const sweep::Plan& plan, const sweep::RunRow& run,
+                                       std::vector<std::string> texts) {
+  for (const auto& [name, circles] : plan.circle_files()) {
+    const auto [known, is_new] = circle_files_.emplace(name, circles);
+    if (!is_new && !(known->second == circles))
+      throw Error(
+          fmt::format("two files contain different circles under the same name {}; "
+                      "sweeps with different circles cannot be joined under one name",
+                      name));
+  }
+  const auto [place, is_new] = places_.emplace(identity_without_seed(run), sets_.size());
+  if (is_new) sets_.push_back({std::move(texts), {}});
+  return sets_[place->second];
+}
+
+bool RunList::add(const sweep::Plan& plan, const sweep::RunRow& row) try {
+  const auto known = places_.find(identity_without_seed(row));
+  if (known != places_.end()) {
+    sets_[known->second].seeds.insert(row.parameters.seed);
+    return true;
+  }
+  const bool is_of_plan = row.task >= 0 && row.task < plan.size() &&
+                          sweep::identity(sweep::describe(plan.task(row.task))) == sweep::identity(row);
+  if (is_of_plan) {
+    set_of(plan, row, plan.texts(plan.group_of(row.task))).seeds.insert(row.parameters.seed);
+    return true;
+  }
+  std::optional<Texts> texts = texts_of(row, plan);
+  if (!texts) return false;
+  sweep::Settings settings;
+  set_all(settings, *texts);
+  settings.set(seeds_key, std::to_string(row.parameters.seed));
+  for (const auto& [name, circles] : plan.circle_files()) settings.attach(name, circles);
+  const sweep::Plan one(settings);
+  if (sweep::identity(sweep::describe(one.task(0))) != sweep::identity(row)) return false;
+  set_of(plan, row, std::move(*texts)).seeds.insert(row.parameters.seed);
+  return true;
+} catch (const Error&) {  // of a version that had other keys or ranges
+  return false;
+}
+
+namespace {
+
+/// Keys for which the texts are not all the same, by place.
+std::vector<std::size_t> differing_places(const std::vector<const Texts*>& all) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < all.front()->size(); ++i)
+    if (std::ranges::any_of(all, [&](const Texts* one) { return (*one)[i] != (*all.front())[i]; }))
+      places.push_back(i);
+  return places;
+}
+
+/// Every text of a key once.
+Texts values_of(const std::vector<const Texts*>& all, std::size_t place) {
+  Texts values;
+  values.reserve(all.size());
+  for (const Texts* one : all) values.push_back((*one)[place]);
+  std::ranges::sort(values, is_less);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+}  // namespace
+
+sweep::Settings RunList::settings() const {
+  std::vector<const Texts*> all;
+  all.reserve(sets_.size());
+  for (const ParameterSet& set : sets_) all.push_back(&set.texts);
+  const std::vector<std::size_t> differing = differing_places(all);
+  const bool have_same_seeds =
+      std::ranges::all_of(sets_, [&](const ParameterSet& set) { return set.seeds == sets_.front().seeds; });
+  sweep::Settings settings;
+  set_all(settings, sets_.front().texts);
+  for (const auto& [name, circles] : circle_files_) settings.attach(name, circles);
+  const Texts seeds = texts_of(sets_.front().seeds);
+  bool is_product = have_same_seeds && seeds.size() == 1;
+  std::size_t size = 1;
+  std::vector<std::string> lists;
+  for (const std::size_t place : differing) {
+    const Texts values = values_of(all, place);
+    size *= values.size();
+    lists.push_back(joined(values, ","));
+    is_product = is_product && lists.back().size() < longest_list;
+  }
+  if (is_product && size == sets_.size()) {
+    for (std::size_t i = 0; i < differing.size(); ++i)
+      settings.set(sweep::keys()[differing[i]].name, lists[i]);
+    settings.set(seeds_key, seeds.front());
+    return settings;
+  }
+  settings.set_points(points(differing));
+  return settings;
+}
+
+sweep::Points RunList::points(const std::vector<std::size_t>& differing) const {
+  sweep::Points points;
+  for (const std::size_t place : differing) points.keys.push_back(sweep::keys()[place].name);
+  points.keys.emplace_back(seeds_key);
+  for (const ParameterSet& set : sets_)
+    for (const std::string& seeds : texts_of(set.seeds)) {
+      Texts& row = points.rows.emplace_back();
+      for (const std::size_t place : differing) row.push_back(set.texts[place]);
+      row.push_back(seeds);
+    }
+  std::ranges::sort(points.rows, [](const Texts& a, const Texts& b) {
+    return std::ranges::lexicographical_compare(a, b, is_less);
+  });
+  return points;
+}
+
+TaskNumbers::TaskNumbers(const sweep::Plan& plan) {
+  for (std::int64_t task = 0; task < plan.size(); ++task)
+    tasks_.emplace(sweep::identity(sweep::describe(plan.task(task))), task);
+}
+
+std::optional<std::int64_t> TaskNumbers::of(const sweep::RunRow& row) const {
+  const auto found = tasks_.find(sweep::identity(row));
+  return found == tasks_.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace clog::results

@@ -1,0 +1,130 @@
+#include "clog/results/salvage.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "clog/console/streams.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/results/growth.hpp"
+#include "clog/results/stored_sweep.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::results {
+namespace {
+
+/// Fixed values by which records of this sweep are recognised; nothing if its config is lost.
+std::optional<FixedValues> fixed_values(const std::string& path, const store::SweepFile& table) try {
+  return FixedValues(stored_plan(path, table), stored_settings(path, table.provenance));
+} catch (const Error&) {
+  return std::nullopt;
+}
+
+/// Undamaged records of this sweep, oldest first.
+std::vector<store::Journal::Entry> records_of(const std::string& path, Salvage& found) {
+  const std::string journal = store::journal_path(path);
+  std::vector<store::Journal::Entry> records;
+  try {
+    const auto contents = store::Journal::look(journal);
+    if (!contents) return {};
+    records = contents->entries;
+    if (contents->num_unreadable > 0)
+      found.damage.push_back(
+          fmt::format("damaged in its journal: {}", sweep::counted(contents->num_unreadable, "record")));
+  } catch (const Error& error) {
+    found.damage.push_back(fmt::format("its journal was not used: {}", error.what()));
+    return {};
+  }
+  const std::optional<FixedValues> fixed = fixed_values(path, found.table);
+  const std::size_t num_foreign = std::erase_if(records, [&](const store::Journal::Entry& record) {
+    return !sweep::fault_of(record.row).empty() || (fixed && !fixed->differing_keys(record.row).empty());
+  });
+  if (num_foreign > 0)
+    found.damage.push_back(fmt::format("of another sweep in its journal: {}",
+                                       sweep::counted(static_cast<std::int64_t>(num_foreign), "record")));
+  return records;
+}
+
+}  // namespace
+
+Salvage salvage(const std::string& path) {
+  store::Examination examined = store::examine_sweep(path);
+  Salvage found;
+  found.table = std::move(examined.whole);
+  found.damage = std::move(examined.damage);
+  std::vector<sweep::RunRow>& rows = found.table.rows;
+  std::unordered_map<std::string, std::size_t> places;
+  for (std::size_t i = 0; i < rows.size(); ++i) places.emplace(sweep::identity(rows[i]), i);
+  std::unordered_map<std::string, store::Journal::Entry> unfinished;
+  for (store::Journal::Entry& record : records_of(path, found)) {
+    const std::string run = sweep::identity(record.row);
+    const auto [place, is_new] = places.try_emplace(run, rows.size());
+    if (is_new)
+      rows.push_back(record.row);
+    else if (sweep::is_result(rows[place->second].status))
+      continue;  // the journal lacks the last record
+    else
+      rows[place->second] = record.row;
+    const bool is_unfinished = sweep::is_unfinished(record.row.status);
+    if (!is_unfinished) ++found.num_from_journal;
+    if (is_unfinished && !record.snapshot.empty())
+      unfinished.insert_or_assign(run, std::move(record));
+    else
+      unfinished.erase(run);
+  }
+  for (sweep::RunRow& row : rows)
+    if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
+  std::ranges::stable_sort(rows, {}, &sweep::RunRow::task);
+  for (auto& [run, record] : unfinished) found.snapshots.push_back(std::move(record));
+  return found;
+}
+
+std::vector<std::string> drop_faulty(std::vector<sweep::RunRow>& rows) {
+  std::vector<std::string> faults;
+  std::unordered_map<std::string, std::int64_t> seen;  // tasks, by what runs are
+  std::erase_if(rows, [&](const sweep::RunRow& row) {
+    std::string fault = sweep::fault_of(row);
+    if (fault.empty())
+      if (const auto [first, is_new] = seen.emplace(sweep::identity(row), row.task); !is_new)
+        fault = fmt::format("the same run as task {}", first->second);
+    if (!fault.empty()) faults.push_back(fmt::format("task {}: {}", row.task, fault));
+    return !fault.empty();
+  });
+  return faults;
+}
+
+void drop_what_verify_refuses(const std::string& path, Salvage& found) {
+  for (std::string& fault : drop_faulty(found.table.rows)) found.damage.push_back(std::move(fault));
+  store::Provenance& provenance = found.table.provenance;
+  if (attribute(provenance, "config").empty()) return;
+  try {
+    stored_num_runs(path, found.table, stored_plan(path, found.table));
+  } catch (const Error& error) {
+    std::erase_if(provenance,
+                  [](const auto& one) { return one.first == "config" || one.first == "num_wanted"; });
+    found.damage.emplace_back(error.what());
+  }
+}
+
+void write(const store::SweepFile& table, const std::vector<store::Journal::Entry>& snapshots,
+           const std::string& path) {
+  store::refuse_existing(path);
+  const store::OutputPath place(path);
+  if (!store::publish_sweep(place, table.rows, table.provenance, table.circles))
+    console::say(
+        fmt::format("{} is complete, but its folder cannot be synced ({}): a power cut may lose it; copy it "
+                    "elsewhere, too",
+                    path, std::strerror(errno)));
+  if (snapshots.empty()) return;
+  store::Journal journal(store::journal_place(place), &place);
+  for (const auto& [row, snapshot] : snapshots) journal.add(row, snapshot);
+  journal.flush();
+}
+
+}  // namespace clog::results

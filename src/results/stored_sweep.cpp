@@ -1,0 +1,131 @@
+#include "clog/results/stored_sweep.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "clog/console/streams.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/instruction_set.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::results {
+namespace {
+
+/// Applies `read` to an attribute's text; an error names the file and the attribute.
+template <class Read>
+auto read_attribute(const std::string& path, const store::Provenance& provenance, const std::string& name,
+                    const Read& read) {
+  try {
+    return read(attribute(provenance, name));
+  } catch (const Error& error) {
+    throw Error(fmt::format(
+        "cannot read {} (its attribute {}: {}); the file is damaged, or of another version of the program",
+        path, name, error.what()));
+  }
+}
+
+sweep::Settings settings_from(const std::string& config) {
+  if (config.empty()) throw Error("it is missing; the sweep's own command restores it");
+  return sweep::Settings::from_config(config);
+}
+
+const sweep::RunRow& row_of_task(const store::SweepFile& file, const std::string& word) {
+  const double task = sweep::to_number(word);
+  for (const sweep::RunRow& row : file.rows)
+    if (static_cast<double>(row.task) == task) return row;
+  throw Error("the file has no task " + word + "; its column `task` names those it has");
+}
+
+}  // namespace
+
+sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& task) {
+  sweep::RunRow row = row_of_task(file, task);
+  const auto refuse = [&](const std::string& why, const std::string& remedy) {
+    throw Error(fmt::format("cannot replay task {} ({}); {}", task, why, remedy));
+  };
+  if (sweep::is_unfinished(row.status)) refuse("it has not ended", "resume the sweep first");
+  if (row.instruction_set == sweep::mixed_instruction_sets)
+    refuse("it was interrupted and resumed with another instruction set, at an unknown step",
+           "--instruction-set pins one for all sessions of a sweep");
+  if (row.model_version != model_version)
+    refuse(fmt::format("it is of model version {}, this program's is {}", row.model_version, model_version),
+           "use the version that wrote the file");
+  if (const std::string fault = sweep::fault_of(row); !fault.empty()) refuse(fault, "the row is damaged");
+  for (const store::CircleFile& one : file.circles)
+    if (row.parameters.obstacles.own == one.circles) row.parameters.obstacles.own = one.circles;
+  if (row.parameters.model == Model::dp) use_instruction_set(row.instruction_set);
+  return row;
+}
+
+store::SweepFile read_with_caution(const std::string& path) {
+  store::SweepFile file = store::read_sweep(path);
+  if (const std::string words = store::caution(path, file); !words.empty()) console::say(words);
+  for (const store::CircleFile& one : file.circles) {
+    const OwnCircles named(one.circles.circles(), one.name);
+    for (sweep::RunRow& row : file.rows)
+      if (row.parameters.obstacles.own == named) row.parameters.obstacles.own = named;
+  }
+  return file;
+}
+
+std::string attribute(const store::Provenance& provenance, const std::string& name) {
+  const auto found = std::find_if(provenance.begin(), provenance.end(),
+                                  [&](const auto& attribute) { return attribute.first == name; });
+  return found == provenance.end() ? "" : found->second;
+}
+
+sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance) {
+  return read_attribute(path, provenance, "config", settings_from);
+}
+
+sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file) {
+  return read_attribute(path, file.provenance, "config", [&](const std::string& config) {
+    sweep::Settings settings = settings_from(config);
+    for (const store::CircleFile& one : file.circles)
+      if (!one.name.empty()) settings.attach(one.name, one.circles);
+    return sweep::Plan(settings);
+  });
+}
+
+/// Has the key a list of its own, or one in points? Others may vary because they follow from a word.
+static bool is_listed(const sweep::Key& key, const sweep::Settings& settings) {
+  const std::vector<std::string>& keys = settings.points().keys;
+  return settings.values(key.name).size() > 1 || std::ranges::find(keys, key.name) != keys.end();
+}
+
+std::vector<std::string> listed_columns(const store::Provenance& provenance) try {
+  const sweep::Settings settings = settings_from(attribute(provenance, "config"));
+  std::vector<std::string> columns;
+  const auto values = settings.all_values();
+  for (const sweep::Key& key : sweep::keys())
+    if (key.parameter && values.at(key.name).size() > 1 && is_listed(key, settings))
+      columns.emplace_back(key.parameter->column);
+  return columns;
+} catch (const Error&) {
+  return {};  // of a version that had other keys
+}
+
+std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
+                               const sweep::Plan& plan) {
+  return read_attribute(path, provenance, "num_wanted", [&](const std::string& number) {
+    return number.empty() ? plan.size() : sweep::to_integer(number);
+  });
+}
+
+RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan) {
+  RunCount count;
+  count.num_beyond = std::count_if(file.rows.begin(), file.rows.end(),
+                                   [&](const sweep::RunRow& row) { return row.task >= plan.size(); });
+  // An earlier --until-precision may have had more of the plan's runs.
+  count.num_runs = std::max(stored_num_wanted(path, file.provenance, plan) + count.num_beyond,
+                            static_cast<std::int64_t>(file.rows.size()));
+  return count;
+}
+
+std::string RunCount::text_of_beyond() const {
+  return num_beyond == 0 ? "" : fmt::format(" ({} outside the lists of its last command)", num_beyond);
+}
+
+}  // namespace clog::results

@@ -1,0 +1,402 @@
+#include "clog/results/sweep_state.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "clog/core/tools/error.hpp"
+#include "clog/results/growth.hpp"
+#include "clog/results/stored_sweep.hpp"
+#include "clog/store/regular_file.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/run_row.hpp"
+#include "clog/sweep/settings.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::results {
+namespace {
+
+void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text) {
+  std::erase_if(provenance, [&](const auto& attribute) { return attribute.first == name; });
+  provenance.emplace_back(name, text);
+}
+
+/// Keeps `sessions` short, however often a sweep is resumed: the oldest lines go, and a long last one is cut.
+std::string latest_lines(std::string text) {
+  constexpr std::size_t longest_line = 2000;
+  constexpr std::size_t longest = 30'000;
+  const std::size_t last = text.rfind('\n', text.size() - 2) + 1;  // 0 if there is only one line
+  if (text.size() - last > longest_line) text = text.substr(0, last + longest_line) + "...\n";
+  while (text.size() > longest) text.erase(0, text.find('\n') + 1);
+  return text;
+}
+
+/// Resets a run to its release: only its parameters and its cost so far stay.
+void restart(sweep::RunRow& row) {
+  RunResult nothing;
+  nothing.status = RunStatus::interrupted;
+  sweep::record(nothing, row);
+}
+
+}  // namespace
+
+SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
+                       store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts)
+    : place_(store::require_regular(std::move(path))),
+      path_(place_.path()),
+      plan_(&plan),
+      provenance_(std::move(provenance)),
+      attempts_(attempts),
+      journal_(store::journal_place(place_), &place_),
+      num_wanted_(num_wanted) {
+  for (const auto& [name, circles] : plan.circle_files()) circles_.push_back({name, circles});
+  session_time_ = attribute(provenance_, "start_time");
+  std::string session;
+  for (const char* name : {"start_time", "version", "git_describe", "num_ranks", "command_line"})
+    session += attribute(provenance_, name) + ' ';
+  session.back() = '\n';
+
+  std::unordered_map<std::string, Entry> known;
+  std::unordered_set<std::string> with_results;
+  const bool has_table = place_.exists();
+  if (has_table) {
+    const store::SweepFile file = read_table();
+    caution_ = store::caution(path_, file);
+    adopt(file, settings);
+    keep_circles(file);
+    for (const sweep::RunRow& row : file.rows) {
+      known[sweep::identity(row)] = {row, {}};
+      if (sweep::is_result(row.status)) with_results.insert(sweep::identity(row));
+    }
+  }
+  std::vector<Entry> entries = journal_.take_entries();
+  if (!has_table && !entries.empty())
+    throw Error(
+        "cannot resume " + path_ + " (its table is gone, but " + store::journal_path(path_) + " holds " +
+        sweep::counted(static_cast<std::int64_t>(entries.size()), "record") +
+        " of an earlier sweep, maybe of finished runs); put the table back, or give another --output");
+  if (!entries.empty()) refuse_foreign(entries, known, settings);
+  for (Entry& entry : entries) {
+    std::string run = sweep::identity(entry.row);
+    // If a run's last record was lost from the journal, the table has its result and the journal only an
+    // earlier state: keep the table's row.
+    if (sweep::is_result(entry.row.status) || !with_results.contains(run))
+      known[std::move(run)] = std::move(entry);
+  }
+  num_faulty_ = static_cast<std::int64_t>(
+      std::erase_if(known, [](const auto& run) { return !sweep::fault_of(run.second.row).empty(); }));
+  set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
+  find_tasks(std::move(known));
+  publish();
+  if (const std::string& fault = place_.sync_fault(); !fault.empty())
+    caution_ += fmt::format(
+        "{}the folder of {} cannot be synchronised ({}): after a power cut the newest rows may be lost",
+        caution_.empty() ? "" : "\n", path_, fault);
+  last_publication_ = Clock::now();
+}
+
+/// Reads the table, and checks that its path, which readers use, leads to the same file as the open folder,
+/// which the sweep uses.
+store::SweepFile SweepState::read_table() {
+  stamp_ = place_.stamp();
+  store::SweepFile file = store::read_sweep(path_);
+  if (place_.stamp() != stamp_ || store::OutputPath(path_).stamp() != stamp_)
+    throw Error("cannot resume " + path_ +
+                " (it was replaced or moved while it was read); try again when it stays in place");
+  return file;
+}
+
+/// A salvaged file may lack its config: then compare its rows.
+std::string SweepState::settings_that_differ(const store::SweepFile& file,
+                                             const sweep::Settings& settings) const {
+  if (!attribute(file.provenance, "config").empty())
+    return differing_keys(stored_settings(path_, file.provenance), settings);
+  const FixedValues fixed(*plan_, settings);
+  for (const sweep::RunRow& row : file.rows)
+    if (std::string differing = fixed.differing_keys(row); !differing.empty()) return differing;
+  return "";
+}
+
+/// Adopts an existing file if its runs belong to this sweep, and keeps the file's provenance.
+void SweepState::adopt(const store::SweepFile& file, const sweep::Settings& settings) {
+  const std::string remedy = "; give another --output";
+  for (const sweep::RunRow& row : file.rows)
+    if (row.model_version != model_version)
+      throw Error(
+          fmt::format("cannot resume {} (its runs are of model version {}, this program's is {}: the "
+                      "same parameters would give other results){}",
+                      path_, row.model_version, model_version, remedy));
+  const std::string differing = settings_that_differ(file, settings);
+  if (!differing.empty())
+    throw Error(
+        fmt::format("cannot resume {} (it holds runs with other settings: {}){}", path_, differing, remedy));
+  store::Provenance all = file.provenance;
+  for (const char* name : {"config", "stopping_rule", "num_wanted"}) {
+    std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
+    if (const std::string text = attribute(provenance_, name); !text.empty()) all.emplace_back(name, text);
+  }
+  provenance_ = std::move(all);
+}
+
+/// Another sweep may have left its journal here.
+void SweepState::refuse_foreign(const std::vector<Entry>& entries,
+                                const std::unordered_map<std::string, Entry>& known,
+                                const sweep::Settings& settings) const {
+  const FixedValues fixed(*plan_, settings);
+  for (const auto& [row, snapshot] : entries) {
+    if (row.model_version == model_version && known.contains(sweep::identity(row))) continue;
+    const std::string differing = fixed.differing_keys(row);
+    if (!differing.empty())
+      throw Error(
+          fmt::format("cannot resume {} (its journal {} is of another sweep: {}); move the journal to "
+                      "the table that it belongs to, or give another --output",
+                      path_, journal_.path(), differing));
+  }
+}
+
+/// Runs that are not of this plan may be among other circles.
+void SweepState::keep_circles(const store::SweepFile& file) {
+  for (const store::CircleFile& one : file.circles)
+    if (std::ranges::none_of(circles_, [&](const auto& known) { return known.circles == one.circles; }))
+      circles_.push_back({"", one.circles});
+}
+
+bool SweepState::is_over(const sweep::RunRow& row) const {
+  if (row.status == RunStatus::failed) return row.attempt >= attempts_;
+  return !sweep::is_unfinished(row.status);
+}
+
+/// @param known  runs by what they are
+void SweepState::find_tasks(std::unordered_map<std::string, Entry> known) {
+  std::int64_t last_seed = -1;
+  for (const auto& [run, entry] : known)
+    last_seed = std::max(last_seed, std::int64_t{entry.row.parameters.seed});
+  for (std::int64_t task = 0; task < plan_->size(); ++task) {
+    // Seeds that may be added later follow in increasing order: none beyond has begun yet.
+    if (task >= num_wanted_ && (known.empty() || plan_->task(task).seed > last_seed)) break;
+    if (!known.empty())
+      if (auto found = known.extract(sweep::identity(sweep::describe(plan_->task(task)))); !found.empty()) {
+        Entry& entry = runs_[task] = std::move(found.mapped());
+        entry.row.task = task;
+        if (is_over(entry.row)) continue;
+        if (entry.row.status == RunStatus::running) entry.row.status = RunStatus::interrupted;
+        past_[task].take_costs(entry.row);
+      }
+    if (task < num_wanted_) tasks_left_.push_back(task);
+  }
+  for (auto& [run, entry] : known) other_runs_.push_back(std::move(entry));
+  std::sort(other_runs_.begin(), other_runs_.end(),
+            [](const Entry& a, const Entry& b) { return a.row.task < b.row.task; });
+  for (std::size_t i = 0; i < other_runs_.size(); ++i) {
+    sweep::RunRow& row = other_runs_[i].row;
+    row.task = plan_->size() + static_cast<std::int64_t>(i);
+    if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
+  }
+}
+
+void SweepState::want(const std::vector<std::int64_t>& tasks) {
+  num_wanted_ += static_cast<std::int64_t>(tasks.size());
+  set_attribute(provenance_, "num_wanted", std::to_string(num_wanted_));
+  tasks_left_.clear();
+  for (const std::int64_t task : tasks)
+    if (const auto run = runs_.find(task); run == runs_.end() || !is_over(run->second.row))
+      tasks_left_.push_back(task);
+  is_published_ = false;
+}
+
+std::vector<std::int64_t> SweepState::tasks_begun() const {
+  std::vector<std::int64_t> tasks;
+  for (const auto& [task, entry] : runs_)
+    if (!is_over(entry.row)) tasks.push_back(task);
+  return tasks;
+}
+
+std::int64_t SweepState::num_resumed() const {
+  return std::count_if(tasks_left_.begin(), tasks_left_.end(), [this](std::int64_t task) {
+    const auto run = runs_.find(task);
+    return run != runs_.end() && !run->second.snapshot.empty();
+  });
+}
+
+sweep::RunRow SweepState::new_row(std::int64_t task) const {
+  sweep::RunRow row = sweep::describe(plan_->task(task));
+  row.task = task;
+  row.clogged_by = sweep::FoundBy::nothing;
+  row.mechanism = ClogMechanism::none;
+  return row;
+}
+
+void SweepState::watch_ranks(int num_ranks) {
+  earlier_activity_ = attribute(provenance_, "activity");
+  activity_.emplace(num_ranks);
+  begin_ = Clock::now();
+}
+
+void SweepState::rank_is_free() {
+  if (activity_) activity_->ended(seconds_so_far());
+}
+
+sweep::Start SweepState::start(std::int64_t task, int rank) {
+  if (activity_) activity_->started(seconds_so_far());
+  const auto [run, is_new] = runs_.try_emplace(task);
+  Entry& entry = run->second;
+  sweep::Start start{entry.snapshot, entry.row.attempt};
+  const bool failed = !is_new && entry.row.status == RunStatus::failed;
+  if (failed) start = {{}, entry.row.attempt + 1};
+  if (const auto past = past_.find(task); past != past_.end())
+    past->second.instruction_set = start.snapshot.empty() ? "" : entry.row.instruction_set;
+  if (is_new || failed) {
+    entry.snapshot.clear();
+    entry.row = new_row(task);
+  }
+  entry.row.attempt = start.attempt;
+  entry.row.status = RunStatus::running;
+  entry.row.rank = rank;
+  is_published_ = false;
+  return start;
+}
+
+void SweepState::report(const sweep::Report& report) {
+  const auto run = runs_.find(report.row.task);
+  if (run == runs_.end() || sweep::identity(report.row) != sweep::identity(run->second.row))
+    throw Error(fmt::format(
+        "cannot continue with {} (rank {} returned a run with other parameters than those of task {}); "
+        "earlier results are in the file; please report this",
+        path_, report.row.rank, report.row.task));
+  Entry& entry = run->second;
+  entry = {report.row, report.snapshot};
+  if (const auto past = past_.find(report.row.task); past != past_.end()) {
+    entry.row.wall_seconds += past->second.wall_seconds;
+    entry.row.processor_seconds += past->second.processor_seconds;
+    const std::string& before = past->second.instruction_set;
+    if (!before.empty() && before != entry.row.instruction_set)
+      entry.row.instruction_set = sweep::mixed_instruction_sets;
+  }
+  if (entry.row.status == RunStatus::failed) past_[entry.row.task].take_costs(entry.row);
+  write_down(entry);
+  is_published_ = false;
+}
+
+const sweep::RunRow* SweepState::first_if_all_failed() const {
+  const auto has_failed = [](const auto& run) { return run.second.row.status == RunStatus::failed; };
+  if (runs_.empty() || !std::all_of(runs_.begin(), runs_.end(), has_failed)) return nullptr;
+  return &runs_.begin()->second.row;
+}
+
+std::vector<sweep::RunRow> SweepState::rows() const {
+  std::vector<sweep::RunRow> rows;
+  rows.reserve(runs_.size() + other_runs_.size());
+  for (const auto& [task, entry] : runs_) rows.push_back(published(entry.row));
+  for (const Entry& entry : other_runs_) rows.push_back(published(entry.row));
+  return rows;
+}
+
+void SweepState::write_down(const Entry& entry) {
+  if (!journal_.is_there()) publish();
+  journal_.add(entry.row, entry.snapshot);
+}
+
+void SweepState::withdraw_failure(std::int64_t task) {
+  Entry& entry = runs_.at(task);
+  restart(entry.row);  // a broken rank's result does not count as progress
+  write_down(entry);
+  is_published_ = false;
+}
+
+void SweepState::tick() {
+  // Writing the whole table takes longer the more runs there are, and the journal must be rewritten now and
+  // then; they may take two percent of the time.
+  const Clock::time_point begin = Clock::now();
+  const Clock::duration pause = std::max<Clock::duration>(std::chrono::seconds(1), 50 * publication_time_);
+  if (is_published_ || begin - last_publication_ < pause) return;
+  publish();
+  if (journal_.is_to_be_rewritten()) rewrite_journal(false);
+  last_publication_ = Clock::now();
+  publication_time_ = last_publication_ - begin;
+}
+
+/// The row that readers see: a run that will be tried again is not failed yet, and its failed attempt has no
+/// distance.
+sweep::RunRow SweepState::published(const sweep::RunRow& row) const {
+  if (row.status != RunStatus::failed || is_over(row)) return row;
+  sweep::RunRow next = row;
+  restart(next);
+  ++next.attempt;
+  return next;
+}
+
+/// If the journal was removed or the table replaced, writes everything once more and ends the sweep. A
+/// removed table is written again.
+void SweepState::publish() {
+  const std::vector<sweep::RunRow> rows = this->rows();
+  const std::string there = place_.stamp();
+  if (!there.empty() && there != stamp_) rescue(rows);
+  const bool has_journal = journal_.is_there();
+  if (!has_journal) {
+    if (!journal_.make_anew(place_)) rescue(rows);
+    rewrite_journal(true);
+  }
+  journal_.flush();
+  if (activity_)
+    set_attribute(provenance_, "activity",
+                  with_session(earlier_activity_, activity_->line(session_time_, seconds_so_far())));
+  std::optional<std::string> published =
+      store::publish_sweep_over(stamp_, place_, rows, provenance_, circles_);
+  if (!published) rescue(rows);
+  stamp_ = *std::move(published);
+  is_published_ = true;
+  if (!has_journal)
+    throw Error(
+        "cannot continue with " + journal_.path() +
+        " (it was removed while the sweep was running); nothing is lost; the same command resumes the sweep");
+}
+
+/// Writes the table under another name, to keep the file that somebody else has put in its place.
+void SweepState::rescue(const std::vector<sweep::RunRow>& rows) {
+  if (journal_.is_there()) rewrite_journal(true);
+  int number = 1;
+  const auto rescued = [&] { return place_.beside(fmt::format(".rescued{}", number)); };
+  while (rescued().exists()) ++number;
+  store::publish_sweep(rescued(), rows, provenance_, circles_);
+  throw Error(fmt::format(
+      "cannot continue with {} (somebody has replaced it or its journal while the sweep was "
+      "running); all runs are in {}: move it to where it belongs, then the same command resumes the sweep",
+      path_, rescued().path()));
+}
+
+/// Rewrites the journal with the records of unfinished runs only; with_all: with all records, if finished
+/// runs are not in the table yet.
+void SweepState::rewrite_journal(bool with_all) {
+  std::vector<const Entry*> needed;
+  for (const auto& [task, entry] : runs_)
+    if (with_all || !is_over(entry.row)) needed.push_back(&entry);
+  for (const Entry& entry : other_runs_)
+    if (with_all || !is_over(entry.row)) needed.push_back(&entry);
+  journal_.rewrite(needed);
+}
+
+std::string SweepState::finish() {
+  publish();
+  if (place_.stamp() != stamp_) publish();  // somebody has moved or removed it meanwhile
+  const bool is_complete =
+      static_cast<std::int64_t>(runs_.size()) >= num_wanted_ &&
+      std::all_of(runs_.begin(), runs_.end(), [this](const auto& run) { return is_over(run.second.row); }) &&
+      std::all_of(other_runs_.begin(), other_runs_.end(),
+                  [this](const Entry& run) { return is_over(run.row); });
+  if (!is_complete) {
+    rewrite_journal(false);
+    return "";
+  }
+  if (journal_.remove()) return "";
+  return fmt::format("cannot remove {} ({}); the sweep is complete without it: remove it", journal_.path(),
+                     std::strerror(errno));
+}
+
+}  // namespace clog::results

@@ -1,0 +1,36 @@
+#include "value_json.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include "clog/console/printable.hpp"
+
+namespace clog::results {
+
+nlohmann::ordered_json json_of(const sweep::Value& value) {
+  if (const auto* count = std::get_if<std::int64_t>(&value)) return *count;
+  if (const auto* number = std::get_if<double>(&value); number && std::isfinite(*number)) return *number;
+  if (const auto* word = std::get_if<std::string>(&value); word && !word->empty()) return *word;
+  return nullptr;
+}
+
+std::string short_text(const sweep::Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.4g}", *number);
+  const std::string text = console::printable(sweep::text_of(value));
+  return text.empty() ? "-" : text;
+}
+
+std::string csv_cell(const sweep::Value& value) {
+  std::string text = console::printable(sweep::text_of(value));
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  for (std::size_t i = text.find('"'); i != std::string::npos; i = text.find('"', i + 2))
+    text.insert(i, 1, '"');
+  return '"' + text + '"';
+}
+
+}  // namespace clog::results

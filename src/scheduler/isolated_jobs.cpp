@@ -1,0 +1,334 @@
+#include "clog/scheduler/isolated_jobs.hpp"
+
+#include <fmt/core.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "bytes.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/sweep/messages.hpp"
+#include "socket.hpp"
+
+namespace clog::scheduler {
+namespace {
+
+using sweep::Job;
+using sweep::JobFactory;
+using sweep::RunRow;
+using Clock = std::chrono::steady_clock;
+
+enum Kind : std::int64_t {
+  describe_jobs = 1,  // rank -> helper, or process: the description
+  process_began,      // helper -> rank: its pid, once nobody else has its socket; -1 if it never began
+  process_ended,      // helper -> rank: an Ending
+  begin,              // rank -> process: a task's number and the snapshot to begin at
+  report,             // rank -> process: how far is it (empty); and the answer: a row and its snapshot
+  over,               // process -> rank: the last row
+  drop,               // rank -> process: work no more on this (empty)
+};
+
+/// How long a rank waits for a process that should answer at once: a stopped one never does.
+constexpr std::chrono::milliseconds patience{2000};
+/// Patience for the start of a process, which takes long when memory is scarce.
+constexpr std::chrono::milliseconds patience_for_start{20'000};
+
+/// How a process came to its end.
+struct Ending {
+  int fork_error = 0;  // errno, if it never began
+  int code = 0;        // of SIGCHLD: CLD_EXITED or another
+  int status = 0;      // exit code or signal
+};
+
+/// Such as SIGKILL. (sigabbrev_np() needs glibc 2.32.)
+std::string name_of(int signal) {
+  static constexpr std::pair<int, const char*> deadly[] = {
+      {SIGHUP, "HUP"},   {SIGINT, "INT"},   {SIGQUIT, "QUIT"},     {SIGILL, "ILL"},   {SIGTRAP, "TRAP"},
+      {SIGABRT, "ABRT"}, {SIGBUS, "BUS"},   {SIGFPE, "FPE"},       {SIGKILL, "KILL"}, {SIGUSR1, "USR1"},
+      {SIGSEGV, "SEGV"}, {SIGUSR2, "USR2"}, {SIGPIPE, "PIPE"},     {SIGALRM, "ALRM"}, {SIGTERM, "TERM"},
+      {SIGXCPU, "XCPU"}, {SIGXFSZ, "XFSZ"}, {SIGVTALRM, "VTALRM"}, {SIGPROF, "PROF"}, {SIGSYS, "SYS"}};
+  const auto* found = std::ranges::find(deadly, signal, &std::pair<int, const char*>::first);
+  return "SIG" + (found != std::end(deadly) ? std::string(found->second) : std::to_string(signal));
+}
+
+std::string describe(const Ending& ending) {
+  if (ending.fork_error != 0)
+    return fmt::format("no process could be started for it: {}", std::strerror(ending.fork_error));
+  if (ending.code == CLD_EXITED) return fmt::format("its process exited with code {}", ending.status);
+  const int signal = ending.status;
+  return fmt::format("its process was ended by {} ({}{})", name_of(signal), strsignal(signal),
+                     signal == SIGKILL ? ", as the kernel does when memory runs out" : "");
+}
+
+/// The process dies when the one that forked it does. Signals that stop a sweep are the rank's business.
+void depend_on_parent(pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(0);  // it was quicker
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, SIG_IGN);
+}
+
+/// Libraries of MPI, such as UCX, handle a crash as soon as they are loaded, and may wait for ever in their
+/// handlers. The processes forked from now on die of a crash.
+void let_crashes_kill() {
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL}) std::signal(signal, SIG_DFL);
+}
+
+/// When memory runs out, the kernel is to take this process, and neither the helper nor the rank, without
+/// which the sweep is over.
+void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
+
+std::string text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// The life of a process that computes. An exception that gets out is a crash like any other.
+[[noreturn]] void compute(const Socket& rank, JobFactory make_job,
+                          const IsolatedJobs::Describe& describe) noexcept {
+  std::unique_ptr<Job> job;
+  std::int64_t number = 0;
+  bool is_over = true;
+  while (true) {
+    // Computes at least one slice between two messages: a task that is stopped at once has a snapshot, too.
+    while (!is_over) {
+      is_over = job->advance();
+      if (is_over) rank.send(over, number, sweep::to_bytes({job->row(), {}}));
+      if (rank.wait(std::chrono::milliseconds(0))) break;
+    }
+    const auto message = rank.receive();
+    if (!message) _exit(0);
+    if (message->kind == begin) {
+      const auto [task, snapshot] = from_bytes<std::int64_t>(message->bytes);
+      job = make_job(task, snapshot);
+      number = message->job;
+      is_over = false;
+    } else if (message->kind == describe_jobs) {
+      job.reset();
+      is_over = true;
+      make_job = describe(text_of(message->bytes));
+    } else if (message->kind == report) {
+      rank.send(report, number, sweep::to_bytes({job->row(), job->snapshot()}));
+    } else {
+      job.reset();
+      is_over = true;
+    }
+  }
+}
+
+/// The life of the helper: one process after the other, each with a socket that the rank made for it.
+[[noreturn]] void start_processes(const Socket& rank, const IsolatedJobs::Describe& describe) noexcept {
+  const auto description = rank.receive();
+  if (!description) _exit(0);
+  const JobFactory make_job = describe(text_of(description->bytes));
+  pid_t last = -1;
+  while (true) {
+    Socket socket = rank.receive_socket();
+    if (!socket.is_open()) _exit(0);
+    if (last > 0) waitpid(last, nullptr, 0);
+    const pid_t self = getpid();
+    const pid_t process = fork();
+    if (process == 0) {
+      depend_on_parent(self);
+      be_first_when_memory_runs_out();
+      compute(socket, make_job, describe);
+    }
+    Ending ending{process < 0 ? errno : 0};
+    socket.close();
+    rank.send(process_began, 0, to_bytes(process, {}));
+    if (process > 0) {
+      // It stays a zombie until the rank asks for the next process, so its pid is not reused and the rank's
+      // kill cannot hit another process.
+      siginfo_t end{};
+      while (waitid(P_PID, process, &end, WEXITED | WNOWAIT) < 0 && errno == EINTR) continue;
+      ending.code = end.si_code;
+      ending.status = end.si_status;
+    }
+    rank.send(process_ended, 0, to_bytes(ending, {}));
+    last = process;
+  }
+}
+
+}  // namespace
+
+/// The rank's side of its helper and of the process that computes now.
+class IsolatedJobs::Processes {
+ public:
+  Processes(Socket helper, pid_t helper_pid) : helper_(std::move(helper)), helper_pid_(helper_pid) {
+    helper_.limit_halts(patience);
+  }
+
+  /// The first one is the helper's, a later one goes to each process: that of now, and those to come.
+  void send_description(const std::string& description) {
+    if (!std::exchange(is_described_, true)) {
+      helper_.send(describe_jobs, 0, std::as_bytes(std::span(description)));
+      return;
+    }
+    later_description_ = description;
+    if (process_.is_open()) process_.send(describe_jobs, 0, std::as_bytes(std::span(later_description_)));
+  }
+
+  /// Is there a helper still? Without one no job can begin.
+  bool have_helper() const { return helper_.is_open(); }
+
+  /// Starts a job in a live process, or detects that the helper is dead. Returns the job's number.
+  std::int64_t begin_job(std::int64_t task, std::span<const std::byte> snapshot) {
+    // Drain messages of an earlier job, and notice a process that has died since.
+    while (process_.is_open() && process_.wait(std::chrono::milliseconds(0)))
+      if (!process_.receive()) bury();
+    ++last_job_;
+    if (!have_helper()) return last_job_;
+    if (!process_.is_open()) start_process();
+    if (process_.is_open()) process_.send(begin, last_job_, to_bytes(task, snapshot));
+    return last_job_;
+  }
+
+  const Socket& process() const { return process_; }
+
+  /// Kills the process unless it is dead already. Returns how it ended; nothing if the helper, which reports
+  /// that, has died or is stopped: the rank then gives the helper up.
+  std::optional<Ending> bury() {
+    process_.close();
+    if (process_id_ > 0)
+      kill(process_id_, SIGKILL);  // no other has its number until the helper starts the next
+    if (helper_.wait(patience))
+      if (const auto message = helper_.receive()) return from_bytes<Ending>(message->bytes).first;
+    give_up_helper();
+    return std::nullopt;
+  }
+
+ private:
+  Socket helper_;
+  pid_t helper_pid_;
+  Socket process_;
+  pid_t process_id_ = -1;
+  std::int64_t last_job_ = 0;
+  bool is_described_ = false;
+  std::string later_description_;
+
+  /// After the helper's reply only the process holds the other end of its socket, so the rank notices its
+  /// death.
+  void start_process() {
+    auto [mine, theirs] = Socket::pair();
+    mine.limit_halts(patience);
+    helper_.send_socket(theirs);
+    const auto began = helper_.wait(patience_for_start) ? helper_.receive() : std::nullopt;
+    if (!began) return give_up_helper();
+    process_id_ = from_bytes<pid_t>(began->bytes).first;
+    process_ = std::move(mine);
+    if (!later_description_.empty())
+      process_.send(describe_jobs, 0, std::as_bytes(std::span(later_description_)));
+  }
+
+  void give_up_helper() {
+    kill(helper_pid_, SIGKILL);
+    helper_.close();
+  }
+};
+
+class IsolatedJobs::IsolatedJob final : public Job {
+ public:
+  IsolatedJob(Processes& processes, const RunRow& row, std::span<const std::byte> snapshot)
+      : processes_(processes), number_(processes.begin_job(row.task, snapshot)) {
+    last_ = {row, {snapshot.begin(), snapshot.end()}};
+    if (!processes_.have_helper()) fail(without_helper);
+  }
+  ~IsolatedJob() override {
+    if (!processes_.process().is_open()) return;
+    if (is_asked_ && !is_over_)
+      processes_.bury();  // it may never answer
+    else
+      processes_.process().send(drop, number_, {});
+  }
+
+  bool advance() override {
+    constexpr std::chrono::milliseconds slice{5};
+    if (!is_over_ && processes_.process().wait(slice)) receive();
+    return is_over_;
+  }
+  bool refresh() override {
+    if (is_over_ || std::exchange(has_answered_, false)) return true;
+    if (!is_asked_) processes_.process().send(report, number_, {});
+    is_asked_ = true;
+    return false;
+  }
+  RunRow row() const override { return last_.row; }
+  std::vector<std::byte> snapshot() const override { return last_.snapshot; }
+
+ private:
+  static constexpr const char* without_helper =
+      "the helper process of its rank was killed or stopped; the rank continues without one, and now a crash "
+      "of a task ends the sweep";
+
+  Processes& processes_;
+  std::int64_t number_;
+  sweep::Report last_;  ///< how it began, or what the process said last
+  bool is_over_ = false;
+  bool is_asked_ = false;
+  bool has_answered_ = false;
+  Clock::time_point begin_ = Clock::now();
+
+  void receive() {
+    const auto message = processes_.process().receive();
+    if (!message) {
+      const std::optional<Ending> ending = processes_.bury();
+      fail(ending ? describe(*ending) : without_helper);
+      return;
+    }
+    if (message->job != number_) return;  // of an earlier job, which was dropped meanwhile
+    last_ = sweep::report_from(message->bytes);
+    is_over_ = message->kind == over;
+    is_asked_ = false;
+    has_answered_ = true;
+  }
+
+  void fail(const std::string& reason) {
+    is_over_ = true;
+    last_.snapshot.clear();
+    last_.row.status = RunStatus::failed;
+    last_.row.message = reason;
+    last_.row.wall_seconds = std::max(0.0, std::chrono::duration<double>(Clock::now() - begin_).count());
+    last_.row.processor_seconds = sweep::RunRow::not_known;
+  }
+};
+
+IsolatedJobs::IsolatedJobs(const Describe& describe) : describe_(describe) {
+  auto [mine, theirs] = Socket::pair();
+  const pid_t self = getpid();
+  let_crashes_kill();
+  helper_ = fork();
+  if (helper_ < 0)
+    throw Error(std::string("cannot start a process (") + std::strerror(errno) +
+                "); end other programs, or raise the limit on processes (ulimit -u)");
+  if (helper_ == 0) {
+    depend_on_parent(self);
+    mine.close();
+    start_processes(theirs, describe);
+  }
+  processes_ = std::make_unique<Processes>(std::move(mine), helper_);
+}
+
+IsolatedJobs::~IsolatedJobs() {
+  kill(helper_, SIGKILL);  // the process that computes goes with it
+  while (waitpid(helper_, nullptr, 0) < 0 && errno == EINTR) continue;
+}
+
+JobFactory IsolatedJobs::jobs(const std::string& description) {
+  processes_->send_description(description);
+  return [this, make_job = describe_(description)](
+             std::int64_t task, std::span<const std::byte> snapshot) -> std::unique_ptr<Job> {
+    if (!processes_->have_helper()) return make_job(task, snapshot);
+    return std::make_unique<IsolatedJob>(*processes_, make_job(task, {})->row(), snapshot);
+  };
+}
+
+}  // namespace clog::scheduler

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace clog::scheduler {
+
+/// One end of a connection between two processes of one machine. Messages are whole, or the other process has
+/// died.
+class Socket {
+ public:
+  Socket() = default;
+  explicit Socket(int descriptor) : descriptor_(descriptor) {}
+  ~Socket() { close(); }
+  Socket(Socket&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  Socket& operator=(Socket&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    return *this;
+  }
+
+  /// @throws std::system_error
+  static std::pair<Socket, Socket> pair();
+
+  struct Message {
+    std::int64_t kind = 0;
+    std::int64_t job = 0;  ///< which one it is about
+    std::vector<std::byte> bytes;
+  };
+  bool is_open() const { return descriptor_ >= 0; }
+  /// From now on a message that has begun, in either direction, and comes to a halt for so long counts as the
+  /// other process's death: it may have been stopped.
+  void limit_halts(std::chrono::milliseconds longest) const;
+  void close();
+  /// A message to a process that has died is lost.
+  void send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const;
+  /// Waits for a message, without bound unless halts are limited; none: the other process has died.
+  std::optional<Message> receive() const;
+  /// Is there something to receive, be it the end?
+  bool wait(std::chrono::milliseconds longest) const;
+
+  /// Hands the other process a socket of its own (SCM_RIGHTS).
+  void send_socket(const Socket& socket) const;
+  /// Waits for one; not open: the other process has died.
+  Socket receive_socket() const;
+
+ private:
+  int descriptor_ = -1;
+
+  bool read_all(void* bytes, std::size_t num_bytes) const;
+  bool write_all(const void* bytes, std::size_t num_bytes) const;
+};
+
+}  // namespace clog::scheduler

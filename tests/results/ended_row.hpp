@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cmath>
+
+#include "clog/sweep/run_row.hpp"
+
+namespace clog::results {
+
+/// Makes a row that fault_of() accepts: the droplet moved at its terminal speed until the run ended, or, if
+/// it is still flowing, until it rested.
+/// @param distance  [sigma]
+inline void end_run(sweep::RunRow& row, RunStatus status, double distance) {
+  row.status = status;
+  row.distance = distance;
+  const bool is_flowing = status == RunStatus::flowing;
+  row.time = is_flowing ? row.parameters.max_time : distance / row.parameters.drag.terminal_speed;
+  row.steps = std::llround(row.time / row.parameters.time_step.value());
+  row.wall_seconds = 1;
+  row.kinetic_energy_ratio = 0;
+  row.shape_parameter = 1;
+}
+
+}  // namespace clog::results

@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clog/core/run/resolve.hpp"
+#include "clog/results/group_table.hpp"
+#include "clog/results/groups.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/run_row.hpp"
+#include "ended_row.hpp"
+
+namespace clog::results {
+namespace {
+
+constexpr double entrance = 1, device_exit = 12;
+
+RunParameters device() {
+  RunParameters run;
+  run.obstacles.layout = ObstacleLayout::file;
+  run.obstacles.own = OwnCircles({{3, 5, 0.3}, {6, 4, 0.3}, {6, 7, 0.3}, {9, 5, 0.3}, {13, 5, 0.3}});
+  run.obstacles.box = 10;
+  run.obstacles.length = 20;
+  run.obstacles.release = Release::entrance;
+  run.obstacles.entrance = entrance;
+  run.obstacles.exit = device_exit;
+  run.max_time = 400;
+  return resolve(run);
+}
+
+/// @param first_contact_at  nothing: the droplet met no obstacle
+sweep::RunRow row(std::uint32_t seed, RunStatus status, double distance,
+                  std::optional<double> first_contact_at) {
+  RunParameters run = device();
+  run.seed = seed;
+  sweep::RunRow row = sweep::describe(run);
+  end_run(row, status, distance);
+  row.task = seed;
+  row.release_x = entrance;
+  row.release_y = 5;
+  row.contacts = first_contact_at ? 1 : 0;
+  if (first_contact_at) row.first_contact_at = *first_contact_at;
+  EXPECT_EQ(sweep::fault_of(row), "");
+  return row;
+}
+
+std::vector<sweep::RunRow> five_rows() {
+  return {row(1, RunStatus::clogged, 1.5, 1.2), row(2, RunStatus::clogged, 5.5, 1.4),
+          row(3, RunStatus::passed, 11.1, 1.6), row(4, RunStatus::flowing, 4, 1.0),
+          row(5, RunStatus::passed, 11, {})};
+}
+
+struct Counts {
+  double x;
+  int num_passed, num_stopped;
+};
+void expect_passages(const Group& group, const std::vector<Counts>& expected) {
+  ASSERT_EQ(group.passages.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(group.passages[i].x, expected[i].x);
+    EXPECT_EQ(group.passages[i].num_passed, expected[i].num_passed) << expected[i].x;
+    EXPECT_EQ(group.passages[i].num_stopped, expected[i].num_stopped) << expected[i].x;
+  }
+}
+
+TEST(Passages, AreThoseOfEachRowOfPostsAndOfTheExit) {
+  const std::vector<Group> groups = group_runs(five_rows(), 0.95);
+  ASSERT_EQ(groups.size(), 1u);
+  // The fourth is still on its way beyond x = 5.
+  expect_passages(groups[0], {{3, 4, 1}, {6, 3, 1}, {9, 2, 2}, {device_exit, 2, 2}});
+}
+
+TEST(Passages, AreThoseOfTheUsersLines) {
+  const std::vector<double> lines = {2, 4.5};
+  const std::vector<Group> groups =
+      group_runs(five_rows(), 0.95, 0, std::numeric_limits<double>::infinity(), {}, lines);
+  expect_passages(groups[0], {{2, 5, 0}, {4.5, 4, 1}, {device_exit, 2, 2}});
+}
+
+TEST(Passages, ArePrintedALineEach) {
+  const std::string text = to_text(group_runs(five_rows(), 0.95), 0.95, SharedParameters::unusual);
+  // 2 of 4: exact limits of Clopper and Pearson, as R's binom.test(2, 4) prints them.
+  EXPECT_NE(text.find("        9          2   4   0.50  0.07 .. 0.93\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("       12          2   4   0.50  0.07 .. 0.93\n"), std::string::npos) << text;
+}
+
+TEST(Passages, LengthsOfADeviceCountFromTheFirstObstacle) {
+  const Group group = group_runs(five_rows(), 0.95).at(0);
+  EXPECT_EQ(group.clogging.num_runs, 4);
+  EXPECT_EQ(group.clogging.num_clogs, 2);
+  EXPECT_EQ(group.num_free, 1);
+  EXPECT_NEAR(group.clogging.length, (0.3 + 4.1 + 9.5 + 3) / 2, 1e-12);
+  EXPECT_NEAR(group.clogging_met.length, group.clogging.length, 1e-12);
+}
+
+TEST(Passages, AreNotAskedForWithoutADevice) {
+  std::vector<sweep::RunRow> rows = five_rows();
+  for (sweep::RunRow& row : rows) {
+    row.parameters.obstacles.release = Release::anywhere;
+    row.parameters.obstacles.entrance = row.parameters.obstacles.exit = 0;
+    if (row.status == RunStatus::passed) end_run(row, RunStatus::flowing, row.distance);
+  }
+  const Group group = group_runs(rows, 0.95).at(0);
+  EXPECT_TRUE(group.passages.empty());
+  EXPECT_NEAR(group.clogging.length, (1.5 + 5.5 + 11.1 + 4 + 11) / 2, 1e-12);
+}
+
+}  // namespace
+}  // namespace clog::results

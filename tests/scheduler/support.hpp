@@ -1,0 +1,65 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "clog/scheduler/scheduler.hpp"
+#include "clog/sweep/job.hpp"
+
+/// For programs that test the scheduler under mpirun, where every rank has to leave when one finds a fault.
+
+namespace clog {
+
+inline void expect(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "failed: %s\n", what);
+  std::_Exit(1);
+}
+
+/// Takes a number of slices that differs from task to task.
+class SyntheticJob : public sweep::Job {
+ public:
+  SyntheticJob(std::int64_t task, std::span<const std::byte> snapshot)
+      : task_(task), slices_left_(1 + task * 7 % 5 - static_cast<std::int64_t>(snapshot.size())) {}
+  bool advance() override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return --slices_left_ <= 0;
+  }
+  std::vector<std::byte> snapshot() const override {
+    return std::vector<std::byte>(1 + task_ * 7 % 5 - slices_left_);  // as many bytes as slices are done
+  }
+  sweep::RunRow row() const override {
+    sweep::RunRow row;
+    row.task = task_;
+    row.distance = static_cast<double>(task_ * task_);
+    row.status = slices_left_ > 0 ? RunStatus::interrupted : RunStatus::clogged;
+    row.steps = 1 + task_ * 7 % 5 - slices_left_;
+    return row;
+  }
+
+ private:
+  std::int64_t task_;
+  std::int64_t slices_left_;
+};
+
+inline const sweep::JobFactory make_synthetic_job = [](std::int64_t task,
+                                                       std::span<const std::byte> snapshot) {
+  return std::make_unique<SyntheticJob>(task, snapshot);
+};
+
+/// A sweep of one round.
+inline scheduler::SweepEnd run_once(const scheduler::Communicator& ranks, const scheduler::TaskOrder& tasks,
+                                    const sweep::JobFactory& make_job, const scheduler::SweepEvents& events,
+                                    bool master_computes,
+                                    std::chrono::milliseconds report_interval = std::chrono::seconds(10)) {
+  scheduler::Schedule schedule(tasks, ranks.size(), master_computes);
+  return scheduler::run_tasks(ranks, schedule, make_job, events, report_interval);
+}
+
+}  // namespace clog

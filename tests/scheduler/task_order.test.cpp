@@ -1,0 +1,74 @@
+#include "clog/scheduler/task_order.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace clog::scheduler {
+namespace {
+
+TEST(TaskOrder, BeginsWithOneTaskOfEveryGroup) {
+  TaskOrder tasks(12, 4);
+  for (int task = 0; task < 12; ++task) EXPECT_EQ(tasks.take(0), task);
+  EXPECT_TRUE(tasks.empty());
+}
+
+TEST(TaskOrder, HandsOutEveryTaskOnceWhateverTheirLengths) {
+  for (const int num_groups : {1, 3, 7, 20, 30}) {
+    TaskOrder tasks(20, num_groups);
+    std::set<std::int64_t> taken;
+    for (double now = 0; !tasks.empty(); now += 1) {
+      const std::int64_t task = tasks.take(now);
+      EXPECT_TRUE(task >= 0 && task < 20);
+      EXPECT_TRUE(taken.insert(task).second) << task;
+      if (task % 2 == 0) tasks.ended(task, now + static_cast<double>(task * 7 % 5));
+    }
+    EXPECT_EQ(taken.size(), 20u) << num_groups;
+  }
+}
+
+TEST(TaskOrder, GoesOnWithTheGroupThatRanLongest) {
+  TaskOrder tasks(9, 3);
+  for (int group = 0; group < 3; ++group) tasks.take(0);
+  tasks.ended(0, 2);
+  tasks.ended(1, 5);
+  tasks.ended(2, 3);
+  EXPECT_EQ(tasks.take(6), 4);
+  tasks.ended(4, 6.5);  // the mean of group 1 is now 2.75
+  EXPECT_EQ(tasks.take(7), 5);
+}
+
+TEST(TaskOrder, RemembersRunTimesInTheNextRound) {
+  TaskOrder tasks(std::vector<std::int64_t>{0, 1, 2}, 3);
+  for (const std::int64_t task : {0, 1, 2}) EXPECT_EQ(tasks.take(0), task);
+  tasks.ended(0, 1);
+  tasks.ended(1, 3);
+  tasks.ended(2, 2);
+  EXPECT_TRUE(tasks.empty());
+  tasks.add({3, 4, 5});
+  EXPECT_EQ(tasks.take(3), 4) << "its group ran longest";
+  EXPECT_EQ(tasks.take(3), 5);
+}
+
+TEST(TaskOrder, ExpectsAGroupWithoutResultsToBeLong) {
+  TaskOrder tasks(6, 3);
+  for (int group = 0; group < 3; ++group) tasks.take(0);
+  tasks.ended(0, 2);
+  tasks.ended(2, 5);
+  EXPECT_EQ(tasks.take(6), 4);
+  EXPECT_EQ(tasks.take(6), 5);
+  EXPECT_EQ(tasks.take(6), 3);
+}
+
+TEST(TaskOrder, CountsTheTimeOfRunningTasks) {
+  TaskOrder tasks(8, 2);
+  for (int task = 0; task < 4; ++task) tasks.take(0);
+  tasks.ended(0, 1);
+  tasks.ended(1, 4);
+  EXPECT_EQ(tasks.take(4), 5) << "both have run for 4 seconds more: 1 + 4 against 4 + 4";
+  tasks.ended(3, 4);  // group 1: 8 seconds in two tasks, and one that has just begun
+  EXPECT_EQ(tasks.take(4), 4) << "5 seconds, one task ended, against 8 and two";
+}
+
+}  // namespace
+}  // namespace clog::scheduler
