@@ -48,7 +48,7 @@ def settings_for(name):
         return [*words, "obstacles=posts.csv", *(["release=entrance"] if name.startswith("entrance") else [])]
     elastic = ["preset=elastic"] if name in ("perimeter-stiffness-ratio", "perimeter-stiffness", "friction", "yield-traction") else []
     if name == "advancing-angle":
-        words.append("wall-tension=0")  # Young's angle is 90 degrees then
+        words.append("wall-tension=0.5")  # Young's angle is 120 degrees then
     return [*words, *elastic, *(["obstacle-gap=0.6"] if name != "obstacle-gap" else [])]
 
 

@@ -19,6 +19,7 @@ from ..tools.texts import printable
 
 USER_FAULT = 2
 INTERRUPTED = 75
+WITHOUT_READER = 141  # as a shell reports a process that SIGPIPE ended
 
 
 _own_name = ""
@@ -189,16 +190,20 @@ def _refuse(reason: object) -> int:
 def _whole_output() -> Iterator[None]:
     """Writes what was printed at its end, so that a full disk is an error of the block."""
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")  # a locale may lack letters
+        # A locale may lack letters. With PYTHONUNBUFFERED each print() would fail, not the end.
+        sys.stdout.reconfigure(errors="backslashreplace", write_through=False)
     try:
         yield
     finally:
         if sys.stdout is not None:
             try:
                 sys.stdout.flush()
-            except OSError:
+            except BrokenPipeError:  # its reader wants no more
                 _give_up(sys.stdout)
                 raise
+            except OSError as error:
+                _give_up(sys.stdout)
+                raise UserError("cannot write the output; the disk may be full") from error
 
 
 def run(body: Callable[[], int]) -> int:
@@ -208,6 +213,8 @@ def run(body: Callable[[], int]) -> int:
             return body()
     except UserError as error:
         return _refuse(error)
+    except BrokenPipeError:
+        return WITHOUT_READER
     except OSError as error:
         return _refuse(f"cannot use {error.filename or 'a file'} ({error.strerror or error}); look at its name and permissions")
     except KeyboardInterrupt:

@@ -126,8 +126,8 @@ def printed_tasks(*command: object) -> str:
     """What a dry run prints of its tasks; it is stopped before it estimates their cost. @throws UserError"""
     words = [*map(str, command), "--dry-run"]
     lines: list[str] = []
-    with tempfile.TemporaryFile("w+") as errors:
-        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, text=True, env=_alone()) as process:
+    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="backslashreplace") as errors:
+        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, encoding="utf-8", errors="backslashreplace", env=_alone()) as process:
             for line in process.stdout or ():
                 lines.append(line)
                 if re.match(r"# \d+ tasks?:", line):
