@@ -143,8 +143,10 @@ def attributes(file: h5py.File) -> dict[str, str]:
 
 
 def writer(attributes: dict[str, str]) -> str:
-    """Version and commit of the program that wrote a file, in words. A salvaged file may lack them."""
-    return f"{attributes.get('version', 'of unknown version')}, git {attributes.get('git_describe', 'unknown')}"
+    """Version and commit of the program that wrote a file, in words. Files before 0.2.0 have the commit's hash alone, a salvaged
+    one may lack all."""
+    commit = attributes.get("git_describe") or attributes.get("git_hash") or "unknown"
+    return f"{attributes.get('version', 'of unknown version')}, git {commit}"
 
 
 def source(attributes: dict[str, str]) -> str:
