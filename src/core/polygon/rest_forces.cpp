@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "clog/core/droplet/shape.hpp"
 #include "step_input.hpp"
 
 namespace clog {
