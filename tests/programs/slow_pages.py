@@ -120,6 +120,9 @@ class Commands(Analysis):
         elif command in LONG:
             sys.argv[1:] = rest
             LONG[command].parse()
+        elif command == "refine":  # the launcher may be of a cluster
+            done = self.analyse(command, *rest[:rest.index("--")], "--dry-run")
+            self.assertEqual(done.returncode, 0, done.stderr)
         else:
             sweep = {"device": "device.h5", "clogs": "wrapped.h5"}.get(command, "sweep.h5")
             stand_ins = {"/dev/stdin": "fit.json", "sweep.h5": sweep}
