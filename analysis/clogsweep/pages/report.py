@@ -87,7 +87,7 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
 
 
 def share_of(number: float, group: Group) -> float:
-    """Of the runs of a group; 0 if it has none, because its droplets met no obstacle."""
+    """A part of the runs of a group; 0 if it has none, because its droplets met no obstacle."""
     return number / group["runs"] if group["runs"] else 0.0
 
 
