@@ -36,9 +36,10 @@ Communicator::Communicator(int& argc, char**& argv) {
 }
 
 bool Communicator::may_be_rank_0() {
-  for (const char* name : rank_variables)
-    if (const char* rank = std::getenv(name); rank && std::string_view(rank) != "0") return false;
-  return true;
+  return std::ranges::all_of(rank_variables, [](const char* name) {
+    const char* const rank = std::getenv(name);
+    return !rank || std::string_view(rank) == "0";
+  });
 }
 
 Communicator::~Communicator() { MPI_Finalize(); }
