@@ -213,10 +213,17 @@ class Devices(Walls):
                      "line-tension=1", "vertices=64", "max-time=500", "seeds=1..2", "--output", "s.h5")
         group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
         self.assertEqual((group["runs"], group["met_none"]), (0, 2))
-        self.refuse_analysis("clogging-length", "s.h5", "--output", "c", "--programs", BIN, words=["no droplet of s.h5 met an obstacle"])
-        for command, output in [("device", "device"), ("report", "report.html"), ("poster", "poster")]:
+        for command in ("clogging-length", "poster"):
+            self.refuse_analysis(command, "s.h5", "--output", "c", "--programs", BIN, words=["no droplet of s.h5 met an obstacle"])
+        for command, output in [("device", "device"), ("report", "report.html")]:
             self.draw(command, "s.h5", "--output", output, "--programs", BIN)
         self.assertTrue("2 of 2 runs finished (2 passed)" in (self.folder / "report.html").read_text())
+        # Beside groups whose droplets do.
+        self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=6", "side-walls=on", "release=entrance", "entrance-from=4.5", "entrance-to=5.5", "exit=6",
+                     "line-tension=1", "vertices=64", "max-time=500", "seeds=1..2", "--output", "t.h5")
+        self.succeed("clogsweep", "merge", "s.h5", "t.h5", "--output", "both.h5")
+        for command, output in [("clogging-length", "c"), ("poster", "poster"), ("report", "both.html")]:
+            self.draw(command, "both.h5", "--output", output, "--programs", BIN)
 
     def test_each_line_tension_has_a_panel(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())

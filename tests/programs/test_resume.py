@@ -413,14 +413,18 @@ class Batch(ProgramTest):
     def sweep(self, *more):
         return ["vertices=64", "box=20", "obstacle-gap=1.2", "seeds=1..20", *more, "--output", str(self.folder / "s.h5")]
 
-    def test_a_warning_of_slurm_ends_the_sweep_and_the_job_queues_again(self):
-        process = self.script("slurm.sh", *self.sweep("max-time=1e5"), SLURM_JOB_ID="77")
+    def warn(self, process):
+        """Slurm's warning interrupts its runs, and the job queues again."""
         self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any())
         os.kill(process.pid, signal.SIGUSR1)
         output, _ = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 75, output)
         self.assertEqual(self.called(), "scontrol requeue 77\n")
         self.assertGreater((table(self.folder / "s.h5").status == "interrupted").sum(), 0)
+
+    def test_a_warning_of_slurm_ends_the_sweep_and_the_job_queues_again(self):
+        process = self.script("slurm.sh", *self.sweep("max-time=1e5"), SLURM_JOB_ID="77")
+        self.warn(process)
 
     def test_a_warning_that_ends_mpirun_at_its_start_queues_again(self):
         for what, trap in {"it does not yet know what to do with the signal": "-",
@@ -457,12 +461,7 @@ class Batch(ProgramTest):
     def test_a_job_that_refines_passes_its_warning_on_and_queues_again(self):
         arguments = ["refine", "line-tension", *self.sweep("max-time=1e5", "line-tension=0.1,0.2"), "--budget=1h"]
         process = self.script("slurm.sh", *arguments, SLURM_JOB_ID="77")
-        self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any())
-        os.kill(process.pid, signal.SIGUSR1)
-        output, _ = process.communicate(timeout=LONGEST)
-        self.assertEqual(process.returncode, 75, output)
-        self.assertEqual(self.called(), "scontrol requeue 77\n")
-        self.assertGreater((table(self.folder / "s.h5").status == "interrupted").sum(), 0)
+        self.warn(process)
 
     def test_pbs_queues_again_when_its_hours_are_over(self):
         options = self.folder / "sweep.options"

@@ -2,7 +2,8 @@
 
     python3 -m clogsweep refine line-tension --config sweep.cfg --output sweep.h5 line-tension=0.03,3 seeds=1..4 \\
         --until curve=20% -- mpirun -np 2
-    python3 -m clogsweep refine line-tension,friction --config sweep.cfg --output sweep.h5 --budget 10h -- srun
+    python3 -m clogsweep refine line-tension,friction --config sweep.cfg --output both.h5 preset=elastic \\
+        line-tension=0.03,3 friction=0.01,0.3 --budget 10h -- srun
     python3 -m clogsweep refine lattice-angle --config lattice.cfg --output lattice.h5 --until critical-angle=0.5
 
 The words after -- start clogsweep; without them it runs on one core. The points of all rounds are stored beside the output

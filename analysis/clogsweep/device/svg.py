@@ -133,7 +133,7 @@ class Clips:
         styled = re.search(r"clip-path\s*:\s*url\(([^)]*)\)", element.get("style", ""))
         own = re.search(r"url\(([^)]*)\)", element.get("clip-path", ""))
         classes = [self._by_class[name] for name in element.get("class", "").split() if name in self._by_class]
-        self.unknown += "mask" in element.attrib or "mask:" in element.get("style", "")
+        self.unknown += bool(re.search(r"\bmask\s*[:=]\s*url\(", f"mask={element.get('mask', '')};{element.get('style', '')}"))
         return next((link.strip(" '\"#") for link in [*(found[1] for found in (styled, own) if found), *classes]), "")
 
     def _draw(self, element: Any, outer: str) -> None:

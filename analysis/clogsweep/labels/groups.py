@@ -48,7 +48,7 @@ class Groups:
         """The same. @throws UserError  for a sweep of channels or walls, too, which has no clogging lengths"""
         if self.are_passages:
             raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws their results")
-        if self.finished(source).members and not any(group["runs"] for group in self.members):
+        if not any(group["runs"] for group in self.finished(source).members):
             raise UserError(f"no droplet of {source} met an obstacle, so there is no clogging length; python3 -m clogsweep device or report shows their paths")
         return self
 

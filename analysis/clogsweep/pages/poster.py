@@ -90,7 +90,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
         first.append(lambda axes: lengths.draw_speeds_on(axes, groups))
     curves = shown_curves(groups)
     survivals = [curve_drawing(report.draw_survival, label, members) for label, members in curves if any(group["survival"] for group in members)]
-    ends = [curve_drawing(report.draw_causes, label, members) for label, members in curves]
+    ends = [curve_drawing(report.draw_causes, label, counted) for label, members in curves if (counted := report.with_runs(members))]
     # With a single curve, both are side by side.
     below: list[Row] = [(1.35, survivals + ends)] if len(curves) == 1 else [(1.35, survivals), (1.0, ends)]
     rows: list[Row] = [(1.6, first), *((height, drawings) for height, drawings in below if drawings)]
@@ -141,7 +141,7 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path, *options: object) -> Figure:
         rows = of_passages(groups, sweep, folder / "clogrun")
     else:
         title, words = f"Clogging length vs {abscissa}", {"flowing": "still going"}
-        rows = of_lengths(groups, sweep, folder / "clogrun")
+        rows = of_lengths(groups.with_lengths(sweep), sweep, folder / "clogrun")
     head = f"{groups.caption()}\n{of_laboratory(groups)}{counted(stored.read_table(sweep, folder), words)}"
     groups.tells_what_all_share = False  # the head does, panels need not
     return page(title, head, rows, literal(cut(stored.source(about))))

@@ -86,18 +86,18 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
     return figure
 
 
-def share_of(number: float, group: Group) -> float:
-    """A part of the runs of a group; 0 if it has none, because its droplets met no obstacle."""
-    return number / group["runs"] if group["runs"] else 0.0
+def with_runs(members: Sequence[Group]) -> list[Group]:
+    """Without groups all of whose droplets met no obstacle."""
+    return [group for group in members if group["runs"]]
 
 
 def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """How the runs of one curve ended, as shares."""
+    """How the runs of one curve ended, as shares. @param members  see with_runs()"""
     ranks, base = np.arange(len(members)), np.zeros(len(members))
-    shares = {name if name == "broken" else f"clogged, {name}": (colour, [share_of(group[name] or 0, group) for group in members])
+    shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
               for name, colour in style.CAUSE_COLOURS.items()}
-    passed = [share_of(group["passed"] or 0, group) for group in members]
-    ended = [share_of(group["clogs"] + (group["broken"] or 0), group) for group in members]
+    passed = [(group["passed"] or 0) / group["runs"] for group in members]
+    ended = [(group["clogs"] + (group["broken"] or 0)) / group["runs"] for group in members]
     shares["passed"] = (style.PASSED_COLOUR, passed)
     shares["still going"] = ("0.88", [1 - one - other for one, other in zip(ended, passed)])
     for name, (colour, share) in shares.items():
@@ -313,14 +313,15 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
         is_wide = figure.get_figwidth() > 1.5 * figure.get_figheight()
         return framed(charts.draw(figure, caption), caption, "wide" if is_wide else "")
 
-    curves = [chart(style.figure_of(curve.draw_on, groups), curve.heading(groups))]
+    curves = [chart(style.figure_of(curve.draw_on, groups), curve.heading(groups))] if with_runs(groups.members) else []
     if lengths.have_speeds(groups.members):
         curves.append(chart(style.figure_of(lengths.draw_speeds_on, groups), "mean speed over terminal speed"))
     survivals = [chart(style.figure_of(draw_survival, groups, label, members), "P(r), to the longest way") for label, members in groups.curves()
                  if any(group["survival"] for group in members)]
     survivals += [chart(incidence(groups, label, members), "ends by cause") for label, members in groups.curves()
                   if len(occurring_causes(members)) > 1]
-    ends = [chart(style.figure_of(draw_causes, groups, label, members), "ends by cause, shares") for label, members in groups.curves()]
+    ends = [chart(style.figure_of(draw_causes, groups, label, members), "ends by cause, shares") for label, all_of_it in groups.curves()
+            if (members := with_runs(all_of_it))]
     shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
     return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals), "What becomes of them": side_by_side(ends),
             **devices(groups, sweep, count, clogrun, charts), "Example clogs": example_pictures(shown, sweep, clogrun, charts)}
