@@ -84,7 +84,7 @@ class ReferenceForces : public DpForces {
     const auto pull = [&](int i) -> Eigen::Array2d {
       return (terms.line_tension + terms.spring * (length(i) - terms.spring_length)) / length(i) * edge(i);
     };
-    Eigen::ArrayXd force = Eigen::ArrayXd::Zero(2 * n_);
+    Eigen::ArrayXd force = Eigen::ArrayXd::Zero(Eigen::Index{2} * n_);
     for (int i = 0; i < n_; ++i) {
       // The area's gradient is half the chord between the neighbours, turned outwards. Springs along the
       // interface pull along that chord, so that they do no work on the area.
