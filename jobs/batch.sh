@@ -4,7 +4,12 @@
 . "$(dirname "${BASH_SOURCE[0]}")/mpi-settings.sh"
 # Where the Python module is: of the sources, or installed beside the programs.
 jobs=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
-export PYTHONPATH="${PYTHONPATH:+$PYTHONPATH:}$jobs/../analysis:$jobs/../../../lib/python3/dist-packages"
+for folder in "$jobs/../analysis" "$jobs/../../../lib/python3/dist-packages"; do
+  if [ -d "$folder/clogsweep" ]; then export PYTHONPATH="${PYTHONPATH:+$PYTHONPATH:}$folder"; fi
+done
+# The python3 of the PATH may be one that has not the libraries, as pyenv's or conda's; then the system's.
+python=python3
+"$python" -c "import h5py" 2>/dev/null || python=/usr/bin/python3
 
 # run_sweep PROGRAM ARGS...: runs it by mpirun; if the first of ARGS is `refine`, runs python3 -m clogsweep refine, which
 # starts mpirun for each of its rounds. A warning of the batch system (SIGUSR1, or SIGTERM) goes on to the ranks as SIGUSR1:
@@ -19,7 +24,7 @@ run_sweep() {
   trap 'was_warned=1; interrupted=1; was_cancelled=1; kill -USR1 "${!:-}" 2>/dev/null || true' TERM
   {
     ((!was_warned)) || exit 75
-    if [ "${2-}" = refine ]; then exec python3 -m clogsweep "${@:2}" --programs "$(dirname "$1")" -- mpirun; fi
+    if [ "${2-}" = refine ]; then exec "$python" -m clogsweep "${@:2}" --programs "$(dirname "$1")" -- mpirun; fi
     exec mpirun "$@"
   } &
   sweep=$!

@@ -415,7 +415,8 @@ class Batch(ProgramTest):
 
     def warn(self, process):
         """Slurm's warning interrupts its runs, and the job queues again."""
-        self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any())
+        self.wait_for(lambda: process.poll() is not None or (
+            (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()))
         os.kill(process.pid, signal.SIGUSR1)
         output, _ = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 75, output)
@@ -460,6 +461,9 @@ class Batch(ProgramTest):
 
     def test_a_job_that_refines_passes_its_warning_on_and_queues_again(self):
         arguments = ["refine", "line-tension", *self.sweep("max-time=1e5", "line-tension=0.1,0.2"), "--budget=1h"]
+        without_libraries = self.folder / "python3"
+        without_libraries.write_text("#!/bin/sh\nexit 1\n")
+        without_libraries.chmod(0o755)
         process = self.script("slurm.sh", *arguments, SLURM_JOB_ID="77")
         self.warn(process)
 
