@@ -7,7 +7,7 @@ jobs=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
 for folder in "$jobs/../analysis" "$jobs/../../../lib/python3/dist-packages"; do
   if [ -d "$folder/clogsweep" ]; then export PYTHONPATH="${PYTHONPATH:+$PYTHONPATH:}$folder"; fi
 done
-# The python3 of the PATH may be one that has not the libraries, as pyenv's or conda's; then the system's.
+# The python3 of the PATH may be one without the libraries; then the system's is tried.
 python=python3
 "$python" -c "import h5py" 2>/dev/null || python=/usr/bin/python3
 
