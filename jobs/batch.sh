@@ -7,9 +7,18 @@ jobs=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
 for folder in "$jobs/../analysis" "$jobs/../../../lib/python3/dist-packages"; do
   if [ -d "$folder/clogsweep" ]; then export PYTHONPATH="${PYTHONPATH:+$PYTHONPATH:}$folder"; fi
 done
-# The python3 of the PATH may be one without the libraries; then the system's is tried.
-python=python3
-"$python" -c "import h5py" 2>/dev/null || python=/usr/bin/python3
+
+# The first python3 of the PATH; the system's, if only that one has the libraries.
+python_with_libraries() {
+  local python
+  for python in python3 /usr/bin/python3; do
+    if "$python" -c "import h5py, pandas, scipy" 2>/dev/null; then
+      echo "$python"
+      return
+    fi
+  done
+  echo python3
+}
 
 # run_sweep PROGRAM ARGS...: runs it by mpirun; if the first of ARGS is `refine`, runs python3 -m clogsweep refine, which
 # starts mpirun for each of its rounds. A warning of the batch system (SIGUSR1, or SIGTERM) goes on to the ranks as SIGUSR1:
@@ -24,7 +33,7 @@ run_sweep() {
   trap 'was_warned=1; interrupted=1; was_cancelled=1; kill -USR1 "${!:-}" 2>/dev/null || true' TERM
   {
     ((!was_warned)) || exit 75
-    if [ "${2-}" = refine ]; then exec "$python" -m clogsweep "${@:2}" --programs "$(dirname "$1")" -- mpirun; fi
+    if [ "${2-}" = refine ]; then exec "$(python_with_libraries)" -m clogsweep "${@:2}" --programs "$(dirname "$1")" -- mpirun; fi
     exec mpirun "$@"
   } &
   sweep=$!

@@ -417,7 +417,7 @@ class Batch(ProgramTest):
         """Slurm's warning interrupts its runs, and the job queues again."""
         self.wait_for(lambda: process.poll() is not None or (
             (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()))
-        os.kill(process.pid, signal.SIGUSR1)
+        process.send_signal(signal.SIGUSR1)
         output, _ = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 75, output)
         self.assertEqual(self.called(), "scontrol requeue 77\n")
