@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -29,30 +28,16 @@ std::string shortened(const std::string& text) {
   return text.size() > longest ? text.substr(0, longest) + "..." : text;
 }
 
-std::string in_lower_case(std::string text) {
-  for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  return text;
-}
-
 constexpr const char* droplet_diameters = "sigma";  ///< as a unit of a column
-
-const std::map<std::string, double>& metres_of_units() {
-  static const std::map<std::string, double> units = {{"nm", 1e-9}, {"um", 1e-6},     {"µm", 1e-6},
-                                                      {"μm", 1e-6}, {"micron", 1e-6}, {"microns", 1e-6},
-                                                      {"mm", 1e-3}, {"cm", 1e-2},     {"m", 1}};
-  return units;
-}
 
 /// Metres in a unit of length. @throws Error
 double metres_in(const std::string& unit) {
-  const auto found = metres_of_units().find(unit);
-  if (found == metres_of_units().end())
-    throw Error(fmt::format("'{}' is no unit of length; use nm, um, mm, cm or m", shortened(unit)));
-  return found->second;
+  if (const std::optional<double> metres = console::metres_of(unit)) return *metres;
+  throw Error(fmt::format("'{}' is no unit of length; use nm, um, mm, cm or m", shortened(unit)));
 }
 
 bool is_unit(const std::string& unit) {
-  return unit == droplet_diameters || metres_of_units().contains(unit);
+  return unit == droplet_diameters || console::metres_of(unit).has_value();
 }
 
 /// @throws Error  if one of them is no unit of length
@@ -103,21 +88,10 @@ struct Columns {
   std::string unit;                 ///< that the header names
 };
 
-/// "x [um]", "x (um)", "x/um" and "x_um" are the name x, in lower case, and the unit um.
-std::pair<std::string, std::string> name_and_unit(const std::string& cell) {
-  const auto end = cell.find_first_of(" [(/_,");
-  const std::string name = in_lower_case(cell.substr(0, end));
-  if (end == std::string::npos) return {name, ""};
-  const auto begin_of_unit = cell.find_first_not_of(" [(/_,", end);
-  if (begin_of_unit == std::string::npos) return {name, ""};
-  const std::string rest = cell.substr(begin_of_unit);
-  return {name, rest.substr(0, rest.find_last_not_of(" ])") + 1)};
-}
-
 /// Remembers where a cell of the header says a column is. @return whether it is one of those wanted
 /// @throws Error  if it is there twice, or in another unit than the others
 bool take_column(Columns& columns, int place, const std::string& cell) {
-  const auto [name, unit] = name_and_unit(cell);
+  const auto [name, unit] = console::column_head(cell);
   int* const column = name == "x"                                            ? &columns.x
                       : name == "y"                                          ? &columns.y
                       : name == "diameter" || name == "d" || name == "feret" ? &columns.diameter
@@ -266,7 +240,7 @@ Obstacle parse_circle(console::TableLine line, const Columns& columns, const Sca
 OwnCircles read_circles(const std::string& path) {
   static const std::set<std::string> drawings = {".dxf", ".gds",  ".gdsii", ".svg", ".png",
                                                  ".tif", ".tiff", ".bmp",   ".jpg", ".jpeg"};
-  if (drawings.contains(in_lower_case(std::filesystem::path(path).extension())))
+  if (drawings.contains(console::in_lower_case(std::filesystem::path(path).extension())))
     throw Error(path + " is a drawing; python3 -m clogsweep circles converts it to a file of circles");
   std::vector<Obstacle> circles;
   Columns columns;

@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <cctype>
 #include <cstdint>
+#include <map>
 #include <sstream>
 
 #include "clog/console/text_file.hpp"
@@ -136,6 +138,29 @@ std::string trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return "";
   return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
+}
+
+std::string in_lower_case(std::string text) {
+  for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return text;
+}
+
+ColumnHead column_head(const std::string& cell) {
+  constexpr const char* around_unit = " [(/_,";
+  const auto end = cell.find_first_of(around_unit);
+  const std::string name = in_lower_case(cell.substr(0, end));
+  const auto begin_of_unit = end == std::string::npos ? end : cell.find_first_not_of(around_unit, end);
+  if (begin_of_unit == std::string::npos) return {name, ""};
+  const std::string rest = cell.substr(begin_of_unit);
+  return {name, rest.substr(0, rest.find_last_not_of(" ])") + 1)};
+}
+
+std::optional<double> metres_of(const std::string& unit) {
+  static const std::map<std::string, double> units = {{"nm", 1e-9}, {"um", 1e-6},     {"µm", 1e-6},
+                                                      {"μm", 1e-6}, {"micron", 1e-6}, {"microns", 1e-6},
+                                                      {"mm", 1e-3}, {"cm", 1e-2},     {"m", 1}};
+  const auto found = units.find(unit);
+  return found == units.end() ? std::nullopt : std::optional(found->second);
 }
 
 void read_table(const std::string& path, const std::function<void(const TableLine& line)>& each,

@@ -144,4 +144,20 @@ WeibullTest test_exponentiality(std::span<const Observation> runs) {
   return test;
 }
 
+std::vector<bool> are_not_exponential(std::span<const WeibullTest> groups) {
+  constexpr int fewest_clogs = 10;
+  constexpr double significant = 0.05;
+  std::vector<std::pair<double, std::size_t>> tested;
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    if (groups[i].num_clogs >= fewest_clogs && !std::isnan(groups[i].p_value))
+      tested.emplace_back(groups[i].p_value, i);
+  std::sort(tested.begin(), tested.end());
+  std::vector<bool> are_not(groups.size(), false);
+  for (std::size_t i = 0; i < tested.size(); ++i) {
+    if (tested[i].first * static_cast<double>(tested.size() - i) >= significant) break;
+    are_not[tested[i].second] = true;
+  }
+  return are_not;
+}
+
 }  // namespace clog::fit

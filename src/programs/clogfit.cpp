@@ -23,6 +23,7 @@
 #include "clog/results/stored_sweep.hpp"
 #include "clog/store/run_table.hpp"
 #include "clogfit_compare.hpp"
+#include "clogfit_lengths.hpp"
 #include "clogfit_units.hpp"
 #include "laboratory_option.hpp"
 
@@ -40,6 +41,7 @@ confidence interval and the mean speed with its standard error.
   clogfit sweep.h5
   clogfit sweep.h5 --format csv > table.csv
   clogfit a.h5 b.h5                            several files as one sweep
+  clogfit lengths distances.csv                the same from distances that you measured
   clogfit compare a.h5 b.h5                    ratios of clogging lengths, paired by seed
   clogfit calibrate trial.csv --orifice 0.7    line tension and near-wall drag from measured speeds
   clogfit deviation a.csv b.csv                Delta_v and Delta_A of one profile from others
@@ -80,7 +82,7 @@ int body(int argc, char** argv) {
       "x1,x2,...: lines across a device that droplets pass, in place of the rows of its posts [sigma]")(
       "dwell", po::value<std::string>(), "droplets that have not moved for so long count as clogged [t0]");
   line.add_positional("file", -1);
-  line.add_commands({"calibrate", "compare", "curve", "deviation", "drag", "report", "units"});
+  line.add_commands({"calibrate", "compare", "curve", "deviation", "drag", "lengths", "report", "units"});
   line.parse(argc, argv);
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
   if (!line.has("file")) throw Error("missing sweep file; try clogfit sweep.h5");
@@ -137,6 +139,8 @@ int main(int argc, char** argv) {
       return cli::run_program("clogfit " + command, [&] { return become_python(command, argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "compare")
     return cli::run_program("clogfit compare", [&] { return clogfit_compare(argc, argv); });
+  if (argc > 1 && std::string_view(argv[1]) == "lengths")
+    return cli::run_program("clogfit lengths", [&] { return clogfit_lengths(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "units")
     return cli::run_program("clogfit units", [&] { return clogfit_units(argc, argv); });
   return cli::run_program(program, [&] { return body(argc, argv); });

@@ -1,5 +1,8 @@
 #include "clogfit_compare.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -11,8 +14,10 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/results/comparison.hpp"
+#include "clog/results/distance_table.hpp"
 #include "clog/results/merger.hpp"
 #include "clog/store/run_table.hpp"
+#include "laboratory_option.hpp"
 
 namespace clog::programs {
 namespace {
@@ -24,6 +29,7 @@ of another.
   clogfit compare robust.h5 elastic.h5
   clogfit compare sweep.h5 --by friction
   clogfit compare robust.h5 elastic.h5 --picture ratio.png
+  clogfit compare own.csv sweep.h5 --lab lab.cfg      measured distances (see clogfit lengths) and simulated ones
 
 Every file is compared with the first, or every value of the key --by with the smallest, wherever all else that varies
 is the same. Runs of the same seed met the same obstacles: where their lengths rise and fall together, the interval comes
@@ -37,6 +43,28 @@ std::vector<results::Side> sides(const cli::CommandLine& line, const std::vector
   if (paths.size() < 2)
     throw Error("nothing to compare this file with; give a second one, or --by and a key that varies in it");
   return results::sides_of_files(paths);
+}
+
+/// Compares files of which one or more are tables of measured distances.
+results::Comparisons compare_measured(const cli::CommandLine& line, const std::vector<std::string>& paths,
+                                      double confidence) {
+  for (const char* option : {"by", "within", "picture"})
+    if (line.has(option))
+      throw Error(
+          fmt::format("no place for --{} (measured distances have no seeds to pair); leave it out", option));
+  if (paths.size() < 2) throw Error("nothing to compare this table with; give a sweep or another table");
+  std::vector<results::DistanceTable> tables;
+  std::vector<sweep::RunRow> rows;
+  for (const std::string& path : paths) {
+    if (results::is_distance_table(path)) {
+      tables.push_back(results::read_distances(path));
+      continue;
+    }
+    const std::vector<results::Side> side = results::sides_of_files({path});
+    tables.push_back(results::distances_of(side.front()));
+    rows.insert(rows.end(), side.front().rows.begin(), side.front().rows.end());
+  }
+  return results::compare_distances(tables, confidence, sigma_in_mm(line, rows));
 }
 
 /// Does not return.
@@ -60,6 +88,8 @@ int clogfit_compare(int argc, const char* const* argv) {
       "clogs of a pair so near to each other are at the same place (half an obstacle spacing) [sigma]")(
       "format", po::value<std::string>()->default_value("text"), "text, csv or json")(
       "picture", po::value<std::string>(), "name of a picture to draw; .png and .pdf are made")(
+      "lab", po::value<std::string>(),
+      "file that describes the laboratory, see clogfit units: lengths in mm beside measured ones")(
       "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals");
   line.add_positional("file", -1);
   line.parse(argc - 1, argv + 1);
@@ -70,8 +100,10 @@ int clogfit_compare(int argc, const char* const* argv) {
   const double confidence = line.get_share("confidence");
   const std::optional<double> within =
       line.has("within") ? std::optional(line.get_positive("within")) : std::nullopt;
-  if (line.has("picture")) draw(line, paths);
-  const results::Comparisons found = results::compare(sides(line, paths), confidence, within);
+  const bool are_measured = std::ranges::any_of(paths, results::is_distance_table);
+  if (line.has("picture") && !are_measured) draw(line, paths);
+  const results::Comparisons found = are_measured ? compare_measured(line, paths, confidence)
+                                                  : results::compare(sides(line, paths), confidence, within);
   std::cout << (format == "csv"    ? results::to_csv(found)
                 : format == "json" ? results::to_json(found, confidence)
                                    : results::to_text(found, confidence));

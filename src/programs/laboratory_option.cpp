@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -29,6 +30,17 @@ void use_laboratory(cli::CommandLine& line) {
   const laboratory::Laboratory lab = laboratory::read_laboratory(line.get("lab"));
   line.settings().set("laboratory", lab.text);
   laboratory::set_droplet(lab, line.settings());
+}
+
+std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows) {
+  if (line.has("lab")) return scale_of(laboratory::read_laboratory(line.get("lab"))).length;
+  if (rows.empty() || !rows.front().parameters.laboratory) return std::nullopt;
+  const LaboratoryText& first = *rows.front().parameters.laboratory;
+  const bool is_shared = std::ranges::all_of(rows, [&](const sweep::RunRow& row) {
+    return row.parameters.laboratory && row.parameters.laboratory->check_sum() == first.check_sum();
+  });
+  if (!is_shared || first.text().empty()) return std::nullopt;
+  return scale_of(laboratory::parse_laboratory(first.text(), "the laboratory of some rows")).length;
 }
 
 void refuse_other_droplets(const cli::CommandLine& line) {

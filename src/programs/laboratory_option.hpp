@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "clog/cli/command_line.hpp"
@@ -15,5 +16,9 @@ void refuse_other_droplets(const cli::CommandLine& line);
 
 /// Gives each group the scale of --lab, or else of its own laboratory. @throws Error
 void set_scales(const cli::CommandLine& line, std::vector<results::Group>& groups);
+
+/// The droplet's diameter in mm: that of --lab, or else of the laboratory that all rows have; nothing if
+/// neither is there. @throws Error
+std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
 
 }  // namespace clog::programs

@@ -144,14 +144,14 @@ std::vector<std::string> differing_columns(
   return columns;
 }
 
+}  // namespace
+
 void require_lengths(const Side& side) {
   if (side.rows.empty()) throw Error(side.name + " has no runs yet; let the sweep finish some first");
   if (!has_clogging_length(side.rows.front()))
     throw Error("cannot compare " + side.name +
                 " (droplets in a channel or on a wall have no clogging length)");
 }
-
-}  // namespace
 
 std::vector<Side> sides_of_files(const std::vector<std::string>& paths) {
   std::vector<Side> sides;

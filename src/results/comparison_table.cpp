@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -24,19 +25,25 @@ Value finite_value(int count) { return std::int64_t{count}; }
 
 using NamedValues = std::vector<std::pair<std::string, Value>>;
 
-void append_length(const std::string& side, const fit::CloggingLength& length, NamedValues& fields) {
+void append_length(const std::string& side, const fit::CloggingLength& length, const Comparisons& all,
+                   NamedValues& fields) {
   fields.emplace_back("runs_" + side, finite_value(length.num_runs));
   fields.emplace_back("clogs_" + side, finite_value(length.num_clogs));
-  fields.emplace_back("clogging_length_" + side, finite_value(length.length));
-  fields.emplace_back("clogging_length_" + side + "_lower", finite_value(length.interval.lower));
-  fields.emplace_back("clogging_length_" + side + "_upper", finite_value(length.interval.upper));
+  const auto append = [&](const std::string& unit, double factor) {
+    const std::string name = "clogging_length_" + side;
+    fields.emplace_back(name + unit, finite_value(factor * length.length));
+    fields.emplace_back(name + "_lower" + unit, finite_value(factor * length.interval.lower));
+    fields.emplace_back(name + "_upper" + unit, finite_value(factor * length.interval.upper));
+  };
+  append(all.unit == "mm" ? "_mm" : "", 1);
+  if (all.sigma_mm) append("_mm", *all.sigma_mm);
 }
 
-NamedValues fields_of(const Comparison& one, const std::vector<std::string>& columns) {
+NamedValues fields_of(const Comparison& one, const Comparisons& all) {
   NamedValues fields = {{"here", one.here}, {"there", one.there}};
-  for (std::size_t i = 0; i < columns.size(); ++i) fields.emplace_back(columns[i], one.common[i]);
-  append_length("here", one.length_here, fields);
-  append_length("there", one.length_there, fields);
+  for (std::size_t i = 0; i < all.columns.size(); ++i) fields.emplace_back(all.columns[i], one.common[i]);
+  append_length("here", one.length_here, all, fields);
+  append_length("there", one.length_there, all, fields);
   const fit::LengthRatio& ratio = one.ratio;
   fields.emplace_back("ratio", finite_value(ratio.ratio));
   fields.emplace_back("ratio_lower", finite_value(ratio.interval.lower));
@@ -56,26 +63,28 @@ NamedValues fields_of(const Comparison& one, const std::vector<std::string>& col
   return fields;
 }
 
-std::string bounded_length(const fit::CloggingLength& length) {
-  return length.num_clogs == 0
-             ? "> " + console::plain(length.interval.lower)
-             : console::with_interval(length.length, length.interval.lower, length.interval.upper).value;
+std::string bounded_length(const fit::CloggingLength& length, double factor) {
+  const double lower = factor * length.interval.lower, upper = factor * length.interval.upper;
+  return length.num_clogs == 0 ? "> " + console::plain(lower)
+                               : console::with_interval(factor * length.length, lower, upper).value;
 }
 
 std::string clogs_text(const Comparison& one) {
   return fmt::format("{}/{}", one.length_here.num_clogs, one.length_there.num_clogs);
 }
 
-std::vector<std::string> cells(const Comparison& one) {
+/// @param factor  from the unit of the lengths to the unit shown
+std::vector<std::string> cells(const Comparison& one, double factor, bool have_pairs) {
   const fit::LengthRatio& ratio = one.ratio;
-  std::vector<std::string> all = {clogs_text(one), bounded_length(one.length_here),
-                                  bounded_length(one.length_there)};
+  std::vector<std::string> all = {clogs_text(one), bounded_length(one.length_here, factor),
+                                  bounded_length(one.length_there, factor)};
   if (std::isnan(ratio.interval.lower)) {
     all.insert(all.end(), {"-", "-"});
   } else {
     const auto rounded = console::with_interval(ratio.ratio, ratio.interval.lower, ratio.interval.upper);
     all.insert(all.end(), {rounded.value, rounded.lower + " .. " + rounded.upper});
   }
+  if (!have_pairs) return all;
   all.emplace_back(ratio.is_paired ? "yes" : "no");
   all.push_back(std::isnan(ratio.gain) ? "-" : fmt::format("{:.2f}", ratio.gain));
   all.push_back(fmt::format("{}/{}", one.num_same_place, one.num_both_clogged));
@@ -89,18 +98,23 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
   if (!comparisons.differing.empty()) text += "; they differ in " + joined(comparisons.differing);
   std::vector<std::vector<std::string>> lines = {{"of"}};
   lines[0].insert(lines[0].end(), comparisons.columns.begin(), comparisons.columns.end());
+  const std::string unit = comparisons.sigma_mm ? "mm" : comparisons.unit;
+  const bool have_pairs =
+      std::ranges::any_of(comparisons.all, [](const Comparison& one) { return one.ratio.num_pairs > 0; });
   lines[0].insert(lines[0].end(),
-                  {"clogs", "lambda", "lambda there", "ratio", fmt::format("{:.4g} %", 100 * confidence),
-                   "paired", "gain", "same place"});
+                  {"clogs", "lambda/" + unit, "there", "ratio", fmt::format("{:.4g} %", 100 * confidence)});
+  if (have_pairs) lines[0].insert(lines[0].end(), {"paired", "gain", "same place"});
   for (const Comparison& one : comparisons.all) {
     std::vector<std::string>& line = lines.emplace_back(1, one.here);
     for (const Value& value : one.common) line.push_back(short_text(value));
-    for (std::string& cell : cells(one)) line.push_back(std::move(cell));
+    for (std::string& cell : cells(one, comparisons.sigma_mm.value_or(1), have_pairs))
+      line.push_back(std::move(cell));
   }
-  text += "\n\n" + console::aligned(lines) +
-          "\npaired: the interval is from pairs of the same seed; gain: how many times smaller the error of "
-          "the ratio is "
-          "with\npairs than without; same place: pairs that clogged within ";
+  text += "\n\n" + console::aligned(lines);
+  if (!have_pairs) return text + "\nno runs have the same seed, so intervals are those of independent runs\n";
+  text +=
+      "\npaired: the interval is from pairs of the same seed; gain: how many times smaller the error of the "
+      "ratio is with\npairs than without; same place: pairs that clogged within ";
   text +=
       comparisons.within > 0 ? fmt::format("{:.4g} sigma", comparisons.within) : "half an obstacle spacing";
   return text + " of each other, of those in which both clogged\n";
@@ -110,7 +124,7 @@ std::string to_csv(const Comparisons& comparisons) {
   std::string table;
   for (const Comparison& one : comparisons.all) {
     std::vector<std::string> names, texts;
-    for (const auto& [name, value] : fields_of(one, comparisons.columns)) {
+    for (const auto& [name, value] : fields_of(one, comparisons)) {
       names.push_back(name);
       texts.push_back(csv_cell(value));
     }
@@ -124,7 +138,7 @@ std::string to_json(const Comparisons& comparisons, double confidence) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Comparison& one : comparisons.all) {
     nlohmann::ordered_json entry;
-    for (const auto& [name, value] : fields_of(one, comparisons.columns)) entry[name] = json_of(value);
+    for (const auto& [name, value] : fields_of(one, comparisons)) entry[name] = json_of(value);
     list.push_back(std::move(entry));
   }
   const console::BuildInfo build = console::build_info();

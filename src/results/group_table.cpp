@@ -439,14 +439,7 @@ std::string to_json(const std::vector<Group>& groups, double confidence,
         entry["automatic"].push_back(column->name);
     if (group.laboratory) entry["laboratory_scale"] = scale_json(*group.laboratory);
     entry["survival"] = nlohmann::ordered_json::array();
-    for (const fit::SurvivalStep& step : group.survival)
-      entry["survival"].push_back({{"distance", step.distance},
-                                   {"at_risk", step.num_at_risk},
-                                   {"clogs", step.num_clogs},
-                                   {"probability", step.probability},
-                                   {"standard_error", step.standard_error},
-                                   {"lower", step.interval.lower},
-                                   {"upper", step.interval.upper}});
+    for (const fit::SurvivalStep& step : group.survival) entry["survival"].push_back(json_of(step));
     entry["incidence"] = nlohmann::ordered_json::object();
     for (const Group::EndsBy& cause : group.causes)
       for (const fit::IncidenceStep& step : cause.incidence)

@@ -44,7 +44,6 @@ bool hangs_on_mesh(const Group& group) {
 }
 
 std::vector<Doubt> doubts_about(const Group& group) {
-  constexpr int few = 5;
   std::vector<Doubt> doubts;
   if (!has_clogging_length(group.first_row)) {
     if (group.num_interrupted > 0 || group.num_failed > 0) doubts.push_back(Doubt::incomplete);
@@ -55,7 +54,8 @@ std::vector<Doubt> doubts_about(const Group& group) {
   const bool has_runs = group.clogging.num_runs > 0;  // not if all ended before distances are counted
   // Where all droplets passed the exit, more seeds add nothing but a higher bound.
   const bool have_all_passed = group.num_passed == group.clogging.num_runs;
-  if (has_runs && !have_all_passed && group.clogging.num_clogs < few) doubts.push_back(Doubt::few_clogs);
+  if (has_runs && !have_all_passed && group.clogging.num_clogs < enough_clogs)
+    doubts.push_back(Doubt::few_clogs);
   if (group.num_flowing > 0) doubts.push_back(Doubt::censored_by_time);
   if (group.num_interrupted > 0 || group.num_failed > 0) doubts.push_back(Doubt::incomplete);
   if (group.num_damaged > 0) doubts.push_back(Doubt::damaged);
@@ -68,21 +68,12 @@ std::vector<Doubt> doubts_about(const Group& group) {
   return doubts;
 }
 
-/// Holm's step-down test (Scand. J. Stat. 6, 65 (1979)): with it, one sweep in twenty of exponential groups
-/// has any such doubt, however many groups it has. The p-value of few clogs is too small to be used.
 void doubt_exponentiality(std::vector<Group>& groups) {
-  constexpr int fewest_clogs = 10;
-  constexpr double significant = 0.05;
-  std::vector<Group*> tested;
-  for (Group& group : groups)
-    if (group.weibull.num_clogs >= fewest_clogs && !std::isnan(group.weibull.p_value))
-      tested.push_back(&group);
-  std::sort(tested.begin(), tested.end(),
-            [](const Group* a, const Group* b) { return a->weibull.p_value < b->weibull.p_value; });
-  for (std::size_t i = 0; i < tested.size(); ++i) {
-    if (tested[i]->weibull.p_value * static_cast<double>(tested.size() - i) >= significant) return;
-    tested[i]->doubts.push_back(Doubt::not_exponential);
-  }
+  std::vector<fit::WeibullTest> tests;
+  for (const Group& group : groups) tests.push_back(group.weibull);
+  const std::vector<bool> are_not = fit::are_not_exponential(tests);
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    if (are_not[i]) groups[i].doubts.push_back(Doubt::not_exponential);
 }
 
 /// The results of a run in a channel or on a wall.

@@ -19,6 +19,16 @@ nlohmann::ordered_json json_of(const sweep::Value& value) {
   return nullptr;
 }
 
+nlohmann::ordered_json json_of(const fit::SurvivalStep& step) {
+  return {{"distance", step.distance},
+          {"at_risk", step.num_at_risk},
+          {"clogs", step.num_clogs},
+          {"probability", step.probability},
+          {"standard_error", step.standard_error},
+          {"lower", step.interval.lower},
+          {"upper", step.interval.upper}};
+}
+
 std::string short_text(const sweep::Value& value) {
   if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.4g}", *number);
   const std::string text = console::printable(sweep::text_of(value));

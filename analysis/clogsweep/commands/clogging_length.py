@@ -2,6 +2,7 @@
 lateral displacement per distance against the angle of their rows.
 
     python3 -m clogsweep clogging-length sweep.h5        # sweep-clogging-length.png, sweep-clogging-length.pdf
+    python3 -m clogsweep clogging-length sweep.h5 --with own.csv --lab lab.cfg     # beside measured distances, see clogfit lengths
     clogfit sweep.h5 --format json | python3 -m clogsweep clogging-length /dev/stdin --output clogging-length     # its points
 
 Every length comes from clogfit. Bars are its confidence intervals; smooth lines with bands are the curves of clogfit
@@ -9,15 +10,28 @@ curve, for which the command has to have the sweep itself. Markers show by what 
 pointing up is a lower bound where no run clogged.
 """
 
+import argparse
+import pathlib
+
 from .. import style
-from ..drawing import curve
+from ..drawing import curve, measured
 from ..results import fit
 from . import command_line
 
 
+def add_options(parser: argparse.ArgumentParser) -> None:
+    command_line.add_lab(parser)
+    parser.add_argument("--with", dest="measured", metavar="TABLE", type=pathlib.Path, help="table of measured distances, see clogfit lengths: drawn, too")
+
+
 def body() -> int:
-    arguments = command_line.sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json", command_line.add_lab)
-    fitted = fit.read(arguments.sweep, arguments.programs, *command_line.lab_options(arguments))
-    picture = style.Picture(style.figure_of(curve.draw_on, fitted.known.with_lengths(arguments.sweep)), fitted.source)
-    command_line.tell(f"{picture.save(arguments.output)} (and .pdf)")
+    arguments = command_line.sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json", add_options)
+    lab = command_line.lab_options(arguments)
+    fitted = fit.read(arguments.sweep, arguments.programs, *lab)
+    groups = fitted.known.with_lengths(arguments.sweep)
+    own = measured.lengths_of(arguments.measured, groups, arguments.programs, *lab) if arguments.measured else []
+    figure = style.figure_of(curve.draw_on, groups)
+    if own:
+        measured.draw_on(figure.axes[0], own, groups, arguments.measured.name)
+    command_line.tell(f"{style.Picture(figure, fitted.source).save(arguments.output)} (and .pdf)")
     return 0

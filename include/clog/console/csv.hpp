@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,17 @@ namespace clog::console {
 
 /// The text without blanks at its ends.
 std::string trimmed(std::string_view text);
+
+std::string in_lower_case(std::string text);
+
+struct ColumnHead {
+  std::string name;  ///< in lower case
+  std::string unit;  ///< empty if the head has none
+};
+/// "x [um]", "x (um)", "x/um" and "x_um" are the name x and the unit um.
+ColumnHead column_head(const std::string& cell);
+/// Metres in a unit of length that a table may have; nothing for any other word.
+std::optional<double> metres_of(const std::string& unit);
 
 /// A line of a table.
 struct TableLine {

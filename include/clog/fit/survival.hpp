@@ -43,4 +43,9 @@ struct WeibullTest {
 };
 WeibullTest test_exponentiality(std::span<const Observation> runs);
 
+/// Which of these groups are not exponential, p < 0.05 by Holm's step-down test (Scand. J. Stat. 6, 65
+/// (1979)) of all groups with ten clogs or more: one table in twenty of exponential groups has any, however
+/// many groups it has. The p-value of fewer clogs is too small to be used.
+std::vector<bool> are_not_exponential(std::span<const WeibullTest> groups);
+
 }  // namespace clog::fit

@@ -32,8 +32,13 @@ struct Comparisons {
   std::vector<std::string> columns;    ///< on either side's list, with a common value; they name a comparison
   std::vector<std::string> differing;  ///< columns with other values here than there
   std::vector<Comparison> all;
+  std::string unit = "sigma";      ///< of lengths: "sigma" or "mm"
+  std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are wanted in mm, too
   double within = 0;  ///< clogs no farther apart are at the same place [sigma]; 0: half a spacing
 };
+
+/// @throws Error if the side has no runs, or runs without a clogging length
+void require_lengths(const Side& side);
 
 /// The sides of a comparison of files: the first is what the others are compared with.
 /// @throws Error as read_with_caution()

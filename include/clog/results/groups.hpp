@@ -18,11 +18,12 @@
 
 namespace clog::results {
 
+inline constexpr int enough_clogs = 5;  ///< with fewer, the interval is wide and its coverage wavers
+
 /// What may spoil a group's clogging length.
 enum class Doubt {
-  few_clogs,         ///< fewer than five: the interval is wide and its coverage wavers
-  not_exponential,   ///< Weibull's law fits better, p < 0.05 by Holm's test of all groups with ten clogs or
-                     ///< more
+  few_clogs,         ///< fewer than enough_clogs
+  not_exponential,   ///< fit::are_not_exponential
   censored_by_time,  ///< runs ended by max-time, slow ones nearer than fast ones
   incomplete,        ///< runs are unfinished or failed
   damaged,           ///< rows hold what cannot be (sweep::fault_of)

@@ -1,0 +1,50 @@
+"""Measured clogging lengths beside the simulated ones."""
+
+import json
+import pathlib
+from typing import Any
+
+from matplotlib.axes import Axes
+
+from .. import style
+from ..labels.groups import Groups
+from ..reading import programs
+from ..tools.errors import UserError
+
+COLOUR = "#444444"
+
+
+def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None, *options: object) -> list[dict[str, Any]]:
+    """The groups of a table of distances, by clogfit lengths, in droplet diameters.
+    @param groups  of the sweep, whose laboratory gives the diameter. @throws UserError  if the table is in mm and no diameter is known"""
+    told = json.loads(programs.run_program(programs.programs_in(folder) / "clogfit", "lengths", table, "--format", "json", *options))
+    members: list[dict[str, Any]] = told["groups"]
+    if told["unit"] == "sigma":
+        return members
+    diameter = groups.laboratory.get("length_mm")
+    if not diameter:
+        raise UserError(f"{table} is in mm and the sweep in droplet diameters; give the droplet's diameter by --lab lab.cfg")
+    names = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
+    return [group | {name: None if group[f"{name}_mm"] is None else group[f"{name}_mm"] / diameter for name in names} for group in members]
+
+
+def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: str) -> None:
+    """A star with its interval for each group that has a value of the abscissa; a band over all of it for each other one. An
+    arrow points up from a lower bound, where no droplet clogged."""
+    drawn = False
+    for group in measured:
+        place = next((value for name, value in group.items() if name.replace("-", "_") == groups.abscissa), None)
+        length, lower, upper = (group[f"clogging_length{end}"] for end in ("", "_lower", "_upper"))
+        name = "_" if drawn else label
+        if not isinstance(place, int | float):
+            if length is None:
+                axes.axhline(lower, color=COLOUR, linestyle=":", label=f"{label} (lower bound)")
+                continue
+            axes.axhspan(lower, upper, color=COLOUR, alpha=0.15, linewidth=0, zorder=0)
+            axes.axhline(length, color=COLOUR, linestyle="--", linewidth=1, label=name)
+        elif length is None:
+            axes.plot(place, lower, "^", color=COLOUR, markerfacecolor="white", markersize=8, label=name)
+        else:
+            axes.errorbar(place, length, yerr=[[length - lower], [upper - length]], fmt="*", color=COLOUR, markersize=9, capsize=2.5, label=name)
+        drawn = True
+    style.legend(axes, groups.members)

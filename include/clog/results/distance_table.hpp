@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clog/fit/clogging_length.hpp"
+#include "clog/results/comparison.hpp"
+#include "clog/sweep/columns.hpp"
+
+namespace clog::results {
+
+/// Droplets with the same values of DistanceTable::labels.
+struct DistanceGroup {
+  std::vector<Value> labels;
+  std::vector<fit::Observation> runs;
+};
+/// Distances that droplets travelled, measured or simulated.
+struct DistanceTable {
+  std::string source;
+  std::string unit;                 ///< of the distances: "sigma" or "mm"
+  std::vector<std::string> labels;  ///< columns that separate groups
+  std::vector<DistanceGroup> groups;
+};
+
+/// Is this the name of a text table, not of a sweep's file?
+bool is_distance_table(const std::string& path);
+/// Reads a table with the columns `distance [UNIT]` and `clogged` (1 or 0, yes or no, true or false); all
+/// others separate groups.
+/// @throws Error that names file and line
+DistanceTable read_distances(const std::string& path);
+/// The runs of a sweep; the parameters that vary separate groups. @throws Error as require_lengths()
+DistanceTable distances_of(const Side& side);
+
+/// Lengths, intervals, doubts and survival of each group, estimated as those of a sweep.
+/// @param sigma_mm  the droplet's diameter in mm, if it is known: then lengths are given in both units
+std::string lengths_text(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
+std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
+std::string lengths_json(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
+
+/// Compares each group of the other tables with each one of the first that has the same values of the labels
+/// that both tables have. No runs are pairs.
+/// @throws Error if units differ and sigma_mm is unknown, or if no groups can be compared
+Comparisons compare_distances(const std::vector<DistanceTable>& tables, double confidence,
+                              std::optional<double> sigma_mm);
+
+}  // namespace clog::results

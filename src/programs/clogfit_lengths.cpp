@@ -1,0 +1,61 @@
+#include "clogfit_lengths.hpp"
+
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/results/distance_table.hpp"
+#include "laboratory_option.hpp"
+
+namespace clog::programs {
+namespace {
+
+constexpr const char* lengths_usage =
+    R"(clogfit lengths estimates clogging lengths from distances that you measured, exactly as clogfit
+does from a sweep: maximum likelihood for censored distances, chi-squared intervals, survival, doubts.
+
+  clogfit lengths distances.csv
+  clogfit lengths distances.csv --lab lab.cfg            in mm and in droplet diameters
+  clogfit lengths distances.csv --format csv > table.csv
+  clogfit compare distances.csv sweep.h5 --lab lab.cfg   beside simulated ones
+
+The first line of the table names its columns, each line that follows is one droplet:
+
+  distance [mm],clogged,wall
+  41.5,1,glass
+  120,0,glass
+
+distance: how far the droplet travelled, in nm, um, mm, cm, m or sigma (droplet diameters); clogged: 1 if it clogged
+there, 0 if it left the picture or was still moving (censored). All other columns separate groups.
+)";
+
+}  // namespace
+
+int clogfit_lengths(int argc, const char* const* argv) {
+  namespace po = boost::program_options;
+  cli::CommandLine line("clogfit lengths", lengths_usage, cli::CommandLine::SweepKeys::none);
+  line.add_options()("file", po::value<std::vector<std::string>>(), "table of distances (CSV)")(
+      "format", po::value<std::string>()->default_value("text"), "text, csv or json")(
+      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
+      "lab", po::value<std::string>(),
+      "file that describes the laboratory, see clogfit units: its droplet's diameter is sigma");
+  line.add_positional("file", -1);
+  line.parse(argc - 1, argv + 1);
+  if (cli::answer_help_or_version(line, {})) return console::exit_success;
+  const std::vector<std::string> paths = line.get_all("file");
+  if (paths.size() != 1) throw Error("needs one table of distances; try clogfit lengths distances.csv");
+  const std::string format = line.get_word("format", {"text", "csv", "json"});
+  const double confidence = line.get_share("confidence");
+  const results::DistanceTable table = results::read_distances(paths.front());
+  const std::optional<double> sigma_mm = sigma_in_mm(line, {});
+  std::cout << (format == "csv"    ? results::lengths_csv(table, confidence, sigma_mm)
+                : format == "json" ? results::lengths_json(table, confidence, sigma_mm)
+                                   : results::lengths_text(table, confidence, sigma_mm));
+  return console::exit_success;
+}
+
+}  // namespace clog::programs

@@ -1,0 +1,256 @@
+#include "clog/results/distance_table.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "clog/console/csv.hpp"
+#include "clog/console/decimal_commas.hpp"
+#include "clog/console/printable.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/excerpt.hpp"
+#include "clog/core/tools/joined.hpp"
+#include "clog/results/usual_parameters.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::results {
+namespace {
+
+constexpr const char* example = "its first line names columns, such as 'distance [mm],clogged,wall'";
+constexpr double metres_per_mm = 1e-3;
+
+/// Where the columns are, and what else the first line says.
+struct Head {
+  int distance = -1, clogged = -1;
+  double factor = 1;  ///< from the column's unit to the table's
+  std::size_t num_columns = 0;
+  std::vector<std::size_t> labels;
+};
+
+void set_once(int& place, std::size_t column, const char* name) {
+  if (std::exchange(place, static_cast<int>(column)) >= 0)
+    throw Error(fmt::format("there are two columns named {}; leave one", name));
+}
+
+/// Takes a column of distances. @throws Error  if its unit is none of length
+void take_distance(Head& head, std::size_t column, const std::string& unit, DistanceTable& table) {
+  set_once(head.distance, column, "distance");
+  table.unit = unit == "sigma" ? unit : "mm";
+  const std::optional<double> metres = console::metres_of(unit);
+  if (table.unit != unit && !metres)
+    throw Error(fmt::format("distance has {}; write distance [mm], um, cm, m or sigma (droplet diameters)",
+                            unit.empty() ? "no unit" : "the unit '" + excerpt(unit) + "'"));
+  if (metres) head.factor = *metres / metres_per_mm;
+}
+
+Head head_of(std::vector<std::string> cells, DistanceTable& table) {
+  while (!cells.empty() && cells.back().empty()) cells.pop_back();
+  Head head;
+  head.num_columns = cells.size();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto [name, unit] = console::column_head(cells[i]);
+    const bool is_in_brackets = cells[i].find_first_of("[(") != std::string::npos;
+    if (name == "distance" &&
+        (is_in_brackets || unit.empty() || unit == "sigma" || console::metres_of(unit))) {
+      take_distance(head, i, unit, table);
+    } else if (console::in_lower_case(cells[i]) == "clogged") {
+      set_once(head.clogged, i, "clogged");
+    } else if (!cells[i].empty()) {  // pandas writes its index without a name
+      head.labels.push_back(i);
+      table.labels.push_back(console::printable(cells[i]));
+    }
+  }
+  if (head.distance < 0 || head.clogged < 0)
+    throw Error(fmt::format("has no column {}; {}", head.distance < 0 ? "distance" : "clogged", example));
+  return head;
+}
+
+bool is_clogged(const std::string& cell) {
+  const std::string word = console::in_lower_case(cell);
+  if (word == "1" || word == "yes" || word == "true") return true;
+  if (word == "0" || word == "no" || word == "false") return false;
+  throw Error(
+      fmt::format("clogged is '{}'; write 1 for a droplet that clogged and 0 for one that was last "
+                  "seen moving there (censored)",
+                  excerpt(cell)));
+}
+
+/// Numbers of a table whose cells may have decimal commas.
+class Cells {
+ public:
+  double distance(const std::string& cell, char separator) {
+    const bool is_ambiguous = separator == ',' && console::may_have_thousands(cell);
+    if (is_ambiguous) console::DecimalCommas::refuse("distance: ", cell);
+    try {
+      const double number = sweep::to_number(commas_.with_point(cell));
+      if (number >= 0) return number;
+    } catch (const Error&) {  // the message below says all
+    }
+    throw Error(fmt::format("distance is '{}'; write a number of 0 or more", excerpt(cell)));
+  }
+  /// A number, or the words of a label.
+  Value label(const std::string& cell) const {
+    try {
+      return sweep::to_number(cell);
+    } catch (const Error&) {
+      return cell.empty() ? Value() : Value(console::printable(cell));
+    }
+  }
+  void check(const std::string& path) const { commas_.check(path); }
+
+ private:
+  console::DecimalCommas commas_;
+};
+
+/// The name that a label would have as a column of a sweep.
+std::string column_name(std::string label) {
+  std::ranges::replace(label, '-', '_');
+  return label;
+}
+
+/// How the groups of two tables belong together.
+struct Match {
+  std::vector<std::string> columns;                         ///< labels here, then those that are only there
+  std::vector<std::pair<std::size_t, std::size_t>> common;  ///< places of a label here and there
+  std::vector<std::size_t> only_there;
+
+  bool have_common_labels(const DistanceGroup& here, const DistanceGroup& there) const {
+    const auto number = [](const Value& value) {  // a text table does not tell integers from other numbers
+      const auto* count = std::get_if<std::int64_t>(&value);
+      return count ? Value(static_cast<double>(*count)) : value;
+    };
+    return std::ranges::all_of(common, [&](const auto& pair) {
+      return number(here.labels[pair.first]) == number(there.labels[pair.second]);
+    });
+  }
+};
+
+Match match_of(const DistanceTable& here, const DistanceTable& there) {
+  Match match{.columns = here.labels, .common = {}, .only_there = {}};
+  for (std::size_t i = 0; i < there.labels.size(); ++i) {
+    const auto same = std::ranges::find(here.labels, column_name(there.labels[i]), column_name);
+    if (same != here.labels.end()) {
+      match.common.emplace_back(same - here.labels.begin(), i);
+    } else {
+      match.only_there.push_back(i);
+      match.columns.push_back(there.labels[i]);
+    }
+  }
+  return match;
+}
+
+DistanceTable grouped(DistanceTable table, std::map<std::vector<Value>, std::vector<fit::Observation>> runs) {
+  for (auto& [labels, own] : runs) table.groups.push_back({labels, std::move(own)});
+  return table;
+}
+
+}  // namespace
+
+bool is_distance_table(const std::string& path) {
+  static const std::set<std::string> endings = {".csv", ".tsv", ".txt", ".dat"};
+  return endings.contains(console::in_lower_case(std::filesystem::path(path).extension()));
+}
+
+DistanceTable read_distances(const std::string& path) {
+  DistanceTable table{.source = console::printable(path), .unit = "", .labels = {}, .groups = {}};
+  std::map<std::vector<Value>, std::vector<fit::Observation>> runs;
+  std::optional<Head> head;
+  Cells cells;
+  console::read_table(path, [&](const console::TableLine& line) {
+    if (!head) {
+      head = head_of(line.cells, table);
+      return;
+    }
+    std::vector<std::string> texts = line.cells;
+    while (texts.size() > head->num_columns && texts.back().empty()) texts.pop_back();
+    if (texts.size() != head->num_columns)
+      throw Error(fmt::format("has {}, but the first line names {}",
+                              sweep::counted(std::ssize(texts), "cell"), head->num_columns));
+    std::vector<Value> labels;
+    for (const std::size_t label : head->labels) labels.push_back(cells.label(texts[label]));
+    const double distance = cells.distance(texts[static_cast<std::size_t>(head->distance)], line.separator);
+    runs[std::move(labels)].push_back(
+        {head->factor * distance, is_clogged(texts[static_cast<std::size_t>(head->clogged)])});
+  });
+  cells.check(path);
+  if (runs.empty()) throw Error(fmt::format("{} holds no distances; {}", path, example));
+  return grouped(std::move(table), std::move(runs));
+}
+
+DistanceTable distances_of(const Side& side) {
+  require_lengths(side);
+  DistanceTable table{.source = side.name, .unit = "sigma", .labels = {}, .groups = {}};
+  std::vector<const sweep::RunRow*> rows;
+  for (const sweep::RunRow& row : side.rows)
+    if (row.status != RunStatus::failed && sweep::fault_of(row).empty()) rows.push_back(&row);
+  std::vector<const sweep::Column*> varying;
+  for (const sweep::Column* column : group_columns())
+    if (std::ranges::any_of(rows, [&](const sweep::RunRow* row) {
+          return separating_value(*column, *row) != separating_value(*column, *rows.front());
+        })) {
+      varying.push_back(column);
+      table.labels.push_back(column->name);
+    }
+  std::map<std::vector<Value>, std::vector<fit::Observation>> runs;
+  for (const sweep::RunRow* row : rows) {
+    std::vector<Value> labels;
+    for (const sweep::Column* column : varying) labels.push_back(column->get(*row));
+    runs[std::move(labels)].push_back({row->distance, row->status == RunStatus::clogged});
+  }
+  return grouped(std::move(table), std::move(runs));
+}
+
+Comparisons compare_distances(const std::vector<DistanceTable>& tables, double confidence,
+                              std::optional<double> sigma_mm) {
+  const DistanceTable& there = tables.front();
+  for (const DistanceTable& table : tables)
+    if (table.unit != there.unit && !sigma_mm)
+      throw Error(
+          fmt::format("cannot compare {} with {} (one is in mm, the other in droplet diameters); give the "
+                      "droplet's diameter by --lab lab.cfg",
+                      table.source, there.source));
+  Comparisons comparisons;
+  comparisons.unit = sigma_mm ? "sigma" : there.unit;
+  comparisons.sigma_mm = sigma_mm;
+  const auto runs_of = [&](const DistanceTable& table, const DistanceGroup& group) {
+    std::vector<fit::Observation> runs = group.runs;
+    if (table.unit != comparisons.unit)
+      for (fit::Observation& run : runs) run.distance /= *sigma_mm;
+    return runs;
+  };
+  for (std::size_t i = 1; i < tables.size(); ++i) {
+    const DistanceTable& here = tables[i];
+    const Match match = match_of(here, there);
+    if (i == 1) comparisons.columns = match.columns;
+    if (match.columns != comparisons.columns)
+      throw Error(
+          fmt::format("cannot compare {} (its groups differ in {}, those of {} in {}); compare two "
+                      "files at a time",
+                      here.source, joined(match.columns), tables[1].source, joined(comparisons.columns)));
+    for (const DistanceGroup& one : here.groups)
+      for (const DistanceGroup& other : there.groups) {
+        if (!match.have_common_labels(one, other)) continue;
+        Comparison comparison{.here = here.source, .there = there.source, .common = one.labels};
+        for (const std::size_t label : match.only_there) comparison.common.push_back(other.labels[label]);
+        const std::vector<fit::Observation> runs = runs_of(here, one), others = runs_of(there, other);
+        comparison.length_here = fit::fit_clogging_length(runs, confidence);
+        comparison.length_there = fit::fit_clogging_length(others, confidence);
+        comparison.ratio = fit::fit_length_ratio(runs, others, {}, confidence);
+        comparisons.all.push_back(std::move(comparison));
+      }
+  }
+  if (comparisons.all.empty())
+    throw Error(
+        fmt::format("cannot compare {} with {} (no group of one has the labels of a group of the "
+                    "other); both need the same values of the columns that both have",
+                    tables[1].source, there.source));
+  return comparisons;
+}
+
+}  // namespace clog::results

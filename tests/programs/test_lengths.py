@@ -1,0 +1,138 @@
+import csv
+import io
+import json
+import sys
+import unittest
+
+from support import FEW, ROOT, ProgramTest
+
+sys.path.insert(0, str(ROOT / "analysis"))
+import pathlib  # noqa: E402
+
+from clogsweep.drawing import measured  # noqa: E402
+from clogsweep.results import fit  # noqa: E402
+
+# Survival after leukaemia, with and without maintenance chemotherapy: data set aml of R's package survival 3.5-3.
+AML = {"Maintained": "9 1, 13 1, 13 0, 18 1, 23 1, 28 0, 31 1, 34 1, 45 0, 48 1, 161 0",
+       "Nonmaintained": "5 1, 5 1, 8 1, 8 1, 12 1, 16 0, 23 1, 27 1, 30 1, 33 1, 43 1, 45 1"}
+LAB = "diameter = 2 mm\nangle = 20 deg\nspeed = 7 mm/s\n"
+
+
+def table(head, separator=",", number=str):
+    lines = [f"{group}{separator}{separator.join(number(cell) for cell in pair.split())}" for group, pairs in AML.items() for pair in pairs.split(", ")]
+    return "\n".join([separator.join(head), *lines]) + "\n"
+
+
+class Lengths(ProgramTest):
+    def lengths(self, *arguments):
+        return json.loads(self.succeed("clogfit", "lengths", *arguments, "--format", "json").stdout)
+
+    def test_lengths_shapes_and_survival_are_those_of_the_survival_package_of_r(self):
+        self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
+        told = self.lengths("aml.csv")
+        maintained, not_maintained = told["groups"]
+        # exp(coef(survreg(Surv(time, status) ~ 1, dist="exponential"))); 1/scale with dist="weibull", and the p-value of both likelihoods
+        for group, name, runs, clogs, length, shape, p_value in [(maintained, "Maintained", 11, 7, 60.4285714279, 1.0318542417, 0.910781681452),
+                                                                 (not_maintained, "Nonmaintained", 12, 11, 23.1818181818, 1.57362854769, 0.090487586318)]:
+            self.assertEqual((group["x"], group["runs"], group["clogs"], group["doubts"]), (name, runs, clogs, None))
+            self.assertAlmostEqual(group["clogging_length_mm"], length, places=6)
+            self.assertAlmostEqual(group["weibull_shape"], shape, places=5)
+            self.assertAlmostEqual(group["weibull_p_value"], p_value, places=5)
+        # survfit(..., conf.type="log-log"): time, at risk, probability, standard error, interval
+        steps = maintained["survival"]
+        self.assertEqual([(step["distance"], step["at_risk"], step["clogs"]) for step in steps],
+                         [(9, 11, 1), (13, 10, 1), (18, 8, 1), (23, 7, 1), (31, 5, 1), (34, 4, 1), (48, 2, 1)])
+        for name, expected in [("probability", 0.490909090909), ("standard_error", 0.1641932672211), ("lower", 0.1673309097769), ("upper", 0.753399790371)]:
+            self.assertAlmostEqual(steps[4][name], expected, places=9)
+        self.assertEqual(maintained["censored_distances"], [13, 28, 45, 161])
+
+    def test_tables_of_spreadsheets_and_units_give_the_same_lengths(self):
+        expected = [group["clogging_length_mm"] for group in self.lengths(self.write("mm.csv", table(["x", "distance [mm]", "clogged"])))["groups"]]
+        decimal = self.write("excel.csv", table(["x", "Distance (cm)", "Clogged"], ";", lambda cell: cell if cell in "01" else f"{int(cell) / 10}".replace(".", ",")))
+        metres = self.write("m.txt", table(["x", "distance_um", "clogged"], "\t", lambda cell: {"0": "no", "1": "TRUE"}.get(cell, f"{cell}000")))
+        for name in (decimal, metres):
+            for group, length in zip(self.lengths(name)["groups"], expected):
+                self.assertAlmostEqual(group["clogging_length_mm"], length, places=9)
+
+    def test_a_laboratory_gives_both_units_and_the_table_names_doubts(self):
+        self.write("own.csv", "distance [mm],clogged\n10,1\n20,0\n")
+        self.write("lab.cfg", LAB)
+        for unit, factor in (("mm", 1), ("sigma", 2)):
+            self.write("own.csv", f"distance [{unit}],clogged\n{10 / factor},1\n{20 / factor},0\n")
+            group, = self.lengths("own.csv", "--lab", "lab.cfg")["groups"]
+            self.assertEqual((group["clogging_length_mm"], group["clogging_length"], group["doubts"]), (30, 15, "few_clogs"))
+        text = self.succeed("clogfit", "lengths", "own.csv", "--lab", "lab.cfg").stdout
+        for words in ("lambda/mm", "lambda/sigma", "f: fewer than 5 clogs"):
+            self.assertIn(words, text)
+        row, = csv.DictReader(io.StringIO(self.succeed("clogfit", "lengths", "own.csv", "--format", "csv").stdout))
+        self.assertEqual((row["clogging_length"], row["runs"]), ("15", "2"))
+
+    def test_mistakes_get_one_line_and_exit_code_2(self):
+        for text, words in [("distance,clogged\n1,1\n", ["no unit", "distance [mm]"]), ("distance [ft],clogged\n1,1\n", ["'ft'"]),
+                            ("distance [mm]\n1\n", ["no column clogged"]), ("way [mm],clogged\n1,1\n", ["no column distance"]),
+                            ("distance [mm],clogged\n-1,1\n", ["line 2", "0 or more"]), ("distance [mm],clogged\n1,2\n", ["line 2", "clogged is '2'"]),
+                            ("distance [mm],clogged\nnan,1\n", ["line 2"]), ("distance [mm],clogged\n1\n", ["line 2", "1 cell"]),
+                            ("distance [mm],clogged\n", ["holds no distances"]), ("", ["holds no distances"]),
+                            ("distance [mm],clogged,distance [cm]\n1,1,1\n", ["two columns"])]:
+            with self.subTest(text=text):
+                self.refuse("clogfit", "lengths", self.write("own.csv", text), words=["own.csv", *words])
+        self.refuse("clogfit", "lengths", words=["needs one table"])
+
+
+class Beside(ProgramTest):
+    """Measured distances beside those of a sweep."""
+
+    def setUp(self):
+        super().setUp()
+        self.copy_sweep("sweep.h5", *FEW)
+        self.write("lab.cfg", LAB)
+        self.groups = {group["line_tension"]: group for group in json.loads(self.succeed("clogfit", "sweep.h5", "--format", "json").stdout)["groups"]}
+
+    def compare(self, *arguments):
+        return json.loads(self.succeed("clogfit", "compare", *arguments, "--format", "json").stdout)["comparisons"]
+
+    def test_distances_that_a_sweep_holds_have_the_ratio_1_to_it(self):
+        rows = fit.stored.read_rows(self.folder / "sweep.h5", None)
+        lines = [f"{2 * row.distance},{int(row.status == 'clogged')},{row.line_tension}" for row in rows.itertuples()]
+        self.write("own.csv", "\n".join(["distance [mm],clogged,line-tension", *lines]))
+        found = self.compare("own.csv", "sweep.h5", "--lab", "lab.cfg")
+        self.assertEqual([one["line-tension"] for one in found] if "line-tension" in found[0] else [one["line_tension"] for one in found], list(self.groups))
+        for one, group in zip(found, self.groups.values()):
+            self.assertEqual((one["runs_here"], one["runs_there"], one["pairs"]), (2, 2, 0))
+            if group["clogging_length"]:
+                self.assertAlmostEqual(one["ratio"], 1, places=12)
+                self.assertAlmostEqual(one["clogging_length_there_mm"], 2 * group["clogging_length"], places=9)
+        self.assertIn("lambda/mm", self.succeed("clogfit", "compare", "own.csv", "sweep.h5", "--lab", "lab.cfg").stdout)
+
+    def test_a_table_without_a_common_column_is_compared_with_every_parameter_set(self):
+        self.write("own.csv", "distance [sigma],clogged,wall\n3,1,glass\n5,1,glass\n9,0,steel\n")
+        found = self.compare("sweep.h5", "own.csv")
+        self.assertEqual([(one["wall"], one["line_tension"]) for one in found], [(wall, tension) for wall in ("glass", "steel") for tension in self.groups])
+        # Snedecor's F with 4 and 4 degrees of freedom is what scipy.stats.f gives for two clogs on both sides.
+        self.assertEqual({one["clogs_here"] for one in found}, {0, 2})
+
+    def test_what_cannot_be_compared_is_refused(self):
+        self.write("own.csv", "distance [mm],clogged\n3,1\n")
+        self.write("other.csv", "distance [mm],clogged,line-tension\n3,1,7\n")
+        for arguments, words in [(["own.csv", "sweep.h5"], ["--lab"]), (["own.csv"], ["nothing to compare"]),
+                                 (["other.csv", "sweep.h5", "--lab", "lab.cfg"], ["no group"]), (["own.csv", "sweep.h5", "--by", "friction"], ["--by"])]:
+            self.refuse("clogfit", "compare", *arguments, words=words)
+
+    def test_the_picture_shows_measured_lengths_in_droplet_diameters(self):
+        self.write("own.csv", "distance [mm],clogged,line-tension\n6,1,1\n10,1,1\n4,1,3\n8,0,3\n")
+        (self.folder / "own.csv").chmod(0o444)
+        groups = fit.read(self.folder / "sweep.h5", None, "--lab", self.folder / "lab.cfg").known
+        own = measured.lengths_of(self.folder / "own.csv", groups, None)
+        self.assertEqual([group["clogging_length"] for group in own], [4, 6])
+        from clogsweep import style
+        figure = style.figure_of(lambda axes, these: measured.draw_on(axes, own, these, "own.csv"), groups)
+        stars = [line for line in figure.axes[0].lines if line.get_marker() == "*"]
+        self.assertEqual([(line.get_xdata()[0], line.get_ydata()[0]) for line in stars], [(1, 4), (3, 6)])
+        self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()][0], "own.csv")
+        self.refuse_picture = fit.read(self.folder / "sweep.h5", None).known
+        with self.assertRaisesRegex(Exception, "--lab"):
+            measured.lengths_of(pathlib.Path(self.folder / "own.csv"), self.refuse_picture, None)
+
+
+if __name__ == "__main__":
+    unittest.main()
