@@ -20,6 +20,7 @@
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/sweep/value_list.hpp"
 
 namespace clog::cli {
 namespace {

@@ -72,7 +72,7 @@ NamedTexts origin(const CommandLine& line) {
   const BuildInfo build = build_info();
   return {{"program", line.program()},          {"version", build.version},
           {"git_describe", build.git_describe}, {"git_hash", build.git_hash},
-          {"compiler", build.compiler},         {"config", line.settings().to_config(false)},
+          {"compiler", build.compiler},         {"config", line.settings().to_config()},
           {"command_line", line.text()},        {"start_time", utc_now()}};
 }
 

@@ -4,7 +4,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/core/tools/error.hpp"
-#include "clog/sweep/single_run.hpp"
+#include "clog/sweep/plan.hpp"
 #include "clogrun_commands.hpp"
 
 namespace clog::programs {
@@ -23,7 +23,7 @@ int clogrun_array(cli::CommandLine& line) {
 
   single_run::RecordedRun watched(DropletRun(parameters), often);
   if (line.has("dry-run"))
-    return single_run::print_preview(line.settings().to_config(false), watched.measure_cost());
+    return single_run::print_preview(line.settings().to_config(), watched.measure_cost());
   if (line.has("write-obstacles"))
     cli::write_obstacles(line.get("write-obstacles"), watched.run().obstacles().obstacles());
   say_what_is_unproven(sweep::Plan(line.settings()));

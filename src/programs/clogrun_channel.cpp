@@ -4,7 +4,7 @@
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/run/droplet_run.hpp"
-#include "clog/sweep/single_run.hpp"
+#include "clog/sweep/plan.hpp"
 #include "clogrun_commands.hpp"
 
 namespace clog::programs {
@@ -29,7 +29,7 @@ int clogrun_channel(cli::CommandLine& line) {
 
   single_run::RecordedRun watched(DropletRun(parameters), often);
   if (line.has("dry-run"))
-    return single_run::print_preview(line.settings().to_config(false), watched.measure_cost());
+    return single_run::print_preview(line.settings().to_config(), watched.measure_cost());
   say_what_is_unproven(sweep::Plan(line.settings()));
   say_what_is_coarse(parameters);
   console::catch_stop_signals();

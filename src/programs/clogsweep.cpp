@@ -65,7 +65,7 @@ store::Provenance provenance(const cli::CommandLine& line,
   all.emplace_back("num_ranks", std::to_string(num_ranks));
   if (!growing) return all;
   for (auto& [name, text] : all)
-    if (name == "config") text = growing->settings.to_config(false);
+    if (name == "config") text = growing->settings.to_config();
   all.emplace_back("stopping_rule", growing->rule.text());
   all.emplace_back("num_wanted", std::to_string(growing->num_first));
   return all;

@@ -1,12 +1,20 @@
-#include "contradictions.hpp"
-
 #include <fmt/core.h>
 
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/sweep/settings.hpp"
+#include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
+namespace {
+
+/// Is it given, and something else than what it would be anyway?
+bool is_changed(const Settings& settings, const std::string& key) {
+  return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
+}
+
+}  // namespace
 
 void refuse_contradictions(const Settings& settings) {
   if (settings.text("model") == "sp") {
@@ -16,7 +24,7 @@ void refuse_contradictions(const Settings& settings) {
     return;
   }
   const std::string ratio = "perimeter-stiffness-ratio";
-  if (!settings.is_given(ratio) || settings.text(ratio) == find_key(ratio).default_text) return;
+  if (!is_changed(settings, ratio)) return;
   if (settings.text("perimeter-spring") != "rest")
     throw Error(
         fmt::format("invalid {}={} (it belongs to perimeter-spring=rest, not to {}) give "
@@ -26,15 +34,6 @@ void refuse_contradictions(const Settings& settings) {
     throw Error(fmt::format("invalid {}={} (perimeter-stiffness={} is given as well) leave one of them out",
                             ratio, settings.text(ratio), settings.text("perimeter-stiffness")));
 }
-
-namespace {
-
-/// Is it given, and something else than what it would be anyway?
-bool is_changed(const Settings& settings, const char* key) {
-  return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
-}
-
-}  // namespace
 
 void refuse_useless_keys(const Settings& settings) {
   if (const std::vector<std::string> missing = settings.missing_files(); !missing.empty())

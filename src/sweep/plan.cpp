@@ -17,7 +17,6 @@
 #include "clog/core/world/lattice.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
-#include "contradictions.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -303,6 +302,15 @@ RunParameters Plan::unresolved(std::size_t product, std::int64_t place, std::uin
       axes_[i].key->apply(run, *values[i]);
   run.seed = seed;
   return run;
+}
+
+RunParameters single_run(const Settings& settings) {
+  const Plan plan(settings);
+  if (plan.size() == 1) return plan.task(0);
+  throw Error(fmt::format(
+      "these settings describe {} runs, but one is needed; give single values, with a point where "
+      "they have decimals, or use clogsweep",
+      plan.size()));
 }
 
 }  // namespace clog::sweep

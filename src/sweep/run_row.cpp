@@ -5,7 +5,7 @@
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 #include "clog/sweep/columns.hpp"
-#include "clog/sweep/settings.hpp"
+#include "clog/sweep/keys.hpp"
 
 namespace clog::sweep {
 namespace {

@@ -60,7 +60,7 @@ class SweepStateTest : public testing::Test {
   std::string path() const { return (folder_ / "s.h5").string(); }
 
   SweepState open(std::int64_t attempts = 1) {
-    return SweepState(path(), plan_, settings_, {{"config", settings_.to_config(false)}}, 2, attempts);
+    return SweepState(path(), plan_, settings_, {{"config", settings_.to_config()}}, 2, attempts);
   }
   static sweep::Report report(const SweepState& state, std::int64_t task, RunStatus status, double distance,
                               std::vector<std::byte> snapshot = {}) {
@@ -345,7 +345,7 @@ TEST_F(SweepStateTest, SalvagesResultsAndSnapshotsThatOnlyItsJournalHas) {
   ASSERT_EQ(file.rows.size(), 2u);
   EXPECT_EQ(file.rows[0].distance, 2);
   EXPECT_EQ(file.rows[1].status, RunStatus::interrupted);
-  SweepState resumed(copy, plan_, settings_, {{"config", settings_.to_config(false)}}, 2, 1);
+  SweepState resumed(copy, plan_, settings_, {{"config", settings_.to_config()}}, 2, 1);
   EXPECT_EQ(resumed.tasks_left(), std::vector<std::int64_t>{1});
   EXPECT_EQ(resumed.start(1, 0).snapshot, snapshot_);
 }

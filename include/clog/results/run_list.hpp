@@ -41,14 +41,4 @@ class RunList {
   sweep::Points points(const std::vector<std::size_t>& differing) const;
 };
 
-/// Which task of the plan a run is; nothing if it has none.
-class TaskNumbers {
- public:
-  explicit TaskNumbers(const sweep::Plan& plan);
-  std::optional<std::int64_t> of(const sweep::RunRow& row) const;
-
- private:
-  std::unordered_map<std::string, std::int64_t> tasks_;
-};
-
 }  // namespace clog::results
