@@ -19,21 +19,16 @@
 namespace clog::results {
 namespace {
 
-Value finite_value(double number) { return std::isfinite(number) ? Value(number) : Value(); }
-Value finite_value(int count) { return std::int64_t{count}; }
-
-using NamedValues = std::vector<std::pair<std::string, Value>>;
-
-void append_length(const std::string& side, const fit::CloggingLength& length, NamedValues& fields) {
-  fields.emplace_back("runs_" + side, finite_value(length.num_runs));
-  fields.emplace_back("clogs_" + side, finite_value(length.num_clogs));
+void append_length(const std::string& side, const fit::CloggingLength& length, std::vector<Field>& fields) {
+  fields.emplace_back("runs_" + side, std::int64_t{length.num_runs});
+  fields.emplace_back("clogs_" + side, std::int64_t{length.num_clogs});
   fields.emplace_back("clogging_length_" + side, finite_value(length.length));
   fields.emplace_back("clogging_length_" + side + "_lower", finite_value(length.interval.lower));
   fields.emplace_back("clogging_length_" + side + "_upper", finite_value(length.interval.upper));
 }
 
-NamedValues fields_of(const Comparison& one, const std::vector<std::string>& columns) {
-  NamedValues fields = {{"here", one.here}, {"there", one.there}};
+std::vector<Field> fields_of(const Comparison& one, const std::vector<std::string>& columns) {
+  std::vector<Field> fields = {{"here", one.here}, {"there", one.there}};
   for (std::size_t i = 0; i < columns.size(); ++i) fields.emplace_back(columns[i], one.common[i]);
   append_length("here", one.length_here, fields);
   append_length("there", one.length_there, fields);
@@ -44,15 +39,15 @@ NamedValues fields_of(const Comparison& one, const std::vector<std::string>& col
   fields.emplace_back("interval", std::string(ratio.is_paired ? "paired" : "unpaired"));
   fields.emplace_back("unpaired_lower", finite_value(ratio.unpaired.lower));
   fields.emplace_back("unpaired_upper", finite_value(ratio.unpaired.upper));
-  fields.emplace_back("pairs", finite_value(ratio.num_pairs));
-  fields.emplace_back("unlike_pairs", finite_value(ratio.num_unlike));
+  fields.emplace_back("pairs", std::int64_t{ratio.num_pairs});
+  fields.emplace_back("unlike_pairs", std::int64_t{ratio.num_unlike});
   fields.emplace_back("paired_ratio", finite_value(ratio.paired_ratio));
   fields.emplace_back("paired_lower", finite_value(ratio.paired.lower));
   fields.emplace_back("paired_upper", finite_value(ratio.paired.upper));
   fields.emplace_back("correlation", finite_value(ratio.correlation));
   fields.emplace_back("gain", finite_value(ratio.gain));
-  fields.emplace_back("both_clogged", finite_value(one.num_both_clogged));
-  fields.emplace_back("same_place", finite_value(one.num_same_place));
+  fields.emplace_back("both_clogged", std::int64_t{one.num_both_clogged});
+  fields.emplace_back("same_place", std::int64_t{one.num_same_place});
   return fields;
 }
 
@@ -107,17 +102,9 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
 }
 
 std::string to_csv(const Comparisons& comparisons) {
-  std::string table;
-  for (const Comparison& one : comparisons.all) {
-    std::vector<std::string> names, texts;
-    for (const auto& [name, value] : fields_of(one, comparisons.columns)) {
-      names.push_back(name);
-      texts.push_back(csv_cell(value));
-    }
-    if (table.empty()) table = joined(names, ",") + '\n';
-    table += joined(texts, ",") + '\n';
-  }
-  return table;
+  std::vector<std::vector<Field>> rows;
+  for (const Comparison& one : comparisons.all) rows.push_back(fields_of(one, comparisons.columns));
+  return csv_table(rows);
 }
 
 std::string to_json(const Comparisons& comparisons, double confidence) {

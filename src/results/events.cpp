@@ -1,15 +1,14 @@
 #include "clog/results/events.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <utility>
-#include <variant>
 
 #include "clog/console/clock.hpp"
 #include "clog/console/json_text.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/columns.hpp"
 #include "clog/sweep/plan.hpp"
+#include "value_json.hpp"
 
 namespace clog::results {
 namespace {
@@ -22,17 +21,7 @@ Json event(const char* name) { return {{"event", name}, {"seen", console::utc_no
 std::string line(const Json& event) { return console::json_text(event, -1); }
 
 void add_columns(const RunRow& row, const std::vector<std::string>& columns, Json& event) {
-  for (const std::string& name : columns) {
-    const sweep::Value value = sweep::column(name).get(row);
-    if (const auto* number = std::get_if<double>(&value))
-      event[name] = *number;
-    else if (const auto* integer = std::get_if<std::int64_t>(&value))
-      event[name] = *integer;
-    else if (const auto* word = std::get_if<std::string>(&value))
-      event[name] = *word;
-    else
-      event[name] = nullptr;
-  }
+  for (const std::string& name : columns) event[name] = json_of(sweep::column(name).get(row));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "clog/console/printable.hpp"
+#include "clog/core/tools/joined.hpp"
 
 namespace clog::results {
 
@@ -31,6 +32,20 @@ std::string csv_cell(const sweep::Value& value) {
   for (std::size_t i = text.find('"'); i != std::string::npos; i = text.find('"', i + 2))
     text.insert(i, 1, '"');
   return '"' + text + '"';
+}
+
+std::string csv_table(const std::vector<std::vector<Field>>& rows) {
+  std::string table;
+  for (const std::vector<Field>& row : rows) {
+    std::vector<std::string> names, cells;
+    for (const auto& [name, value] : row) {
+      names.push_back(name);
+      cells.push_back(csv_cell(value));
+    }
+    if (table.empty()) table = joined(names, ",") + '\n';
+    table += joined(cells, ",") + '\n';
+  }
+  return table;
 }
 
 }  // namespace clog::results
