@@ -121,7 +121,7 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
 /// The distance from the first obstacle on; below 0 if the droplet met none.
 double distance_from_contact(const sweep::RunRow& run, double distance) {
   if (run.contacts == 0) return -1;
-  return run.contacts < 0 ? distance : distance - run.first_contact_at;
+  return run.contacts ? distance - run.first_contact_at : distance;
 }
 
 Arrival arrival_of(const sweep::RunRow& run, const Ending& ending) {
@@ -144,7 +144,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
   for (const sweep::RunRow& row : rows) {
     if (!has_dwells_to_tell(row, dwell) || dwell >= row.dwells.known_from) continue;
     if (row.status == RunStatus::failed || !sweep::fault_of(row).empty()) continue;  // left out
-    num_unknown += std::isnan(row.dwells.known_from);
+    num_unknown += !sweep::is_known(row.dwells.known_from);
     if (row.dwells.known_from > known_from) known_from = row.dwells.known_from;
   }
   if (num_unknown > 0)
@@ -199,12 +199,12 @@ struct Meetings {
   int num_free = 0;
 
   void count(const sweep::RunRow& run, const Ending& ending, double from_distance) {
-    if (run.contacts < 0) return;
-    num_contacts += run.contacts;
+    if (!run.contacts) return;
+    num_contacts += *run.contacts;
     way += std::max(0.0, run.distance);
     num_free += run.contacts == 0;
     const double begin = std::max(from_distance, run.first_contact_at);
-    if (run.contacts > 0) from_first.push_back({std::max(0.0, ending.distance - begin), ending.is_clog});
+    if (*run.contacts > 0) from_first.push_back({std::max(0.0, ending.distance - begin), ending.is_clog});
   }
 };
 

@@ -23,9 +23,10 @@
 namespace clog::results {
 namespace {
 
+/// An empty text removes the attribute.
 void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text) {
   std::erase_if(provenance, [&](const auto& attribute) { return attribute.first == name; });
-  provenance.emplace_back(name, text);
+  if (!text.empty()) provenance.emplace_back(name, text);
 }
 
 /// Keeps `sessions` short, however often a sweep is resumed: the oldest lines go, and a long last one is cut.
@@ -138,10 +139,8 @@ void SweepState::adopt(const store::SweepFile& file, const sweep::Settings& sett
     throw Error(
         fmt::format("cannot resume {} (it holds runs with other settings: {}){}", path_, differing, remedy));
   store::Provenance all = file.provenance;
-  for (const char* name : {"config", "stopping_rule", "num_wanted"}) {
-    std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
-    if (const std::string text = attribute(provenance_, name); !text.empty()) all.emplace_back(name, text);
-  }
+  for (const char* name : {"config", "stopping_rule", "num_wanted"})
+    set_attribute(all, name, attribute(provenance_, name));
   provenance_ = std::move(all);
 }
 
@@ -228,7 +227,7 @@ std::int64_t SweepState::num_resumed() const {
 sweep::RunRow SweepState::new_row(std::int64_t task) const {
   sweep::RunRow row = sweep::describe(plan_->task(task));
   row.task = task;
-  row.clogged_by = sweep::FoundBy::nothing;
+  row.clogged_by = sweep::FoundBy::not_clogged;
   row.mechanism = ClogMechanism::none;
   return row;
 }
@@ -290,11 +289,17 @@ const sweep::RunRow* SweepState::first_if_all_failed() const {
   return &runs_.begin()->second.row;
 }
 
+std::vector<const SweepState::Entry*> SweepState::entries() const {
+  std::vector<const Entry*> all;
+  all.reserve(runs_.size() + other_runs_.size());
+  for (const auto& [task, entry] : runs_) all.push_back(&entry);
+  for (const Entry& entry : other_runs_) all.push_back(&entry);
+  return all;
+}
+
 std::vector<sweep::RunRow> SweepState::rows() const {
   std::vector<sweep::RunRow> rows;
-  rows.reserve(runs_.size() + other_runs_.size());
-  for (const auto& [task, entry] : runs_) rows.push_back(published(entry.row));
-  for (const Entry& entry : other_runs_) rows.push_back(published(entry.row));
+  for (const Entry* entry : entries()) rows.push_back(published(entry->row));
   return rows;
 }
 
@@ -374,11 +379,8 @@ void SweepState::rescue(const std::vector<sweep::RunRow>& rows) {
 /// Rewrites the journal with the records of unfinished runs only; with_all: with all records, if finished
 /// runs are not in the table yet.
 void SweepState::rewrite_journal(bool with_all) {
-  std::vector<const Entry*> needed;
-  for (const auto& [task, entry] : runs_)
-    if (with_all || !is_over(entry.row)) needed.push_back(&entry);
-  for (const Entry& entry : other_runs_)
-    if (with_all || !is_over(entry.row)) needed.push_back(&entry);
+  std::vector<const Entry*> needed = entries();
+  if (!with_all) std::erase_if(needed, [this](const Entry* entry) { return is_over(entry->row); });
   journal_.rewrite(needed);
 }
 
@@ -387,9 +389,7 @@ std::string SweepState::finish() {
   if (place_.stamp() != stamp_) publish();  // somebody has moved or removed it meanwhile
   const bool is_complete =
       static_cast<std::int64_t>(runs_.size()) >= num_wanted_ &&
-      std::all_of(runs_.begin(), runs_.end(), [this](const auto& run) { return is_over(run.second.row); }) &&
-      std::all_of(other_runs_.begin(), other_runs_.end(),
-                  [this](const Entry& run) { return is_over(run.row); });
+      std::ranges::all_of(entries(), [this](const Entry* entry) { return is_over(entry->row); });
   if (!is_complete) {
     rewrite_journal(false);
     return "";

@@ -116,9 +116,12 @@ Journal::Contents parse(std::span<const std::byte> bytes) {
       continue;
     }
     if (place > end) contents.num_unreadable += std::max<std::int64_t>(1, num_passed);
-    const std::span payload = bytes.subspan(begin, header->size);
-    contents.entries.push_back(sweep::report_from(payload));
-    place = end = begin + payload.size();
+    try {
+      contents.entries.push_back(sweep::report_from(bytes.subspan(begin, header->size)));
+    } catch (const Error&) {
+      ++contents.num_unreadable;
+    }
+    place = end = begin + header->size;
     num_passed = 0;
   }
   contents.num_bytes = end;

@@ -333,14 +333,16 @@ bool is_refused(hid_t file, const char* name) {
   return !bytes.empty() && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0;
 }
 
-/// Rows that are as they were written go to the whole, the others to the damage.
+/// Separates intact rows from corrupted ones.
 void compare_rows(const PackedTable& table, const CheckSums& sums, Examination& found) {
   for (std::size_t i = 0; i < table.num_rows; ++i) {
-    const RunRow row = table.layout.unpack(table.row(i).data());
-    if (check_sum(table.row(i)) == sums[i])
+    const auto [row, fault] = table.layout.unpack(table.row(i).data());
+    const bool is_as_written = check_sum(table.row(i)) == sums[i];
+    if (is_as_written && fault.empty())
       found.whole.rows.push_back(row);
     else
-      found.damage.push_back(fmt::format("row {} (task {}) is not as it was written", i, row.task));
+      found.damage.push_back(fmt::format("row {} (task {}){}", i, row.task,
+                                         is_as_written ? ": " + fault : " is not as it was written"));
   }
 }
 

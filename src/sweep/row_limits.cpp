@@ -241,7 +241,7 @@ bool may_hang_on_mesh(const RunRow& row) {
   if (row.status != RunStatus::clogged || row.parameters.model != Model::dp) return false;
   const DpParameters& dp = row.parameters.dp;
   const bool hangs = row.mechanism == ClogMechanism::wrapped || row.mechanism == ClogMechanism::hybrid;
-  if (std::isnan(row.mesh_hold)) return hangs;
+  if (!is_known(row.mesh_hold)) return hangs;
   if (dp.friction > 0 && dp.film_friction == FilmFriction::off && hangs) return true;
   return row.mesh_hold > std::max(tolerated_mesh_hold, weight_borne_by_friction(dp));
 }

@@ -11,7 +11,7 @@ namespace clog::sweep {
 namespace {
 
 FoundBy found_by(const std::optional<ClogDetection>& detection) {
-  if (!detection) return FoundBy::nothing;
+  if (!detection) return FoundBy::not_clogged;
   return *detection == ClogDetection::certified ? FoundBy::certified : FoundBy::threshold;
 }
 
@@ -91,15 +91,15 @@ void pack(const RunRow& row, std::span<std::byte> packed) {
   }
 }
 
-RunRow unpack(std::span<const std::byte> packed) {
+UnpackedRow unpack(std::span<const std::byte> packed) {
   assert(packed.size() == packed_size());
-  RunRow row;
+  UnpackedRow unpacked;
   const std::byte* place = packed.data();
   for (const Column& column : columns()) {
-    column.unpack(place, row);
+    column.unpack(place, unpacked);
     place += column.size;
   }
-  return row;
+  return unpacked;
 }
 
 }  // namespace clog::sweep

@@ -307,7 +307,7 @@ TEST_F(SweepStateTest, RefusesAJournalOfRunsWithOtherSettings) {
     sweep::RunRow row = sweep::describe(sweep::Plan(settings).task(0));
     row.task = 0;
     row.model_version = version;
-    row.clogged_by = sweep::FoundBy::nothing;
+    row.clogged_by = sweep::FoundBy::not_clogged;
     row.mechanism = ClogMechanism::none;
     other.add(row, {});
     return std::filesystem::file_size(journal);
@@ -357,7 +357,7 @@ TEST_F(SweepStateTest, SalvagesNoRecordOfAnotherSweep) {
   store::Journal other{store::OutputPath(store::journal_path(path()))};
   sweep::RunRow row = sweep::describe(sweep::Plan(settings).task(0));
   row.task = 0;
-  row.clogged_by = sweep::FoundBy::nothing;
+  row.clogged_by = sweep::FoundBy::not_clogged;
   row.mechanism = ClogMechanism::none;
   other.add(row, {});
   const Salvage found = salvage(path());

@@ -108,7 +108,7 @@ void a_crash_fails_its_task_and_no_other(const scheduler::Communicator& ranks,
   events.ended = [&](const scheduler::Report& report) {
     rows[report.row.task] = report.row;
     if (report.row.status == RunStatus::clogged)
-      processes[report.row.rank].insert(report.row.num_arcs);
+      processes[report.row.rank].insert(report.row.num_arcs.value());
   };
   const scheduler::SweepEnd end = run_once(ranks, scheduler::order_of(num_tasks, 7), make_job, events, true);
   if (ranks.rank() != 0) return;

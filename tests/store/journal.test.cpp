@@ -92,6 +92,19 @@ TEST_F(JournalTest, DropsWhatIsNotWhatWasWritten) {
   EXPECT_EQ(journal.num_unreadable(), 0) << "the last one may be torn";
 }
 
+TEST_F(JournalTest, CountsARecordWithAWordThatNoColumnCanHold) {
+  {
+    Journal journal(path());
+    add_entries(journal, 0, 2);
+    sweep::RunRow row = journal_row(2);
+    row.mechanism = ClogMechanism{99};
+    journal.add(row, {});
+  }
+  Journal journal(path());
+  expect_entries(journal.take_entries(), 2);
+  EXPECT_EQ(journal.num_unreadable(), 1);
+}
+
 TEST_F(JournalTest, LosesNoOtherRecordToADamagedOne) {
   std::vector<std::uintmax_t> begins;  // of the records
   {

@@ -108,6 +108,7 @@ class SweepState {
   Clock::time_point last_publication_;
   Clock::duration publication_time_{0};
 
+  std::vector<const Entry*> entries() const;  // of all runs
   bool is_over(const sweep::RunRow& row) const;
   sweep::RunRow new_row(std::int64_t task) const;
   void keep_circles(const store::SweepFile& file);
