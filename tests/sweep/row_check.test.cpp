@@ -186,7 +186,7 @@ TEST(Unpack, KeepsWhatIsUnknown) {
   EXPECT_EQ(row.clogged_by, FoundBy::certified);
   const RunRow known = row;
   const char* const names[] = {"clogged_by", "mechanism", "contacts",      "num_wrapped",
-                               "num_gaps",   "num_arcs",  "contact_range", "mean_speed"};
+                               "num_gaps",   "num_arcs",  "contact_range", "wrapped_support"};
   for (const char* name : names) column(name).set_unknown(row);
   std::vector<std::byte> bytes(packed_size());
   pack(row, bytes);

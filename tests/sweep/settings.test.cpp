@@ -101,9 +101,9 @@ TEST(Settings, ReadBackPointsInSeveralScenes) {
   settings.attach("c.csv", OwnCircles({{5, 5, 0.3}}));
   settings.set_points({{"obstacles", "orifice"}, {{"c.csv", ""}, {"", "0.6"}, {"", ""}}});
   const Settings again = Settings::from_config(settings.to_config());
-  for (const Settings* one : {&settings, &again}) {
+  for (const Settings& one : {settings, again}) {
     std::vector<std::string> layouts;
-    one->visit_branches([&](const Settings& branch, std::int64_t) {
+    one.visit_branches([&](const Settings& branch, std::int64_t) {
       layouts.push_back(branch.text("obstacle-layout") + ' ' + branch.text("seeds"));
     });
     EXPECT_EQ(layouts, (std::vector<std::string>{"file 1", "channel 1", "random 1..10"}));
