@@ -94,8 +94,7 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
   }
   text += "\n\n" + console::aligned(lines) +
           "\npaired: the interval is from pairs of the same seed; gain: how many times smaller the error of "
-          "the ratio is "
-          "with\npairs than without; same place: pairs that clogged within ";
+          "the ratio is with\npairs than without; same place: pairs that clogged within ";
   text +=
       comparisons.within > 0 ? fmt::format("{:.4g} sigma", comparisons.within) : "half an obstacle spacing";
   return text + " of each other, of those in which both clogged\n";

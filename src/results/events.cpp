@@ -20,10 +20,6 @@ Json event(const char* name) { return {{"event", name}, {"seen", console::utc_no
 
 std::string line(const Json& event) { return console::json_text(event, -1); }
 
-void add_columns(const RunRow& row, const std::vector<std::string>& columns, Json& event) {
-  for (const std::string& name : columns) event[name] = json_of(sweep::column(name).get(row));
-}
-
 }  // namespace
 
 /// Returns whether there are more runs to do than before.
@@ -53,8 +49,8 @@ std::vector<std::string> Events::of_row(const RunRow& row) const {
     Json one = event(name);
     one["task"] = row.task;
     one["attempt"] = row.attempt;
-    add_columns(row, columns_, one);
-    add_columns(row, more, one);
+    for (const auto* names : {&columns_, &more})
+      for (const std::string& column : *names) one[column] = json_of(sweep::column(column).get(row));
     lines.push_back(line(one));
   };
   if (is_tried_again) add("retry", {});

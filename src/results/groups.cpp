@@ -124,10 +124,6 @@ double distance_from_contact(const sweep::RunRow& run, double distance) {
   return run.contacts ? distance - run.first_contact_at : distance;
 }
 
-Arrival arrival_of(const sweep::RunRow& run, const Ending& ending) {
-  return {run.release_x + ending.distance, ending.is_clog || ending.cause.has_value()};
-}
-
 /// The later of two times; not known if one of them is not.
 double later(double one, double other) { return std::isnan(one) || one > other ? one : other; }
 
@@ -279,7 +275,7 @@ void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Ta
   group.num_interrupted += sweep::is_unfinished(run.status) && !ending.is_clog;
   const bool is_of_device = is_device(run.parameters);
   if (is_of_device) {
-    tally.arrivals.push_back(arrival_of(run, ending));
+    tally.arrivals.push_back({run.release_x + ending.distance, ending.is_clog || ending.cause.has_value()});
     ending.distance = distance_from_contact(run, ending.distance);
   }
   const bool has_met_none = is_of_device && run.contacts == 0;

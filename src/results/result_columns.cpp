@@ -149,13 +149,10 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
 ResultColumn column_of_run(const char* name, double sweep::RunRow::*value) {
   return {name, [=](const Group& group) { return console::plain(group.first_row.*value, 4); }};
 }
-ResultColumn outcome_column() {
-  return {"outcome", [](const Group& group) { return std::string(name(group.first_row.status)); }};
-}
 
 std::vector<ResultColumn> columns_of_channels() {
   using sweep::RunRow;
-  return {outcome_column(),
+  return {{"outcome", [](const Group& group) { return std::string(name(group.first_row.status)); }},
           column_of_run("largest A", &RunRow::largest_shape_parameter),
           column_of_run("at h", &RunRow::largest_shape_parameter_at),
           column_of_run("least v/v_t", &RunRow::smallest_relative_speed),

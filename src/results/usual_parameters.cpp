@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "clog/core/parameters/schema.hpp"
@@ -61,24 +59,27 @@ bool follows(const Parameter& one, const Parameter& other) {
          place != std::end(chain);
 }
 
-}  // namespace
+enum class Others { all, independent };
 
-bool is_automatic(const sweep::Column& column, const sweep::RunRow& row) try {
+/// Is the value automatic if the other parameters are given: all, or those that do not follow from it?
+bool is_automatic_with(Others others, const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
   if (are_circles_missing(row.parameters)) return true;  // as far as anybody can tell
-  const auto is_automatic_with = [&](const auto& are_given) {
-    RunParameters run = defaults_for(row);
-    for (const Parameter& parameter : parameter_schema())
-      if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column) &&
-          are_given(parameter))
-        parameter.set(run, parameter.get(row.parameters));
-    run.obstacles.own = row.parameters.obstacles.own;  // the circles, too
-    return column.get(sweep::describe(resolve(run))) == column.get(row);
-  };
-  return is_automatic_with([](const Parameter&) { return true; }) ||
-         is_automatic_with([&](const Parameter& other) { return !follows(other, *column.parameter); });
+  RunParameters run = defaults_for(row);
+  for (const Parameter& parameter : parameter_schema())
+    if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column) &&
+        (others == Others::all || !follows(parameter, *column.parameter)))
+      parameter.set(run, parameter.get(row.parameters));
+  run.obstacles.own = row.parameters.obstacles.own;  // the circles, too
+  return column.get(sweep::describe(resolve(run))) == column.get(row);
 } catch (const Error&) {
   return false;
+}
+
+}  // namespace
+
+bool is_automatic(const sweep::Column& column, const sweep::RunRow& row) {
+  return is_automatic_with(Others::all, column, row) || is_automatic_with(Others::independent, column, row);
 }
 
 Value separating_value(const sweep::Column& column, const sweep::RunRow& row) {
@@ -102,7 +103,8 @@ std::vector<Value> usual_parameters(const sweep::RunRow& row) try {
     if (column.name == "obstacle_density")
       usual[i] = run.obstacles.density.per_area ? usual_density(run) : column.get(row);
     if (is_of_own_circles(column, run)) usual[i] = column.parameter->get(RunParameters());
-    if (column.may_be_automatic(run)) usual[i] = is_automatic(column, row) ? column.get(row) : Value();
+    if (column.may_be_automatic(run))
+      usual[i] = is_automatic_with(Others::independent, column, row) ? column.get(row) : Value();
   }
   return usual;
 } catch (const Error&) {

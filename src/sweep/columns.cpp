@@ -198,12 +198,10 @@ std::vector<Column> columns_of_dwells() {
   for (std::size_t i = 0; i < Dwells::most; ++i) {
     const std::string name = dwell_column(i);
     const std::string meaning =
-        i == 0
-            ? "longest time in which the droplet came no farther than dwell_length; a dwell that lasts until "
-              "the "
-              "run's end counts with its length so far, that of a clog does not count; NaN: none above ten "
-              "times dwell_length/V_t"
-            : "the longest before " + dwell_column(i - 1) + " began; NaN likewise";
+        i == 0 ? "longest time in which the droplet came no farther than dwell_length; a dwell that lasts "
+                 "until the run's end counts with its length so far, that of a clog does not count; NaN: "
+                 "none above ten times dwell_length/V_t"
+               : "the longest before " + dwell_column(i - 1) + " began; NaN likewise";
     all.push_back(number_in(
         name, [i](auto& row) -> auto& { return row.dwells.longest[i].length; }, "t0", meaning));
     all.push_back(number_in(

@@ -14,9 +14,8 @@ bool is_changed(const Settings& settings, const std::string& key) {
   return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
 }
 
-}  // namespace
-
-void refuse_contradictions(const Settings& settings) {
+/// A key of the interface that another one leaves without effect was given for nothing.
+void refuse_interface_keys(const Settings& settings) {
   if (settings.text("model") == "sp") {
     if (settings.text("preset") != find_key("preset").default_text)
       throw Error("invalid preset=" + settings.text("preset") +
@@ -35,7 +34,10 @@ void refuse_contradictions(const Settings& settings) {
                             ratio, settings.text(ratio), settings.text("perimeter-stiffness")));
 }
 
-void refuse_useless_keys(const Settings& settings) {
+}  // namespace
+
+void refuse_contradictions(const Settings& settings) {
+  refuse_interface_keys(settings);
   if (const std::vector<std::string> missing = settings.missing_files(); !missing.empty())
     throw Error("invalid obstacles=" + missing.front() + " (the file has not been read)");
   const std::string& layout = settings.text("obstacle-layout");

@@ -91,10 +91,7 @@ class Plan::Builder {
 
   void add_branch(const Settings& branch, const std::string& name) {
     const std::string where = name.empty() ? "" : name + ": ";
-    checked(branch, where, [&] {
-      refuse_contradictions(branch);
-      refuse_useless_keys(branch);
-    });
+    checked(branch, where, [&] { refuse_contradictions(branch); });
     names_.push_back(name);
     add_product(branch);
     const std::size_t product = plan_.products_.size() - 1;

@@ -29,7 +29,7 @@ enum class Doubt {
   array_repeats,
   met_none,
   below_spacing,
-  not_proved_sound,
+  not_proved_sound
 };
 /// One letter each for tables, a word for files, a sentence for readers.
 struct DoubtText {

@@ -95,12 +95,9 @@ class Settings {
   std::set<std::string> keys_that_follow() const;
 };
 
-// Checks of settings of which each key of words has one value, before any parameter set is made of them.
-
-/// A key that another one leaves without effect was given for nothing. @throws Error
+/// Refuses keys that another key, or the scene, leaves without effect, beyond those that check_each() knows.
+/// @param settings  with one value for each key of words; no parameter set is made of them yet. @throws Error
 void refuse_contradictions(const Settings& settings);
-/// Keys that a scene leaves without effect, beyond those that check_each() knows. @throws Error
-void refuse_useless_keys(const Settings& settings);
 /// A question about a list that could be a decimal below one; empty for any other.
 std::string possible_decimal(const Key& key, const Settings& settings);
 
