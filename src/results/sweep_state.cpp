@@ -5,11 +5,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <limits>
-#include <string>
 #include <unordered_set>
 #include <utility>
-#include <vector>
 
 #include "clog/core/tools/error.hpp"
 #include "clog/results/growth.hpp"
