@@ -7,7 +7,7 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/diagnostics/examination.hpp"
-#include "clog/store/regular_file.hpp"
+#include "clog/store/output_path.hpp"
 #include "clogsweep_commands.hpp"
 
 namespace clog::programs {

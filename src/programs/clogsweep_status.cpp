@@ -45,7 +45,7 @@ int follow(const std::string& path) {
     const bool is_alive =
         store::Journal::is_open(store::journal_path(path));  // asked before reading: no event is missed
     const auto begin = std::chrono::steady_clock::now();
-    const std::string now = store::OutputPath(path).stamp();
+    const std::string now = store::OutputPath::resolve(path).stamp();
     if (now != stamp || is_first || !is_alive) {
       const store::SweepFile file = is_first ? results::read_with_caution(path) : store::read_sweep(path);
       for (const std::string& line : events.look(file)) std::cout << line;

@@ -3,8 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <unordered_set>
@@ -14,7 +12,6 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/results/growth.hpp"
 #include "clog/results/stored_sweep.hpp"
-#include "clog/store/regular_file.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/settings.hpp"
@@ -49,7 +46,7 @@ void restart(sweep::RunRow& row) {
 
 SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
                        store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts)
-    : place_(store::require_regular(std::move(path))),
+    : place_(store::OutputPath::resolve(store::require_regular(std::move(path)))),
       path_(place_.path()),
       plan_(&plan),
       provenance_(std::move(provenance)),
@@ -107,7 +104,7 @@ SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::S
 store::SweepFile SweepState::read_table() {
   stamp_ = place_.stamp();
   store::SweepFile file = store::read_sweep(path_);
-  if (place_.stamp() != stamp_ || store::OutputPath(path_).stamp() != stamp_)
+  if (place_.stamp() != stamp_ || store::OutputPath::resolve(path_).stamp() != stamp_)
     throw Error("cannot resume " + path_ +
                 " (it was replaced or moved while it was read); try again when it stays in place");
   return file;
@@ -290,12 +287,12 @@ const sweep::RunRow* SweepState::first_if_all_failed() const {
   return &runs_.begin()->second.row;
 }
 
-std::vector<sweep::RunRow> SweepState::rows() const {
-  std::vector<sweep::RunRow> rows;
-  rows.reserve(runs_.size() + other_runs_.size());
-  for (const auto& [task, entry] : runs_) rows.push_back(published(entry.row));
-  for (const Entry& entry : other_runs_) rows.push_back(published(entry.row));
-  return rows;
+store::SweepFile SweepState::table() const {
+  store::SweepFile table{{}, provenance_, circles_};
+  table.rows.reserve(runs_.size() + other_runs_.size());
+  for (const auto& [task, entry] : runs_) table.rows.push_back(published(entry.row));
+  for (const Entry& entry : other_runs_) table.rows.push_back(published(entry.row));
+  return table;
 }
 
 void SweepState::write_down(const Entry& entry) {
@@ -317,7 +314,7 @@ void SweepState::tick() {
   const Clock::duration pause = std::max<Clock::duration>(std::chrono::seconds(1), 50 * publication_time_);
   if (is_published_ || begin - last_publication_ < pause) return;
   publish();
-  if (journal_.is_to_be_rewritten()) rewrite_journal(false);
+  if (journal_.is_to_be_rewritten()) rewrite_journal(Records::of_unfinished_runs);
   last_publication_ = Clock::now();
   publication_time_ = last_publication_ - begin;
 }
@@ -335,21 +332,19 @@ sweep::RunRow SweepState::published(const sweep::RunRow& row) const {
 /// If the journal was removed or the table replaced, writes everything once more and ends the sweep. A
 /// removed table is written again.
 void SweepState::publish() {
-  const std::vector<sweep::RunRow> rows = this->rows();
   const std::string there = place_.stamp();
-  if (!there.empty() && there != stamp_) rescue(rows);
+  if (!there.empty() && there != stamp_) rescue();
   const bool has_journal = journal_.is_there();
   if (!has_journal) {
-    if (!journal_.make_anew(place_)) rescue(rows);
-    rewrite_journal(true);
+    if (!journal_.make_anew(place_)) rescue();
+    rewrite_journal(Records::all);
   }
   journal_.flush();
   if (activity_)
     set_attribute(provenance_, "activity",
                   with_session(earlier_activity_, activity_->line(session_time_, seconds_so_far())));
-  std::optional<std::string> published =
-      store::publish_sweep_over(stamp_, place_, rows, provenance_, circles_);
-  if (!published) rescue(rows);
+  std::optional<std::string> published = store::publish_sweep(place_, stamp_, table());
+  if (!published) rescue();
   stamp_ = *std::move(published);
   is_published_ = true;
   if (!has_journal)
@@ -359,26 +354,24 @@ void SweepState::publish() {
 }
 
 /// Writes the table under another name, to keep the file that somebody else has put in its place.
-void SweepState::rescue(const std::vector<sweep::RunRow>& rows) {
-  if (journal_.is_there()) rewrite_journal(true);
+void SweepState::rescue() {
+  if (journal_.is_there()) rewrite_journal(Records::all);
   int number = 1;
   const auto rescued = [&] { return place_.beside(fmt::format(".rescued{}", number)); };
-  while (rescued().exists()) ++number;
-  store::publish_sweep(rescued(), rows, provenance_, circles_);
+  while (!store::publish_sweep(rescued(), "", table())) ++number;
   throw Error(fmt::format(
       "cannot continue with {} (somebody has replaced it or its journal while the sweep was "
       "running); all runs are in {}: move it to where it belongs, then the same command resumes the sweep",
       path_, rescued().path()));
 }
 
-/// Rewrites the journal with the records of unfinished runs only; with_all: with all records, if finished
-/// runs are not in the table yet.
-void SweepState::rewrite_journal(bool with_all) {
+void SweepState::rewrite_journal(Records records) {
   std::vector<const Entry*> needed;
-  for (const auto& [task, entry] : runs_)
-    if (with_all || !is_over(entry.row)) needed.push_back(&entry);
-  for (const Entry& entry : other_runs_)
-    if (with_all || !is_over(entry.row)) needed.push_back(&entry);
+  const auto add = [&](const Entry& entry) {
+    if (records == Records::all || !is_over(entry.row)) needed.push_back(&entry);
+  };
+  for (const auto& [task, entry] : runs_) add(entry);
+  std::ranges::for_each(other_runs_, add);
   journal_.rewrite(needed);
 }
 
@@ -391,12 +384,13 @@ std::string SweepState::finish() {
       std::all_of(other_runs_.begin(), other_runs_.end(),
                   [this](const Entry& run) { return is_over(run.row); });
   if (!is_complete) {
-    rewrite_journal(false);
+    rewrite_journal(Records::of_unfinished_runs);
     return "";
   }
-  if (journal_.remove()) return "";
+  const std::error_code reason = journal_.remove();
+  if (!reason) return "";
   return fmt::format("cannot remove {} ({}); the sweep is complete without it: remove it", journal_.path(),
-                     std::strerror(errno));
+                     reason.message());
 }
 
 }  // namespace clog::results
