@@ -60,8 +60,6 @@ class SweepState {
   void report(const sweep::Report& report);
   /// Row of a run that has begun.
   const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task).row; }
-  /// The rows of all runs, including those outside this plan.
-  std::vector<sweep::RunRow> rows() const;
   /// The first run if all that have begun have failed, otherwise nullptr.
   const sweep::RunRow* first_if_all_failed() const;
   /// Discards a failure: the task runs again with the same attempt number.
@@ -122,8 +120,12 @@ class SweepState {
   sweep::RunRow published(const sweep::RunRow& row) const;
   void write_down(const Entry& entry);
   void publish();
-  [[noreturn]] void rescue(const std::vector<sweep::RunRow>& rows);
-  void rewrite_journal(bool with_all);
+  /// With the rows of all runs, including those outside this plan.
+  store::SweepFile table() const;
+  [[noreturn]] void rescue();
+  enum class Records { of_unfinished_runs, all };
+  /// @param records  that the journal keeps: all, unless the table has every finished run
+  void rewrite_journal(Records records);
 };
 
 }  // namespace clog::results
