@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "clog/core/polygon/automatic_values.hpp"
+#include "clog/core/polygon/forces/automatic_values.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/excerpt.hpp"

@@ -16,9 +16,9 @@
 #include "clog/core/droplet/time_step.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
-#include "core/polygon/dp_step_kernel.hpp"
-#include "core/polygon/step_input.hpp"
-#include "core/polygon/step_memory.hpp"
+#include "core/polygon/step/dp_step_kernel.hpp"
+#include "core/polygon/step/step_input.hpp"
+#include "core/polygon/step/step_memory.hpp"
 
 namespace {
 
