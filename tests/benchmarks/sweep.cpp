@@ -43,8 +43,8 @@ class BareStep {
         a_(memory_.arrays()) {
     for (int i = -1; i < n_ + kernel::edges_per_group; ++i) {
       const double angle = 2 * std::numbers::pi * i / n_;
-      a_.x[i] = std::cos(angle) / 2;
-      a_.y[i] = std::sin(angle) / 2;
+      a_.position.x[i] = std::cos(angle) / 2;
+      a_.position.y[i] = std::sin(angle) / 2;
     }
     sums_ = kernel_.measure(n_, a_);
   }
@@ -52,7 +52,7 @@ class BareStep {
   /// @return nanoseconds for each vertex and step
   double time(int steps) {
     constexpr double time_step = 1e-3;
-    const kernel::KickCoefficients coefficients{.kicks = 1,
+    const kernel::KickCoefficients coefficients{.closing_ratio = 1,
                                                 .h1 = time_step / 2,
                                                 .h2 = time_step / 2,
                                                 .weight = 2,

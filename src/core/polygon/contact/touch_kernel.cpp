@@ -37,7 +37,8 @@ HWY_INLINE Vectors operator*(V factor, const Vectors& v) {
   return {hn::Mul(factor, v.x), hn::Mul(factor, v.y)};
 }
 
-/// Half edges, from a vertex to the middle of its edge, that meet a circle.
+/// Half edges, from a vertex to the middle of its edge, that meet a circle. NearestOnHalves in
+/// dp_step_circles-inl.hpp computes the same faster.
 struct Half {
   M touches;
   V length;

@@ -29,6 +29,7 @@ double WallFriction::energy(const DropletState& state) const {
   return energy;
 }
 
+/// hold_group() in dp_step_holds-inl.hpp does the same for circles that meet edges.
 WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
                                KnownAnchors& known, Eigen::ArrayXd* force) const {
   WallYield yield;

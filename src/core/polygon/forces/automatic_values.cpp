@@ -191,7 +191,7 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
   const StiffModes modes = stiff_modes_of_circle(dp, *run.wall_stiffness);
   const double largest = automatic ? largest_step_with_automatic_contact(dp) : largest_stable_step(modes);
   const double stiffest_omega_dt = std::sqrt(modes.sum()) * time_step;
-  require(stable_steps(modes, 1, time_step, false).num == 1, "time-step", time_step, [&] {
+  require(stable_steps(modes, 1, time_step, Pressure::present).num == 1, "time-step", time_step, [&] {
     return fmt::format(
         "contact, area, tension and spring modes together have omega*dt = {:.3g}, "
         "wall-stiffness={:.3g}) try {:.3g}",

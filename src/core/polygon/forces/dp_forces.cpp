@@ -5,7 +5,7 @@
 
 #include "clog/core/droplet/shape.hpp"
 #include "clog/core/tools/units.hpp"
-#include "core/polygon/step/dp_step_kernel.hpp"
+#include "core/polygon/contact/wedge_place.hpp"
 
 namespace clog {
 
@@ -57,9 +57,9 @@ void DpForces::forget_all_contacts() {
   self_.invalidate();
 }
 
-kernel::Interface DpForces::interface(double area, double perimeter) const {
+InterfaceTerms DpForces::interface(double area, double perimeter) const {
   const bool has_tension = dp_.perimeter_spring != PerimeterSpring::along;
-  kernel::Interface interface;
+  InterfaceTerms interface;
   interface.line_tension = dp_.line_tension;
   // The springs to the mean length are unloaded on average: their force needs no derivative of the mean.
   interface.spring = has_tension ? *dp_.perimeter_stiffness * *dp_.vertices : 0;

@@ -66,11 +66,14 @@ double largest_step_with_implicit_pressure(const StiffModes& modes) {
                 (max_total_with_self_omega_dt2 - area_omega_dt2) / (others + modes.self_contact)}));
 }
 
-StableSteps stable_steps(const StiffModes& modes, int steps, double time_step, bool may_be_implicit) {
-  const int num_explicit = num_steps(largest_stable_step(modes), steps, time_step);
-  if (!may_be_implicit) return {num_explicit, false};
-  const int num_implicit = num_steps(largest_step_with_implicit_pressure(modes), steps, time_step);
-  return num_implicit < num_explicit ? StableSteps{num_implicit, true} : StableSteps{num_explicit, false};
+Steps stable_steps(const StiffModes& modes, int steps, double time_step, Pressure most) {
+  Steps stable{num_steps(largest_stable_step(modes), steps, time_step), time_step};
+  if (most == Pressure::implicit) {
+    const int num = num_steps(largest_step_with_implicit_pressure(modes), steps, time_step);
+    if (num < stable.num) stable = {num, time_step, Pressure::implicit};
+  }
+  if (stable.num != steps) stable.length = steps * time_step / stable.num;
+  return stable;
 }
 
 }  // namespace clog

@@ -16,13 +16,8 @@ RestForces::RestForces(const RunParameters& run, DpForces& forces)
       plan_(n_),
       wetting_(n_) {}
 
-void RestForces::load(const DropletState& state) {
-  memory_.load(state.position.data(), memory_.arrays().x);
-  memory_.load(state.position.data() + n_, memory_.arrays().y);
-}
-
 void RestForces::update_contacts(const DropletState& state, const Travel& travel) {
-  load(state);
+  memory_.load(state.position, memory_.arrays().position);
   if (!contacts_hold(travel)) look(state, travel);
 }
 
@@ -48,54 +43,42 @@ void RestForces::look(const DropletState& state, const Travel& travel) {
 /// A kick of a droplet at rest, without drag, so long that the change of velocity equals the force.
 void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::StepArrays& a = memory_.arrays();
-  load(state);
+  memory_.load(state.position, a.position);
   const kernel::Sums sums = kernel_.measure(n_, a);
-  push_off();
-  const Eigen::Array2d net_spreading = start_from_forces_of_walls(state, force);
-  const kernel::Coupling coupling =
-      kernel_.kick(n_, terms_, kernel::kick_of(forces_->interface(sums.area, sums.perimeter), 1),
-                   area_force(sums, Eigen::Array2d(forces_->weight(), 0) - net_spreading),
-                   {.kicks = 0, .h1 = 0, .h2 = 0, .weight = 1, .half_step = 0, .keeps_kicked = false}, a);
-  const auto array = [this](const double* p) { return Eigen::Map<const Eigen::ArrayXd>(p, n_); };
-  if (terms_.on_area) {
-    force.head(n_) = array(a.vx) - coupling.a_x * array(a.grad_xx) - coupling.a_y * array(a.grad_yx);
-    force.tail(n_) = array(a.vy) - coupling.a_x * array(a.grad_xy) - coupling.a_y * array(a.grad_yy);
-  } else {
-    force.head(n_) = array(a.vx);
-    force.tail(n_) = array(a.vy);
+  if (!wedges_.empty()) kernel_.clear_pushes(n_, a);
+  kernel_.push(n_, plan_.windows(), near_.self().data(), near_.self().size(), contact_, a);
+  kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), contact_.stiffness,
+                          a);
+  start_from_forces_of_walls(state, force);
+  const kernel::Coupling coupling = kernel_.kick(
+      n_, terms_, interface_kick(forces_->interface(sums.area, sums.perimeter), 1),
+      area_force(sums, Eigen::Array2d(forces_->weight(), 0) - wetting_.net_spreading),
+      {.closing_ratio = 0, .h1 = 0, .h2 = 0, .weight = 1, .half_step = 0, .keeps_kicked = false}, a);
+  memory_.store(a.velocity, force);
+  if (!terms_.on_area) return;
+  for (int i = 0; i < n_; ++i) {
+    force[i] = force[i] - coupling.a_x * a.grad_x.x[i] - coupling.a_y * a.grad_y.x[i];
+    force[n_ + i] = force[n_ + i] - coupling.a_x * a.grad_x.y[i] - coupling.a_y * a.grad_y.y[i];
   }
 }
 
 /// Gives the vertices velocities: what wetted walls and friction, which no kick contains, would give them.
-/// @param force  memory  @return the net force of spreading
-Eigen::Array2d RestForces::start_from_forces_of_walls(const DropletState& state, Eigen::ArrayXd& force) {
+/// @param force  memory
+void RestForces::start_from_forces_of_walls(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::StepArrays& a = memory_.arrays();
   const WettedWalls& walls = forces_->wetted_walls();
   if (!walls.is_on() && !forces_->friction().is_on()) {
-    std::fill_n(a.vx, n_, 0.0);
-    std::fill_n(a.vy, n_, 0.0);
-    return {0, 0};
+    std::fill_n(a.velocity.x.first, n_, 0.0);
+    std::fill_n(a.velocity.y.first, n_, 0.0);
+    return;
   }
-  Eigen::Array2d net_spreading{0, 0};
   force.setZero();
   if (walls.is_on()) {
     walls.find_forces(VertexPlaces(state), state.frame, state.anchors, wetting_);
-    net_spreading = wetting_.net_spreading;
     force = wetting_.gradient + wetting_.spreading;
   }
   if (forces_->friction().is_on()) forces_->friction().add_forces(state, force);
-  std::copy_n(force.data(), n_, a.vx);
-  std::copy_n(force.data() + n_, n_, a.vy);
-  return net_spreading;
-}
-
-void RestForces::push_off() {
-  const kernel::StepArrays& a = memory_.arrays();
-  if (!wedges_.empty()) kernel_.clear_pushes(n_, a);
-  kernel_.push(n_, plan_.windows(), near_.self().data(), near_.self().size(), contact_, a);
-  if (!wedges_.empty())
-    kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), contact_.stiffness,
-                            a);
+  memory_.load(force, a.velocity);
 }
 
 }  // namespace clog

@@ -37,11 +37,9 @@ class RestForces {
   double way_ = 0;            // for which they hold [sigma]
   Eigen::ArrayXd looked_at_;  // where vertices were then, all x then all y, and room for a whole vector
 
-  void load(const DropletState& state);
   bool contacts_hold(const Travel& travel) const;
   void look(const DropletState& state, const Travel& travel);
-  void push_off();
-  Eigen::Array2d start_from_forces_of_walls(const DropletState& state, Eigen::ArrayXd& force);
+  void start_from_forces_of_walls(const DropletState& state, Eigen::ArrayXd& force);
 };
 
 }  // namespace clog

@@ -17,16 +17,9 @@ HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
-void clear_group(int group, const StepArrays& a) {
-  const std::ptrdiff_t first = std::ptrdiff_t{group} * edges_per_group;
-  for (int lane = 0; lane < edges_per_group; lane += lanes) {
-    store(all(0), a.push_x + first + lane);
-    store(all(0), a.push_y + first + lane);
-  }
-}
-
 void clear_pushes(int n, const StepArrays& a) {
-  for (int group = 0; group * edges_per_group <= n; ++group) clear_group(group, a);
+  const int end = (n / edges_per_group + 1) * edges_per_group;
+  for (int i = 0; i < end; i += lanes) store({all(0), all(0)}, a.push, i);
 }
 
 HWY_INLINE M lanes_of(int bits, int first) {
@@ -45,9 +38,12 @@ HWY_INLINE unsigned bits_of(M mask) {
 struct RefinedEdgeVectors {
   V x, y, middle_x, middle_y, next_x, next_y;
   HWY_INLINE RefinedEdgeVectors(int i, const StepArrays& a)
-      : x(load_at(a.x + i)), y(load_at(a.y + i)), next_x(load_at(a.x + i + 1)), next_y(load_at(a.y + i + 1)) {
-    middle_x = middle(x, next_x, load_at(a.x + i - 1), load_at(a.x + i + 2));
-    middle_y = middle(y, next_y, load_at(a.y + i - 1), load_at(a.y + i + 2));
+      : x(load_at(a.position.x + i)),
+        y(load_at(a.position.y + i)),
+        next_x(load_at(a.position.x + i + 1)),
+        next_y(load_at(a.position.y + i + 1)) {
+    middle_x = middle(x, next_x, load_at(a.position.x + i - 1), load_at(a.position.x + i + 2));
+    middle_y = middle(y, next_y, load_at(a.position.y + i - 1), load_at(a.position.y + i + 2));
   }
 
  private:
@@ -57,11 +53,8 @@ struct RefinedEdgeVectors {
   }
 };
 
-struct Push {
-  V x, y;
-};
-
-/// The points of half edges that are nearest to a circle's centre.
+/// The points of half edges that are nearest to a circle's centre. Half in touch_kernel.cpp computes the
+/// same, slower and with the same bits on all processors; dp_step.test.cpp compares them.
 struct NearestOnHalves {
   V fraction;  ///< of the half edge
   V dx, dy;    ///< from the centre
@@ -80,7 +73,7 @@ struct NearestOnHalves {
   }
   HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
   /// stiffness (reach - distance), where they touch.
-  HWY_INLINE Push push(M touch, V reach, V stiffness) const {
+  HWY_INLINE Pair push(M touch, V reach, V stiffness) const {
     // A point on the very centre gets no direction, but no NaN.
     const V inverse_distance = square_root(hn::Max(distance2, all(1e-300))).inverse;
     const V size = hn::IfThenElseZero(touch, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
@@ -100,9 +93,9 @@ struct HalvesAtCircle {
 /// that decide where the middle is: `begin` is for the edge's first vertex, `end` for its second, `far` for
 /// each of the two beyond them.
 struct WindowPushes {
-  Push begin, end, far;
+  Pair begin, end, far;
 
-  HWY_INLINE WindowPushes(const HalvesAtCircle& halves, const Push& first, const Push& second) {
+  HWY_INLINE WindowPushes(const HalvesAtCircle& halves, const Pair& first, const Pair& second) {
     share(halves, first.x, second.x, begin.x, end.x, far.x);
     share(halves, first.y, second.y, begin.y, end.y, far.y);
   }
@@ -142,8 +135,8 @@ HWY_INLINE bool push_window(const WallWindow& window, V span, V stiffness, const
     const HalvesAtCircle halves(RefinedEdgeVectors(i, a), all(window.x), all(window.y), span);
     const M first_touches = halves.first.are_nearer_than(reach);
     const M second_touches = halves.second.are_nearer_than(reach_of_second);
-    const Push first = halves.first.push(first_touches, reach, stiffness);
-    const Push second = halves.second.push(second_touches, reach, stiffness);
+    const Pair first = halves.first.push(first_touches, reach, stiffness);
+    const Pair second = halves.second.push(second_touches, reach, stiffness);
     keep_pushes<adds>(WindowPushes(halves, first, second), listed, pushes.first + i, pushes.stride);
     touches |= !hn::AllFalse(D(), hn::And(listed, hn::Or(first_touches, second_touches)));
   }
@@ -163,11 +156,11 @@ HWY_INLINE V push_on_vertices(const double* p, std::ptrdiff_t stride) {
 }
 
 /// Puts together what windows push the vertices of a group.
-HWY_INLINE void gather_pushes(int group, const WindowPushArrays& pushes, double* push_x, double* push_y) {
+HWY_INLINE void gather_pushes(int group, const WindowPushArrays& pushes, const ContourPair& push) {
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
     const std::ptrdiff_t i = std::ptrdiff_t{group} * edges_per_group + lane;
-    store(push_on_vertices(pushes.first + i, pushes.stride), push_x + i);
-    store(push_on_vertices(pushes.first + 3 * pushes.stride + i, pushes.stride), push_y + i);
+    store(push_on_vertices(pushes.first + i, pushes.stride), push.x + i);
+    store(push_on_vertices(pushes.first + 3 * pushes.stride + i, pushes.stride), push.y + i);
   }
 }
 
@@ -181,8 +174,7 @@ void push_off_circles(const WallWindows& given, const Contact& contact, const St
     push_window<false>(windows.all[k], span, stiffness, windows.pushes, a);
   for (int k = windows.num_own; k < windows.num_all; ++k)
     push_window<true>(windows.all[k], span, stiffness, windows.pushes, a);
-  for (int k = 0; k < windows.num_groups; ++k)
-    gather_pushes(windows.groups[k], windows.pushes, a.push_x, a.push_y);
+  for (int k = 0; k < windows.num_groups; ++k) gather_pushes(windows.groups[k], windows.pushes, a.push);
 }
 
 double circle_gaps(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,

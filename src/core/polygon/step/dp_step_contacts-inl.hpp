@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/polygon/step/dp_step_circles-inl.hpp"
 #include "core/polygon/step/dp_step_holds-inl.hpp"
@@ -29,13 +28,10 @@ HWY_INLINE V to_next_lane(V v) {
 
 /// `lanes` consecutive edges.
 struct EdgeVectors {
-  V x, y, tx, ty, length;
+  Pair begin, tangent;
+  V length;
   HWY_INLINE EdgeVectors(int i, const StepArrays& a)
-      : x(load(a.x + i)),
-        y(load(a.y + i)),
-        tx(load(a.tangent_x + i)),
-        ty(load(a.tangent_y + i)),
-        length(load(a.length + i)) {}
+      : begin(load(a.position, i)), tangent(load(a.tangent, i)), length(load(a.length + i)) {}
 };
 
 /// The points of edges that are nearest to points given, one for each edge.
@@ -44,11 +40,12 @@ struct NearestPoints {
   V dx, dy;  ///< from the points given
   V distance2;
 
-  HWY_INLINE NearestPoints(const EdgeVectors& edges, V x, V y) {
-    const V to_x = hn::Sub(x, edges.x), to_y = hn::Sub(y, edges.y);
-    along = hn::Min(hn::Max(hn::MulAdd(to_x, edges.tx, hn::Mul(to_y, edges.ty)), all(0)), edges.length);
-    dx = hn::MulSub(along, edges.tx, to_x);
-    dy = hn::MulSub(along, edges.ty, to_y);
+  HWY_INLINE NearestPoints(const EdgeVectors& edges, const Pair& point) {
+    const auto& [begin, tangent, length] = edges;
+    const V to_x = hn::Sub(point.x, begin.x), to_y = hn::Sub(point.y, begin.y);
+    along = hn::Min(hn::Max(hn::MulAdd(to_x, tangent.x, hn::Mul(to_y, tangent.y)), all(0)), length);
+    dx = hn::MulSub(along, tangent.x, to_x);
+    dy = hn::MulSub(along, tangent.y, to_y);
     distance2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
   }
   HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
@@ -60,11 +57,11 @@ class EdgePushes {
   HWY_INLINE EdgePushes() : x_(all(0)), y_(all(0)), along_x_(all(0)), along_y_(all(0)) {}
   /// Pushes edges off their points by stiffness (reach - distance), where they touch. An edge's two vertices
   /// share it as the nearest point divides the edge.
-  HWY_INLINE Push add(const NearestPoints& nearest, M touch, V reach, V stiffness) {
+  HWY_INLINE Pair add(const NearestPoints& nearest, M touch, V reach, V stiffness) {
     // A point on the very edge gets no direction, but no NaN.
     const V inverse_distance = square_root(hn::Max(nearest.distance2, all(1e-300))).inverse;
     const V size = hn::IfThenElseZero(touch, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
-    const Push push{hn::Mul(size, nearest.dx), hn::Mul(size, nearest.dy)};
+    const Pair push{hn::Mul(size, nearest.dx), hn::Mul(size, nearest.dy)};
     x_ = hn::Add(x_, push.x);
     y_ = hn::Add(y_, push.y);
     along_x_ = hn::MulAdd(nearest.along, push.x, along_x_);
@@ -74,8 +71,8 @@ class EdgePushes {
   /// Adds the forces to the vertices. @param i  the first edge
   HWY_INLINE void hand_out(int i, const EdgeVectors& edges, const StepArrays& a) const {
     const V inverse_length = reciprocal(edges.length);
-    hand_out(x_, hn::Mul(along_x_, inverse_length), a.push_x + i);
-    hand_out(y_, hn::Mul(along_y_, inverse_length), a.push_y + i);
+    hand_out(x_, hn::Mul(along_x_, inverse_length), a.push.x + i);
+    hand_out(y_, hn::Mul(along_y_, inverse_length), a.push.y + i);
   }
 
  private:
@@ -106,29 +103,28 @@ class PairedVertices {
       : first_(item.vertices + (item.backwards ? edges_per_group - lanes - lane : lane)),
         order_(orders[item.backwards].data()) {
     const auto order = hn::SetTableIndices(D(), order_);
-    x_ = hn::TableLookupLanes(load_at(a.x + first_), order);
-    y_ = hn::TableLookupLanes(load_at(a.y + first_), order);
+    const Pair there = load_at(a.position, first_);
+    place_ = {hn::TableLookupLanes(there.x, order), hn::TableLookupLanes(there.y, order)};
   }
-  HWY_INLINE V x() const { return x_; }
-  HWY_INLINE V y() const { return y_; }
+  HWY_INLINE const Pair& place() const { return place_; }
 
   /// What pushes edges pushes their vertices back. Whole aligned vectors are read and written: one that lies
   /// across two just stored would have to wait until these are in the cache.
-  HWY_INLINE void push_back(const Push& push, const StepArrays& a) const {
+  HWY_INLINE void push_back(const Pair& push, const StepArrays& a) const {
     const int beyond = first_ & (lanes - 1), aligned = first_ - beyond;
     const auto turned = hn::SetTableIndices(D(), order_ + lanes - beyond);
     const M later = lanes_of((1 << beyond) - 1, 0);
     const V x = hn::TableLookupLanes(push.x, turned), y = hn::TableLookupLanes(push.y, turned);
-    subtract(hn::IfThenZeroElse(later, x), a.push_x + aligned);
-    subtract(hn::IfThenZeroElse(later, y), a.push_y + aligned);
-    subtract(hn::IfThenElseZero(later, x), a.push_x + aligned + lanes);
-    subtract(hn::IfThenElseZero(later, y), a.push_y + aligned + lanes);
+    subtract(hn::IfThenZeroElse(later, x), a.push.x + aligned);
+    subtract(hn::IfThenZeroElse(later, y), a.push.y + aligned);
+    subtract(hn::IfThenElseZero(later, x), a.push.x + aligned + lanes);
+    subtract(hn::IfThenElseZero(later, y), a.push.y + aligned + lanes);
   }
 
  private:
   int first_;
   const std::int64_t* order_;
-  V x_, y_;
+  Pair place_;
 
   static HWY_INLINE void subtract(V v, double* p) { store(hn::Sub(load(p), v), p); }
 };
@@ -146,7 +142,7 @@ void push_off_each_other(const SelfContacts::Item* items, std::size_t num_items,
       EdgePushes pushes;
       for (const SelfContacts::Item* item = begin; item != next; ++item) {
         const PairedVertices vertices(*item, lane, a);
-        const NearestPoints nearest(edges, vertices.x(), vertices.y());
+        const NearestPoints nearest(edges, vertices.place());
         const M touch = hn::And(nearest.are_nearer_than(reach), lanes_of(item->pairs, lane));
         if (hn::AllFalse(D(), touch)) continue;
         vertices.push_back(pushes.add(nearest, touch, reach, stiffness), a);
@@ -170,7 +166,7 @@ double pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const C
     double distance = 1e150;
     for (int lane = 0; lane < edges_per_group; lane += lanes) {
       const PairedVertices vertices(item, lane, a);
-      const NearestPoints nearest(EdgeVectors(item.edges + lane, a), vertices.x(), vertices.y());
+      const NearestPoints nearest(EdgeVectors(item.edges + lane, a), vertices.place());
       distance = std::min(distance, smallest(nearest.distance2, lanes_of(item.pairs, lane)));
     }
     gaps[k] = distance - contact.self_range;
@@ -179,22 +175,13 @@ double pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const C
   return least;
 }
 
-/// Edge i pushes the vertices i - 1 to i + 2. Hands what was pushed beyond the ends of the contour to the
-/// vertices of the other end.
-HWY_INLINE void add_pushes_beyond_ends(int n, int beyond, const StepArrays& a) {
-  for (double* p : {a.push_x, a.push_y}) {
-    p[n - 1] += std::exchange(p[-1], 0);
-    for (int i = 0; i < beyond; ++i) p[i] += std::exchange(p[n + i], 0);
-  }
-}
-
 void push(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
           const Contact& contact, const StepArrays& arrays) {
   const StepArrays a = arrays;
   if (num_self > 0) clear_pushes(n + edges_per_group - 1, a);
   push_off_circles(walls, contact, a);
   push_off_each_other(self, num_self, contact, a);
-  add_pushes_beyond_ends(n, num_self > 0 ? edges_per_group : 2, a);
+  fold_ends(a.push, n, num_self > 0 ? edges_per_group : 2);
 }
 
 double push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, const SelfContacts::Item* self,
@@ -205,14 +192,14 @@ double push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, c
   // Friction through films needs to know what the droplet's parts push each other.
   if (num_self > 0 && grip.film_reach > 0) {
     push_off_each_other(self, num_self, contact, a);
-    add_pushes_beyond_ends(n, edges_per_group, a);
+    fold_ends(a.push, n, edges_per_group);
     return wets ? push_off_and_hold_with_films<true>(n, walls, grip, contact, a)
                 : push_off_and_hold_with_films<false>(n, walls, grip, contact, a);
   }
   const double taken = wets ? push_off_and_hold<true>(n, walls, grip, contact, a)
                             : push_off_and_hold<false>(n, walls, grip, contact, a);
   push_off_each_other(self, num_self, contact, a);
-  if (num_self > 0) add_pushes_beyond_ends(n, edges_per_group, a);
+  if (num_self > 0) fold_ends(a.push, n, edges_per_group);
   return taken;
 }
 
@@ -235,8 +222,8 @@ class WedgeVectors {
 
     HWY_INLINE V distance2() const { return hn::MulAdd(dx, dx, hn::Mul(dy, dy)); }
   };
-  HWY_INLINE Seen seen_from(V x, V y) const {
-    const V dx = hn::Sub(x, x_), dy = hn::Sub(y, y_);
+  HWY_INLINE Seen seen_from(const Pair& place) const {
+    const V dx = hn::Sub(place.x, x_), dy = hn::Sub(place.y, y_);
     const V along = hn::MulAdd(dx, axis_x_, hn::Mul(dy, axis_y_));
     const V across = hn::MulSub(dy, axis_x_, hn::Mul(dx, axis_y_));
     const V off = hn::Abs(across);
@@ -261,7 +248,7 @@ void push_off_wedges(int n, const WedgePlace* wedges, std::size_t num_wedges, do
     const WedgeVectors wedge(*place);
     const V reach = all(range + place->radius);
     for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
-      const WedgeVectors::Seen seen = wedge.seen_from(load(a.x + i), load(a.y + i));
+      const WedgeVectors::Seen seen = wedge.seen_from(load(a.position, i));
       const V r2 = seen.distance2();
       const M touches = hn::Or(hn::And(seen.is_before_tip, hn::Lt(r2, hn::Mul(reach, reach))),
                                hn::AndNot(seen.is_before_tip, hn::Lt(seen.to_flank, reach)));
@@ -273,8 +260,8 @@ void push_off_wedges(int n, const WedgePlace* wedges, std::size_t num_wedges, do
       wedge.flank_normal(seen, normal_x, normal_y);
       normal_x = hn::IfThenElse(seen.is_before_tip, hn::Mul(seen.dx, inverse_r), normal_x);
       normal_y = hn::IfThenElse(seen.is_before_tip, hn::Mul(seen.dy, inverse_r), normal_y);
-      store(hn::MulAdd(push, normal_x, load(a.push_x + i)), a.push_x + i);
-      store(hn::MulAdd(push, normal_y, load(a.push_y + i)), a.push_y + i);
+      const Pair before = load(a.push, i);
+      store({hn::MulAdd(push, normal_x, before.x), hn::MulAdd(push, normal_y, before.y)}, a.push, i);
     });
   }
 }
@@ -299,12 +286,12 @@ HWY_INLINE V distance(V squared) { return square_root(hn::Max(squared, all(1e-30
 
 /// distances[i] = the distance of vertex i to a wedge, if that is less; but no less than `shortest`.
 void shrink_to_wedge_distances(int n, const NearWalls& walls, V shortest, const StepArrays& a,
-                               double* distances) {
+                               const ContourArray& distances) {
   for (const WedgePlace* place = walls.wedges; place != walls.wedges + walls.num_wedges; ++place) {
     const WedgeVectors wedge(*place);
     const V radius = all(place->radius);
     for_vectors(n, [&](int i, auto) CLOG_INLINE {
-      const WedgeVectors::Seen seen = wedge.seen_from(load(a.x + i), load(a.y + i));
+      const WedgeVectors::Seen seen = wedge.seen_from(load(a.position, i));
       V to_wedge = seen.to_flank;
       if (!hn::AllFalse(D(), seen.is_before_tip))
         to_wedge = hn::IfThenElse(seen.is_before_tip, distance(seen.distance2()), to_wedge);
@@ -325,7 +312,7 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
     const WallContacts::Item* const begin = end;
     while (end != walls.items + walls.num_items && end->group == group) ++end;
     for (int i = group * edges_per_group; i < (group + 1) * edges_per_group; i += lanes) {
-      const V x = load(a.x + i), y = load(a.y + i);
+      const auto [x, y] = load(a.position, i);
       // Among equal circles, the nearest has the nearest centre: one root for all.
       V nearest = all(1e300);
       for (const WallContacts::Item* circle = begin; circle != end; ++circle) {

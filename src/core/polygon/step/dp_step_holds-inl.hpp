@@ -19,7 +19,7 @@ namespace clog::kernel::HWY_NAMESPACE {
 
 /// Adds to each vertex its share of the interface on a circle: of each half edge that touches, three quarters
 /// of the length go to the vertex at its end, one quarter to the other vertex of the edge.
-void add_wetted(const WallWindow& window, V span, const StepArrays& a, double* wetted) {
+void add_wetted(const WallWindow& window, V span, const StepArrays& a, const ContourArray& wetted) {
   const V reach = all(window.reach), zero = all(0);
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
     const int i = window.first + lane;
@@ -40,10 +40,15 @@ void add_wetted(const WallWindow& window, V span, const StepArrays& a, double* w
   }
 }
 
-/// Vertices -1, n and n + 1 are the other end's.
-HWY_INLINE void fold_ends(double* p, int n) {
+/// Edges reach one vertex before the contour and `beyond` vertices behind it: adds what they gave there to
+/// the vertices of the other end.
+HWY_INLINE void fold_ends(const ContourArray& p, int n, int beyond = 2) {
   p[n - 1] += std::exchange(p[-1], 0);
-  for (int i = 0; i < 2; ++i) p[i] += std::exchange(p[n + i], 0);
+  for (int i = 0; i < beyond; ++i) p[i] += std::exchange(p[n + i], 0);
+}
+HWY_INLINE void fold_ends(const ContourPair& p, int n, int beyond = 2) {
+  fold_ends(p.x, n, beyond);
+  fold_ends(p.y, n, beyond);
 }
 
 /// Which vertices a circle holds, and how.
@@ -56,7 +61,8 @@ struct CircleAtVertices {
   V distance;  ///< from the surface
 
   HWY_INLINE CircleAtVertices(const HoldingCircle& circle, std::ptrdiff_t i, const StepArrays& a) {
-    const V dx = hn::Sub(load(a.x + i), all(circle.x)), dy = hn::Sub(load(a.y + i), all(circle.y));
+    const Pair place = load(a.position, i);
+    const V dx = hn::Sub(place.x, all(circle.x)), dy = hn::Sub(place.y, all(circle.y));
     const Root root = square_root(hn::Max(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), all(1e-300)));
     inverse = root.inverse;
     normal_x = hn::Mul(dx, inverse);
@@ -66,7 +72,8 @@ struct CircleAtVertices {
 };
 
 /// Adds to the pushes of a group what one circle pushes and holds there. With films, what is added is kept
-/// apart, until all circles have seen what self-contact pushes. Returns what the wall took.
+/// apart, until all circles have seen what self-contact pushes. Returns what the wall took. It is
+/// WallFriction::follow() for a vector of vertices; dp_step.test.cpp compares them.
 /// @param pushes  does the circle push vertices of the group by itself?
 template <bool wets, Films films, bool pushes = true>
 HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCircles& walls,
@@ -79,8 +86,8 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
     const std::ptrdiff_t i = std::ptrdiff_t{walls.groups[entry]} * edges_per_group + lane;
     const std::ptrdiff_t k = std::ptrdiff_t{entry} * edges_per_group + lane;
-    const V push_x = pushes ? load(walls.push_x + i) : all(0),
-            push_y = pushes ? load(walls.push_y + i) : all(0);
+    const V push_x = pushes ? load(walls.push.x + i) : all(0),
+            push_y = pushes ? load(walls.push.y + i) : all(0);
     const M is_known = lanes_of(static_cast<int>(held_before), lane);
     M touched_or_held = hn::Or(is_known, hn::Or(hn::Ne(push_x, all(0)), hn::Ne(push_y, all(0))));
     // The nearest point of a half edge may be its end, so that the wall does not push all that it wets.
@@ -88,8 +95,8 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
       touched_or_held = hn::Or(touched_or_held, hn::Gt(load(walls.wetted + i), all(0)));
     V self_x = all(0), self_y = all(0);
     if constexpr (has_films) {
-      self_x = load(a.push_x + i);
-      self_y = load(a.push_y + i);
+      self_x = load(a.push.x + i);
+      self_y = load(a.push.y + i);
       touched_or_held = hn::Or(touched_or_held, hn::Or(hn::Ne(self_x, all(0)), hn::Ne(self_y, all(0))));
     }
     if (hn::AllFalse(D(), touched_or_held)) {
@@ -143,8 +150,8 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
       store(added_x, walls.added_x + k);
       store(added_y, walls.added_y + k);
     } else {
-      store(hn::Add(load(a.push_x + i), added_x), a.push_x + i);
-      store(hn::Add(load(a.push_y + i), added_y), a.push_y + i);
+      const Pair others = load(a.push, i);
+      store({hn::Add(others.x, added_x), hn::Add(others.y, added_y)}, a.push, i);
     }
   }
   walls.holds[entry] = static_cast<std::uint8_t>(holds);
@@ -156,7 +163,7 @@ template <bool wets>
 HWY_INLINE void gather_circle(int n, const HoldingCircle& circle, const HoldingCircles& walls, V span,
                               const StepArrays& a) {
   for (int k = circle.first_group; k < circle.end_own_group; ++k)
-    gather_pushes(walls.groups[k], circle.pushes, walls.push_x, walls.push_y);
+    gather_pushes(walls.groups[k], circle.pushes, walls.push);
   if constexpr (wets) {
     for (int k = circle.first_group; k < circle.end_own_group; ++k)
       for (int lane = 0; lane < edges_per_group; lane += lanes)
@@ -165,8 +172,7 @@ HWY_INLINE void gather_circle(int n, const HoldingCircle& circle, const HoldingC
       add_wetted(walls.windows[k], span, a, walls.wetted);
   }
   if (circle.wraps) {
-    fold_ends(walls.push_x, n);
-    fold_ends(walls.push_y, n);
+    fold_ends(walls.push, n);
     if constexpr (wets) fold_ends(walls.wetted, n);
   }
 }
@@ -227,8 +233,9 @@ double hold_with_films(int n, const HoldingCircles& walls, const WallGrip& grip,
       for (int lane = 0; is_inside(k) && lane < edges_per_group; lane += lanes) {
         const std::ptrdiff_t i = std::ptrdiff_t{walls.groups[k]} * edges_per_group + lane;
         const std::ptrdiff_t from = std::ptrdiff_t{k} * edges_per_group + lane;
-        store(hn::Add(load(a.push_x + i), load(walls.added_x + from)), a.push_x + i);
-        store(hn::Add(load(a.push_y + i), load(walls.added_y + from)), a.push_y + i);
+        const Pair push = load(a.push, i);
+        store({hn::Add(push.x, load(walls.added_x + from)), hn::Add(push.y, load(walls.added_y + from))},
+              a.push, i);
       }
   return sum(taken);
 }

@@ -7,8 +7,7 @@
 #include <hwy/foreach_target.h>
 // The targets' code follows.
 #include "core/polygon/step/dp_step_contacts-inl.hpp"
-#include "core/polygon/step/dp_step_motion-inl.hpp"
-#include "core/polygon/step/dp_step_survey-inl.hpp"
+#include "core/polygon/step/dp_step_drift-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clog::kernel::HWY_NAMESPACE {

@@ -16,20 +16,29 @@ namespace clog::kernel {
 /// Contacts are tested for this many consecutive edges at once, whatever the instruction set.
 inline constexpr int edges_per_group = WallContacts::edges_per_group;
 
-/// Arrays of one entry per vertex or edge. Readable from [-1] to [n + edges_per_group - 1]: entries beyond
-/// the ends repeat the contour, the passes see to that.
-struct StepArrays {
-  double *x, *y, *vx, *vy;
-  double *tangent_x, *tangent_y, *length;         ///< of the edges
-  double *push_x, *push_y;                        ///< kick of the vertices by contact
-  double *wetting_x, *wetting_y;                  ///< the part of the kick by wetting that has no energy
-  double *grad_xx, *grad_xy, *grad_yx, *grad_yy;  ///< 6 a times the centroid's gradient
-  double* rate;                                   ///< drag rate of a vertex [1/t0], if it differs
-  double *damping, *kept;                         ///< s and s (1 - h2 r), with the rate; see KickCoefficients
-  double *kicked_x, *kicked_y;                    ///< w, if it is wanted; see KickCoefficients
-  double *chord_x, *chord_y;                      ///< between a vertex' neighbours, with an implicit pressure
+/// An entry for each vertex or edge, the first on a cache line. Valid from [-1] to [n + edges_per_group - 1]:
+/// entries beyond the ends repeat the contour, the passes see to that.
+struct ContourArray {
+  double* first;
+
+  double* operator+(std::ptrdiff_t i) const { return first + i; }
+  double& operator[](std::ptrdiff_t i) const { return first[i]; }
 };
-inline constexpr int num_step_arrays = 22;
+struct ContourPair {
+  ContourArray x, y;
+};
+struct StepArrays {
+  ContourPair position, velocity;
+  ContourPair tangent;         ///< of the edges
+  ContourArray length;         ///< of the edges
+  ContourPair push;            ///< kick of the vertices by contact
+  ContourPair wetting;         ///< the part of the kick by wetting that has no energy
+  ContourPair grad_x, grad_y;  ///< 6 a times the gradient of the centroid's x, of its y
+  ContourArray rate;           ///< drag rate of a vertex [1/t0], if it differs
+  ContourArray damping, kept;  ///< s and s (1 - h2 r), with the rate; see KickCoefficients
+  ContourPair kicked;          ///< w, if it is wanted; see KickCoefficients
+  ContourPair chord;           ///< between a vertex' neighbours, with an implicit pressure
+};
 
 /// Sums over the edges.
 struct Sums {
@@ -37,16 +46,6 @@ struct Sums {
   double perimeter;
   double moment_x;  ///< of the area, area times its centroid [sigma^3]
   double moment_y;
-};
-
-/// Terms of the interface's force.
-struct Interface {
-  double line_tension;   ///< gamma
-  double spring;         ///< k_l N_v
-  double spring_length;  ///< l0 or the mean edge length
-  double spreading;      ///< k_l N_v of springs that act along the interface only
-  double pressure;       ///< -k_a (a - a0)
-  double vertex_weight;  ///< M g / N_v along +x
 };
 
 /// A kick is what a force does to a vertex' velocity in half a time step: F below is the force times
@@ -58,14 +57,6 @@ struct InterfaceKick {
   double half_pressure;
   double vertex_weight;  ///< along +x
 };
-/// The kick in a time that gives a vertex `impulse` for a unit force.
-inline InterfaceKick kick_of(const Interface& interface, double impulse) {
-  return {.line_tension = impulse * (interface.line_tension - interface.spring * interface.spring_length),
-          .spring = impulse * interface.spring,
-          .spreading = impulse * interface.spreading,
-          .half_pressure = 0.5 * impulse * interface.pressure,
-          .vertex_weight = impulse * interface.vertex_weight};
-}
 /// A force on the area, spread over the vertices by the gradient of the area's centroid.
 struct AreaForce {
   double area;                ///< [sigma^2]
@@ -73,15 +64,15 @@ struct AreaForce {
   double x, y;                ///< kick, all but the reaction to the springs along the interface
 };
 /// Coefficients of one kick. With r a vertex's drag rate and s = 1/(1 + h1 r),
-///   w = s (v + kicks F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a):
+///   w = s (v + closing_ratio F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a):
 /// w is the velocity kicked by force and own drag, v' the next velocity once c and a are known (see
 /// Coupling). One kick thereby ends a time step and begins the next. q takes the place of the velocity.
 struct KickCoefficients {
-  double kicks;       ///< h1 / half_step
-  double h1, h2;      ///< [t0]
-  double weight;      ///< (h1 + h2) / half_step, h1 / half_step where no time step begins
-  double half_step;   ///< that of the forces [t0]
-  bool keeps_kicked;  ///< is w wanted afterwards?
+  double closing_ratio;  ///< h1 / half_step: of the half step that ends a time step to that of the forces
+  double h1, h2;         ///< [t0]
+  double weight;         ///< (h1 + h2) / half_step, h1 / half_step where no time step begins
+  double half_step;      ///< that of the forces [t0]
+  bool keeps_kicked;     ///< is w wanted afterwards?
   /// Of an implicit pressure: K_a half_step^2/(M/N_v), K_a the area stiffness. The half kick that ends a step
   /// of another length takes that of the step that begins.
   double softening = 0;
@@ -160,10 +151,10 @@ struct HoldingCircles {
   double *anchor_x, *anchor_y;  ///< from the circle's centre [sigma]
   double* slip;                 ///< way along the wall from the anchor to what it holds [sigma]
   std::uint8_t* holds;          ///< vertices that have an anchor, as bits
-  double *push_x, *push_y;      ///< on the vertices, by one circle; memory
-  double* wetted;               ///< length of the interface on one circle [sigma]; memory
+  ContourPair push;             ///< on the vertices, by one circle; memory
+  ContourArray wetted;          ///< length of the interface on one circle [sigma]; memory
   double *added_x, *added_y;    ///< what circles add to self-contact, an entry for each anchor; memory
-  double* nearest;        ///< distance of the vertices from the nearest circle that pushes [sigma]; memory
+  ContourArray nearest;   ///< distance of the vertices from the nearest circle that pushes [sigma]; memory
   std::uint8_t* touches;  ///< does a circle push the droplet? memory
   bool are_close;         ///< may a vertex be in the film's reach of two circles?
 };

@@ -30,6 +30,20 @@ HWY_INLINE V load(const double* p) { return hn::Load(D(), p); }
 HWY_INLINE V load_at(const double* p) { return hn::LoadU(D(), p); }
 HWY_INLINE void store(V v, double* p) { hn::Store(v, D(), p); }
 HWY_INLINE V all(double value) { return hn::Set(D(), value); }
+
+/// An x and a y for each lane.
+struct Pair {
+  V x, y;
+};
+HWY_INLINE Pair load(const ContourPair& p, std::ptrdiff_t i) { return {load(p.x + i), load(p.y + i)}; }
+HWY_INLINE Pair load_at(const ContourPair& p, std::ptrdiff_t i) {
+  return {load_at(p.x + i), load_at(p.y + i)};
+}
+HWY_INLINE void store(Pair v, const ContourPair& p, std::ptrdiff_t i) {
+  store(v.x, p.x + i);
+  store(v.y, p.y + i);
+}
+
 HWY_INLINE double sum(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 
 /// The sums over the lanes of four vectors, in the time of two.
@@ -148,7 +162,7 @@ HWY_INLINE void for_vectors(int n, Body body) {
 }
 
 /// Repeats the contour beyond its ends.
-HWY_INLINE void close(double* p, int n) {
+HWY_INLINE void close(const ContourArray& p, int n) {
   p[-1] = p[n - 1];
   for (int k = 0; k < edges_per_group; k += lanes) hn::StoreU(load(p + k), D(), p + n + k);
 }

@@ -5,7 +5,6 @@
 #include <cstdint>
 
 namespace clog {
-namespace {}  // namespace
 
 double NearContacts::measure(const kernel::StepKernel& kernel, const kernel::Contact& contact,
                              const DpForces& forces, const kernel::StepArrays& arrays) {

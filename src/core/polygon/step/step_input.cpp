@@ -21,6 +21,14 @@ kernel::Contact contact_as_kick(const RunParameters& run, const DpForces& forces
           .self_range = forces.self_contacts().range()};
 }
 
+kernel::InterfaceKick interface_kick(const InterfaceTerms& interface, double impulse) {
+  return {.line_tension = impulse * (interface.line_tension - interface.spring * interface.spring_length),
+          .spring = impulse * interface.spring,
+          .spreading = impulse * interface.spreading,
+          .half_pressure = 0.5 * impulse * interface.pressure,
+          .vertex_weight = impulse * interface.vertex_weight};
+}
+
 kernel::AreaForce area_force(const kernel::Sums& sums, const Eigen::Array2d& kick) {
   return {.area = sums.area,
           .centre_x = sums.moment_x / sums.area,

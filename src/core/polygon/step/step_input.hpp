@@ -12,6 +12,8 @@ namespace clog {
 kernel::KickTerms kick_terms(const RunParameters& run, double far_rate);
 /// @param impulse  kick of a vertex by a unit force
 kernel::Contact contact_as_kick(const RunParameters& run, const DpForces& forces, double impulse);
+/// Kicks in a time that gives a vertex `impulse` for a unit force.
+kernel::InterfaceKick interface_kick(const InterfaceTerms& interface, double impulse);
 /// A force on the area as a kick, of which the springs along the interface take their part.
 kernel::AreaForce area_force(const kernel::Sums& sums, const Eigen::Array2d& kick);
 /// In the coordinates of a droplet.

@@ -9,26 +9,29 @@ StepMemory::StepMemory(int num_vertices) : n_(num_vertices) {
   // Every array on a cache line, with room for an entry before and a group behind it.
   constexpr int line = 8;
   const int stride = (n_ + line - 1) / line * line + 3 * line;
-  const auto size = static_cast<std::size_t>(kernel::num_step_arrays) * static_cast<std::size_t>(stride);
-  memory_ = aligned_zeros(size);
-  double* next = memory_.get() + line;
-  for (double** array :
-       {&arrays_.x,         &arrays_.y,       &arrays_.vx,      &arrays_.vy,       &arrays_.tangent_x,
-        &arrays_.tangent_y, &arrays_.length,  &arrays_.push_x,  &arrays_.push_y,   &arrays_.wetting_x,
-        &arrays_.wetting_y, &arrays_.grad_xx, &arrays_.grad_xy, &arrays_.grad_yx,  &arrays_.grad_yy,
-        &arrays_.rate,      &arrays_.damping, &arrays_.kept,    &arrays_.kicked_x, &arrays_.kicked_y,
-        &arrays_.chord_x,   &arrays_.chord_y}) {
-    *array = next;
-    next += stride;
-  }
+  memory_ = aligned_zeros(sizeof arrays_ / sizeof(kernel::ContourArray) * static_cast<std::size_t>(stride));
+  double* next = memory_.get() + line - stride;
+  const auto array = [&]() -> kernel::ContourArray { return {next += stride}; };
+  const auto pair = [&]() -> kernel::ContourPair { return {array(), array()}; };
+  arrays_ = {pair(), pair(),  pair(),  array(), pair(), pair(), pair(),
+             pair(), array(), array(), array(), pair(), pair()};
   // Edges of the last group that do not exist are divided by as well.
-  std::fill_n(arrays_.length, stride - line, 1.0);
+  std::fill_n(arrays_.length.first, stride - line, 1.0);
 }
 
-void StepMemory::load(const double* from, double* to) const {
-  std::copy_n(from, n_, to);
-  to[-1] = to[n_ - 1];
-  std::copy_n(to, kernel::edges_per_group, to + n_);
+void StepMemory::load(const Eigen::ArrayXd& from, const kernel::ContourPair& to) const {
+  const double* source = from.data();
+  for (const kernel::ContourArray& array : {to.x, to.y}) {
+    std::copy_n(source, n_, array.first);
+    array[-1] = array[n_ - 1];
+    std::copy_n(array.first, kernel::edges_per_group, array + n_);
+    source += n_;
+  }
+}
+
+void StepMemory::store(const kernel::ContourPair& from, Eigen::ArrayXd& to) const {
+  std::copy_n(from.x.first, n_, to.data());
+  std::copy_n(from.y.first, n_, to.data() + n_);
 }
 
 }  // namespace clog

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "aligned_memory.hpp"
 #include "dp_step_kernel.hpp"
 
@@ -11,8 +13,9 @@ class StepMemory {
   explicit StepMemory(int num_vertices);
   const kernel::StepArrays& arrays() const { return arrays_; }
   kernel::StepArrays& arrays() { return arrays_; }
-  /// Copies one number for each vertex into an array, and repeats the contour beyond its ends.
-  void load(const double* from, double* to) const;
+  /// Copies vectors of the vertices, all x then all y, into arrays, and repeats the contour beyond its ends.
+  void load(const Eigen::ArrayXd& from, const kernel::ContourPair& to) const;
+  void store(const kernel::ContourPair& from, Eigen::ArrayXd& to) const;
 
  private:
   int n_;

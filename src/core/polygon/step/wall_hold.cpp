@@ -20,7 +20,7 @@ WallHold::WallHold(int num_vertices, double range, double film_reach)
       range_(range),
       film_reach_(film_reach) {}
 
-double WallHold::make(const Near& near, const double* x, const double* y, DropletState& droplet) {
+double WallHold::make(const Near& near, const kernel::ContourPair& vertices, DropletState& droplet) {
   hand_back(droplet);
   clear_pushes();
   list_windows(near.walls, num_groups_, windows_);
@@ -29,7 +29,7 @@ double WallHold::make(const Near& near, const double* x, const double* y, Drople
   if (film_reach_ > 0) find_films(near);
   for (kernel::HoldingCircle& circle : all_) {
     add_groups(circle);
-    if (film_reach_ > 0) add_film_groups(circle, circle.radius + film_reach_ + near.way, x, y);
+    if (film_reach_ > 0) add_film_groups(circle, circle.radius + film_reach_ + near.way, vertices);
   }
   arrange_memory();
   double lost = 0;
@@ -93,8 +93,9 @@ void WallHold::find_films(const Near& near) {
 }
 
 /// Adds the groups of vertices that a circle may push through films. @param reach  from its centre
-void WallHold::add_film_groups(kernel::HoldingCircle& circle, double reach, const double* x,
-                               const double* y) {
+void WallHold::add_film_groups(kernel::HoldingCircle& circle, double reach,
+                               const kernel::ContourPair& vertices) {
+  const auto& [x, y] = vertices;
   for (int group = 0; group < num_groups_; ++group) {
     if (touches_itself_[static_cast<std::size_t>(group)] == 0 ||
         is_pushed_[static_cast<std::size_t>(group) + 1] != 0)
@@ -135,8 +136,9 @@ void WallHold::arrange_memory() {
   const std::size_t needed = (num_common + all_.size() * kernel::num_window_push_arrays) * stride;
   memory_.make_room(needed, num_common * stride);
   double* next = memory_.numbers.get() + std::ptrdiff_t{before} * kernel::edges_per_group;
-  for (double** array : {&circles_.push_x, &circles_.push_y, &circles_.wetted, &circles_.nearest}) {
-    *array = next;
+  for (kernel::ContourArray* array :
+       {&circles_.push.x, &circles_.push.y, &circles_.wetted, &circles_.nearest}) {
+    array->first = next;
     next += stride;
   }
   for (kernel::HoldingCircle& circle : all_) {

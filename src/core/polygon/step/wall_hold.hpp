@@ -27,10 +27,10 @@ class WallHold {
   /// @param film_reach  see kernel::WallGrip
   WallHold(int num_vertices, double range, double film_reach);
 
-  /// Takes the anchors over. @param x, y  of the vertices
+  /// Takes the anchors over. @param vertices  where they are
   /// Returns half the sum of the squared slips of those anchors that none of these circles can hold
   /// [sigma^2].
-  double make(const Near& near, const double* x, const double* y, DropletState& droplet);
+  double make(const Near& near, const kernel::ContourPair& vertices, DropletState& droplet);
   /// Copies the anchors into the droplet, if make() was called since forget().
   void hand_back(DropletState& droplet) const;
   /// Drops the anchors: the next make() takes those of its droplet.
@@ -61,7 +61,7 @@ class WallHold {
   void find_circles();
   void add_groups(kernel::HoldingCircle& circle);
   void find_films(const Near& near);
-  void add_film_groups(kernel::HoldingCircle& circle, double reach, const double* x, const double* y);
+  void add_film_groups(kernel::HoldingCircle& circle, double reach, const kernel::ContourPair& vertices);
   void clear_pushes();
   void arrange_memory();
   void arrange_anchors();

@@ -8,7 +8,7 @@
 #include "clog/core/droplet/shape.hpp"
 #include "clog/core/polygon/forces/dp_forces.hpp"
 #include "clog/core/world/wedge.hpp"
-#include "core/polygon/step/dp_step_kernel.hpp"
+#include "core/polygon/contact/wedge_place.hpp"
 
 namespace clog::test {
 
@@ -79,7 +79,7 @@ class ReferenceForces : public DpForces {
   /// Tension, springs, pressure, and weight on the vertices.
   Eigen::ArrayXd interface_force() const {
     const PolygonShape shape = polygon_shape(position_);
-    const kernel::Interface terms = interface(shape.area, shape.perimeter);
+    const InterfaceTerms terms = interface(shape.area, shape.perimeter);
     // (gamma + k_l N_v (l - l_ref))/l times the edge.
     const auto pull = [&](int i) -> Eigen::Array2d {
       return (terms.line_tension + terms.spring * (length(i) - terms.spring_length)) / length(i) * edge(i);

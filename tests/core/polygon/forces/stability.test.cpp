@@ -122,7 +122,9 @@ TEST(StableSteps, AreAsManyAsTheModesNeed) {
   const RunParameters run = resolve(RunParameters{});
   const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14, 3.14 / *run.dp.vertices);
   const double largest = largest_stable_step(modes);
-  const auto num = [&](int steps, double step) { return stable_steps(modes, steps, step, false).num; };
+  const auto num = [&](int steps, double step) {
+    return stable_steps(modes, steps, step, Pressure::present).num;
+  };
   EXPECT_EQ(num(1, largest), 1);
   EXPECT_EQ(num(1, 1.01 * largest), 2);
   EXPECT_EQ(num(1, 5.5 * largest), 6);
@@ -133,25 +135,27 @@ TEST(StableSteps, AreAsManyAsTheModesNeed) {
   EXPECT_EQ(num(8, 2.01 * largest), 24) << "beyond twice as many, a multiple";
   EXPECT_EQ(num(8, 0.5 * largest), 8) << "no step is longer than the time step";
   EXPECT_EQ(num(8, 1e9 * largest), 8 * most_substeps);
+  EXPECT_EQ(stable_steps(modes, 8, largest, Pressure::present).length, largest);
+  EXPECT_NEAR(stable_steps(modes, 8, 1.5 * largest, Pressure::present).length, largest, 1e-12 * largest);
 }
 
 TEST(StableSteps, HaveAnImplicitPressureWhereTheAreaModeIsTheStiffOne) {
   const RunParameters run = resolve(RunParameters{});
   const double step = *run.time_step;
-  const auto steps = [&](double perimeter, double shortest_edge, bool may_be_implicit) {
-    return stable_steps(stiff_modes(run.dp, *run.wall_stiffness, perimeter, shortest_edge), 8, step,
-                        may_be_implicit);
+  const auto steps = [&](double perimeter, double shortest_edge, Pressure most) {
+    return stable_steps(stiff_modes(run.dp, *run.wall_stiffness, perimeter, shortest_edge), 8, step, most);
   };
   const double edge = units::regular_edge_length(*run.dp.vertices);
-  EXPECT_FALSE(steps(3.14, edge, true).implicit_pressure) << "a circle needs none";
-  EXPECT_EQ(steps(3.14, edge, true).num, 8);
-  const StableSteps drawn_out = steps(10 * 3.14, 10 * edge, true);
-  EXPECT_TRUE(drawn_out.implicit_pressure);
+  EXPECT_EQ(steps(3.14, edge, Pressure::implicit).pressure, Pressure::present) << "a circle needs none";
+  EXPECT_EQ(steps(3.14, edge, Pressure::implicit).num, 8);
+  const Steps drawn_out = steps(10 * 3.14, 10 * edge, Pressure::implicit);
+  EXPECT_EQ(drawn_out.pressure, Pressure::implicit);
   EXPECT_EQ(drawn_out.num, 8);
-  const StableSteps split = steps(10 * 3.14, 10 * edge, false);
-  EXPECT_FALSE(split.implicit_pressure);
+  const Steps split = steps(10 * 3.14, 10 * edge, Pressure::present);
+  EXPECT_EQ(split.pressure, Pressure::present);
   EXPECT_GT(split.num, 24);
-  EXPECT_FALSE(steps(3.14, 0.02 * edge, true).implicit_pressure) << "it does not help a short edge";
+  EXPECT_EQ(steps(3.14, 0.02 * edge, Pressure::implicit).pressure, Pressure::present)
+      << "it does not help a short edge";
 }
 
 }  // namespace

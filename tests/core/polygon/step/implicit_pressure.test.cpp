@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
-#include "stepped_droplet.hpp"
+#include "core/polygon/step/dp_stepper.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -34,10 +35,12 @@ TEST(ImplicitPressure, LetsACircleBreatheAtTheFrequencyOfNewmarksMethod) {
       constexpr double amplitude = 1e-5;  // u_0/R
       const double square = omega_dt * omega_dt;
       const double phi = std::acos(1 - square / (1 + square) / 2);
-      SteppedDroplet droplet(run, nothing, state_of((1 + amplitude) * circle));
+      DpForces forces(run, nothing);
+      DpStepper stepper(run, nothing, forces);
+      DropletState droplet = state_of((1 + amplitude) * circle);
       for (int n = 1; n <= 40; ++n) {
-        droplet.advance(1, omega_dt / omega, true);
-        const double area = polygon_shape(droplet.finish().position).area;
+        stepper.move(droplet, {{{1, omega_dt / omega, Pressure::implicit}}}, nullptr);
+        const double area = polygon_shape(droplet.position).area;
         EXPECT_NEAR((std::sqrt(area / units::rest_area) - 1) / amplitude, std::cos(n * phi), 2e-3)
             << omega_dt << ", step " << n;
       }
@@ -54,7 +57,14 @@ RunParameters film_parameters(Gravity gravity) {
   run.dp.perimeter_stiffness = 0.01;
   return run;
 }
-constexpr double film_time = 0.16;
+
+/// Moves the film for 0.16 t0.
+void move_film(DropletState& film, const RunParameters& run, DpForces& forces, int num_steps,
+               Pressure pressure, Droplet::Work* work = nullptr) {
+  constexpr int at_once = 16;
+  const std::vector<Steps> steps(num_steps / at_once, {at_once, 0.16 / num_steps, pressure});
+  DpStepper(run, no_obstacles(), forces).move(film, steps, work);
+}
 
 TEST(ImplicitPressure, MovesADropletAsShortStepsDoToSecondOrder) {
   const ObstacleArray nothing = no_obstacles();
@@ -63,15 +73,16 @@ TEST(ImplicitPressure, MovesADropletAsShortStepsDoToSecondOrder) {
       RunParameters run = film_parameters(gravity);
       run.drag.relative = relative_drag;
       const DropletState initial = state_of(ellipse(128, 4));
-      const auto position_after = [&](int steps, bool implicit_pressure) {
-        SteppedDroplet film(run, nothing, initial);
-        film.advance(steps, film_time / steps, implicit_pressure);
-        return Eigen::ArrayXd(film.finish().position);
+      const auto position_after = [&](int steps, Pressure pressure) {
+        DpForces forces(run, nothing);
+        DropletState film = initial;
+        move_film(film, run, forces, steps, pressure);
+        return film.position;
       };
-      const Eigen::ArrayXd exact = position_after(16000, false);
+      const Eigen::ArrayXd exact = position_after(16000, Pressure::present);
       ASSERT_GT((exact - initial.position).abs().maxCoeff(), 1e-3);
-      const double coarse = (position_after(80, true) - exact).abs().maxCoeff();
-      const double fine = (position_after(640, true) - exact).abs().maxCoeff();
+      const double coarse = (position_after(80, Pressure::implicit) - exact).abs().maxCoeff();
+      const double fine = (position_after(640, Pressure::implicit) - exact).abs().maxCoeff();
       EXPECT_LT(fine, 2e-4);
       EXPECT_GT(std::log2(coarse / fine) / 3, 1.7) << coarse << ' ' << fine;
     }
@@ -81,16 +92,18 @@ TEST(ImplicitPressure, BalancesTheEnergyToSecondOrder) {
   const ObstacleArray nothing = no_obstacles();
   for (const Gravity gravity : {Gravity::vertex, Gravity::area}) {
     const auto imbalance = [&](int steps) {
-      const DropletState initial = state_of(ellipse(128, 4));
+      const RunParameters run = film_parameters(gravity);
+      DpForces forces(run, nothing);
+      DropletState film = state_of(ellipse(128, 4));
       Droplet::Work work;
-      SteppedDroplet film(film_parameters(gravity), nothing, initial, &work);
-      const auto energy_of = [&](const DropletState& state) {
-        return units::droplet_mass / 128 / 2 * state.velocity.square().sum() +
-               film.forces().energy(state).total() + work.dissipated - work.spreading;
+      const auto energy = [&] {
+        return units::droplet_mass / 128 / 2 * film.velocity.square().sum() + forces.energy(film).total() +
+               work.dissipated - work.spreading;
       };
-      const double begin = energy_of(initial);
-      film.advance(steps, film_time / steps, true);
-      return std::abs(energy_of(film.finish()) - begin);
+      forces.update_contacts(film, {});
+      const double begin = energy();
+      move_film(film, run, forces, steps, Pressure::implicit, &work);
+      return std::abs(energy() - begin);
     };
     const double coarse = imbalance(160), fine = imbalance(1280);
     EXPECT_LT(fine, 2e-4);

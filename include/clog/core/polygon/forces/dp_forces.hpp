@@ -13,9 +13,16 @@
 #include "clog/core/world/obstacle_array.hpp"
 
 namespace clog {
-namespace kernel {
-struct Interface;
-}
+
+/// Terms of the interface's force.
+struct InterfaceTerms {
+  double line_tension;   ///< gamma
+  double spring;         ///< k_l N_v
+  double spring_length;  ///< l0 or the mean edge length
+  double spreading;      ///< k_l N_v of springs that act along the interface only
+  double pressure;       ///< -k_a (a - a0)
+  double vertex_weight;  ///< M g / N_v along +x
+};
 
 /// Potential energy of a deformable polygon among obstacles, and what the passes of a step (DpStepper,
 /// RestForces) need for its negative gradient.
@@ -53,7 +60,7 @@ class DpForces {
   double vertex_diameter() const { return vertex_diameter_; }
 
   /// For the integrator: the terms of the interface at this area and perimeter, and the contacts.
-  kernel::Interface interface(double area, double perimeter) const;
+  InterfaceTerms interface(double area, double perimeter) const;
   double contact_stiffness() const { return contact_stiffness_; }
   const WallContacts& walls() const { return walls_; }
   const WallContacts& nearest_walls() const { return nearest_walls_; }

@@ -47,23 +47,28 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
 
 /// Largest time step [t0] that keeps every bound above.
 double largest_stable_step(const StiffModes& modes);
-/// The same with an implicit pressure (see StableSteps).
+/// The same with an implicit pressure (see Pressure).
 double largest_step_with_implicit_pressure(const StiffModes& modes);
 
 /// A droplet that needs more for one has burst; the run is given up at its next check.
 inline constexpr int most_substeps = 1000;
 
-/// How to go some time steps, so that every bound is kept.
-struct StableSteps {
-  int num;  ///< of equal length
-  /// Does the pressure follow the area that the droplet would have if its present acceleration lasted for a
-  /// step (docs/explanation/numerics.md)? Then (omega dt)^2 of the area mode is below 1 for every step.
-  bool implicit_pressure;
+enum class Pressure {
+  present,  ///< that of the present area
+  /// It follows the area that the droplet would have if its present acceleration lasted for a step
+  /// (docs/explanation/numerics.md): (omega dt)^2 of the area mode is below 1 for every step.
+  implicit
 };
-/// As few steps as possible for `steps` time steps: as many if they keep the bounds themselves, at most
-/// most_substeps times as many. Up to twice as many it is as many as needed, above that, where shapes are far
-/// from the regular polygons of the bounds, a multiple of `steps`.
-/// @param may_be_implicit  may the pressure be implicit if this saves steps?
-StableSteps stable_steps(const StiffModes& modes, int steps, double time_step, bool may_be_implicit);
+/// Steps of equal length [t0].
+struct Steps {
+  int num;
+  double length;
+  Pressure pressure = Pressure::present;
+};
+/// The fewest steps that go as far as `steps` time steps and keep every bound: as many if these keep the
+/// bounds themselves, at most most_substeps times as many. Up to twice as many it is as many as needed, above
+/// that, where shapes are far from the regular polygons of the bounds, a multiple of `steps`.
+/// @param most  Pressure::implicit: the pressure may be implicit if this saves steps
+Steps stable_steps(const StiffModes& modes, int steps, double time_step, Pressure most);
 
 }  // namespace clog

@@ -4,7 +4,6 @@
 
 #include "clog/core/droplet/droplet.hpp"
 #include "clog/core/polygon/forces/dp_forces.hpp"
-#include "clog/core/polygon/forces/stability.hpp"
 
 namespace clog {
 class DpStepper;
@@ -14,7 +13,7 @@ class DpStepper;
 /// the drag of the second half kick being implicit, so that strong near-wall drag cannot destabilise it. A
 /// drag of relative motion is treated in the same way, with the velocity of the centre of mass of the same
 /// instant. Where the droplet's present perimeter makes the area mode too stiff for the time step, and drag
-/// is strong and the same everywhere, the pressure is implicit (see StableSteps); otherwise steps get
+/// is strong and the same everywhere, the pressure is implicit (see Pressure); otherwise steps get
 /// shorter.
 class DpDroplet final : public Droplet {
  public:
@@ -41,8 +40,6 @@ class DpDroplet final : public Droplet {
   RunParameters run_;
   DpForces forces_;
   double vertex_mass_;
-  int steps_per_check_;
-  bool may_have_implicit_pressure_;
   std::unique_ptr<DpStepper> stepper_;
 };
 

@@ -1,10 +1,10 @@
-/// Edges, velocities and positions; part of dp_step_kernel.cpp.
+/// Forces and velocities, the first pass; part of dp_step_kernel.cpp.
 
-#if defined(CLOG_DP_STEP_MOTION) == defined(HWY_TARGET_TOGGLE)
-#ifdef CLOG_DP_STEP_MOTION
-#undef CLOG_DP_STEP_MOTION
+#if defined(CLOG_DP_STEP_KICK) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLOG_DP_STEP_KICK
+#undef CLOG_DP_STEP_KICK
 #else
-#define CLOG_DP_STEP_MOTION
+#define CLOG_DP_STEP_KICK
 #endif
 
 #include <type_traits>
@@ -14,45 +14,6 @@
 HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
-
-/// Fills the edges, a vector at a time, and adds up what is wanted of them.
-template <bool with_perimeter, bool with_moments>
-struct EdgeMeasure {
-  StepArrays a;
-  V perimeter = all(0), twice_area = all(0), moment_x = all(0), moment_y = all(0);
-
-  template <class Keep>
-  HWY_INLINE void add(int i, V x, V y, V next_x, V next_y, Keep keep) {
-    const V ex = hn::Sub(next_x, x), ey = hn::Sub(next_y, y);
-    const V length2 = hn::MulAdd(ex, ex, hn::Mul(ey, ey));
-    const auto [length, inverse_length] = square_root(length2);
-    const V cross = keep(hn::MulSub(x, ey, hn::Mul(y, ex)));
-    store(hn::Mul(ex, inverse_length), a.tangent_x + i);
-    store(hn::Mul(ey, inverse_length), a.tangent_y + i);
-    store(length, a.length + i);
-    twice_area = hn::Add(twice_area, cross);
-    if constexpr (with_perimeter) perimeter = hn::Add(perimeter, keep(length));
-    if constexpr (with_moments) {
-      moment_x = hn::MulAdd(cross, hn::Add(x, next_x), moment_x);
-      moment_y = hn::MulAdd(cross, hn::Add(y, next_y), moment_y);
-    }
-  }
-
-  HWY_INLINE Sums total(int n) const {
-    for (double* p : {a.tangent_x, a.tangent_y, a.length}) p[-1] = p[n - 1];
-    const auto s = sums(twice_area, perimeter, moment_x, moment_y);
-    return {s[0] / 2, s[1], s[2] / 6, s[3] / 6};
-  }
-};
-
-Sums measure(int n, const StepArrays& arrays) {
-  EdgeMeasure<true, true> edges{arrays};
-  const StepArrays& a = arrays;
-  for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
-    edges.add(i, load(a.x + i), load(a.y + i), load_at(a.x + i + 1), load_at(a.y + i + 1), keep);
-  });
-  return edges.total(n);
-}
 
 /// What the coupled drag needs of a kick, G being 6 a times the centroid's gradient and s = 1/(1 + h r).
 struct KickSums {
@@ -95,7 +56,7 @@ HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force
     const double gg_xx = unit * unit * sums.gg_xx, gg_xy = unit * unit * sums.gg_xy;
     const double gg_yy = unit * unit * sums.gg_yy;
     const double kick_x = sums.force_x, kick_y = sums.force_y;
-    const double before_x = k.kicks * kick_x, before_y = k.kicks * kick_y;
+    const double before_x = k.closing_ratio * kick_x, before_y = k.closing_ratio * kick_y;
     mean_x += one_nth * (g_xx * before_x + g_yx * before_y);
     mean_y += one_nth * (g_xy * before_x + g_yy * before_y);
     const double both = e * feedback, both_b = both * b * one_nth;
@@ -111,7 +72,7 @@ HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force
     if constexpr (implicit_pressure) {
       outwards += ng_x * kick_x + ng_y * kick_y;
       // With s the same for all vertices the pressure moves them by s n, which adds up to nothing.
-      const double pressed = k.kicks * softening * one_nth * sums.s;
+      const double pressed = k.closing_ratio * softening * one_nth * sums.s;
       right_x -= pressed * ng_x * outwards;
       right_y -= pressed * ng_y * outwards;
       m_xx -= pressed * drag * ng_x * ng_x;
@@ -160,18 +121,6 @@ struct Corner {
 /// What pulls and pushes along the interface, the same for all vertices.
 struct InterfaceVectors {
   V line_tension, spring, spreading, half_pressure, vertex_weight;
-
-  HWY_INLINE explicit InterfaceVectors(const InterfaceKick& interface)
-      : line_tension(all(interface.line_tension)),
-        spring(all(interface.spring)),
-        spreading(all(interface.spreading)),
-        half_pressure(all(interface.half_pressure)),
-        vertex_weight(all(interface.vertex_weight)) {}
-};
-
-/// A force or a velocity of vertices.
-struct PairOfVectors {
-  V x, y;
 };
 
 /// How the area's centroid moves with a vertex, times six times the area.
@@ -183,8 +132,8 @@ struct CentroidGradient {
 /// sum of the three corners relative to the centroid, n the chord turned outwards, k twice the area.
 /// @param centre  three times the centroid
 template <class Keep>
-HWY_INLINE CentroidGradient centroid_gradient(const PairOfVectors& place, const PairOfVectors& centre,
-                                              const Corner& corner, const PairOfVectors& chord, Keep keep) {
+HWY_INLINE CentroidGradient centroid_gradient(const Pair& place, const Pair& centre, const Corner& corner,
+                                              const Pair& chord, Keep keep) {
   const auto& [x, y] = place;
   const V minus_corners_x = hn::Add(hn::NegMulAdd(all(3), x, centre.x), hn::Sub(corner.ex_before, corner.ex));
   const V corners_y = hn::Add(hn::MulSub(all(3), y, centre.y), hn::Sub(corner.ey, corner.ey_before));
@@ -202,17 +151,17 @@ struct KickVectors {
   V nn = all(0), nf = all(0), ng_x = all(0), ng_y = all(0);
 
   template <class Keep>
-  HWY_INLINE void add_outwards(const PairOfVectors& chord, const PairOfVectors& force, Keep keep) {
+  HWY_INLINE void add_outwards(const Pair& chord, const Pair& force, Keep keep) {
     nn = hn::Add(nn, keep(hn::MulAdd(chord.x, chord.x, hn::Mul(chord.y, chord.y))));
     nf = hn::Add(nf, keep(hn::MulSub(chord.y, force.x, hn::Mul(chord.x, force.y))));
   }
-  HWY_INLINE void add_outwards(const PairOfVectors& chord, const CentroidGradient& g) {
+  HWY_INLINE void add_outwards(const Pair& chord, const CentroidGradient& g) {
     ng_x = hn::MulAdd(g.xx, chord.y, hn::NegMulAdd(g.xy, chord.x, ng_x));
     ng_y = hn::MulAdd(g.yx, chord.y, hn::NegMulAdd(g.yy, chord.x, ng_y));
   }
 
   template <class Keep>
-  HWY_INLINE void add_velocity(V s, const PairOfVectors& w, Keep keep) {
+  HWY_INLINE void add_velocity(V s, const Pair& w, Keep keep) {
     if constexpr (varying_rate) {
       s_sum = hn::Add(s_sum, keep(s));
       w_x = hn::MulAdd(keep(s), w.x, w_x);
@@ -223,7 +172,7 @@ struct KickVectors {
     }
   }
 
-  HWY_INLINE void add_gradient(const CentroidGradient& g, V s, const PairOfVectors& w) {
+  HWY_INLINE void add_gradient(const CentroidGradient& g, V s, const Pair& w) {
     CentroidGradient sg = g;
     if constexpr (varying_rate) {
       sg = {hn::Mul(s, g.xx), hn::Mul(s, g.xy), hn::Mul(s, g.yx), hn::Mul(s, g.yy)};
@@ -279,9 +228,8 @@ struct KickVectors {
 
 /// The force on vertices, without the drag.
 template <bool elastic, bool on_area, bool varying_rate, class Keep>
-HWY_INLINE PairOfVectors kick_force(const Corner& c, const PairOfVectors& chord, const PairOfVectors& push,
-                                    const InterfaceVectors& along, KickVectors<varying_rate>& total,
-                                    Keep keep) {
+HWY_INLINE Pair kick_force(const Corner& c, const Pair& chord, const Pair& push,
+                           const InterfaceVectors& along, KickVectors<varying_rate>& total, Keep keep) {
   // Slow operations come first: the processor does not look far ahead.
   V spread;
   if constexpr (!elastic)
@@ -310,57 +258,50 @@ template <bool elastic, bool coupled, bool on_area, bool varying_rate, bool impl
 Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays) {
   const StepArrays a = arrays;  // a copy that stores cannot change
-  const InterfaceVectors along(interface);
-  const PairOfVectors centre{all(3 * force.centre_x), all(3 * force.centre_y)};
-  const V kicks = all(coefficients.kicks);
+  const InterfaceVectors along{all(interface.line_tension), all(interface.spring), all(interface.spreading),
+                               all(interface.half_pressure), all(interface.vertex_weight)};
+  const Pair centre{all(3 * force.centre_x), all(3 * force.centre_y)};
+  const V closing_ratio = all(coefficients.closing_ratio);
   const bool keeps_kicked = coefficients.keeps_kicked;
   const double one_s = varying_rate ? 1 : 1 / (1 + coefficients.h1 * terms.rate);
   const V same_s = all(one_s), same_kept = all(one_s * (1 - coefficients.h2 * terms.rate));
   KickVectors<varying_rate> total{};  // an aggregate: a constructor would know no instruction set
   Corner last;
   last.length = all(a.length[-1]);
-  last.tx = all(a.tangent_x[-1]);
-  last.ty = all(a.tangent_y[-1]);
+  last.tx = all(a.tangent.x[-1]);
+  last.ty = all(a.tangent.y[-1]);
   for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
     Corner corner;
     corner.length = load(a.length + i);
-    corner.tx = load(a.tangent_x + i);
-    corner.ty = load(a.tangent_y + i);
+    corner.tx = load(a.tangent.x + i);
+    corner.ty = load(a.tangent.y + i);
     corner.length_before = shifted_back<1>(a.length + i, last.length, corner.length);
-    corner.tx_before = shifted_back<1>(a.tangent_x + i, last.tx, corner.tx);
-    corner.ty_before = shifted_back<1>(a.tangent_y + i, last.ty, corner.ty);
+    corner.tx_before = shifted_back<1>(a.tangent.x + i, last.tx, corner.tx);
+    corner.ty_before = shifted_back<1>(a.tangent.y + i, last.ty, corner.ty);
     last = corner;
     corner.multiply();
     // The chord between the neighbours. Turned outwards it is (y, -x).
-    const PairOfVectors chord{hn::Add(corner.ex, corner.ex_before), hn::Add(corner.ey, corner.ey_before)};
-    const auto [fx, fy] = kick_force<elastic, on_area>(
-        corner, chord, {load(a.push_x + i), load(a.push_y + i)}, along, total, keep);
+    const Pair chord{hn::Add(corner.ex, corner.ex_before), hn::Add(corner.ey, corner.ey_before)};
+    const auto [fx, fy] = kick_force<elastic, on_area>(corner, chord, load(a.push, i), along, total, keep);
     // Where s is the same for all it is left to the end.
-    const PairOfVectors w{hn::MulAdd(kicks, fx, load(a.vx + i)), hn::MulAdd(kicks, fy, load(a.vy + i))};
+    const Pair before = load(a.velocity, i);
+    const Pair w{hn::MulAdd(closing_ratio, fx, before.x), hn::MulAdd(closing_ratio, fy, before.y)};
     V s = same_s, kept = same_kept;
     if constexpr (varying_rate) {
       s = load(a.damping + i);
       kept = load(a.kept + i);
     }
-    store(hn::MulAdd(w.x, kept, fx), a.vx + i);
-    store(hn::MulAdd(w.y, kept, fy), a.vy + i);
-    if (keeps_kicked) {
-      store(hn::Mul(w.x, s), a.kicked_x + i);
-      store(hn::Mul(w.y, s), a.kicked_y + i);
-    }
+    store({hn::MulAdd(w.x, kept, fx), hn::MulAdd(w.y, kept, fy)}, a.velocity, i);
+    if (keeps_kicked) store({hn::Mul(w.x, s), hn::Mul(w.y, s)}, a.kicked, i);
     if constexpr (coupled) total.add_velocity(s, w, keep);
     if constexpr (implicit_pressure) {
       total.add_outwards(chord, {fx, fy}, keep);
-      store(chord.x, a.chord_x + i);
-      store(chord.y, a.chord_y + i);
+      store(chord, a.chord, i);
     }
     if constexpr (on_area) {
-      const CentroidGradient g =
-          centroid_gradient({load(a.x + i), load(a.y + i)}, centre, corner, chord, keep);
-      store(g.xx, a.grad_xx + i);
-      store(g.xy, a.grad_xy + i);
-      store(g.yx, a.grad_yx + i);
-      store(g.yy, a.grad_yy + i);
+      const CentroidGradient g = centroid_gradient(load(a.position, i), centre, corner, chord, keep);
+      store({g.xx, g.xy}, a.grad_x, i);
+      store({g.yx, g.yy}, a.grad_y, i);
       total.add_gradient(g, s, w);
       if constexpr (implicit_pressure) total.add_outwards(chord, g);
     }
@@ -389,113 +330,6 @@ auto version(const KickTerms& terms, Make make) {
 
 decltype(StepKernel::kick) kick_version(const KickTerms& terms) {
   return version(terms, [](auto... chosen) { return &kick_with<chosen...>; });
-}
-
-Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
-            const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays) {
-  const StepArrays a = arrays;
-  const double one_s = coefficients.kicks / (1 + coefficients.h1 * terms.rate);  // 0: w is the velocity
-  const V cx = all(coupling.c_x), cy = all(coupling.c_y), ax = all(coupling.a_x), ay = all(coupling.a_y);
-  const V spreading = all(interface.spreading), pressure = all(coupling.half_pressure);
-  V drag = all(0), spread_power = all(0), spread_x = all(0), spread_y = all(0);
-  for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
-    V s = all(one_s), rate = all(terms.rate);
-    if (terms.varying_rate) {
-      s = hn::Mul(all(coefficients.kicks), load(a.damping + i));
-      rate = load(a.rate + i);
-    }
-    V pull_x = cx, pull_y = cy;
-    if (terms.on_area) {
-      pull_x = hn::NegMulAdd(load(a.grad_xx + i), ax, hn::NegMulAdd(load(a.grad_yx + i), ay, cx));
-      pull_y = hn::NegMulAdd(load(a.grad_xy + i), ax, hn::NegMulAdd(load(a.grad_yy + i), ay, cy));
-    }
-    if (coupling.half_pressure != 0) {
-      pull_x = hn::MulAdd(pressure, load(a.chord_y + i), pull_x);
-      pull_y = hn::NegMulAdd(pressure, load(a.chord_x + i), pull_y);
-    }
-    const V vx = hn::MulAdd(s, pull_x, load(a.kicked_x + i));
-    const V vy = hn::MulAdd(s, pull_y, load(a.kicked_y + i));
-    drag = hn::Add(drag, keep(hn::Mul(rate, hn::MulAdd(vx, vx, hn::Mul(vy, vy)))));
-    if (terms.elastic) return;
-    const V length = load(a.length + i), length_before = load_at(a.length + i - 1);
-    const V tx = load(a.tangent_x + i), tx_before = load_at(a.tangent_x + i - 1);
-    const V ty = load(a.tangent_y + i), ty_before = load_at(a.tangent_y + i - 1);
-    const V spread = keep(spread_along_chord(spreading, length, length_before, tx, tx_before, ty, ty_before));
-    const V chord_x = hn::MulAdd(length, tx, hn::Mul(length_before, tx_before));
-    const V chord_y = hn::MulAdd(length, ty, hn::Mul(length_before, ty_before));
-    const V fx = hn::MulAdd(spread, chord_x, keep(load(a.wetting_x + i)));
-    const V fy = hn::MulAdd(spread, chord_y, keep(load(a.wetting_y + i)));
-    spread_power = hn::MulAdd(fx, vx, hn::MulAdd(fy, vy, spread_power));
-    spread_x = hn::Add(spread_x, fx);
-    spread_y = hn::Add(spread_y, fy);
-  });
-  const auto s = sums(drag, spread_power, spread_x, spread_y);
-  return {.drag = s[0], .spreading = s[1], .spread_x = s[2], .spread_y = s[3]};
-}
-
-template <bool elastic, bool coupled, bool on_area, bool varying_rate, bool implicit_pressure>
-Sums drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficients, const Coupling& coupling,
-                double time_step, const StepArrays& arrays) {
-  const StepArrays a = arrays;
-  const V cx = all(coupling.c_x), cy = all(coupling.c_y), ax = all(coupling.a_x), ay = all(coupling.a_y);
-  const V pressure = all(coupling.half_pressure);
-  const V dt = all(time_step), weight = all(coefficients.weight);
-  const V same = all(coefficients.weight / (1 + coefficients.h1 * terms.rate));
-  struct Point {
-    V x, y;
-  };
-  const auto move = [&](int i) CLOG_INLINE {
-    V vx = load(a.vx + i), vy = load(a.vy + i);
-    if constexpr (coupled || implicit_pressure) {
-      V share = same;
-      if constexpr (varying_rate) share = hn::Mul(weight, load(a.damping + i));
-      V pull_x = cx, pull_y = cy;
-      if constexpr (on_area) {
-        pull_x = hn::NegMulAdd(load(a.grad_xx + i), ax, hn::NegMulAdd(load(a.grad_yx + i), ay, cx));
-        pull_y = hn::NegMulAdd(load(a.grad_xy + i), ax, hn::NegMulAdd(load(a.grad_yy + i), ay, cy));
-      }
-      if constexpr (implicit_pressure) {
-        pull_x = hn::MulAdd(pressure, load(a.chord_y + i), pull_x);
-        pull_y = hn::NegMulAdd(pressure, load(a.chord_x + i), pull_y);
-      }
-      vx = hn::MulAdd(share, pull_x, vx);
-      vy = hn::MulAdd(share, pull_y, vy);
-      store(vx, a.vx + i);
-      store(vy, a.vy + i);
-    }
-    const Point to{hn::MulAdd(dt, vx, load(a.x + i)), hn::MulAdd(dt, vy, load(a.y + i))};
-    store(to.x, a.x + i);
-    store(to.y, a.y + i);
-    return to;
-  };
-  EdgeMeasure<elastic, on_area> edges{a};
-  // Edges a vector behind the vertices they need: then the processor works on both at once.
-  const Point first = move(0);
-  Point here = first, next = n > lanes ? move(lanes) : first;
-  int i = 0;
-  const auto measure_behind = [&]() CLOG_INLINE {
-    edges.add(i, here.x, here.y, shifted_forward(here.x, next.x), shifted_forward(here.y, next.y), KeepAll());
-    here = next;
-    i += lanes;
-  };
-  while (i + 2 * lanes < n) {
-    const Point after = move(i + 2 * lanes);
-    measure_behind();
-    next = after;
-  }
-  if (i + lanes < n) measure_behind();
-  close(a.x, n);
-  close(a.y, n);
-  if (i + lanes == n)
-    edges.add(i, here.x, here.y, shifted_forward(here.x, first.x), shifted_forward(here.y, first.y),
-              KeepAll());
-  else
-    edges.add(i, load(a.x + i), load(a.y + i), load_at(a.x + i + 1), load_at(a.y + i + 1), KeepFirst(n - i));
-  return edges.total(n);
-}
-
-decltype(StepKernel::drift) drift_version(const KickTerms& terms) {
-  return version(terms, [](auto... chosen) { return &drift_with<chosen...>; });
 }
 
 }  // namespace clog::kernel::HWY_NAMESPACE
