@@ -17,7 +17,7 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
-#include "clog/core/polygon/automatic_values.hpp"
+#include "clog/core/polygon/forces/automatic_values.hpp"
 #include "clog/laboratory/scales.hpp"
 
 namespace clog::programs {

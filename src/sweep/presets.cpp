@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <iterator>
 
-#include "clog/core/polygon/automatic_values.hpp"
+#include "clog/core/polygon/forces/automatic_values.hpp"
 #include "clog/sweep/keys.hpp"
 
 namespace clog::sweep {

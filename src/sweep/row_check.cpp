@@ -12,7 +12,7 @@
 #include "clog/core/droplet/droplet.hpp"
 #include "clog/core/model/model.hpp"
 #include "clog/core/parameters/schema.hpp"
-#include "clog/core/polygon/stability.hpp"
+#include "clog/core/polygon/forces/stability.hpp"
 #include "clog/core/run/dwell_record.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/scene/scene.hpp"

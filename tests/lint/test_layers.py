@@ -52,6 +52,13 @@ class Layers(unittest.TestCase):
                               self.found({"analysis/clogsweep/tools/names.py": text}))
         self.assertIn("src/base/more.cpp:1: base must not use clog/top/top.hpp", self.found({"src/base/more.cpp": "#include <clog/top/top.hpp>\n"}))
 
+    def test_folders_of_a_layer_inside_core_are_layers(self):
+        layers = [*CPP, ("core", ""), ("core/ball/low", ""), ("core/ball", "`core/ball/low`")]
+        files = {"src/core/ball/ball.cpp": '#include "core/ball/low/low.hpp"\n', "src/core/ball/low/low.hpp": ""}
+        self.assertEqual(self.found(files, cpp=layers), "layers are clean\n")
+        upward = {**files, "src/core/ball/low/low.hpp": '#include "clog/core/ball/ball.hpp"\n'}
+        self.assertIn("low.hpp:1: core/ball/low must not use clog/core/ball/ball.hpp", self.found(upward, cpp=layers))
+
     def test_the_names_of_the_whole_package_are_not_for_its_layers(self):
         self.assertIn("reading/more.py:1: reading must not use __init__.py", self.found({"analysis/clogsweep/reading/more.py": "from .. import open\n"}))
         self.assertIn("reading/more.py:1: imports clogsweep.tools as a stranger does",

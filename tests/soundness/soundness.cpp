@@ -30,7 +30,7 @@
 #include "clog/sweep/plan.hpp"
 #include "ending.hpp"
 #include "findings.hpp"
-#include "polygon/reference_forces.hpp"
+#include "polygon/forces/reference_forces.hpp"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <ostream>
 #include <string>
 
-#include "clog/core/polygon/automatic_values.hpp"
-#include "clog/core/polygon/stability.hpp"
+#include "clog/core/polygon/forces/automatic_values.hpp"
+#include "clog/core/polygon/forces/stability.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
