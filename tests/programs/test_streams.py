@@ -46,8 +46,8 @@ class Streams(SweepTest):
 
     def test_a_closed_stream_suppresses_output(self):
         for redirection in (">&-", "2>&-", "<&-", "<&- >&- 2>&-", ">/dev/full 2>/dev/full"):
-            # MPICH's mpirun does not start without its streams.
-            for ranks in (None, 2) if MPI == "Open MPI" else (None,):
+            # MPICH's mpirun does not start without its streams, Open MPI's waits for a full one.
+            for ranks in (None, 2) if MPI == "Open MPI" and "full" not in redirection else (None,):
                 with self.subTest(redirection, ranks=ranks):
                     done = self.redirect(redirection, "clogsweep", *SMALL_SWEEP, ranks=ranks)
                     self.assertEqual(done.returncode, 0, done.stderr)
