@@ -1,4 +1,4 @@
-"""A layer includes the layers that its line in docs/explanation/architecture.md names, and no others; some libraries belong
+"""A layer includes the layers that its line in docs/developer/architecture.md names, and no others; some libraries belong
 to one layer, fmt to no header.
 
 The layers inside core have lines of their own: core/world, core/polygon/step and so on. Modules of the Python package are its folders, in a
@@ -14,7 +14,7 @@ import pathlib
 import re
 import sys
 
-PAGE = "docs/explanation/architecture.md"
+PAGE = "docs/developer/architecture.md"
 OWN_LIBRARY = {"mpi.h": "scheduler", "hdf5.h": "store", "boost/program_options.hpp": "cli"}
 PACKAGE = pathlib.Path("analysis/clogsweep")
 PYTHON_SECTION = "\n## Modules of the Python package\n"

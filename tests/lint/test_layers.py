@@ -33,7 +33,7 @@ class Layers(unittest.TestCase):
     def found(self, files=(), cpp=CPP, python=PYTHON):
         """The lint's answer for the sound tree with other files, and other lines in its tables."""
         with tempfile.TemporaryDirectory() as folder:
-            for name, text in {**SOUND, "docs/explanation/architecture.md": page(cpp, python), **dict(files)}.items():
+            for name, text in {**SOUND, "docs/developer/architecture.md": page(cpp, python), **dict(files)}.items():
                 path = pathlib.Path(folder, name)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(text)
