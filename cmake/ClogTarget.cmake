@@ -1,4 +1,4 @@
-# One target per layer: what a layer may use is what it links. See docs/explanation/architecture.md.
+# One target per layer: what a layer may use is what it links. See docs/developer/architecture.md.
 
 # Flags of all our own code, and of nothing else. What uses the installed libraries gets the first part only.
 add_library(clog_flags INTERFACE)
@@ -33,7 +33,7 @@ target_compile_options(clog_flags INTERFACE "$<BUILD_INTERFACE:${own_flags}>")
 function(clog_layer name)
   cmake_parse_arguments(LAYER "" "" "SOURCES;USES;USES_PRIVATE" ${ARGN})
   add_library(clog_${name} STATIC ${LAYER_SOURCES})
-  # Text is put together by fmt, everywhere, but in no header: docs/explanation/architecture.md.
+  # Text is put together by fmt, everywhere, but in no header: docs/developer/architecture.md.
   target_link_libraries(clog_${name} PUBLIC clog_flags ${LAYER_USES} PRIVATE fmt::fmt ${LAYER_USES_PRIVATE})
 endfunction()
 

@@ -5,9 +5,9 @@
 #include "clog/cli/obstacle_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
-#include <set>
 #include <span>
 #include <sstream>
 #include <string_view>
@@ -20,6 +20,7 @@
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/sweep/value_list.hpp"
 
 namespace clog::cli {
 namespace {
@@ -56,12 +57,12 @@ bool begins_like_key(const std::string& word) {
 
 CommandLine::CommandLine(std::string program, std::string usage, SweepKeys sweep_keys)
     : program_(std::move(program)), usage_(std::move(usage)), sweep_keys_(sweep_keys) {
-  own_.add_options()("help,h", "print this and leave")("version", "print versions and leave");
+  flag("help,h", "print this and leave").flag("version", "print versions and leave");
   if (sweep_keys == SweepKeys::none) return;
-  own_.add_options()("config", po::value<std::string>(), "file with lines `key = value`")(
-      "instruction-set", po::value<std::string>(),
-      "of the processor, for the polygon: avx512, avx2, baseline (the widest there is). Results differ by "
-      "round-off");
+  option("config", "file with lines `key = value`")
+      .option("instruction-set",
+              "of the processor, for the polygon: avx512, avx2, baseline (the widest there is). Results "
+              "differ by round-off");
   const auto add = [](po::options_description& group, const sweep::Key& key) {
     group.add_options()(key.name.c_str(), po::value<std::string>(),
                         (key.help + " (" + key.default_text + ")").c_str());
@@ -71,13 +72,39 @@ CommandLine::CommandLine(std::string program, std::string usage, SweepKeys sweep
     if (std::ranges::find(usual_keys, key.name) == std::end(usual_keys)) add(keys_, key);
 }
 
+CommandLine& CommandLine::flag(const char* name, const char* help) {
+  own_.add_options()(name, help);
+  return *this;
+}
+
+CommandLine& CommandLine::option(const char* name, const char* help, const char* otherwise) {
+  auto* const value = po::value<std::string>();
+  if (otherwise) value->default_value(otherwise);
+  own_.add_options()(name, value, help);
+  return *this;
+}
+
+CommandLine& CommandLine::word(const char* name, const char* help) {
+  words_.insert(name);
+  positional_.add(name, 1);
+  return option(name, help);
+}
+
+CommandLine& CommandLine::words(const char* name, const char* help) {
+  words_.insert(name);
+  positional_.add(name, -1);
+  own_.add_options()(name, po::value<std::vector<std::string>>(), help);
+  return *this;
+}
+
 void CommandLine::parse(int argc, const char* const* argv) {
   std::vector<std::string> words;
   text_ = program_;
-  for (int i = 1; i < argc; ++i) {
+  const int first = 1 + static_cast<int>(std::ranges::count(program_, ' '));
+  for (int i = first; i < argc; ++i) {
     // `key=value` means `--key=value`, except where it is the value of the option before it: --output a=1.h5.
-    const bool is_setting =
-        sweep_keys_ == SweepKeys::accepted && is_assignment(argv[i]) && !(i > 1 && awaits_value(argv[i - 1]));
+    const bool is_setting = sweep_keys_ == SweepKeys::accepted && is_assignment(argv[i]) &&
+                            !(i > first && awaits_value(argv[i - 1]));
     words.push_back((is_setting ? "--" : "") + std::string(argv[i]));
     text_ += std::string(" ") + argv[i];
   }
@@ -204,9 +231,20 @@ std::vector<std::string> CommandLine::get_all(const std::string& option) const {
   return has(option) ? values_.at(option).as<std::vector<std::string>>() : std::vector<std::string>();
 }
 
+void CommandLine::refuse_missing(const std::string& option) const {
+  const std::string name = words_.contains(option) ? own_.find(option, false).description() : "--" + option;
+  throw Error(fmt::format("missing {}; see {} --help", name, program_));
+}
+
 std::string CommandLine::require(const std::string& option) const {
-  if (!has(option)) throw Error(fmt::format("missing --{}; see {} --help", option, program_));
+  if (!has(option)) refuse_missing(option);
   return get(option);
+}
+
+std::vector<std::string> CommandLine::require_all(const std::string& option, std::size_t least) const {
+  std::vector<std::string> all = get_all(option);
+  if (all.size() < least) refuse_missing(option);
+  return all;
 }
 
 std::string CommandLine::get_word(const std::string& option, const std::vector<std::string>& words) const {
@@ -238,8 +276,14 @@ std::vector<double> CommandLine::get_positives(const std::string& option) const 
   throw Error(fmt::format("invalid --{}={} (must be positive numbers)", option, get(option)));
 }
 
-double CommandLine::get_number(const std::string& option, double fallback) const {
-  return has(option) ? number(option) : fallback;
+std::int64_t CommandLine::get_whole(const std::string& option, std::int64_t otherwise, std::int64_t least,
+                                    std::int64_t most) const {
+  if (!has(option)) return otherwise;
+  const double value = number(option);
+  if (value >= static_cast<double>(least) && value <= static_cast<double>(most) && value == std::floor(value))
+    return static_cast<std::int64_t>(value);
+  throw Error(
+      fmt::format("invalid --{}={} (must be a whole number, {}..{})", option, get(option), least, most));
 }
 
 double CommandLine::number(const std::string& option) const {

@@ -17,23 +17,19 @@
 #include "clog/console/csv.hpp"
 #include "clog/console/decimal_commas.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::cli {
 namespace {
 
-std::string shortened(const std::string& text) {
-  constexpr std::size_t longest = 60;
-  return text.size() > longest ? text.substr(0, longest) + "..." : text;
-}
-
 constexpr const char* droplet_diameters = "sigma";  ///< as a unit of a column
 
 /// Metres in a unit of length. @throws Error
 double metres_in(const std::string& unit) {
   if (const std::optional<double> metres = console::metres_of(unit)) return *metres;
-  throw Error(fmt::format("'{}' is no unit of length; use nm, um, mm, cm or m", shortened(unit)));
+  throw Error(fmt::format("'{}' is no unit of length; use nm, um, mm, cm or m", excerpt(unit)));
 }
 
 bool is_unit(const std::string& unit) {
@@ -104,13 +100,13 @@ bool take_column(Columns& columns, int place, const std::string& cell) {
                                   : column == &columns.radius ? "the radius"
                                                               : std::string_view{name};
     throw Error(
-        fmt::format("there are two columns for {}, the second is '{}'; leave one", what, shortened(cell)));
+        fmt::format("there are two columns for {}, the second is '{}'; leave one", what, excerpt(cell)));
   }
   if (unit.empty()) return true;
   if (columns.unit.empty()) columns.unit = unit;
   if (!is_same_unit(columns.unit, unit))
     throw Error(
-        fmt::format("'{}' is not in {} as another column is; use one unit", shortened(cell), columns.unit));
+        fmt::format("'{}' is not in {} as another column is; use one unit", excerpt(cell), columns.unit));
   return true;
 }
 
@@ -137,7 +133,7 @@ Columns columns_named(std::vector<std::string> cells) {
         "the columns have to be x, y and one of diameter and radius, in any order, with or without others; "
         "or x and y alone, if all diameters are obstacle-diameter, below comments, which begin with #; here "
         "they are '{}'",
-        shortened(joined(cells, ","))));
+        excerpt(joined(cells, ","))));
   columns.header = std::move(cells);
   return columns;
 }
@@ -165,7 +161,7 @@ class Numbers {
       if (cell.empty()) throw Error("is empty; fill it, or remove the line");
       return number_in(cell, line.separator);
     } catch (const Error& error) {
-      throw Error(fmt::format("{}: {}", shortened(name), error.what()));
+      throw Error(fmt::format("{}: {}", excerpt(name), error.what()));
     }
   }
   /// To be called behind the last line. @throws Error  if each comma may separate thousands
@@ -182,7 +178,7 @@ class Numbers {
     } catch (const Error&) {
       throw Error(fmt::format(
           "'{}' is not a finite number; correct it, or put # before a line that is none of the table",
-          shortened(cell)));
+          excerpt(cell)));
     }
   }
 

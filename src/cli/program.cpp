@@ -2,10 +2,12 @@
 
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <string_view>
 
 #include "clog/console/build_info.hpp"
 #include "clog/console/clock.hpp"
@@ -55,24 +57,40 @@ int run_program(const std::string& program, const std::function<int()>& body) {
   }
 }
 
-bool answer_help_or_version(const CommandLine& line, const NamedTexts& libraries) {
+std::optional<int> run_command(const std::string& program, std::span<const Command> commands, int argc,
+                               const char* const* argv) {
+  const auto named = std::ranges::find_if(commands, [&](const Command& command) {
+    return argc > 1 && std::string_view(argv[1]) == command.name;
+  });
+  if (named == commands.end()) return std::nullopt;
+  return run_program(program + ' ' + named->name, [&] { return named->call(argc, argv); });
+}
+
+std::vector<std::string> names_of(std::span<const Command> commands) {
+  std::vector<std::string> names;
+  for (const Command& command : commands) names.emplace_back(command.name);
+  return names;
+}
+
+bool parse_command(CommandLine& line, int argc, const char* const* argv, const NamedTexts& libraries) {
+  line.parse(argc, argv);
   if (line.has("help")) {
     std::cout << line.help();
-    return true;
+    return false;
   }
-  if (!line.has("version")) return false;
+  if (!line.has("version")) return true;
   const BuildInfo build = build_info();
   fmt::print(std::cout, "{} {} (git {})\ncompiler: {}, {}\n", line.program(), build.version,
              build.git_describe, build.compiler, build.build_type);
   for (const auto& [name, version] : libraries) fmt::print(std::cout, "{}: {}\n", name, version);
-  return true;
+  return false;
 }
 
 NamedTexts origin(const CommandLine& line) {
   const BuildInfo build = build_info();
   return {{"program", line.program()},          {"version", build.version},
           {"git_describe", build.git_describe}, {"git_hash", build.git_hash},
-          {"compiler", build.compiler},         {"config", line.settings().to_config(false)},
+          {"compiler", build.compiler},         {"config", line.settings().to_config()},
           {"command_line", line.text()},        {"start_time", utc_now()}};
 }
 

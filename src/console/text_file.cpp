@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "clog/console/signals.hpp"
+#include "clog/core/tools/descriptor.hpp"
 #include "clog/core/tools/error.hpp"
 
 namespace clog::console {
@@ -31,44 +33,33 @@ constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   refuse(path, std::strerror(error));
 }
 
-/// An open file, to be read without blocking: a pipe that nobody writes to must not keep a signal from ending
-/// the program.
-class OpenText {
- public:
-  explicit OpenText(const std::string& path)
-      : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
-    if (descriptor_ < 0) refuse(path, errno);
-  }
-  OpenText(OpenText&&) = delete;
-  ~OpenText() { close(descriptor_); }
+/// Waits for what comes next, but not longer than until a signal comes.
+void wait_for(const Descriptor& file, const std::string& path) {
+  constexpr int milliseconds = 100;
+  pollfd state{file, POLLIN, 0};
+  do {
+    if (stop_signalled()) throw Stopped("stopped by a signal while reading " + path);
+  } while (poll(&state, 1, milliseconds) <= 0);
+}
 
-  /// Adds what comes next. Returns whether more may follow.
-  bool read_some(std::string& text) {
-    wait();
-    std::array<char, 65536> bytes;
-    const ssize_t size = read(descriptor_, bytes.data(), bytes.size());
-    if (size < 0 && (errno == EINTR || errno == EAGAIN)) return true;
-    if (size < 0) refuse(path_, errno);
-    text.append(bytes.data(), static_cast<std::size_t>(size));
-    return size > 0;
+/// Reads without blocking: a pipe that nobody writes to must not keep a signal from ending the program.
+std::string read_to_end(const std::string& path) {
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!file.is_open()) refuse(path, errno);
+  std::string text;
+  std::array<char, 65536> bytes;
+  for (ssize_t size = 1; size != 0;) {
+    wait_for(file, path);
+    size = retried([&] { return read(file, bytes.data(), bytes.size()); });
+    if (size < 0 && errno != EAGAIN) refuse(path, errno);
+    text.append(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
   }
-
- private:
-  const std::string& path_;
-  int descriptor_;
-
-  void wait() const {
-    constexpr int milliseconds = 100;
-    pollfd state{descriptor_, POLLIN, 0};
-    do {
-      if (stop_signalled()) throw Stopped("stopped by a signal while reading " + path_);
-    } while (poll(&state, 1, milliseconds) <= 0);
-  }
-};
+  return text;
+}
 
 /// Text in UTF-16 with a byte-order mark, as spreadsheets write it. @throws Error  if it is damaged
 std::string from_utf16(const std::string& path, std::string text) {
-  const iconv_t converter = iconv_open("UTF-8", "UTF-16");
+  auto* const converter = iconv_open("UTF-8", "UTF-16");
   std::string converted(2 * text.size(), '\0');  // two bytes become three at most
   char* from = text.data();
   char* to = converted.data();
@@ -98,9 +89,7 @@ std::string read_text(const std::string& path) {
   if (stat(path.c_str(), &status) != 0) refuse(path, errno);
   if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode))
     refuse(path, "a folder, device or socket, neither a file nor a pipe");
-  OpenText file(path);
-  std::string text;
-  while (file.read_some(text)) continue;
+  std::string text = read_to_end(path);
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) text = from_utf16(path, std::move(text));
   if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   unify_line_ends(text);

@@ -2,13 +2,11 @@
 
 #include <fmt/core.h>
 
-#include <array>
 #include <filesystem>
 #include <iostream>
 #include <limits>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "clog/cli/command_line.hpp"
@@ -21,10 +19,10 @@
 #include "clog/results/group_table.hpp"
 #include "clog/results/merger.hpp"
 #include "clog/results/stored_sweep.hpp"
-#include "clog/store/run_table.hpp"
 #include "clogfit_compare.hpp"
 #include "clogfit_lengths.hpp"
 #include "clogfit_units.hpp"
+#include "file_command.hpp"
 #include "laboratory_option.hpp"
 
 namespace {
@@ -33,8 +31,7 @@ using namespace clog;
 using namespace clog::programs;
 using results::SharedParameters;
 
-constexpr const char* program = "clogfit";
-constexpr const char* usage =
+constexpr const char* clogfit_usage =
     R"(clogfit prints, for every parameter set of a sweep, the clogging length with its
 confidence interval and the mean speed with its standard error.
 
@@ -64,37 +61,45 @@ advanced no farther than dwell-length (0.05 sigma by default) for longer than th
 did so, even if it moved on.
 )";
 
-int body(int argc, char** argv) {
-  namespace po = boost::program_options;
-  cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::none);
-  line.add_options()("file", po::value<std::vector<std::string>>(), "sweep files")(
-      "format", po::value<std::string>()->default_value("text"), "text, csv or json")(
-      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
-      "all-parameters",
-      "in the text, also list the parameters that all runs share with their default values")(
-      "from-distance", po::value<std::string>(),
-      "count lambda from this distance on; runs that ended before are left out [sigma]")(
-      "lab", po::value<std::string>(),
-      "file that describes the laboratory, see clogfit units: lengths, speeds and times in its units, too")(
-      "pool", po::value<std::string>(),
-      "max-time, boxes or both, with a comma between: join groups that differ in these keys only")(
-      "lines", po::value<std::string>(),
-      "x1,x2,...: lines across a device that droplets pass, in place of the rows of its posts [sigma]")(
-      "dwell", po::value<std::string>(), "droplets that have not moved for so long count as clogged [t0]");
-  line.add_positional("file", -1);
-  line.add_commands({"calibrate", "compare", "curve", "deviation", "drag", "lengths", "report", "units"});
-  line.parse(argc, argv);
-  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
-  if (!line.has("file")) throw Error("missing sweep file; try clogfit sweep.h5");
+/// Runs python3 -m clogsweep COMMAND, which asks these very programs for numbers.
+int in_python(int argc, const char* const* argv) {
+  const std::string command = argv[1];
+  // The user's own --programs comes later and has the last word.
+  std::vector<std::string> arguments = {command, "--programs", cli::own_folder()};
+  arguments.insert(arguments.end(), argv + 2, argv + argc);
+  cli::become_python("clogfit " + command, cli::find_python_module(), arguments);
+}
+
+constexpr cli::Command clogfit_commands[] = {
+    {"calibrate", in_python}, {"compare", clogfit_compare}, {"curve", in_python},  {"deviation", in_python},
+    {"drag", in_python},      {"lengths", clogfit_lengths}, {"report", in_python}, {"units", clogfit_units}};
+
+int clogfit(int argc, const char* const* argv) {
+  cli::CommandLine line("clogfit", clogfit_usage);
+  line.words("file", "sweep files")
+      .option("format", "text, csv or json", "text")
+      .option("confidence", "of the intervals", "0.95")
+      .flag("all-parameters",
+            "in the text, also list the parameters that all runs share with their default values")
+      .option("from-distance",
+              "count lambda from this distance on; runs that ended before are left out [sigma]")
+      .option("lab",
+              "file that describes the laboratory, see clogfit units: lengths, speeds and times in its "
+              "units, too")
+      .option("pool",
+              "max-time, boxes or both, with a comma between: join groups that differ in these keys only")
+      .option(
+          "lines",
+          "x1,x2,...: lines across a device that droplets pass, in place of the rows of its posts [sigma]")
+      .option("dwell", "droplets that have not moved for so long count as clogged [t0]");
+  line.add_commands(cli::names_of(clogfit_commands));
+  if (!parse_file_command(line, argc, argv)) return console::exit_success;
+  const std::vector<std::string> paths = line.require_all("file");
   const std::string format = line.get_word("format", {"text", "csv", "json"});
   const double confidence = line.get_share("confidence");
-
   const double from_distance = line.has("from-distance") ? line.get_positive("from-distance") : 0;
-
   const double dwell =
       line.has("dwell") ? line.get_positive("dwell") : std::numeric_limits<double>::infinity();
-
-  const std::vector<std::string> paths = line.get_all("file");
   for (const std::string& path : paths)
     if (path.find('=') != std::string::npos && !std::filesystem::exists(path))
       throw Error(fmt::format(
@@ -106,7 +111,7 @@ int body(int argc, char** argv) {
         "no place for --dwell (droplets in a channel or on a wall have no clogging length) leave it out");
   const std::vector<const sweep::Column*> pooled =
       line.has("pool") ? results::pooled_columns(line.get("pool")) : std::vector<const sweep::Column*>();
-  const std::vector<double> lines = line.has("lines") ? line.get_positives("lines") : std::vector<double>();
+  const std::vector<double> lines = line.get_positives("lines");
   std::vector<results::Group> groups =
       results::group_runs(sweep.rows, confidence, from_distance, dwell, pooled, lines);
   set_scales(line, groups);
@@ -120,28 +125,10 @@ int body(int argc, char** argv) {
   return console::exit_success;
 }
 
-constexpr std::array python_commands = {"calibrate", "curve", "deviation", "drag", "report"};
-
-/// Runs python3 -m clogsweep COMMAND, which asks these very programs for numbers.
-int become_python(const std::string& command, int argc, char** argv) {
-  // The user's own --programs comes later and has the last word.
-  std::vector<std::string> arguments = {command, "--programs", cli::own_folder()};
-  arguments.insert(arguments.end(), argv + 2, argv + argc);
-  cli::become_python("clogfit " + command, cli::find_python_module(), arguments);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   console::prepare_streams();
-  for (const std::string command : python_commands)
-    if (argc > 1 && argv[1] == command)
-      return cli::run_program("clogfit " + command, [&] { return become_python(command, argc, argv); });
-  if (argc > 1 && std::string_view(argv[1]) == "compare")
-    return cli::run_program("clogfit compare", [&] { return clogfit_compare(argc, argv); });
-  if (argc > 1 && std::string_view(argv[1]) == "lengths")
-    return cli::run_program("clogfit lengths", [&] { return clogfit_lengths(argc, argv); });
-  if (argc > 1 && std::string_view(argv[1]) == "units")
-    return cli::run_program("clogfit units", [&] { return clogfit_units(argc, argv); });
-  return cli::run_program(program, [&] { return body(argc, argv); });
+  if (const auto exit_code = cli::run_command("clogfit", clogfit_commands, argc, argv)) return *exit_code;
+  return cli::run_program("clogfit", [&] { return clogfit(argc, argv); });
 }

@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "clog/cli/command_line.hpp"
-#include "clog/cli/program.hpp"
 #include "clog/cli/python_command.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/results/comparison.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/merger.hpp"
-#include "clog/store/run_table.hpp"
+#include "file_command.hpp"
 #include "laboratory_option.hpp"
 
 namespace clog::programs {
@@ -80,22 +79,19 @@ void draw(const cli::CommandLine& line, const std::vector<std::string>& paths) {
 }  // namespace
 
 int clogfit_compare(int argc, const char* const* argv) {
-  namespace po = boost::program_options;
-  cli::CommandLine line("clogfit compare", compare_usage, cli::CommandLine::SweepKeys::none);
-  line.add_options()("file", po::value<std::vector<std::string>>(), "sweep files")(
-      "by", po::value<std::string>(), "key whose values are compared with each other")(
-      "within", po::value<std::string>(),
-      "clogs of a pair so near to each other are at the same place (half an obstacle spacing) [sigma]")(
-      "format", po::value<std::string>()->default_value("text"), "text, csv or json")(
-      "picture", po::value<std::string>(), "name of a picture to draw; .png and .pdf are made")(
-      "lab", po::value<std::string>(),
-      "file that describes the laboratory, see clogfit units: lengths in mm beside measured ones")(
-      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals");
-  line.add_positional("file", -1);
-  line.parse(argc - 1, argv + 1);
-  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
-  const std::vector<std::string> paths = line.get_all("file");
-  if (paths.empty()) throw Error("missing sweep files; try clogfit compare a.h5 b.h5");
+  cli::CommandLine line("clogfit compare", compare_usage);
+  line.words("file", "sweep files")
+      .option("by", "key whose values are compared with each other")
+      .option(
+          "within",
+          "clogs of a pair so near to each other are at the same place (half an obstacle spacing) [sigma]")
+      .option("format", "text, csv or json", "text")
+      .option("picture", "name of a picture to draw; .png and .pdf are made")
+      .option("lab",
+              "file that describes the laboratory, see clogfit units: lengths in mm beside measured ones")
+      .option("confidence", "of the intervals", "0.95");
+  if (!parse_file_command(line, argc, argv)) return console::exit_success;
+  const std::vector<std::string> paths = line.require_all("file");
   const std::string format = line.get_word("format", {"text", "csv", "json"});
   const double confidence = line.get_share("confidence");
   const std::optional<double> within =

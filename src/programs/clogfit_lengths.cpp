@@ -7,7 +7,6 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
-#include "clog/core/tools/error.hpp"
 #include "clog/results/distance_table.hpp"
 #include "laboratory_option.hpp"
 
@@ -36,21 +35,16 @@ there, 0 if it left the picture or was still moving (censored). All other column
 }  // namespace
 
 int clogfit_lengths(int argc, const char* const* argv) {
-  namespace po = boost::program_options;
-  cli::CommandLine line("clogfit lengths", lengths_usage, cli::CommandLine::SweepKeys::none);
-  line.add_options()("file", po::value<std::vector<std::string>>(), "table of distances (CSV)")(
-      "format", po::value<std::string>()->default_value("text"), "text, csv or json")(
-      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
-      "lab", po::value<std::string>(),
-      "file that describes the laboratory, see clogfit units: its droplet's diameter is sigma");
-  line.add_positional("file", -1);
-  line.parse(argc - 1, argv + 1);
-  if (cli::answer_help_or_version(line, {})) return console::exit_success;
-  const std::vector<std::string> paths = line.get_all("file");
-  if (paths.size() != 1) throw Error("needs one table of distances; try clogfit lengths distances.csv");
+  cli::CommandLine line("clogfit lengths", lengths_usage);
+  line.word("file", "table of distances (CSV)")
+      .option("format", "text, csv or json", "text")
+      .option("confidence", "of the intervals", "0.95")
+      .option("lab",
+              "file that describes the laboratory, see clogfit units: its droplet's diameter is sigma");
+  if (!cli::parse_command(line, argc, argv)) return console::exit_success;
   const std::string format = line.get_word("format", {"text", "csv", "json"});
   const double confidence = line.get_share("confidence");
-  const results::DistanceTable table = results::read_distances(paths.front());
+  const results::DistanceTable table = results::read_distances(line.require("file"));
   const std::optional<double> sigma_mm = sigma_in_mm(line, {});
   std::cout << (format == "csv"    ? results::lengths_csv(table, confidence, sigma_mm)
                 : format == "json" ? results::lengths_json(table, confidence, sigma_mm)

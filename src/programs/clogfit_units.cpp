@@ -17,8 +17,7 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
-#include "clog/core/polygon/automatic_values.hpp"
-#include "clog/core/tools/error.hpp"
+#include "clog/core/polygon/forces/automatic_values.hpp"
 #include "clog/laboratory/scales.hpp"
 
 namespace clog::programs {
@@ -166,20 +165,17 @@ Json json_of(const Laboratory& lab, const Scales& scales) {
 }  // namespace
 
 int clogfit_units(int argc, const char* const* argv) {
-  namespace po = boost::program_options;
-  cli::CommandLine line("clogfit units", units_usage, cli::CommandLine::SweepKeys::none);
-  const auto text = [] { return po::value<std::string>(); };
-  line.add_options()("file", text(), "lab.cfg")(
-      "length", text(), "of the model, such as lambda [sigma]; each of these takes a list")(
-      "time", text(), "of the model [t0]")("line-tension", text(), "Gamma of the model")(
-      "terminal-speed", text(), "V_t of the model")("wall-stiffness", text(), "E_w of a soft disk")(
-      "format", text()->default_value("text"), "text or json");
-  line.add_positional("file", 1);
-  line.parse(argc - 1, argv + 1);
-  if (cli::answer_help_or_version(line, {})) return console::exit_success;
-  if (!line.has("file")) throw Error("missing lab.cfg; clogfit units --help shows what it holds");
+  cli::CommandLine line("clogfit units", units_usage);
+  line.word("file", "lab.cfg")
+      .option("length", "of the model, such as lambda [sigma]; each of these takes a list")
+      .option("time", "of the model [t0]")
+      .option("line-tension", "Gamma of the model")
+      .option("terminal-speed", "V_t of the model")
+      .option("wall-stiffness", "E_w of a soft disk")
+      .option("format", "text or json", "text");
+  if (!cli::parse_command(line, argc, argv)) return console::exit_success;
   const std::string format = line.get_word("format", {"text", "json"});
-  const Laboratory lab = laboratory::read_laboratory(line.get("file"));
+  const Laboratory lab = laboratory::read_laboratory(line.require("file"));
   const Scales scales = laboratory::scales_of(lab);
   const std::vector<Conversion> known = conversions(lab, scales);
   if (format == "json") {

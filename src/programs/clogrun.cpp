@@ -17,6 +17,7 @@
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clogrun_commands.hpp"
+#include "file_command.hpp"
 #include "laboratory_option.hpp"
 
 namespace {
@@ -24,8 +25,7 @@ namespace {
 using namespace clog;
 using namespace clog::programs;
 
-constexpr const char* program = "clogrun";
-constexpr const char* usage = R"(clogrun follows one droplet and writes what happens to it.
+constexpr const char* clogrun_usage = R"(clogrun follows one droplet and writes what happens to it.
 
   clogrun array --output run.h5 line-tension=0.3 obstacle-gap=0.35 seeds=7
   clogrun array --output run.h5 obstacles=mine.csv box=60 --polygon-interval 1
@@ -41,39 +41,36 @@ bool is_film(const std::filesystem::path& name) {
   return name.extension() == ".mp4" || name.extension() == ".gif";
 }
 
-cli::CommandLine parse(int argc, char** argv) {
-  namespace po = boost::program_options;
-  cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
-  const auto text = [] { return po::value<std::string>(); };
-  line.add_options()("system", text(), "array, channel (two wedges), sag (flat wall) or replay")(
-      "file", text(), "replay: file of clogsweep")("task", text(), "replay: the row's number, column `task`")(
-      "to-rest", "replay: until the droplet rests, not only until it is proved that it will")(
-      "output", text(), "HDF5 file to create")(
-      "lab", text(),
-      "file that describes the laboratory, see clogfit units: gives terminal-speed and line-tension or\n"
-      "wall-stiffness unless they are set, and what the run came to in mm and s")(
-      "seed", text(), "short for seeds=N")("sample-interval", text()->default_value("1"),
-                                           "time between samples [t0]")(
-      "polygon-interval", text(), "also write the polygon this often [t0]")(
-      "frames", text(), "also make a film of the polygons with this name, which may end in .mp4 or .gif")(
-      "most-frames", text(),
-      "film: this many frames at most; a longer one is thinned, or shows the end (600)")(
-      "dry-run", "print the config and how long the run takes at most, run nothing")(
-      "write-obstacles", text(), "array: write the obstacles as a CSV file");
-  line.add_positional("system", 1);
-  if (argc > 1 && std::string_view(argv[1]) == "replay") {
-    line.add_positional("file", 1);
-    line.add_positional("task", 1);
-  }
+/// Declares the options and parses them. Returns whether something is left to do.
+bool parse_options(cli::CommandLine& line, int argc, char** argv) {
+  line.word("system", "array, channel (two wedges), sag (flat wall) or replay");
+  if (argc > 1 && std::string_view(argv[1]) == "replay")
+    line.word("file", "replay: file of clogsweep").word("task", "replay: the row's number, column `task`");
+  else
+    line.option("file", "replay: file of clogsweep")
+        .option("task", "replay: the row's number, column `task`");
+  line.flag("to-rest", "replay: until the droplet rests, not only until it is proved that it will")
+      .option("output", "HDF5 file to create")
+      .option("lab",
+              "file that describes the laboratory, see clogfit units: gives terminal-speed and line-tension "
+              "or\nwall-stiffness unless they are set, and what the run came to in mm and s")
+      .option("seed", "short for seeds=N")
+      .option("sample-interval", "time between samples [t0]", "1")
+      .option("polygon-interval", "also write the polygon this often [t0]")
+      .option("frames", "also make a film of the polygons with this name, which may end in .mp4 or .gif")
+      .option("most-frames",
+              "film: this many frames at most; a longer one is thinned, or shows the end (600)")
+      .flag("dry-run", "print the config and how long the run takes at most, run nothing")
+      .option("write-obstacles", "array: write the obstacles as a CSV file");
   line.add_commands({"array", "channel", "sag", "replay"});
   line.settings().set("seeds", "1");
-  line.parse(argc, argv);
+  if (!parse_file_command(line, argc, argv)) return false;
   if (line.has("seed") && line.has("seeds"))
     throw Error("--seed and --seeds contradict each other; give one of them");
   if (line.has("seed")) line.settings().set("seeds", line.get("seed"));
   use_laboratory(line);
   refuse_other_droplets(line);
-  return line;
+  return true;
 }
 
 /// Files that the options of this name ask for; of a film without ending all that it may become.
@@ -118,8 +115,8 @@ std::filesystem::path film_name(const cli::CommandLine& line) {
 
 /// How the Python module is to draw the film. @throws Error  where none could be written
 std::vector<std::string> film_options(const cli::CommandLine& line) {
-  std::vector<std::string> options = {"droplet", line.require("output"),
-                                      "--output=" + film_name(line).string(), "--film"};
+  std::vector<std::string> options = {"droplet", line.get("output"), "--output=" + film_name(line).string(),
+                                      "--film"};
   if (line.has("most-frames"))
     options.push_back(fmt::format("--most-frames={:.0f}",
                                   std::clamp(std::round(line.get_positive("most-frames")), 1.0, 1e9)));
@@ -133,7 +130,8 @@ const std::map<std::string, int (*)(cli::CommandLine&)>& followed_systems() {
   return systems;
 }
 
-int follow(cli::CommandLine& line, const std::string& system) {
+int run_system(cli::CommandLine& line, const std::string& system) {
+  line.require("output");
   const auto run = followed_systems().at(system);
   if (!line.has("frames")) {
     refuse_options(line, system + " without --frames", {"most-frames"});
@@ -149,15 +147,15 @@ int follow(cli::CommandLine& line, const std::string& system) {
   cli::become_python("clogrun", module, options);
 }
 
-int body(int argc, char** argv) {
-  cli::CommandLine line = parse(argc, argv);
-  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
+int clogrun(int argc, char** argv) {
+  cli::CommandLine line("clogrun", clogrun_usage, cli::CommandLine::SweepKeys::accepted);
+  if (!parse_options(line, argc, argv)) return console::exit_success;
   refuse_same_files(line);
   const std::string system = line.has("system") ? line.get("system") : "";
   if (system != "replay") refuse_options(line, system, {"file", "task", "to-rest"});
   if (system == "channel") choose_layout(line, "channel");
   if (system == "sag") choose_layout(line, "wall");
-  if (followed_systems().contains(system)) return follow(line, system);
+  if (followed_systems().contains(system)) return run_system(line, system);
   if (system == "sag") return clogrun_sag(line);
   throw Error((system.empty() ? "missing system" : "unknown system '" + system + "'") +
               "; try clogrun array, clogrun channel, clogrun sag or clogrun replay");
@@ -166,6 +164,6 @@ int body(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  clog::console::prepare_streams();
-  return clog::cli::run_program(program, [&] { return body(argc, argv); });
+  console::prepare_streams();
+  return cli::run_program("clogrun", [&] { return clogrun(argc, argv); });
 }

@@ -25,7 +25,6 @@ void refuse_options(const cli::CommandLine& line, const std::string& system,
 
 /// Reads --sample-interval and --polygon-interval. @throws Error
 single_run::RecordedRun::Intervals intervals(const cli::CommandLine& line, double time_step);
-/// The settings of the command, with the laboratory of --lab.
 /// Prints what a run came to, with --lab in mm and s, too. Returns the exit code.
 int report(const cli::CommandLine& line, const single_run::RecordedRun& watched);
 /// On the standard error, what of the runs was not proved sound; nothing if all of it was.

@@ -10,7 +10,6 @@
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/plan.hpp"
-#include "clog/sweep/single_run.hpp"
 #include "clogrun_commands.hpp"
 
 namespace clog::programs {
@@ -20,7 +19,7 @@ int preview(const cli::CommandLine& line, const sweep::Plan& plan, single_run::R
   single_run::MostCost cost;
   for (std::int64_t task = 0; task < plan.size(); ++task)
     cost += single_run::RecordedRun(DropletRun(plan.task(task)), often).measure_cost();
-  return single_run::print_preview(line.settings().to_config(false), cost);
+  return single_run::print_preview(line.settings().to_config(), cost);
 }
 
 }  // namespace

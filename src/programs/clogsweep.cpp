@@ -38,9 +38,9 @@ namespace {
 using namespace clog;
 using namespace clog::programs;
 
-constexpr const char* program = "clogsweep";
 constexpr std::size_t memory_of_mpi = 400'000'000;  // Open MPI 4.1 may crash with 200 MB
-constexpr const char* usage = R"(clogsweep runs droplets through obstacle arrays for every combination of the
+constexpr const char* clogsweep_usage =
+    R"(clogsweep runs droplets through obstacle arrays for every combination of the
 given values, on all MPI ranks, and gathers the results in one HDF5 table.
 
   mpirun -np 4 clogsweep --config sweep.cfg --output sweep.h5 line-tension=0.2,1,5
@@ -65,7 +65,7 @@ store::Provenance provenance(const cli::CommandLine& line,
   all.emplace_back("num_ranks", std::to_string(num_ranks));
   if (!growing) return all;
   for (auto& [name, text] : all)
-    if (name == "config") text = growing->settings.to_config(false);
+    if (name == "config") text = growing->settings.to_config();
   all.emplace_back("stopping_rule", growing->rule.text());
   all.emplace_back("num_wanted", std::to_string(growing->num_first));
   return all;
@@ -74,9 +74,6 @@ store::Provenance provenance(const cli::CommandLine& line,
 /// What rank 0 does before the sweep: everything a user can get wrong is found here, before any rank
 /// computes. Returns the exit code if there is nothing to run.
 std::optional<int> prepare(const cli::CommandLine& line, scheduler::IsolatedJobs& isolated) {
-  if (cli::answer_help_or_version(
-          line, {{"MPI", scheduler::Communicator::library_version()}, {"HDF5", store::library_version()}}))
-    return console::exit_success;
   if (line.has("schema")) {
     std::cout << console::json_text(sweep::schema_json());
     return console::exit_success;
@@ -124,13 +121,13 @@ constexpr int go_on = -1;
 int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::IsolatedJobs& isolated, int argc,
                        char** argv) {
   // Rank 0 reads and checks; the others wait for its exit code, or its assignment.
-  cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
+  cli::CommandLine line("clogsweep", clogsweep_usage, cli::CommandLine::SweepKeys::accepted);
   std::optional<Led> led;
   std::string task;  // of all ranks, see scheduler::Assignment::text()
   int exit_code = go_on;
   if (ranks.rank() == 0) {
-    exit_code = cli::run_program(program, [&] {
-      parse_sweep_options(line, argc, argv);
+    exit_code = cli::run_program("clogsweep", [&] {
+      if (!parse_sweep_options(line, argc, argv)) return console::exit_success;
       if (const auto over = prepare(line, isolated)) return *over;
       diagnostics::refuse_to_be_alone(ranks.size());
       led.emplace(line, ranks.size());
@@ -169,13 +166,10 @@ std::string named_output(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
   console::prepare_streams();
-  for (const FileCommand& command : file_commands)
-    if (argc > 1 && std::string_view(argv[1]) == command.name)
-      return cli::run_program(std::string(program) + ' ' + command.name,
-                              [&] { return command.call(argc, argv); });
+  if (const auto exit_code = cli::run_command("clogsweep", file_commands, argc, argv)) return *exit_code;
   console::catch_stop_signals();  // one that comes before the sweep begins stops it then
   std::optional<scheduler::IsolatedJobs> isolated;
-  const int exit_code = cli::run_program(program, [&] {
+  const int exit_code = cli::run_program("clogsweep", [&] {
     require_memory("start MPI", memory_of_mpi);
     diagnostics::require_open_files();
     // Before MPI begins.
@@ -190,11 +184,11 @@ int main(int argc, char** argv) {
     return sweep_on_all_ranks(ranks, *isolated, argc, argv);
   } catch (const std::exception& error) {
     // Once the sweep runs, ranks wait for each other: a fault of one must end all.
-    console::say(fmt::format("{}: rank {} on {}: {}", program, ranks.rank(),
+    console::say(fmt::format("clogsweep: rank {} on {}: {}", ranks.rank(),
                              scheduler::Communicator::host_name(), error.what()));
-    if (ranks.size() > 1)
-      ranks.abort(dynamic_cast<const Error*>(&error) ? console::exit_user_fault
-                                                     : console::exit_internal_fault);
-    return dynamic_cast<const Error*>(&error) ? console::exit_user_fault : console::exit_internal_fault;
+    const int code =
+        dynamic_cast<const Error*>(&error) ? console::exit_user_fault : console::exit_internal_fault;
+    if (ranks.size() > 1) ranks.abort(code);
+    return code;
   }
 }

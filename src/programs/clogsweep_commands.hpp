@@ -1,5 +1,6 @@
 #pragma once
 
+#include "clog/cli/program.hpp"
 #include "clog/scheduler/communicator.hpp"
 
 namespace clog::programs {
@@ -13,13 +14,9 @@ int clogsweep_replay(int argc, const char* const* argv);
 int clogsweep_merge(int argc, const char* const* argv);
 int clogsweep_select(int argc, const char* const* argv);
 
-struct FileCommand {
-  const char* name;
-  int (*call)(int argc, const char* const* argv);
-};
-inline constexpr FileCommand file_commands[] = {{"status", clogsweep_status},   {"verify", clogsweep_verify},
-                                                {"salvage", clogsweep_salvage}, {"replay", clogsweep_replay},
-                                                {"merge", clogsweep_merge},     {"select", clogsweep_select}};
+inline constexpr cli::Command file_commands[] = {
+    {"status", clogsweep_status}, {"verify", clogsweep_verify}, {"salvage", clogsweep_salvage},
+    {"replay", clogsweep_replay}, {"merge", clogsweep_merge},   {"select", clogsweep_select}};
 
 /// `clogsweep doctor`, on one rank or under mpirun. Collective. Returns the exit code on rank 0, 1 if there
 /// is something to fix. @throws Error

@@ -7,7 +7,7 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/diagnostics/examination.hpp"
-#include "clog/store/regular_file.hpp"
+#include "clog/store/output_path.hpp"
 #include "clogsweep_commands.hpp"
 
 namespace clog::programs {
@@ -16,7 +16,7 @@ namespace {
 using diagnostics::Finding;
 using diagnostics::RankFacts;
 
-constexpr const char* doctor_program = "clogsweep doctor";
+constexpr const char* doctor_name = "clogsweep doctor";
 constexpr const char* doctor_usage =
     R"(clogsweep doctor looks for what spoils sweeps on this machine, and says what helps.
 
@@ -40,17 +40,14 @@ int print_findings(const std::vector<Finding>& findings) {
 }  // namespace
 
 int clogsweep_doctor(const scheduler::Communicator& ranks, int argc, const char* const* argv) {
-  namespace po = boost::program_options;
   // Rank 0 reads the command line; the others wait for its word.
-  cli::CommandLine line(doctor_program, doctor_usage, cli::CommandLine::SweepKeys::none);
+  cli::CommandLine line(doctor_name, doctor_usage);
+  line.option("output", "where the sweep will write", "sweep.h5");
   bool is_answered = false;
   int exit_code = console::exit_success;
   if (ranks.rank() == 0)
-    exit_code = cli::run_program(doctor_program, [&] {
-      line.add_options()("output", po::value<std::string>()->default_value("sweep.h5"),
-                         "where the sweep will write");
-      line.parse(argc - 1, argv + 1);
-      is_answered = cli::answer_help_or_version(line, {});
+    exit_code = cli::run_program(doctor_name, [&] {
+      is_answered = !cli::parse_command(line, argc, argv);
       store::require_regular(line.get("output"));
       return console::exit_success;
     });
@@ -64,7 +61,7 @@ int clogsweep_doctor(const scheduler::Communicator& ranks, int argc, const char*
   std::vector<RankFacts> facts;
   facts.reserve(texts.size());
   for (const std::string& text : texts) facts.push_back(diagnostics::rank_facts_from(text));
-  return cli::run_program(doctor_program,
+  return cli::run_program(doctor_name,
                           [&] { return print_findings(diagnostics::examine(facts, line.get("output"))); });
 }
 

@@ -3,10 +3,8 @@
 #include <vector>
 
 #include "clog/cli/command_line.hpp"
-#include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
-#include "clog/core/tools/error.hpp"
 #include "clog/results/merger.hpp"
 #include "clog/results/salvage.hpp"
 #include "clog/store/run_table.hpp"
@@ -46,15 +44,10 @@ void print_merged(const std::string& output, const std::vector<std::string>& pat
 }  // namespace
 
 int clogsweep_merge(int argc, const char* const* argv) {
-  namespace po = boost::program_options;
-  cli::CommandLine line("clogsweep merge", merge_usage, cli::CommandLine::SweepKeys::none);
-  line.add_options()("file", po::value<std::vector<std::string>>(), "sweep files")(
-      "output", po::value<std::string>(), "HDF5 file to make");
-  line.add_positional("file", -1);
-  line.parse(argc - 1, argv + 1);
-  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
-  const std::vector<std::string> paths = line.get_all("file");
-  if (paths.size() < 2) throw Error("missing sweep files; try clogsweep merge a.h5 b.h5 --output c.h5");
+  cli::CommandLine line("clogsweep merge", merge_usage);
+  line.words("file", "sweep files").option("output", "HDF5 file to make");
+  if (!parse_file_command(line, argc, argv)) return console::exit_success;
+  const std::vector<std::string> paths = line.require_all("file", 2);
   const std::string output = line.require("output");
   store::refuse_existing(output);
   const results::MergedSweep merged = results::merge(paths, origin_of_table(line));

@@ -14,7 +14,9 @@
 
 #include "clog/cli/obstacle_file.hpp"
 #include "clog/cli/points_file.hpp"
+#include "clog/cli/program.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/store/run_table.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
 #include "laboratory_option.hpp"
@@ -22,17 +24,11 @@
 namespace clog::programs {
 namespace {
 
-scheduler::MasterComputes master_computes(const std::string& word) {
-  if (word == "auto") return scheduler::MasterComputes::automatic;
-  if (word == "yes") return scheduler::MasterComputes::yes;
-  if (word == "no") return scheduler::MasterComputes::no;
-  throw Error("invalid --master-computes=" + word + " (is not one of auto, yes, no)");
-}
-
-bool is_isolated(const cli::CommandLine& line) {
-  const std::string word = line.get("isolate");
-  if (word != "yes" && word != "no") throw Error("invalid --isolate=" + word + " (is not one of yes, no)");
-  return word == "yes";
+scheduler::MasterComputes master_computes(const cli::CommandLine& line) {
+  const std::string word = line.get_word("master-computes", {"auto", "yes", "no"});
+  return word == "auto"  ? scheduler::MasterComputes::automatic
+         : word == "yes" ? scheduler::MasterComputes::yes
+                         : scheduler::MasterComputes::no;
 }
 
 scheduler::Log::Level log_level(const cli::CommandLine& line) {
@@ -101,15 +97,6 @@ void add_plan_options(cli::CommandLine& line) {
   }
 }
 
-std::int64_t most_seeds(const cli::CommandLine& line, std::int64_t first_seeds) {
-  const double number = line.get_number("most-seeds", static_cast<double>(20 * first_seeds));
-  if (!(number >= static_cast<double>(first_seeds) && number <= 1e5 && number == std::floor(number)))
-    throw Error(
-        fmt::format("invalid --most-seeds={} (must be a whole number from {}, the number of `seeds`, to 1e5)",
-                    line.get("most-seeds"), first_seeds));
-  return static_cast<std::int64_t>(number);
-}
-
 /// A table is HDF5, whatever its name; a name that says something else is a mistake.
 void refuse_other_format(const cli::CommandLine& line) {
   if (!line.has("output")) return;
@@ -124,52 +111,58 @@ void refuse_other_format(const cli::CommandLine& line) {
 
 }  // namespace
 
-void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv) {
+bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i)
     if (std::string_view(argv[i]).starts_with("--refine"))
       throw Error(
           "--refine is a command of its own: python3 -m clogsweep refine KEY KEY=FROM,TO --until curve=20% "
           "--output sweep.h5 -- mpirun -np 4");
-  namespace po = boost::program_options;
-  line.add_options()("output", po::value<std::string>(), "HDF5 file to make")(
-      "lab", po::value<std::string>(),
-      "file that describes the laboratory, see clogfit units: gives terminal-speed and line-tension or\n"
-      "wall-stiffness unless they are set, and clogfit its units")(
-      "dry-run", "print the tasks, their number and cost, run nothing")("print-config",
-                                                                        "print the settings, run nothing")(
-      "schema", "print all keys and columns as JSON: meaning, unit, range, default; run nothing")(
-      "master-computes", po::value<std::string>()->default_value("auto"),
-      "whether rank 0 also runs tasks: auto (with up to 16 ranks), yes, no")(
-      "max-hours", po::value<std::string>(),
-      "stop after so many hours, as after a signal; the same command resumes the sweep")(
-      "points", po::value<std::string>(),
-      "CSV file whose first line names keys and whose lines are parameter sets, in place of these keys' "
-      "lists")("shard", po::value<std::string>(), "run one part of the sweep, e.g. 2/5, the second of five")(
-      "until-precision", po::value<std::string>(),
-      "add seeds until half of lambda's 95 % interval is within this fraction of lambda, e.g. 10%")(
-      "most-seeds", po::value<std::string>(),
-      "largest number of seeds of a parameter set with --until-precision (20 times `seeds`)")(
-      "attempts", po::value<std::string>()->default_value("2"), "number of attempts for a run that fails")(
-      "report-seconds", po::value<std::string>()->default_value("10"),
-      "interval at which a running task reports its progress; a kill loses at most this time")(
-      "isolate", po::value<std::string>()->default_value("yes"),
-      "run each task in a separate process, so that a crash costs one task and not the sweep: yes, no")(
-      "verbose", "a line for every task that starts or ends")("quiet", "errors only");
-  std::vector<std::string> commands = {"doctor"};
-  for (const FileCommand& command : file_commands) commands.emplace_back(command.name);
+  line.option("output", "HDF5 file to make")
+      .option("lab",
+              "file that describes the laboratory, see clogfit units: gives terminal-speed and line-tension "
+              "or\nwall-stiffness unless they are set, and clogfit its units")
+      .flag("dry-run", "print the tasks, their number and cost, run nothing")
+      .flag("print-config", "print the settings, run nothing")
+      .flag("schema", "print all keys and columns as JSON: meaning, unit, range, default; run nothing")
+      .option("master-computes", "whether rank 0 also runs tasks: auto (with up to 16 ranks), yes, no",
+              "auto")
+      .option("max-hours", "stop after so many hours, as after a signal; the same command resumes the sweep")
+      .option("points",
+              "CSV file whose first line names keys and whose lines are parameter sets, in place of these "
+              "keys' lists")
+      .option("shard", "run one part of the sweep, e.g. 2/5, the second of five")
+      .option("until-precision",
+              "add seeds until half of lambda's 95 % interval is within this fraction of lambda, e.g. 10%")
+      .option("most-seeds",
+              "largest number of seeds of a parameter set with --until-precision (20 times `seeds`)")
+      .option("attempts", "number of attempts for a run that fails", "2")
+      .option("report-seconds",
+              "interval at which a running task reports its progress; a kill loses at most this time", "10")
+      .option(
+          "isolate",
+          "run each task in a separate process, so that a crash costs one task and not the sweep: yes, no",
+          "yes")
+      .flag("verbose", "a line for every task that starts or ends")
+      .flag("quiet", "errors only");
+  std::vector<std::string> commands = cli::names_of(file_commands);
+  commands.emplace_back("doctor");
   line.add_commands(std::move(commands));
   line.explain_surplus_words(
       "--output names the file of a sweep, and clogsweep status FILE tells how far it is");
-  line.parse(argc, argv);
+  if (!cli::parse_command(
+          line, argc, argv,
+          {{"MPI", scheduler::Communicator::library_version()}, {"HDF5", store::library_version()}}))
+    return false;
   refuse_other_format(line);
   use_laboratory(line);
   add_plan_options(line);
   refuse_other_droplets(line);
+  return true;
 }
 
 scheduler::DriverOptions driver_options(const cli::CommandLine& line) {
   return {.output = line.has("output") ? line.get("output") : "",
-          .master_computes = master_computes(line.get("master-computes")),
+          .master_computes = master_computes(line),
           .report_interval = report_interval(line),
           .max_hours = max_hours(line),
           .log = log_level(line)};
@@ -178,16 +171,11 @@ scheduler::DriverOptions driver_options(const cli::CommandLine& line) {
 scheduler::Assignment assignment(const cli::CommandLine& line, const sweep::Settings& settings) {
   return {.report_interval = report_interval(line),
           .instruction_set = line.has("instruction-set") ? line.get("instruction-set") : "auto",
-          .is_isolated = is_isolated(line),
+          .is_isolated = line.get_word("isolate", {"yes", "no"}) == "yes",
           .settings = settings.packed()};
 }
 
-std::int64_t attempts(const cli::CommandLine& line) {
-  const double number = line.get_number("attempts", 2);
-  if (!(number >= 1 && number <= 1000 && number == std::floor(number)))
-    throw Error("invalid --attempts=" + line.get("attempts") + " (must be a whole number, 1..1000) try 2");
-  return static_cast<std::int64_t>(number);
-}
+std::int64_t attempts(const cli::CommandLine& line) { return line.get_whole("attempts", 2, 1, 1000); }
 
 std::optional<results::GrowingSweep> growing_sweep(const cli::CommandLine& line) {
   if (!line.has("until-precision")) {
@@ -195,7 +183,7 @@ std::optional<results::GrowingSweep> growing_sweep(const cli::CommandLine& line)
     return std::nullopt;
   }
   const auto first_seeds = static_cast<std::int64_t>(line.settings().values("seeds").size());
-  const std::int64_t most = most_seeds(line, first_seeds);
+  const std::int64_t most = line.get_whole("most-seeds", 20 * first_seeds, first_seeds, 100'000);
   return results::growing_sweep(line.settings(), precision(line), most);
 }
 

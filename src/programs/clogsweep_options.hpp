@@ -10,8 +10,9 @@
 
 namespace clog::programs {
 
-/// The options of a sweep, declared and parsed. @throws Error, as all of these do
-void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv);
+/// Declares and parses the options of a sweep. Returns whether something is left to do. @throws Error, as all
+/// of these do
+bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv);
 
 /// Checked, the output's name excepted.
 scheduler::DriverOptions driver_options(const cli::CommandLine& line);

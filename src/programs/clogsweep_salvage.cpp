@@ -2,14 +2,13 @@
 #include <string>
 
 #include "clog/cli/command_line.hpp"
-#include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
-#include "clog/core/tools/error.hpp"
 #include "clog/results/salvage.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
+#include "file_command.hpp"
 
 namespace clog::programs {
 namespace {
@@ -27,18 +26,13 @@ missing runs and restores missing attributes.
 }  // namespace
 
 int clogsweep_salvage(int argc, const char* const* argv) {
-  namespace po = boost::program_options;
-  cli::CommandLine line("clogsweep salvage", salvage_usage, cli::CommandLine::SweepKeys::none);
-  line.add_options()("file", po::value<std::string>(), "sweep file")("output", po::value<std::string>(),
-                                                                     "HDF5 file to create");
-  line.add_positional("file", 1);
-  line.parse(argc - 1, argv + 1);
-  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
-  if (!line.has("file")) throw Error("missing sweep file; try clogsweep salvage sweep.h5 --output whole.h5");
-  const std::string output = line.require("output");
+  cli::CommandLine line("clogsweep salvage", salvage_usage);
+  line.word("file", "sweep file").option("output", "HDF5 file to create");
+  if (!parse_file_command(line, argc, argv)) return console::exit_success;
+  const std::string path = line.require("file"), output = line.require("output");
   store::refuse_existing(output);
-  results::Salvage found = results::salvage(line.get("file"));
-  results::drop_what_verify_refuses(line.get("file"), found);
+  results::Salvage found = results::salvage(path);
+  results::drop_what_verify_refuses(path, found);
   for (const std::string& damage : found.damage) std::cout << console::printable(damage) << '\n';
   results::write(found.table, found.snapshots, output);
   const auto num_rows = static_cast<std::int64_t>(found.table.rows.size());

@@ -20,11 +20,21 @@
 
 namespace clog::programs {
 
-namespace po = boost::program_options;
 using results::SharedParameters;
 using results::Status;
 
 namespace {
+
+constexpr const char* status_usage =
+    R"(clogsweep status says how far a sweep is, while it runs or afterwards.
+
+  clogsweep status sweep.h5
+  clogsweep status sweep.h5 --watch
+  clogsweep status sweep.h5 --follow --format json
+
+Clogging lengths count runs in progress as not clogged so far, at the distance they have reached: finished runs alone
+would give too short ones, since runs that clog early finish first.
+)";
 
 constexpr const char* clear_screen = "\x1b[H\x1b[2J";
 
@@ -45,7 +55,7 @@ int follow(const std::string& path) {
     const bool is_alive =
         store::Journal::is_open(store::journal_path(path));  // asked before reading: no event is missed
     const auto begin = std::chrono::steady_clock::now();
-    const std::string now = store::OutputPath(path).stamp();
+    const std::string now = store::OutputPath::resolve(path).stamp();
     if (now != stamp || is_first || !is_alive) {
       const store::SweepFile file = is_first ? results::read_with_caution(path) : store::read_sweep(path);
       for (const std::string& line : events.look(file)) std::cout << line;
@@ -65,29 +75,21 @@ int follow(const std::string& path) {
 }  // namespace
 
 int clogsweep_status(int argc, const char* const* argv) {
-  cli::CommandLine line =
-      file_command("status", R"(clogsweep status says how far a sweep is, while it runs or afterwards.
-
-  clogsweep status sweep.h5
-  clogsweep status sweep.h5 --watch
-  clogsweep status sweep.h5 --follow --format json
-
-Clogging lengths count runs in progress as not clogged so far, at the distance they have reached: finished runs alone
-would give too short ones, since runs that clog early finish first.
-)");
-  line.add_options()("watch", "again every two seconds, until the sweep ends")(
-      "follow",
-      "with --format json: a line for every start, end, new attempt and round, until the sweep ends")(
-      "format", po::value<std::string>()->default_value("text"), "text or json")(
-      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
-      "all-parameters", "in the text, also name parameters that have their default values in all runs");
+  cli::CommandLine line("clogsweep status", status_usage);
+  line.word("file", "sweep file")
+      .flag("watch", "again every two seconds, until the sweep ends")
+      .flag("follow",
+            "with --format json: a line for every start, end, new attempt and round, until the sweep ends")
+      .option("format", "text or json", "text")
+      .option("confidence", "of the intervals", "0.95")
+      .flag("all-parameters", "in the text, also name parameters that have their default values in all runs");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
   const std::string format = line.get_word("format", {"text", "json"});
   const double confidence = line.get_share("confidence");
   const SharedParameters shared =
       line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;
   console::catch_stop_signals();
-  const std::string path = line.get("file");
+  const std::string path = line.require("file");
   if (line.has("follow") && line.has("watch"))
     throw Error("--follow and --watch exclude each other; give one");
   if (line.has("follow") && format != "json") throw Error("--follow prints lines of JSON; add --format json");

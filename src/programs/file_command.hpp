@@ -1,16 +1,20 @@
 #pragma once
 
-#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
 #include "clog/store/run_table.hpp"
 
 namespace clog::programs {
 
-/// `clogsweep NAME FILE`: a command that reads a sweep's file.
-cli::CommandLine file_command(const char* name, const char* usage);
-/// Parses what follows the command's name. Returns whether there is something to do. @throws Error
-bool parse_file_command(cli::CommandLine& line, int argc, const char* const* argv);
+/// Parses the line of a command that uses HDF5. Returns whether something is left to do. @throws Error
+inline bool parse_file_command(cli::CommandLine& line, int argc, const char* const* argv) {
+  return cli::parse_command(line, argc, argv, {{"HDF5", store::library_version()}});
+}
 
 /// Provenance of a table that a command makes from others.
-store::Provenance origin_of_table(const cli::CommandLine& line);
+inline store::Provenance origin_of_table(const cli::CommandLine& line) {
+  store::Provenance all = cli::origin(line);
+  all.emplace_back("hdf5_version", store::library_version());
+  return all;
+}
 
 }  // namespace clog::programs

@@ -45,9 +45,7 @@ std::vector<ParameterSet> sets_of(const std::vector<RunRow>& rows) {
   std::map<std::vector<Value>, ParameterSet> sets;
   for (const RunRow& row : rows) {
     if (!counts(row)) continue;
-    std::vector<Value> values;
-    for (const Field& field : parameter_fields(row)) values.push_back(field.second);
-    ParameterSet& set = sets.try_emplace(values, ParameterSet{row, {}}).first->second;
+    ParameterSet& set = sets.try_emplace(parameter_values(row), ParameterSet{row, {}}).first->second;
     set.by_seed.emplace(row.parameters.seed, &row);
   }
   std::vector<ParameterSet> all;

@@ -20,15 +20,10 @@
 namespace clog::results {
 namespace {
 
-Value finite_value(double number) { return std::isfinite(number) ? Value(number) : Value(); }
-Value finite_value(int count) { return std::int64_t{count}; }
-
-using NamedValues = std::vector<std::pair<std::string, Value>>;
-
 void append_length(const std::string& side, const fit::CloggingLength& length, const Comparisons& all,
-                   NamedValues& fields) {
-  fields.emplace_back("runs_" + side, finite_value(length.num_runs));
-  fields.emplace_back("clogs_" + side, finite_value(length.num_clogs));
+                   std::vector<Field>& fields) {
+  fields.emplace_back("runs_" + side, std::int64_t{length.num_runs});
+  fields.emplace_back("clogs_" + side, std::int64_t{length.num_clogs});
   const auto append = [&](const std::string& unit, double factor) {
     const std::string name = "clogging_length_" + side;
     fields.emplace_back(name + unit, finite_value(factor * length.length));
@@ -39,8 +34,8 @@ void append_length(const std::string& side, const fit::CloggingLength& length, c
   if (all.sigma_mm) append("_mm", *all.sigma_mm);
 }
 
-NamedValues fields_of(const Comparison& one, const Comparisons& all) {
-  NamedValues fields = {{"here", one.here}, {"there", one.there}};
+std::vector<Field> fields_of(const Comparison& one, const Comparisons& all) {
+  std::vector<Field> fields = {{"here", one.here}, {"there", one.there}};
   for (std::size_t i = 0; i < all.columns.size(); ++i) fields.emplace_back(all.columns[i], one.common[i]);
   append_length("here", one.length_here, all, fields);
   append_length("there", one.length_there, all, fields);
@@ -51,15 +46,15 @@ NamedValues fields_of(const Comparison& one, const Comparisons& all) {
   fields.emplace_back("interval", std::string(ratio.is_paired ? "paired" : "unpaired"));
   fields.emplace_back("unpaired_lower", finite_value(ratio.unpaired.lower));
   fields.emplace_back("unpaired_upper", finite_value(ratio.unpaired.upper));
-  fields.emplace_back("pairs", finite_value(ratio.num_pairs));
-  fields.emplace_back("unlike_pairs", finite_value(ratio.num_unlike));
+  fields.emplace_back("pairs", std::int64_t{ratio.num_pairs});
+  fields.emplace_back("unlike_pairs", std::int64_t{ratio.num_unlike});
   fields.emplace_back("paired_ratio", finite_value(ratio.paired_ratio));
   fields.emplace_back("paired_lower", finite_value(ratio.paired.lower));
   fields.emplace_back("paired_upper", finite_value(ratio.paired.upper));
   fields.emplace_back("correlation", finite_value(ratio.correlation));
   fields.emplace_back("gain", finite_value(ratio.gain));
-  fields.emplace_back("both_clogged", finite_value(one.num_both_clogged));
-  fields.emplace_back("same_place", finite_value(one.num_same_place));
+  fields.emplace_back("both_clogged", std::int64_t{one.num_both_clogged});
+  fields.emplace_back("same_place", std::int64_t{one.num_same_place});
   return fields;
 }
 
@@ -101,8 +96,8 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
   const std::string unit = comparisons.sigma_mm ? "mm" : comparisons.unit;
   const bool have_pairs =
       std::ranges::any_of(comparisons.all, [](const Comparison& one) { return one.ratio.num_pairs > 0; });
-  lines[0].insert(lines[0].end(),
-                  {"clogs", "lambda/" + unit, "there", "ratio", fmt::format("{:.4g} %", 100 * confidence)});
+  lines[0].insert(lines[0].end(), {"clogs", "lambda/" + unit, "lambda there", "ratio",
+                                   fmt::format("{:.4g} %", 100 * confidence)});
   if (have_pairs) lines[0].insert(lines[0].end(), {"paired", "gain", "same place"});
   for (const Comparison& one : comparisons.all) {
     std::vector<std::string>& line = lines.emplace_back(1, one.here);
@@ -113,25 +108,17 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
   text += "\n\n" + console::aligned(lines);
   if (!have_pairs) return text + "\nno runs have the same seed, so intervals are those of independent runs\n";
   text +=
-      "\npaired: the interval is from pairs of the same seed; gain: how many times smaller the error of the "
-      "ratio is with\npairs than without; same place: pairs that clogged within ";
+      "\npaired: the interval is from pairs of the same seed; gain: how many times smaller the error of "
+      "the ratio is with\npairs than without; same place: pairs that clogged within ";
   text +=
       comparisons.within > 0 ? fmt::format("{:.4g} sigma", comparisons.within) : "half an obstacle spacing";
   return text + " of each other, of those in which both clogged\n";
 }
 
 std::string to_csv(const Comparisons& comparisons) {
-  std::string table;
-  for (const Comparison& one : comparisons.all) {
-    std::vector<std::string> names, texts;
-    for (const auto& [name, value] : fields_of(one, comparisons)) {
-      names.push_back(name);
-      texts.push_back(csv_cell(value));
-    }
-    if (table.empty()) table = joined(names, ",") + '\n';
-    table += joined(texts, ",") + '\n';
-  }
-  return table;
+  std::vector<std::vector<Field>> rows;
+  for (const Comparison& one : comparisons.all) rows.push_back(fields_of(one, comparisons));
+  return csv_table(rows);
 }
 
 std::string to_json(const Comparisons& comparisons, double confidence) {

@@ -59,13 +59,10 @@ std::vector<Unit> units_of(const DistanceTable& table, std::optional<double> sig
   return units;
 }
 
-using NamedValues = std::vector<std::pair<std::string, Value>>;
-
-NamedValues fields_of(const DistanceTable& table, std::size_t group, const Lengths& lengths,
-                      const std::vector<Unit>& units) {
-  const auto known = [](double number) { return std::isnan(number) ? Value() : Value(number); };
+std::vector<Field> fields_of(const DistanceTable& table, std::size_t group, const Lengths& lengths,
+                             const std::vector<Unit>& units) {
   const fit::CloggingLength& clogging = lengths.clogging;
-  NamedValues fields;
+  std::vector<Field> fields;
   for (std::size_t i = 0; i < table.labels.size(); ++i)
     fields.emplace_back(table.labels[i], table.groups[group].labels[i]);
   fields.emplace_back("runs", std::int64_t{clogging.num_runs});
@@ -78,9 +75,9 @@ NamedValues fields_of(const DistanceTable& table, std::size_t group, const Lengt
                                        {"clogging_length_profile_lower", clogging.profile.lower},
                                        {"clogging_length_profile_upper", clogging.profile.upper},
                                        {"clogging_length_least_squares", lengths.least_squares}})
-      fields.emplace_back(std::string(name) + unit.suffix, known(unit.factor * length));
-  fields.emplace_back("weibull_shape", known(lengths.weibull.shape));
-  fields.emplace_back("weibull_p_value", known(lengths.weibull.p_value));
+      fields.emplace_back(std::string(name) + unit.suffix, finite_value(unit.factor * length));
+  fields.emplace_back("weibull_shape", finite_value(lengths.weibull.shape));
+  fields.emplace_back("weibull_p_value", finite_value(lengths.weibull.p_value));
   std::vector<std::string> words;
   for (const Doubt doubt : lengths.doubts) words.emplace_back(text_of(doubt).word);
   fields.emplace_back("doubts", joined(words, " "));
@@ -128,17 +125,9 @@ std::string lengths_text(const DistanceTable& table, double confidence, std::opt
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm) {
   const std::vector<Unit> units = units_of(table, sigma_mm);
   const std::vector<Lengths> lengths = lengths_of(table, confidence);
-  std::string text;
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
-    std::vector<std::string> names, cells;
-    for (const auto& [name, value] : fields_of(table, i, lengths[i], units)) {
-      names.push_back(csv_cell(Value(name)));
-      cells.push_back(csv_cell(value));
-    }
-    if (text.empty()) text = joined(names, ",") + '\n';
-    text += joined(cells, ",") + '\n';
-  }
-  return text;
+  std::vector<std::vector<Field>> rows;
+  for (std::size_t i = 0; i < lengths.size(); ++i) rows.push_back(fields_of(table, i, lengths[i], units));
+  return csv_table(rows);
 }
 
 std::string lengths_json(const DistanceTable& table, double confidence, std::optional<double> sigma_mm) {
@@ -151,7 +140,7 @@ std::string lengths_json(const DistanceTable& table, double confidence, std::opt
     entry["survival"] = entry["censored_distances"] = nlohmann::ordered_json::array();
     const std::vector<fit::Observation>& runs = table.groups[i].runs;
     for (const fit::SurvivalStep& step : fit::survival_curve(runs, confidence))
-      entry["survival"].push_back(json_of(step));
+      entry["survival"].push_back(step_json(step, "clogs", step.num_clogs));
     std::vector<double> censored;
     for (const fit::Observation& run : runs)
       if (!run.clogged) censored.push_back(run.distance);

@@ -1,15 +1,14 @@
 #include "clog/results/events.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <utility>
-#include <variant>
 
 #include "clog/console/clock.hpp"
 #include "clog/console/json_text.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/columns.hpp"
 #include "clog/sweep/plan.hpp"
+#include "value_json.hpp"
 
 namespace clog::results {
 namespace {
@@ -20,20 +19,6 @@ using sweep::RunRow;
 Json event(const char* name) { return {{"event", name}, {"seen", console::utc_now()}}; }
 
 std::string line(const Json& event) { return console::json_text(event, -1); }
-
-void add_columns(const RunRow& row, const std::vector<std::string>& columns, Json& event) {
-  for (const std::string& name : columns) {
-    const sweep::Value value = sweep::column(name).get(row);
-    if (const auto* number = std::get_if<double>(&value))
-      event[name] = *number;
-    else if (const auto* integer = std::get_if<std::int64_t>(&value))
-      event[name] = *integer;
-    else if (const auto* word = std::get_if<std::string>(&value))
-      event[name] = *word;
-    else
-      event[name] = nullptr;
-  }
-}
 
 }  // namespace
 
@@ -64,8 +49,8 @@ std::vector<std::string> Events::of_row(const RunRow& row) const {
     Json one = event(name);
     one["task"] = row.task;
     one["attempt"] = row.attempt;
-    add_columns(row, columns_, one);
-    add_columns(row, more, one);
+    for (const auto* names : {&columns_, &more})
+      for (const std::string& column : *names) one[column] = json_of(sweep::column(column).get(row));
     lines.push_back(line(one));
   };
   if (is_tried_again) add("retry", {});

@@ -16,7 +16,6 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/number_text.hpp"
 #include "clog/core/tools/split.hpp"
-#include "clog/core/tools/units.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
@@ -26,17 +25,6 @@
 namespace clog::results {
 namespace {
 
-Value value_of(double number) { return std::isnan(number) ? Value() : Value(number); }
-Value value_of(int count) { return std::int64_t{count}; }
-
-bool is_ensemble(const sweep::Column& column) {
-  return column.parameter && column.parameter->role == ParameterRole::ensemble;
-}
-
-bool is_numerics(const sweep::Column& column) {
-  return column.parameter && column.parameter->role == ParameterRole::numerics;
-}
-
 /// May so many of the clogs be the mesh's that they move the length?
 bool hangs_on_mesh(const Group& group) {
   constexpr double tolerated = 0.1;  // of the clogs
@@ -44,27 +32,25 @@ bool hangs_on_mesh(const Group& group) {
 }
 
 std::vector<Doubt> doubts_about(const Group& group) {
-  std::vector<Doubt> doubts;
-  if (!has_clogging_length(group.first_row)) {
-    if (group.num_interrupted > 0 || group.num_failed > 0) doubts.push_back(Doubt::incomplete);
-    if (group.num_damaged > 0) doubts.push_back(Doubt::damaged);
-    if (!sweep::unproven_parameters(group.first_row).empty()) doubts.push_back(Doubt::not_proved_sound);
-    return doubts;
-  }
-  const bool has_runs = group.clogging.num_runs > 0;  // not if all ended before distances are counted
+  const fit::CloggingLength& clogging = group.clogging;
+  const bool has_length = has_clogging_length(group.first_row);
   // Where all droplets passed the exit, more seeds add nothing but a higher bound.
-  const bool have_all_passed = group.num_passed == group.clogging.num_runs;
-  if (has_runs && !have_all_passed && group.clogging.num_clogs < enough_clogs)
-    doubts.push_back(Doubt::few_clogs);
-  if (group.num_flowing > 0) doubts.push_back(Doubt::censored_by_time);
-  if (group.num_interrupted > 0 || group.num_failed > 0) doubts.push_back(Doubt::incomplete);
-  if (group.num_damaged > 0) doubts.push_back(Doubt::damaged);
-  if (hangs_on_mesh(group)) doubts.push_back(Doubt::held_by_mesh);
-  if (group.num_repeating > 0) doubts.push_back(Doubt::array_repeats);
-  if (group.num_free > 0 && !is_device(group.first_row.parameters)) doubts.push_back(Doubt::met_none);
-  if (group.clogging.length < sweep::obstacle_spacing(group.first_row))
-    doubts.push_back(Doubt::below_spacing);
-  if (!sweep::unproven_parameters(group.first_row).empty()) doubts.push_back(Doubt::not_proved_sound);
+  const bool lacks_clogs =
+      clogging.num_runs > 0 && group.num_passed != clogging.num_runs && clogging.num_clogs < enough_clogs;
+  const bool is_below_spacing = clogging.length < sweep::obstacle_spacing(group.first_row);
+  const std::pair<Doubt, bool> all[] = {
+      {Doubt::few_clogs, has_length && lacks_clogs},
+      {Doubt::censored_by_time, has_length && group.num_flowing > 0},
+      {Doubt::incomplete, group.num_interrupted > 0 || group.num_failed > 0},
+      {Doubt::damaged, group.num_damaged > 0},
+      {Doubt::held_by_mesh, has_length && hangs_on_mesh(group)},
+      {Doubt::array_repeats, has_length && group.num_repeating > 0},
+      {Doubt::met_none, has_length && group.num_free > 0 && !is_device(group.first_row.parameters)},
+      {Doubt::below_spacing, has_length && is_below_spacing},
+      {Doubt::not_proved_sound, !sweep::unproven_parameters(group.first_row).empty()}};
+  std::vector<Doubt> doubts;
+  for (const auto& [doubt, holds] : all)
+    if (holds) doubts.push_back(doubt);
   return doubts;
 }
 
@@ -74,18 +60,6 @@ void doubt_exponentiality(std::vector<Group>& groups) {
   const std::vector<bool> are_not = fit::are_not_exponential(tests);
   for (std::size_t i = 0; i < groups.size(); ++i)
     if (are_not[i]) groups[i].doubts.push_back(Doubt::not_exponential);
-}
-
-/// The results of a run in a channel or on a wall.
-std::vector<Field> fields_of_run(const sweep::RunRow& row) {
-  std::vector<Field> fields;
-  for (const char* name :
-       {"status", "distance", "time", "largest_shape_parameter", "largest_shape_parameter_at",
-        "largest_relative_speed", "largest_relative_speed_at", "smallest_relative_speed",
-        "smallest_relative_speed_at", "sag", "top_sag", "thinnest_neck", "thinnest_neck_at",
-        "shape_parameter", "mean_speed"})
-    fields.emplace_back(name, sweep::column(name).get(row));
-  return fields;
 }
 
 std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
@@ -137,11 +111,7 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
 /// The distance from the first obstacle on; below 0 if the droplet met none.
 double distance_from_contact(const sweep::RunRow& run, double distance) {
   if (run.contacts == 0) return -1;
-  return run.contacts < 0 ? distance : distance - run.first_contact_at;
-}
-
-Arrival arrival_of(const sweep::RunRow& run, const Ending& ending) {
-  return {run.release_x + ending.distance, ending.is_clog || ending.cause.has_value()};
+  return run.contacts ? distance - run.first_contact_at : distance;
 }
 
 /// The later of two times; not known if one of them is not.
@@ -160,7 +130,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
   for (const sweep::RunRow& row : rows) {
     if (!has_dwells_to_tell(row, dwell) || dwell >= row.dwells.known_from) continue;
     if (row.status == RunStatus::failed || !sweep::fault_of(row).empty()) continue;  // left out
-    num_unknown += std::isnan(row.dwells.known_from);
+    num_unknown += !sweep::is_known(row.dwells.known_from);
     if (row.dwells.known_from > known_from) known_from = row.dwells.known_from;
   }
   if (num_unknown > 0)
@@ -215,12 +185,12 @@ struct Meetings {
   int num_free = 0;
 
   void count(const sweep::RunRow& run, const Ending& ending, double from_distance) {
-    if (run.contacts < 0) return;
-    num_contacts += run.contacts;
+    if (!run.contacts) return;
+    num_contacts += *run.contacts;
     way += std::max(0.0, run.distance);
     num_free += run.contacts == 0;
     const double begin = std::max(from_distance, run.first_contact_at);
-    if (run.contacts > 0) from_first.push_back({std::max(0.0, ending.distance - begin), ending.is_clog});
+    if (*run.contacts > 0) from_first.push_back({std::max(0.0, ending.distance - begin), ending.is_clog});
   }
 };
 
@@ -228,20 +198,6 @@ void fit_meetings(Group& group, const Meetings& meetings, double confidence) {
   group.clogging_met = fit::fit_clogging_length(meetings.from_first, confidence);
   group.num_free = meetings.num_free;
   if (meetings.way > 0) group.contacts_per_length = static_cast<double>(meetings.num_contacts) / meetings.way;
-}
-
-/// Counts by cause and their lengths; without values where they are not known.
-void append_causes(const Group& group, std::vector<Field>& fields) {
-  const Value unknown;
-  for (std::size_t i = 0; i < std::size(cause_texts); ++i) {
-    const CauseText& text = cause_texts[i];
-    const bool known = !group.causes.empty();
-    const fit::CloggingLength fit = known ? group.causes[i].ends : fit::CloggingLength();
-    fields.emplace_back(text.count, known ? value_of(fit.num_clogs) : unknown);
-    fields.emplace_back(text.length, known ? value_of(fit.length) : unknown);
-    fields.emplace_back(text.lower, known ? value_of(fit.interval.lower) : unknown);
-    fields.emplace_back(text.upper, known ? value_of(fit.interval.upper) : unknown);
-  }
 }
 
 /// One or two runs that happened to come far enough to have a speed say little of all: their mean is not
@@ -292,31 +248,83 @@ void keep_longest(std::vector<const sweep::RunRow*>& runs) {
   });
 }
 
-constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
-    {"dwell", "t0"},
-    {"total_distance", "sigma"},
-    {"contacts_per_length", "1/sigma"},
-    {"relative_speed", "v_t"},
-    {"relative_speed_error", "v_t"},
-    {"relative_speed_all", "v_t"},
-    {"relative_speed_all_error", "v_t"},
-    {"relative_speed_pooled", "v_t"},
-    {"relative_speed_pooled_error", "v_t"}};
+/// What the sound runs of a group say.
+struct Tally {
+  std::vector<Ending> endings;  ///< of the runs that count for the clogging length
+  std::vector<Arrival> arrivals;
+  Meetings meetings;
+  std::vector<double> speeds;
+  std::vector<fit::Travel> travels, travels_until_arrest;
+  std::vector<fit::Displacement> displacements;
+};
+
+/// Includes a run in the clogging lengths, if it counts there.
+void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Tally& tally) {
+  const Ending from_release = ending_of(run, group.dwell);
+  Ending ending = from_release;
+  group.num_interrupted += sweep::is_unfinished(run.status) && !ending.is_clog;
+  const bool is_of_device = is_device(run.parameters);
+  if (is_of_device) {
+    tally.arrivals.push_back({run.release_x + ending.distance, ending.is_clog || ending.cause.has_value()});
+    ending.distance = distance_from_contact(run, ending.distance);
+  }
+  const bool has_met_none = is_of_device && run.contacts == 0;
+  const bool is_too_short = !has_met_none && std::max(ending.distance, 0.0) < from_distance;
+  group.num_left_out += is_too_short;
+  if (!is_too_short) tally.meetings.count(run, from_release, from_distance);
+  if (is_too_short || has_met_none) return;
+  tally.endings.push_back(ending);
+  group.seeds.push_back(run.parameters.seed);
+  group.num_on_mesh += sweep::may_hang_on_mesh(run);
+  if (ending.is_clog) return;
+  group.num_passed += run.status == RunStatus::passed;
+  group.num_flowing += run.status == RunStatus::flowing;
+  add_rest(run, group);
+}
+
+void add_motion(const sweep::RunRow& run, Group& group, Tally& tally) {
+  const double relative_speed = run.mean_speed / run.parameters.drag.terminal_speed;
+  tally.speeds.push_back(relative_speed);
+  tally.travels.push_back({relative_speed * run.travel_time, run.travel_time});
+  tally.displacements.push_back({run.distance, run.lateral_displacement});
+  group.num_repeating += sweep::has_met_repetition(run);
+  if (run.steps == 0) return;
+  tally.travels_until_arrest.push_back(travel_until_arrest(run));
+  group.dwells_known_from = later(group.dwells_known_from, run.dwells.known_from);
+}
+
+/// Counts failed and damaged runs, and includes all others.
+Tally tally_of(std::span<const sweep::RunRow* const> runs, double from_distance, Group& group) {
+  Tally tally;
+  for (const sweep::RunRow* run : runs) {
+    if (!sweep::fault_of(*run).empty()) {
+      ++group.num_damaged;
+    } else if (run->status == RunStatus::failed) {
+      ++group.num_failed;
+    } else {
+      add_ending(*run, from_distance, group, tally);
+      add_motion(*run, group, tally);
+    }
+  }
+  return tally;
+}
+
+using Runs = std::vector<const sweep::RunRow*>;
+
+/// Runs that differ in their seed, and in columns that are pooled.
+std::map<std::vector<Value>, Runs> members_of_groups(std::span<const sweep::RunRow> rows,
+                                                     std::span<const sweep::Column* const> pooled) {
+  std::map<std::vector<Value>, Runs> members;
+  for (const sweep::RunRow& row : rows) {
+    std::vector<Value> values = parameter_values(row);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (std::ranges::find(pooled, group_columns()[i]) != pooled.end()) values[i] = Value();
+    members[std::move(values)].push_back(&row);
+  }
+  return members;
+}
 
 }  // namespace
-
-std::string_view unit_of(std::string_view field) {
-  if (field.ends_with("_mm")) return "mm";
-  if (field.ends_with("_mN_per_m")) return "mN/m";
-  if (field.ends_with("_mm_per_s")) return "mm/s";
-  if (field == "time_to_clog_s") return "s";
-  if (field.starts_with("clogging_length") || field.starts_with("break_up_length")) return "sigma";
-  for (const auto& [name, unit] : units_of_results)
-    if (name == field) return unit;
-  for (const sweep::Column& column : sweep::columns())
-    if (column.name == field) return column.unit;
-  return "";
-}
 
 const DoubtText& text_of(Doubt doubt) {
   return *std::find_if(std::begin(doubt_texts), std::end(doubt_texts),
@@ -347,151 +355,28 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
                               double dwell, std::span<const sweep::Column* const> pooled,
                               std::span<const double> lines) {
   require_dwells(rows, dwell);
-  std::map<std::vector<Field>, std::vector<const sweep::RunRow*>> members;
-  for (const sweep::RunRow& row : rows) {
-    std::vector<Field> fields = parameter_fields(row);
-    for (const sweep::Column* column : pooled)
-      for (auto& [name, value] : fields)
-        if (column->name == name) value = Value();
-    members[std::move(fields)].push_back(&row);
-  }
   std::vector<Group> groups;
-  for (auto& [fields, runs] : members) {
+  for (auto& [values, runs] : members_of_groups(rows, pooled)) {
     Group group;
     const std::size_t num_all = runs.size();
     if (!pooled.empty()) keep_longest(runs);
     group.num_repeated = static_cast<int>(num_all - runs.size());
     group.first_row = *runs.front();
     group.dwell = dwell;
-    const bool is_of_device = is_device(group.first_row.parameters);
-    std::vector<Ending> counted;
-    std::vector<Arrival> arrivals;
-    Meetings meetings;
-    std::vector<double> speeds;
-    std::vector<fit::Travel> travels, all_travels;
-    std::vector<fit::Displacement> displacements;
-    for (const sweep::RunRow* run : runs) {
-      const bool is_damaged = !sweep::fault_of(*run).empty();
-      const bool is_failed = !is_damaged && run->status == RunStatus::failed;
-      group.num_damaged += is_damaged;
-      group.num_failed += is_failed;
-      if (is_damaged || is_failed) continue;
-      Ending ending = ending_of(*run, dwell);
-      group.num_interrupted += sweep::is_unfinished(run->status) && !ending.is_clog;
-      if (run->steps > 0) group.dwells_known_from = later(group.dwells_known_from, run->dwells.known_from);
-      group.num_repeating += sweep::has_met_repetition(*run);
-      const Ending from_release = ending;
-      if (is_of_device) {
-        arrivals.push_back(arrival_of(*run, ending));
-        ending.distance = distance_from_contact(*run, ending.distance);
-      }
-      const bool has_met_none = is_of_device && run->contacts == 0;
-      const bool is_left_out = has_met_none || std::max(ending.distance, 0.0) < from_distance;
-      group.num_left_out += is_left_out && !has_met_none;
-      if (!is_left_out) counted.push_back(ending);
-      if (!is_left_out) group.seeds.push_back(run->parameters.seed);
-      if (!is_left_out || has_met_none) meetings.count(*run, from_release, from_distance);
-      group.num_on_mesh += !is_left_out && sweep::may_hang_on_mesh(*run);
-      group.num_passed += !is_left_out && !ending.is_clog && run->status == RunStatus::passed;
-      group.num_flowing += !is_left_out && !ending.is_clog && run->status == RunStatus::flowing;
-      if (!is_left_out && !ending.is_clog) add_rest(*run, group);
-      const double relative_speed = run->mean_speed / run->parameters.drag.terminal_speed;
-      speeds.push_back(relative_speed);
-      travels.push_back({relative_speed * run->travel_time, run->travel_time});
-      if (run->steps > 0) all_travels.push_back(travel_until_arrest(*run));
-      displacements.push_back({run->distance, run->lateral_displacement});
-    }
-    fit_clogging(group, counted, confidence, from_distance);
-    fit_meetings(group, meetings, confidence);
-    if (is_of_device) group.passages = passages_of(group.first_row.parameters, arrivals, lines, confidence);
-    group.relative_speed = of_enough_runs(fit::fit_mean_speed(speeds));
-    group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(travels));
-    group.relative_speed_all = mean_speed_of_all(all_travels, group.first_row.parameters.drag.terminal_speed);
-    group.migration = fit::fit_migration(displacements);
+    const RunParameters& run = group.first_row.parameters;
+    const Tally tally = tally_of(runs, from_distance, group);
+    fit_clogging(group, tally.endings, confidence, from_distance);
+    fit_meetings(group, tally.meetings, confidence);
+    if (is_device(run)) group.passages = passages_of(run, tally.arrivals, lines, confidence);
+    group.relative_speed = of_enough_runs(fit::fit_mean_speed(tally.speeds));
+    group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(tally.travels));
+    group.relative_speed_all = mean_speed_of_all(tally.travels_until_arrest, run.drag.terminal_speed);
+    group.migration = fit::fit_migration(tally.displacements);
     group.doubts = doubts_about(group);
     groups.push_back(std::move(group));
   }
   doubt_exponentiality(groups);
   return groups;
-}
-
-std::span<const sweep::Column* const> group_columns() {
-  static const std::vector<const sweep::Column*> all = [] {
-    std::vector<const sweep::Column*> columns;
-    for (const sweep::Column& column : sweep::columns())
-      if (column.role == sweep::ColumnRole::parameter && !is_ensemble(column)) columns.push_back(&column);
-    std::stable_sort(columns.begin() + 1, columns.end(), [](const sweep::Column* a, const sweep::Column* b) {
-      return std::pair(is_numerics(*a), !a->shapes_array) < std::pair(is_numerics(*b), !b->shapes_array);
-    });
-    return columns;
-  }();
-  return all;
-}
-
-std::vector<Field> parameter_fields(const sweep::RunRow& row) {
-  std::vector<Field> fields;
-  for (const sweep::Column* column : group_columns())
-    fields.emplace_back(column->name.c_str(), column->get(row));
-  return fields;
-}
-
-bool has_clogging_length(const sweep::RunRow& row) {
-  return scene_of(row.parameters).finding == Finding::clogging_length;
-}
-
-std::vector<Field> result_fields(const Group& group) {
-  const RunParameters& run = group.first_row.parameters;
-  const double line_tension = run.model == Model::dp ? run.dp.line_tension : sweep::RunRow::not_known;
-  std::string doubts;
-  for (const Doubt doubt : group.doubts)
-    doubts += std::string(doubts.empty() ? "" : " ") + text_of(doubt).word;
-  std::vector<Field> fields = {
-      {"runs", value_of(group.clogging.num_runs)},
-      {"clogs", value_of(group.clogging.num_clogs)},
-      {"passed", value_of(group.num_passed)},
-      {"flowing", value_of(group.num_flowing)},
-      {"interrupted", value_of(group.num_interrupted)},
-      {"failed", value_of(group.num_failed)},
-      {"damaged", value_of(group.num_damaged)},
-      {"left_out", value_of(group.num_left_out)},
-      {"repeated", value_of(group.num_repeated)},
-      {"dwell", is_dwell_possible(group) ? value_of(group.dwell) : Value()},
-      {"dwells_known_from", value_of(group.dwells_known_from)},
-      {"repeating", value_of(group.num_repeating)},
-      {"on_mesh", value_of(group.num_on_mesh)},
-      {"total_distance", value_of(group.clogging.total_distance)},
-      {"clogging_length", value_of(group.clogging.length)},
-      {"clogging_length_lower", value_of(group.clogging.interval.lower)},
-      {"clogging_length_upper", value_of(group.clogging.interval.upper)},
-      {"clogging_length_profile_lower", value_of(group.clogging.profile.lower)},
-      {"clogging_length_profile_upper", value_of(group.clogging.profile.upper)},
-      {"clogging_length_least_squares", value_of(group.least_squares_length)},
-      {"met_none", value_of(group.num_free)},
-      {"contacts_per_length", value_of(group.contacts_per_length)},
-      {"clogging_length_met", value_of(group.clogging_met.length)},
-      {"clogging_length_met_lower", value_of(group.clogging_met.interval.lower)},
-      {"clogging_length_met_upper", value_of(group.clogging_met.interval.upper)},
-      {"weibull_shape", value_of(group.weibull.shape)},
-      {"weibull_p_value", value_of(group.weibull.p_value)},
-      {"relative_speed", value_of(group.relative_speed.mean)},
-      {"relative_speed_error", value_of(group.relative_speed.standard_error)},
-      {"relative_speed_runs", value_of(group.relative_speed.num_runs)},
-      {"relative_speed_pooled", value_of(group.relative_speed_pooled.mean)},
-      {"relative_speed_pooled_error", value_of(group.relative_speed_pooled.standard_error)},
-      {"relative_speed_all", value_of(group.relative_speed_all.mean)},
-      {"relative_speed_all_error", value_of(group.relative_speed_all.standard_error)},
-      {"capillary_number", value_of(group.relative_speed.mean * units::droplet_mass / line_tension)},
-      {"lateral_slope", value_of(group.migration.slope)},
-      {"lateral_slope_error", value_of(group.migration.standard_error)},
-      {"doubts", doubts}};
-  append_causes(group, fields);
-  if (has_clogging_length(group.first_row)) return fields;
-  std::vector<Field> of_run = {{"interrupted", value_of(group.num_interrupted)},
-                               {"failed", value_of(group.num_failed)},
-                               {"damaged", value_of(group.num_damaged)},
-                               {"doubts", doubts}};
-  for (Field& field : fields_of_run(group.first_row)) of_run.push_back(std::move(field));
-  return of_run;
 }
 
 }  // namespace clog::results

@@ -1,10 +1,10 @@
-#include "laboratory_columns.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "clog/console/rounded.hpp"
+#include "result_columns.hpp"
+#include "value_json.hpp"
 
 namespace clog::results {
 namespace {
@@ -26,8 +26,6 @@ double tension_of(const Group& group) {
                                 : std::numeric_limits<double>::quiet_NaN();
 }
 
-Value scaled_value(double number) { return std::isfinite(number) ? Value(number) : Value(); }
-
 }  // namespace
 
 bool have_laboratory(const std::vector<Group>& groups) {
@@ -38,13 +36,13 @@ bool have_laboratory(const std::vector<Group>& groups) {
 std::vector<Field> laboratory_fields(const Group& group) {
   const LaboratoryScale scale = scale_of(group);
   const fit::CloggingLength& clogging = group.clogging;
-  return {{"tension_mN_per_m", scaled_value(tension_of(group))},
-          {"clogging_length_mm", scaled_value(clogging.length * scale.length)},
-          {"clogging_length_lower_mm", scaled_value(clogging.interval.lower * scale.length)},
-          {"clogging_length_upper_mm", scaled_value(clogging.interval.upper * scale.length)},
-          {"speed_mm_per_s", scaled_value(group.relative_speed_all.mean * scale.speed)},
-          {"speed_error_mm_per_s", scaled_value(group.relative_speed_all.standard_error * scale.speed)},
-          {"time_to_clog_s", scaled_value(time_to_clog(group))}};
+  return {{"tension_mN_per_m", finite_value(tension_of(group))},
+          {"clogging_length_mm", finite_value(clogging.length * scale.length)},
+          {"clogging_length_lower_mm", finite_value(clogging.interval.lower * scale.length)},
+          {"clogging_length_upper_mm", finite_value(clogging.interval.upper * scale.length)},
+          {"speed_mm_per_s", finite_value(group.relative_speed_all.mean * scale.speed)},
+          {"speed_error_mm_per_s", finite_value(group.relative_speed_all.standard_error * scale.speed)},
+          {"time_to_clog_s", finite_value(time_to_clog(group))}};
 }
 
 std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups) {

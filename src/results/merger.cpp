@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -44,16 +43,20 @@ Part whole_part(const std::string& path) {
   return {path, std::move(found.table), std::move(found.snapshots)};
 }
 
-/// The rows of all parts, each run once.
+/// Joins the rows of all parts, each run once.
 class Rows {
  public:
   void add(const Part& part) {
     for (const RunRow& row : part.table.rows) add(row, part.path);
   }
-  std::vector<RunRow> take() { return std::move(rows_); }
-  std::int64_t num_shared() const { return static_cast<std::int64_t>(shared_.size()); }
-  std::int64_t num_differing() const { return static_cast<std::int64_t>(differing_.size()); }
-  std::int64_t num_faulty() const { return num_faulty_; }
+  MergedSweep take() {
+    MergedSweep merged;
+    merged.table.rows = std::move(rows_);
+    merged.num_shared = static_cast<std::int64_t>(shared_.size());
+    merged.num_differing = static_cast<std::int64_t>(differing_.size());
+    merged.num_faulty = num_faulty_;
+    return merged;
+  }
 
  private:
   std::vector<RunRow> rows_;
@@ -140,14 +143,10 @@ std::string lines_of(const std::vector<Part>& parts) {
 }
 
 MergedSweep join(const std::vector<Part>& parts) {
-  MergedSweep merged;
   Rows rows;
   for (const Part& part : parts) rows.add(part);
+  MergedSweep merged = rows.take();
   for (const Part& part : parts) add_circles(part.table, merged.table.circles);
-  merged.num_shared = rows.num_shared();
-  merged.num_differing = rows.num_differing();
-  merged.num_faulty = rows.num_faulty();
-  merged.table.rows = rows.take();
   return merged;
 }
 
@@ -160,11 +159,13 @@ void number_tasks(const sweep::Settings& settings, store::SweepFile& table) {
     one.name = named == settings.circle_files().end() ? "" : named->first;
   }
   const sweep::Plan plan(settings);
-  const TaskNumbers numbers(plan);
+  std::unordered_map<std::string, std::int64_t> tasks;
+  for (std::int64_t task = 0; task < plan.size(); ++task)
+    tasks.emplace(sweep::identity(sweep::describe(plan.task(task))), task);
   std::int64_t next = plan.size();
   for (RunRow& row : table.rows) {
-    const std::optional<std::int64_t> task = numbers.of(row);
-    row.task = task ? *task : next++;
+    const auto found = tasks.find(sweep::identity(row));
+    row.task = found == tasks.end() ? next++ : found->second;
   }
   std::ranges::sort(table.rows, {}, &RunRow::task);
 }
@@ -231,8 +232,7 @@ MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance
         merged.snapshots.push_back(std::move(entry));
         unfinished.erase(row);
       }
-  merged.table.provenance =
-      joint_provenance(maker, settings.to_config(false), tables_of(parts), lines_of(parts));
+  merged.table.provenance = joint_provenance(maker, settings.to_config(), tables_of(parts), lines_of(parts));
   return merged;
 }
 
@@ -247,7 +247,7 @@ store::SweepFile read_together(const std::vector<std::string>& paths) {
     RunList runs;
     for (const Part& part : parts) add_runs(part, runs);
     const sweep::Settings settings = runs.settings();
-    config = settings.to_config(false);
+    config = settings.to_config();
     number_tasks(settings, merged.table);
   } catch (const Error&) {  // of a version that had other keys
   }

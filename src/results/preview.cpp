@@ -341,7 +341,7 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRul
 
 void print_config(const sweep::Settings& settings, const sweep::Plan& plan) {
   const RunParameters first = plan.task(0);
-  std::cout << settings.to_config(true) << "\n# Values behind `auto` in the first task:\n";
+  std::cout << settings.to_config(sweep::Comments::help) << "\n# Values behind `auto` in the first task:\n";
   for (const Parameter& parameter : parameter_schema())
     if (parameter.may_be_automatic(first))
       if (const ParameterValue value = parameter.get(first); value != ParameterValue())

@@ -22,6 +22,10 @@ const fit::CloggingLength* break_ups(const Group& group) {
   return nullptr;
 }
 
+bool is_lattice(const Group& group) {
+  return group.first_row.parameters.obstacles.layout == ObstacleLayout::lattice;
+}
+
 }  // namespace
 
 bool are_mechanisms_shown(const std::vector<Group>& groups) {
@@ -30,7 +34,7 @@ bool are_mechanisms_shown(const std::vector<Group>& groups) {
     for (const Group::EndsBy& cause : group.causes)
       if (cause.text->is_clog && cause.ends.num_clogs > 0) seen.insert(cause.text->cause);
   return seen.size() > 1 ||
-         std::any_of(groups.begin(), groups.end(), [](const Group& group) { return group.num_left_out > 0; });
+         std::ranges::any_of(groups, [](const Group& group) { return group.num_left_out > 0; });
 }
 
 bool have_some_broken(const std::vector<Group>& groups) {
@@ -42,10 +46,6 @@ bool have_some_broken(const std::vector<Group>& groups) {
 
 namespace {
 
-bool is_lattice(const Group& group) {
-  return group.first_row.parameters.obstacles.layout == ObstacleLayout::lattice;
-}
-
 /// Clogs by mechanism, as 3/5/2/0.
 std::string mechanism_counts(const Group& group) {
   std::vector<std::string> counts;
@@ -54,32 +54,44 @@ std::string mechanism_counts(const Group& group) {
   return counts.empty() ? "-" : joined(counts, "/");
 }
 
-std::string break_up_length(const Group& group) {
-  const fit::CloggingLength* broken = break_ups(group);
-  if (!broken || broken->num_runs == 0) return "-";
-  if (broken->num_clogs == 0) return "> " + console::plain(broken->interval.lower);
-  return console::with_interval(broken->length, broken->interval.lower, broken->interval.upper).value;
-}
-
 console::RoundedInterval length_of(const fit::CloggingLength& clogging) {
   return console::with_interval(clogging.length, clogging.interval.lower, clogging.interval.upper);
 }
-bool has_length(const fit::CloggingLength& clogging) { return clogging.num_clogs > 0; }
 
 std::string length_text(const fit::CloggingLength& clogging) {
-  if (has_length(clogging)) return length_of(clogging).value;
+  if (clogging.num_clogs > 0) return length_of(clogging).value;
   return clogging.num_runs == 0 ? "-" : "> " + console::plain(clogging.interval.lower);
 }
 std::string interval_text(const fit::CloggingLength& clogging) {
   const console::RoundedInterval length = length_of(clogging);
-  return has_length(clogging) ? length.lower + " .. " + length.upper : "-";
+  return clogging.num_clogs > 0 ? length.lower + " .. " + length.upper : "-";
 }
 
-/// Columns of lambda for the droplets that met an obstacle, in groups in which some met none.
-std::vector<ResultColumn> columns_of_met(const std::string& confidence) {
-  return {{"met none", [](const Group& group) { return std::to_string(group.num_free); }},
-          {"lambda_met", [](const Group& group) { return length_text(group.clogging_met); }},
-          {confidence, [](const Group& group) { return interval_text(group.clogging_met); }}};
+std::string break_up_length(const Group& group) {
+  const fit::CloggingLength* broken = break_ups(group);
+  return broken ? length_text(*broken) : "-";
+}
+
+ResultColumn column_of(const char* name, int Group::*number) {
+  return {name, [=](const Group& group) { return std::to_string(group.*number); }};
+}
+ResultColumn column_of(const char* name, int fit::CloggingLength::*number) {
+  return {name, [=](const Group& group) { return std::to_string(group.clogging.*number); }};
+}
+
+/// Appends a length and its interval.
+void append(const char* name, fit::CloggingLength Group::*length, double confidence,
+            std::vector<ResultColumn>& columns) {
+  columns.push_back({name, [=](const Group& group) { return length_text(group.*length); }});
+  columns.push_back({fmt::format("{:g} %", 100 * confidence),
+                     [=](const Group& group) { return interval_text(group.*length); }});
+}
+
+/// Appends a number and its error.
+void append(const char* name, console::RoundedError (*number)(const Group&),
+            std::vector<ResultColumn>& columns) {
+  columns.push_back({name, [=](const Group& group) { return number(group).value; }});
+  columns.push_back({"+-", [=](const Group& group) { return number(group).error; }});
 }
 
 console::RoundedError speed_of(const Group& group) {
@@ -88,42 +100,32 @@ console::RoundedError speed_of(const Group& group) {
 console::RoundedError speed_of_all(const Group& group) {
   return console::with_error(group.relative_speed_all.mean, group.relative_speed_all.standard_error);
 }
-
-/// Columns for groups in which some runs are too short to have a speed: the number of the others, whose mean
-/// is shown, and the speed of all runs.
-std::vector<ResultColumn> columns_of_all_speeds() {
-  return {{"of", [](const Group& group) { return std::to_string(group.relative_speed.num_runs); }},
-          {"all runs", [](const Group& group) { return speed_of_all(group).value; }},
-          {"+-", [](const Group& group) { return speed_of_all(group).error; }}};
-}
-bool lacks_speeds(const Group& group) {
-  return !std::isnan(group.relative_speed.mean) && group.relative_speed.num_runs < group.clogging.num_runs;
-}
-
 console::RoundedError slope_of(const Group& group) {
   return console::with_error(group.migration.slope, group.migration.standard_error);
 }
 
+/// Are some runs too short to have a speed?
+bool lacks_speeds(const Group& group) {
+  return !std::isnan(group.relative_speed.mean) && group.relative_speed.num_runs < group.clogging.num_runs;
+}
+
 std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, double confidence,
                                             bool has_laboratory) {
+  const auto have_any = [&](int Group::*number) {
+    return std::ranges::any_of(groups, [=](const Group& group) { return group.*number > 0; });
+  };
   const bool is_of_device =
       std::ranges::all_of(groups, [](const Group& group) { return is_device(group.first_row.parameters); });
-  std::vector<ResultColumn> columns = {
-      {"runs", [](const Group& group) { return std::to_string(group.clogging.num_runs); }},
-      {"clogs", [](const Group& group) { return std::to_string(group.clogging.num_clogs); }}};
-  if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
+  std::vector<ResultColumn> columns = {column_of("runs", &fit::CloggingLength::num_runs),
+                                       column_of("clogs", &fit::CloggingLength::num_clogs)};
+  if (have_any(&Group::num_passed))
     columns.insert(columns.end(),
-                   {{"passed", [](const Group& group) { return std::to_string(group.num_passed); }},
-                    {"flowing", [](const Group& group) { return std::to_string(group.num_flowing); }}});
+                   {column_of("passed", &Group::num_passed), column_of("flowing", &Group::num_flowing)});
   if (are_mechanisms_shown(groups)) columns.push_back({"w/s/h/o", mechanism_counts});
-  const std::string level = fmt::format("{:g} %", 100 * confidence);
-  columns.insert(columns.end(), {{is_of_device ? "lambda_met/sigma" : "lambda/sigma",
-                                  [](const Group& group) { return length_text(group.clogging); }},
-                                 {level, [](const Group& group) { return interval_text(group.clogging); }}});
-  if (is_of_device)
-    columns.push_back({"met none", [](const Group& group) { return std::to_string(group.num_free); }});
-  else if (std::ranges::any_of(groups, [](const Group& group) { return group.num_free > 0; }))
-    for (ResultColumn& column : columns_of_met(level)) columns.push_back(std::move(column));
+  append(is_of_device ? "lambda_met/sigma" : "lambda/sigma", &Group::clogging, confidence, columns);
+  if (is_of_device || have_any(&Group::num_free)) columns.push_back(column_of("met none", &Group::num_free));
+  if (!is_of_device && have_any(&Group::num_free))
+    append("lambda_met", &Group::clogging_met, confidence, columns);
   if (have_some_broken(groups))
     columns.insert(columns.end(), {{"broken",
                                     [](const Group& group) {
@@ -131,15 +133,15 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
                                       return broken ? std::to_string(broken->num_clogs) : "-";
                                     }},
                                    {"lambda_b/sigma", break_up_length}});
-  columns.insert(columns.end(), {{"<v_g>/v_t", [](const Group& group) { return speed_of(group).value; }},
-                                 {"+-", [](const Group& group) { return speed_of(group).error; }}});
-  // Speeds in laboratory units are those of all runs.
-  if (has_laboratory || std::ranges::any_of(groups, lacks_speeds))
-    for (ResultColumn& column : columns_of_all_speeds()) columns.push_back(std::move(column));
+  append("<v_g>/v_t", speed_of, columns);
+  // Speeds in laboratory units are those of all runs. `of`: the number of runs behind the mean speed.
+  if (has_laboratory || std::ranges::any_of(groups, lacks_speeds)) {
+    columns.push_back(
+        {"of", [](const Group& group) { return std::to_string(group.relative_speed.num_runs); }});
+    append("all runs", speed_of_all, columns);
+  }
   // A droplet in a random array goes straight on average.
-  if (std::any_of(groups.begin(), groups.end(), is_lattice))
-    columns.insert(columns.end(), {{"lateral/r", [](const Group& group) { return slope_of(group).value; }},
-                                   {"+-", [](const Group& group) { return slope_of(group).error; }}});
+  if (std::ranges::any_of(groups, is_lattice)) append("lateral/r", slope_of, columns);
   return columns;
 }
 
@@ -147,13 +149,10 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
 ResultColumn column_of_run(const char* name, double sweep::RunRow::*value) {
   return {name, [=](const Group& group) { return console::plain(group.first_row.*value, 4); }};
 }
-ResultColumn outcome_column() {
-  return {"outcome", [](const Group& group) { return std::string(name(group.first_row.status)); }};
-}
 
 std::vector<ResultColumn> columns_of_channels() {
   using sweep::RunRow;
-  return {outcome_column(),
+  return {{"outcome", [](const Group& group) { return std::string(name(group.first_row.status)); }},
           column_of_run("largest A", &RunRow::largest_shape_parameter),
           column_of_run("at h", &RunRow::largest_shape_parameter_at),
           column_of_run("least v/v_t", &RunRow::smallest_relative_speed),

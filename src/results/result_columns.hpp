@@ -23,4 +23,11 @@ std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, 
 bool are_mechanisms_shown(const std::vector<Group>& groups);
 bool have_some_broken(const std::vector<Group>& groups);
 
+/// Has any group a laboratory, and are there lengths to convert?
+bool have_laboratory(const std::vector<Group>& groups);
+/// A group's interfacial tension, clogging length, speed and time until a clog in laboratory units.
+std::vector<Field> laboratory_fields(const Group& group);
+/// The same for people.
+std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups);
+
 }  // namespace clog::results

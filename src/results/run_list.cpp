@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
@@ -195,16 +196,6 @@ sweep::Points RunList::points(const std::vector<std::size_t>& differing) const {
     return std::ranges::lexicographical_compare(a, b, is_less);
   });
   return points;
-}
-
-TaskNumbers::TaskNumbers(const sweep::Plan& plan) {
-  for (std::int64_t task = 0; task < plan.size(); ++task)
-    tasks_.emplace(sweep::identity(sweep::describe(plan.task(task))), task);
-}
-
-std::optional<std::int64_t> TaskNumbers::of(const sweep::RunRow& row) const {
-  const auto found = tasks_.find(sweep::identity(row));
-  return found == tasks_.end() ? std::nullopt : std::optional(found->second);
 }
 
 }  // namespace clog::results

@@ -3,8 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -115,12 +113,13 @@ void drop_what_verify_refuses(const std::string& path, Salvage& found) {
 void write(const store::SweepFile& table, const std::vector<store::Journal::Entry>& snapshots,
            const std::string& path) {
   store::refuse_existing(path);
-  const store::OutputPath place(path);
-  if (!store::publish_sweep(place, table.rows, table.provenance, table.circles))
+  const store::OutputPath place = store::OutputPath::resolve(path);
+  if (!store::publish_sweep(place, "", table)) store::refuse_to_overwrite(path);
+  if (const std::string& fault = place.sync_fault(); !fault.empty())
     console::say(
         fmt::format("{} is complete, but its folder cannot be synced ({}): a power cut may lose it; copy it "
                     "elsewhere, too",
-                    path, std::strerror(errno)));
+                    path, fault));
   if (snapshots.empty()) return;
   store::Journal journal(store::journal_place(place), &place);
   for (const auto& [row, snapshot] : snapshots) journal.add(row, snapshot);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "clog/console/csv.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/split.hpp"
@@ -33,11 +34,6 @@ const sweep::Column& find_column(const std::string& name, const std::string& con
       meant.empty() ? "; clogsweep --schema lists them" : fmt::format("; did you mean {}?", meant)));
 }
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(' ');
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
 }  // namespace
 
 Condition::Condition(const std::string& text) : text_(text) {
@@ -52,15 +48,15 @@ Condition::Condition(const std::string& text) : text_(text) {
   if (place == 0 || place == text.size() || relation == std::end(relations))
     throw Error(
         fmt::format("invalid condition '{}'; give one like line_tension>=0.5 or status=clogged", text));
-  column_ = &find_column(trimmed(text.substr(0, place)), text);
+  column_ = &find_column(console::trimmed(text.substr(0, place)), text);
   relation_ = relation->second;
   const bool is_word = column_->kind == ValueKind::word;
   for (const std::string& value : split_at_commas(text.substr(place + std::string(relation->first).size())))
     try {
       if (is_word)
-        words_.push_back(trimmed(value));
+        words_.push_back(console::trimmed(value));
       else
-        numbers_.push_back(sweep::to_number(trimmed(value)));
+        numbers_.push_back(sweep::to_number(console::trimmed(value)));
     } catch (const Error& error) {
       throw Error(fmt::format("invalid condition '{}' ({})", text, error.what()));
     }
@@ -132,7 +128,7 @@ store::SweepFile select(const std::string& path, const std::vector<std::string>&
   std::string config;
   if (!runs.empty()) {
     const sweep::Settings settings = runs.settings();
-    config = settings.to_config(false);
+    config = settings.to_config();
     number_tasks(settings, file);
   }
   file.provenance = joint_provenance(maker, config, {&file}, part);

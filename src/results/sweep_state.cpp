@@ -3,18 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <limits>
-#include <string>
 #include <unordered_set>
 #include <utility>
-#include <vector>
 
 #include "clog/core/tools/error.hpp"
 #include "clog/results/growth.hpp"
 #include "clog/results/stored_sweep.hpp"
-#include "clog/store/regular_file.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/settings.hpp"
@@ -23,9 +17,10 @@
 namespace clog::results {
 namespace {
 
+/// An empty text removes the attribute.
 void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text) {
   std::erase_if(provenance, [&](const auto& attribute) { return attribute.first == name; });
-  provenance.emplace_back(name, text);
+  if (!text.empty()) provenance.emplace_back(name, text);
 }
 
 /// Keeps `sessions` short, however often a sweep is resumed: the oldest lines go, and a long last one is cut.
@@ -49,7 +44,7 @@ void restart(sweep::RunRow& row) {
 
 SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
                        store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts)
-    : place_(store::require_regular(std::move(path))),
+    : place_(store::OutputPath::resolve(store::require_regular(std::move(path)))),
       path_(place_.path()),
       plan_(&plan),
       provenance_(std::move(provenance)),
@@ -107,7 +102,7 @@ SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::S
 store::SweepFile SweepState::read_table() {
   stamp_ = place_.stamp();
   store::SweepFile file = store::read_sweep(path_);
-  if (place_.stamp() != stamp_ || store::OutputPath(path_).stamp() != stamp_)
+  if (place_.stamp() != stamp_ || store::OutputPath::resolve(path_).stamp() != stamp_)
     throw Error("cannot resume " + path_ +
                 " (it was replaced or moved while it was read); try again when it stays in place");
   return file;
@@ -138,10 +133,8 @@ void SweepState::adopt(const store::SweepFile& file, const sweep::Settings& sett
     throw Error(
         fmt::format("cannot resume {} (it holds runs with other settings: {}){}", path_, differing, remedy));
   store::Provenance all = file.provenance;
-  for (const char* name : {"config", "stopping_rule", "num_wanted"}) {
-    std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
-    if (const std::string text = attribute(provenance_, name); !text.empty()) all.emplace_back(name, text);
-  }
+  for (const char* name : {"config", "stopping_rule", "num_wanted"})
+    set_attribute(all, name, attribute(provenance_, name));
   provenance_ = std::move(all);
 }
 
@@ -228,7 +221,7 @@ std::int64_t SweepState::num_resumed() const {
 sweep::RunRow SweepState::new_row(std::int64_t task) const {
   sweep::RunRow row = sweep::describe(plan_->task(task));
   row.task = task;
-  row.clogged_by = sweep::FoundBy::nothing;
+  row.clogged_by = sweep::FoundBy::not_clogged;
   row.mechanism = ClogMechanism::none;
   return row;
 }
@@ -290,12 +283,18 @@ const sweep::RunRow* SweepState::first_if_all_failed() const {
   return &runs_.begin()->second.row;
 }
 
-std::vector<sweep::RunRow> SweepState::rows() const {
-  std::vector<sweep::RunRow> rows;
-  rows.reserve(runs_.size() + other_runs_.size());
-  for (const auto& [task, entry] : runs_) rows.push_back(published(entry.row));
-  for (const Entry& entry : other_runs_) rows.push_back(published(entry.row));
-  return rows;
+std::vector<const SweepState::Entry*> SweepState::entries() const {
+  std::vector<const Entry*> all;
+  all.reserve(runs_.size() + other_runs_.size());
+  for (const auto& [task, entry] : runs_) all.push_back(&entry);
+  for (const Entry& entry : other_runs_) all.push_back(&entry);
+  return all;
+}
+
+store::SweepFile SweepState::table() const {
+  store::SweepFile table{{}, provenance_, circles_};
+  for (const Entry* entry : entries()) table.rows.push_back(published(entry->row));
+  return table;
 }
 
 void SweepState::write_down(const Entry& entry) {
@@ -317,7 +316,7 @@ void SweepState::tick() {
   const Clock::duration pause = std::max<Clock::duration>(std::chrono::seconds(1), 50 * publication_time_);
   if (is_published_ || begin - last_publication_ < pause) return;
   publish();
-  if (journal_.is_to_be_rewritten()) rewrite_journal(false);
+  if (journal_.is_to_be_rewritten()) rewrite_journal(Records::of_unfinished_runs);
   last_publication_ = Clock::now();
   publication_time_ = last_publication_ - begin;
 }
@@ -335,21 +334,19 @@ sweep::RunRow SweepState::published(const sweep::RunRow& row) const {
 /// If the journal was removed or the table replaced, writes everything once more and ends the sweep. A
 /// removed table is written again.
 void SweepState::publish() {
-  const std::vector<sweep::RunRow> rows = this->rows();
   const std::string there = place_.stamp();
-  if (!there.empty() && there != stamp_) rescue(rows);
+  if (!there.empty() && there != stamp_) rescue();
   const bool has_journal = journal_.is_there();
   if (!has_journal) {
-    if (!journal_.make_anew(place_)) rescue(rows);
-    rewrite_journal(true);
+    if (!journal_.make_anew(place_)) rescue();
+    rewrite_journal(Records::all);
   }
   journal_.flush();
   if (activity_)
     set_attribute(provenance_, "activity",
                   with_session(earlier_activity_, activity_->line(session_time_, seconds_so_far())));
-  std::optional<std::string> published =
-      store::publish_sweep_over(stamp_, place_, rows, provenance_, circles_);
-  if (!published) rescue(rows);
+  std::optional<std::string> published = store::publish_sweep(place_, stamp_, table());
+  if (!published) rescue();
   stamp_ = *std::move(published);
   is_published_ = true;
   if (!has_journal)
@@ -359,26 +356,21 @@ void SweepState::publish() {
 }
 
 /// Writes the table under another name, to keep the file that somebody else has put in its place.
-void SweepState::rescue(const std::vector<sweep::RunRow>& rows) {
-  if (journal_.is_there()) rewrite_journal(true);
+void SweepState::rescue() {
+  if (journal_.is_there()) rewrite_journal(Records::all);
   int number = 1;
   const auto rescued = [&] { return place_.beside(fmt::format(".rescued{}", number)); };
-  while (rescued().exists()) ++number;
-  store::publish_sweep(rescued(), rows, provenance_, circles_);
+  while (!store::publish_sweep(rescued(), "", table())) ++number;
   throw Error(fmt::format(
       "cannot continue with {} (somebody has replaced it or its journal while the sweep was "
       "running); all runs are in {}: move it to where it belongs, then the same command resumes the sweep",
       path_, rescued().path()));
 }
 
-/// Rewrites the journal with the records of unfinished runs only; with_all: with all records, if finished
-/// runs are not in the table yet.
-void SweepState::rewrite_journal(bool with_all) {
-  std::vector<const Entry*> needed;
-  for (const auto& [task, entry] : runs_)
-    if (with_all || !is_over(entry.row)) needed.push_back(&entry);
-  for (const Entry& entry : other_runs_)
-    if (with_all || !is_over(entry.row)) needed.push_back(&entry);
+void SweepState::rewrite_journal(Records records) {
+  std::vector<const Entry*> needed = entries();
+  if (records == Records::of_unfinished_runs)
+    std::erase_if(needed, [this](const Entry* entry) { return is_over(entry->row); });
   journal_.rewrite(needed);
 }
 
@@ -387,16 +379,15 @@ std::string SweepState::finish() {
   if (place_.stamp() != stamp_) publish();  // somebody has moved or removed it meanwhile
   const bool is_complete =
       static_cast<std::int64_t>(runs_.size()) >= num_wanted_ &&
-      std::all_of(runs_.begin(), runs_.end(), [this](const auto& run) { return is_over(run.second.row); }) &&
-      std::all_of(other_runs_.begin(), other_runs_.end(),
-                  [this](const Entry& run) { return is_over(run.row); });
+      std::ranges::all_of(entries(), [this](const Entry* entry) { return is_over(entry->row); });
   if (!is_complete) {
-    rewrite_journal(false);
+    rewrite_journal(Records::of_unfinished_runs);
     return "";
   }
-  if (journal_.remove()) return "";
+  const std::error_code reason = journal_.remove();
+  if (!reason) return "";
   return fmt::format("cannot remove {} ({}); the sweep is complete without it: remove it", journal_.path(),
-                     std::strerror(errno));
+                     reason.message());
 }
 
 }  // namespace clog::results

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "clog/core/parameters/schema.hpp"
@@ -28,35 +26,21 @@ RunParameters defaults_for(const sweep::RunRow& row) {
   return run;
 }
 
-/// The row's parameters, but with its preset's values for those that may be automatic.
-RunParameters with_usual_values(const sweep::RunRow& row) {
-  RunParameters run = defaults_for(row);
-  for (const Parameter& parameter : parameter_schema())
-    if (parameter.shapes_array || (parameter.has_own_column && !parameter.may_be_automatic(run)))
-      parameter.set(run, parameter.get(row.parameters));
-  return run;
-}
-
 bool are_circles_missing(const RunParameters& run) {
   return scene_of(run).walls_from == WallsFrom::circles &&
          !(run.obstacles.own && run.obstacles.own->are_known());
-}
-
-/// A row may have only the checksum of user-supplied circles; automatic values hardly depend on them.
-RunParameters resolved_in_any_layout(RunParameters run) {
-  if (!are_circles_missing(run)) return resolve(run);
-  const ObstacleParameters own = run.obstacles;
-  // Resolved in a generated array, which the box and the gap of the device might not allow.
-  run.obstacles = {.diameter = own.diameter};
-  run = resolve(run);
-  run.obstacles = own;
-  return run;
 }
 
 /// A key of user-supplied circles alone, which a row of the default layout says nothing about.
 bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
   return scene_of(run).walls_from == WallsFrom::circles && column.parameter &&
          column.parameter->applies_to(run) && !column.parameter->applies_to(RunParameters());
+}
+
+/// A share of the saturated density is another number for each gap and diameter.
+Value usual_density(RunParameters run) {
+  run.obstacles.density = ObstacleParameters().density;
+  return sweep::describe(resolve(run)).obstacle_density;
 }
 
 /// The density of these arrays follows from gaps, diameters or circles.
@@ -75,24 +59,27 @@ bool follows(const Parameter& one, const Parameter& other) {
          place != std::end(chain);
 }
 
-}  // namespace
+enum class Others { all, independent };
 
-bool is_automatic(const sweep::Column& column, const sweep::RunRow& row) try {
+/// Is the value automatic if the other parameters are given: all, or those that do not follow from it?
+bool is_automatic_with(Others others, const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
   if (are_circles_missing(row.parameters)) return true;  // as far as anybody can tell
-  const auto is_automatic_with = [&](const auto& are_given) {
-    RunParameters run = defaults_for(row);
-    for (const Parameter& parameter : parameter_schema())
-      if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column) &&
-          are_given(parameter))
-        parameter.set(run, parameter.get(row.parameters));
-    run.obstacles.own = row.parameters.obstacles.own;  // the circles, too
-    return column.get(sweep::describe(resolved_in_any_layout(run))) == column.get(row);
-  };
-  return is_automatic_with([](const Parameter&) { return true; }) ||
-         is_automatic_with([&](const Parameter& other) { return !follows(other, *column.parameter); });
+  RunParameters run = defaults_for(row);
+  for (const Parameter& parameter : parameter_schema())
+    if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column) &&
+        (others == Others::all || !follows(parameter, *column.parameter)))
+      parameter.set(run, parameter.get(row.parameters));
+  run.obstacles.own = row.parameters.obstacles.own;  // the circles, too
+  return column.get(sweep::describe(resolve(run))) == column.get(row);
 } catch (const Error&) {
   return false;
+}
+
+}  // namespace
+
+bool is_automatic(const sweep::Column& column, const sweep::RunRow& row) {
+  return is_automatic_with(Others::all, column, row) || is_automatic_with(Others::independent, column, row);
 }
 
 Value separating_value(const sweep::Column& column, const sweep::RunRow& row) {
@@ -108,31 +95,16 @@ Value separating_value(const sweep::Column& column, const sweep::RunRow& row) {
   return column.get(row);
 }
 
-std::vector<Field> usual_parameters(const sweep::RunRow& row) try {
-  const auto fields_of = [](RunParameters run) {
-    return parameter_fields(sweep::describe(resolved_in_any_layout(std::move(run))));
-  };
-  // One automatic value follows from the other: the step from the vertices, the stiffness of walls from both.
-  RunParameters run = with_usual_values(row);
-  const std::vector<Field> with_usual_vertices = fields_of(run);
-  run.dp.vertices = row.parameters.dp.vertices;
-  const std::vector<Field> with_usual_step = fields_of(run);
-  run.time_step = row.parameters.time_step;
-  const std::vector<Field> with_own_step = fields_of(run);
-  // A share of the saturated density is another number for each gap and diameter.
-  RunParameters filled_as_usual = run;
-  filled_as_usual.obstacles.density = ObstacleParameters().density;
-  const std::vector<Field> with_usual_density = fields_of(filled_as_usual);
-  std::vector<Field> usual = fields_of(defaults_for(row));
+std::vector<Value> usual_parameters(const sweep::RunRow& row) try {
+  const RunParameters& run = row.parameters;
+  std::vector<Value> usual = parameter_values(sweep::describe(resolve(defaults_for(row))));
   for (std::size_t i = 0; i < usual.size(); ++i) {
     const sweep::Column& column = *group_columns()[i];
     if (column.name == "obstacle_density")
-      usual[i] = (run.obstacles.density.per_area ? with_usual_density : with_own_step)[i];
-    if (is_of_own_circles(column, run)) usual[i].second = column.parameter->get(RunParameters());
-    if (!column.may_be_automatic(run)) continue;
-    usual[i] = (column.name == "vertices"    ? with_usual_vertices
-                : column.name == "time_step" ? with_usual_step
-                                             : with_own_step)[i];
+      usual[i] = run.obstacles.density.per_area ? usual_density(run) : column.get(row);
+    if (is_of_own_circles(column, run)) usual[i] = column.parameter->get(RunParameters());
+    if (column.may_be_automatic(run))
+      usual[i] = is_automatic_with(Others::independent, column, row) ? column.get(row) : Value();
   }
   return usual;
 } catch (const Error&) {

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "clog/console/printable.hpp"
+#include "clog/core/tools/joined.hpp"
 
 namespace clog::results {
 
@@ -17,16 +18,6 @@ nlohmann::ordered_json json_of(const sweep::Value& value) {
   if (const auto* number = std::get_if<double>(&value); number && std::isfinite(*number)) return *number;
   if (const auto* word = std::get_if<std::string>(&value); word && !word->empty()) return *word;
   return nullptr;
-}
-
-nlohmann::ordered_json json_of(const fit::SurvivalStep& step) {
-  return {{"distance", step.distance},
-          {"at_risk", step.num_at_risk},
-          {"clogs", step.num_clogs},
-          {"probability", step.probability},
-          {"standard_error", step.standard_error},
-          {"lower", step.interval.lower},
-          {"upper", step.interval.upper}};
 }
 
 std::string short_text(const sweep::Value& value) {
@@ -41,6 +32,20 @@ std::string csv_cell(const sweep::Value& value) {
   for (std::size_t i = text.find('"'); i != std::string::npos; i = text.find('"', i + 2))
     text.insert(i, 1, '"');
   return '"' + text + '"';
+}
+
+std::string csv_table(const std::vector<std::vector<Field>>& rows) {
+  std::string table;
+  for (const std::vector<Field>& row : rows) {
+    std::vector<std::string> names, cells;
+    for (const auto& [name, value] : row) {
+      names.push_back(name);
+      cells.push_back(csv_cell(value));
+    }
+    if (table.empty()) table = joined(names, ",") + '\n';
+    table += joined(cells, ",") + '\n';
+  }
+  return table;
 }
 
 }  // namespace clog::results

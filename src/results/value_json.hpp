@@ -1,19 +1,34 @@
 #pragma once
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
-#include "clog/fit/survival.hpp"
-#include "clog/sweep/columns.hpp"
+#include "clog/results/groups.hpp"
 
 namespace clog::results {
 
+/// Unset where the number is not finite.
+inline Value finite_value(double number) { return std::isfinite(number) ? Value(number) : Value(); }
 /// @returns null for an unset value and for a number that is not finite
 nlohmann::ordered_json json_of(const sweep::Value& value);
-nlohmann::ordered_json json_of(const fit::SurvivalStep& step);
+/// A step of a survival or incidence curve; its number of ends has this name.
+template <class Step>
+nlohmann::ordered_json step_json(const Step& step, const char* name, int num_ends) {
+  return {{"distance", step.distance},
+          {"at_risk", step.num_at_risk},
+          {name, num_ends},
+          {"probability", step.probability},
+          {"standard_error", step.standard_error},
+          {"lower", step.interval.lower},
+          {"upper", step.interval.upper}};
+}
 /// For a table: four figures; `-` for an unset value. A foreign file's words may hold control characters.
 std::string short_text(const sweep::Value& value);
 /// For CSV: all digits; in quotes where a word holds a comma or a quote.
 std::string csv_cell(const sweep::Value& value);
+/// A line for each row, below one with the names of its fields.
+std::string csv_table(const std::vector<std::vector<Field>>& rows);
 
 }  // namespace clog::results

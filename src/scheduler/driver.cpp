@@ -177,7 +177,7 @@ void follow_sweep(const scheduler::Communicator& ranks, const JobsOf& jobs_of,
                   const std::string& assignment) {
   const sweep::JobFactory make_job = jobs_of(assignment);
   const std::chrono::milliseconds report_interval = Assignment::from(assignment).report_interval;
-  scheduler::Schedule none(scheduler::TaskOrder(0), ranks.size(), false);
+  scheduler::Schedule none(scheduler::TaskOrder({}), ranks.size(), false);
   do {
     scheduler::run_tasks(ranks, none, make_job, {}, report_interval);
   } while (AfterRound{ranks.broadcast(0)} == AfterRound::another);

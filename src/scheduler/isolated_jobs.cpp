@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "bytes.hpp"
+#include "clog/core/tools/descriptor.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/messages.hpp"
 #include "socket.hpp"
@@ -149,7 +150,7 @@ std::string text_of(std::span<const std::byte> bytes) {
       // It stays a zombie until the rank asks for the next process, so its pid is not reused and the rank's
       // kill cannot hit another process.
       siginfo_t end{};
-      while (waitid(P_PID, process, &end, WEXITED | WNOWAIT) < 0 && errno == EINTR) continue;
+      retried([&] { return waitid(P_PID, process, &end, WEXITED | WNOWAIT); });
       ending.code = end.si_code;
       ending.status = end.si_status;
     }
@@ -319,7 +320,7 @@ IsolatedJobs::IsolatedJobs(const Describe& describe) : describe_(describe) {
 
 IsolatedJobs::~IsolatedJobs() {
   kill(helper_, SIGKILL);  // the process that computes goes with it
-  while (waitpid(helper_, nullptr, 0) < 0 && errno == EINTR) continue;
+  retried([&] { return waitpid(helper_, nullptr, 0); });
 }
 
 JobFactory IsolatedJobs::jobs(const std::string& description) {

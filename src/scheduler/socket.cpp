@@ -3,7 +3,6 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/time.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -34,14 +33,6 @@ struct Parcel {
   }
 };
 
-/// Calls again what a signal interrupted.
-template <class Call>
-auto uninterrupted(const Call& call) {
-  auto result = call();
-  while (result < 0 && errno == EINTR) result = call();
-  return result;
-}
-
 }  // namespace
 
 std::pair<Socket, Socket> Socket::pair() {
@@ -49,11 +40,6 @@ std::pair<Socket, Socket> Socket::pair() {
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     throw std::system_error(errno, std::generic_category(), "cannot make a socket");
   return {Socket(ends[0]), Socket(ends[1])};
-}
-
-void Socket::close() {
-  if (is_open()) ::close(descriptor_);
-  descriptor_ = -1;
 }
 
 void Socket::limit_halts(std::chrono::milliseconds longest) const {
@@ -66,7 +52,7 @@ bool Socket::write_all(const void* bytes, std::size_t num_bytes) const {
   const char* next = static_cast<const char*>(bytes);
   while (num_bytes > 0) {
     // MSG_NOSIGNAL: the death of the other process is no reason to die.
-    const ssize_t sent = uninterrupted([&] { return ::send(descriptor_, next, num_bytes, MSG_NOSIGNAL); });
+    const ssize_t sent = retried([&] { return ::send(descriptor_, next, num_bytes, MSG_NOSIGNAL); });
     if (sent <= 0) return false;
     next += sent;
     num_bytes -= static_cast<std::size_t>(sent);
@@ -77,7 +63,7 @@ bool Socket::write_all(const void* bytes, std::size_t num_bytes) const {
 bool Socket::read_all(void* bytes, std::size_t num_bytes) const {
   char* next = static_cast<char*>(bytes);
   while (num_bytes > 0) {
-    const ssize_t received = uninterrupted([&] { return ::recv(descriptor_, next, num_bytes, 0); });
+    const ssize_t received = retried([&] { return ::recv(descriptor_, next, num_bytes, 0); });
     if (received <= 0) return false;
     next += received;
     num_bytes -= static_cast<std::size_t>(received);
@@ -105,7 +91,7 @@ std::optional<Socket::Message> Socket::receive() const {
 
 bool Socket::wait(std::chrono::milliseconds longest) const {
   pollfd state{descriptor_, POLLIN, 0};
-  return uninterrupted([&] { return ::poll(&state, 1, static_cast<int>(longest.count())); }) > 0;
+  return retried([&] { return ::poll(&state, 1, static_cast<int>(longest.count())); }) > 0;
 }
 
 void Socket::send_socket(const Socket& socket) const {
@@ -114,13 +100,14 @@ void Socket::send_socket(const Socket& socket) const {
   rights->cmsg_level = SOL_SOCKET;
   rights->cmsg_type = SCM_RIGHTS;
   rights->cmsg_len = CMSG_LEN(sizeof(int));
-  std::memcpy(CMSG_DATA(rights), &socket.descriptor_, sizeof(int));
-  uninterrupted([&] { return sendmsg(descriptor_, &parcel.message, MSG_NOSIGNAL); });
+  const int descriptor = socket.descriptor_;
+  std::memcpy(CMSG_DATA(rights), &descriptor, sizeof descriptor);
+  retried([&] { return sendmsg(descriptor_, &parcel.message, MSG_NOSIGNAL); });
 }
 
 Socket Socket::receive_socket() const {
   Parcel parcel;
-  if (uninterrupted([&] { return recvmsg(descriptor_, &parcel.message, MSG_CMSG_CLOEXEC); }) <= 0) return {};
+  if (retried([&] { return recvmsg(descriptor_, &parcel.message, MSG_CMSG_CLOEXEC); }) <= 0) return {};
   const cmsghdr* rights = CMSG_FIRSTHDR(&parcel.message);
   if (!rights || rights->cmsg_type != SCM_RIGHTS) return {};
   int descriptor = -1;

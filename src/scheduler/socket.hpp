@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "clog/core/tools/descriptor.hpp"
+
 namespace clog::scheduler {
 
 /// One end of a connection between two processes of one machine. Messages are whole, or the other process has
@@ -16,12 +18,6 @@ class Socket {
  public:
   Socket() = default;
   explicit Socket(int descriptor) : descriptor_(descriptor) {}
-  ~Socket() { close(); }
-  Socket(Socket&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  Socket& operator=(Socket&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-  }
 
   /// @throws std::system_error
   static std::pair<Socket, Socket> pair();
@@ -31,11 +27,11 @@ class Socket {
     std::int64_t job = 0;  ///< which one it is about
     std::vector<std::byte> bytes;
   };
-  bool is_open() const { return descriptor_ >= 0; }
+  bool is_open() const { return descriptor_.is_open(); }
   /// From now on a message that has begun, in either direction, and comes to a halt for so long counts as the
   /// other process's death: it may have been stopped.
   void limit_halts(std::chrono::milliseconds longest) const;
-  void close();
+  void close() { descriptor_ = Descriptor(); }
   /// A message to a process that has died is lost.
   void send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const;
   /// Waits for a message, without bound unless halts are limited; none: the other process has died.
@@ -49,7 +45,7 @@ class Socket {
   Socket receive_socket() const;
 
  private:
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 
   bool read_all(void* bytes, std::size_t num_bytes) const;
   bool write_all(const void* bytes, std::size_t num_bytes) const;

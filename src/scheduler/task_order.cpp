@@ -4,28 +4,8 @@
 #include <cassert>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 
 namespace clog::scheduler {
-
-namespace {
-
-std::vector<std::int64_t> all_tasks(std::int64_t num_tasks) {
-  std::vector<std::int64_t> tasks(num_tasks);
-  std::iota(tasks.begin(), tasks.end(), std::int64_t{0});
-  return tasks;
-}
-
-}  // namespace
-
-TaskOrder::TaskOrder(std::int64_t num_tasks, std::int64_t num_groups)
-    : TaskOrder(all_tasks(num_tasks), num_groups) {}
-
-TaskOrder::TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups)
-    : TaskOrder([num_groups](std::int64_t task) { return task % num_groups; }) {
-  assert(num_groups > 0);
-  add(tasks);
-}
 
 void TaskOrder::add(const std::vector<std::int64_t>& tasks) {
   num_left_ += static_cast<std::int64_t>(tasks.size());

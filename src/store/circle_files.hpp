@@ -11,8 +11,8 @@
 /// named by their checksum.
 namespace clog::store {
 
-/// @throws Error naming the path
-void write_circles(hid_t file, std::span<const CircleFile> circles, const std::string& path);
+/// @throws LibraryError
+void write_circles(hid_t file, std::span<const CircleFile> circles);
 
 /// Appends what is as it was written to `whole`, a sentence for each of the others to `damage`.
 void read_circles(hid_t file, std::vector<CircleFile>& whole, std::vector<std::string>& damage);

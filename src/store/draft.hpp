@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "clog/store/output_path.hpp"
 
@@ -29,7 +30,7 @@ class Draft {
   /// Removes it, unless it has been published.
   ~Draft();
 
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return file_; }
 
   /// Appends to what it holds. @throws Error
   void write(std::span<const std::byte> bytes);
@@ -37,24 +38,19 @@ class Draft {
   /// To be called before it is published, if others are to read it from then on: HDF5 locks the files that it
   /// reads, and fails where somebody else has.
   void unlock();
-  /// Gives it the place's name, and the disk both; a file that is there is replaced, and hands on its mode,
-  /// owner, group and access list. Returns whether a power cut leaves the name as it is now. @throws Error if
-  /// the file could not be put there
-  bool publish();
-  /// The same, but only in place of the file with this OutputPath::stamp(), or of none. Returns the stamp of
-  /// what was published, which somebody may have replaced meanwhile; nothing if a different file is there,
-  /// which stays. @throws Error
-  std::optional<std::string> publish_over(const std::string& stamp);
-  /// The same, but never onto a file that somebody else has made. @throws Error
-  void publish_new();
+  /// Saves it to disk and gives it the place's name, where it replaces the file with this
+  /// OutputPath::stamp(), if that is still there: the file hands on its mode, owner, group and access list.
+  /// Returns the stamp of what was published, which somebody may have replaced meanwhile; nothing if a
+  /// different file is there, which stays. @throws Error
+  std::optional<std::string> publish(const std::string& stamp);
   /// The open file, which is the caller's from now on.
-  int release();
+  Descriptor take_descriptor() { return std::move(file_); }
 
  private:
   OutputPath place_;
   OutputPath draft_;
   bool is_published_ = false;
-  int descriptor_ = -1;
+  Descriptor file_;
   std::uint64_t size_ = 0;
 };
 

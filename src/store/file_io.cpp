@@ -1,88 +1,92 @@
 #include "file_io.hpp"
 
-#include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
+#include <array>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <string_view>
 
-#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/descriptor.hpp"
 
 namespace clog::store {
+namespace {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-/// The folder that a file is to be made in; empty if it is there.
-std::string missing_folder(const std::string& path) {
+std::string file_fault(FileAction action, const std::string& path, std::error_code reason) {
+  constexpr std::array words = {"create", "write", "read"};
+  const std::string what = std::string("cannot ") + words[static_cast<std::size_t>(action)] + " " + path;
   const fs::path folder = fs::path(path).parent_path();
   std::error_code none;
-  return folder.empty() || fs::exists(folder, none) ? "" : folder.string();
-}
-
-}  // namespace
-
-void check(bool succeeded, const std::string& what, const std::string& path) {
-  if (succeeded) return;
-  if (errno == ENOENT && (what == "create" || what == "write"))
-    if (const std::string folder = missing_folder(path); !folder.empty())
-      throw Error("cannot " + what + " " + path + " (no folder " + folder + "); make it first");
-  const std::string reason = errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : "";
-  throw Error("cannot " + what + " " + path + reason + "; check the disk and the permissions");
-}
-
-bool sync(int descriptor) {
-  while (fsync(descriptor) != 0)
-    if (errno != EINTR) return false;  // a signal is no fault of the disk
-  return true;
+  const bool is_written = action == FileAction::create || action == FileAction::write;
+  if (is_written && reason == std::errc::no_such_file_or_directory && !folder.empty() &&
+      !fs::exists(folder, none))
+    return what + " (no folder " + folder.string() + "); make it first";
+  return what + " (" + reason.message() + "); check the disk and the permissions";
 }
 
 /// As the user has set the variable: prepare_library() changes it.
-static const bool are_locks_optional = [] {
+const bool are_locks_optional = [] {
   const char* use = std::getenv("HDF5_USE_FILE_LOCKING");
   return use && std::string_view(use) == "FALSE";
 }();
 
+}  // namespace
+
+FileError::FileError(FileAction action, const std::string& path, std::error_code reason)
+    : Error(file_fault(action, path, reason)) {}
+
+std::error_code sync(int descriptor) {
+  return retried([&] { return fsync(descriptor); }) == 0 ? std::error_code() : last_error();
+}
+
 bool try_lock(int descriptor, const std::string& path) {
   if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return true;
-  if (errno == EWOULDBLOCK) return false;
+  const std::error_code reason = last_error();
+  if (reason == std::errc::operation_would_block) return false;
   if (are_locks_optional) return true;
-  throw Error("cannot lock " + path + " (" + std::strerror(errno) +
+  throw Error("cannot lock " + path + " (" + reason.message() +
               "); use a folder whose file system has locks (flock), or, if no other sweep writes to this "
               "file, set HDF5_USE_FILE_LOCKING=FALSE");
 }
 
-void read_at(int descriptor, std::span<std::byte> bytes, std::uint64_t place, const std::string& path) {
-  while (!bytes.empty()) {
-    const ssize_t got = pread(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(place));
-    if (got < 0 && errno == EINTR) continue;
-    if (got == 0) errno = EIO;  // somebody has shortened it meanwhile
-    check(got > 0, "read", path);
-    bytes = bytes.subspan(static_cast<std::size_t>(got));
-    place += static_cast<std::uint64_t>(got);
+std::size_t size_of(int descriptor, const std::string& path) {
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0) throw FileError(FileAction::read, path, last_error());
+  return static_cast<std::size_t>(status.st_size);
+}
+
+std::vector<std::byte> read_all(int descriptor, const std::string& path) {
+  std::vector<std::byte> bytes(size_of(descriptor, path));
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t got = retried([&] {
+      return pread(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+    });
+    if (got < 0) throw FileError(FileAction::read, path, last_error());
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
   }
+  bytes.resize(done);
+  return bytes;
 }
 
 void write_at(int descriptor, std::span<const std::byte> bytes, std::uint64_t place,
               const std::string& path) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
+  for (std::uint64_t next = place; !bytes.empty();) {
     const ssize_t written =
-        pwrite(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(place + done));
-    if (written < 0 && errno == EINTR) continue;
+        retried([&] { return pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(next)); });
     if (written <= 0) {
-      const int reason = written < 0 ? errno : ENOSPC;
+      const std::error_code reason =
+          written < 0 ? last_error() : make_error_code(std::errc::no_space_on_device);
       const bool is_cut = ftruncate(descriptor, static_cast<off_t>(place)) == 0;
-      errno = is_cut ? reason : errno;
-      check(false, "write", path);
+      throw FileError(FileAction::write, path, is_cut ? reason : last_error());
     }
-    done += static_cast<std::size_t>(written);
+    next += static_cast<std::uint64_t>(written);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
 }
 

@@ -1,18 +1,36 @@
 #pragma once
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <system_error>
+#include <vector>
 
-/// Facts about files, through their descriptors.
+#include "clog/core/tools/error.hpp"
+
+/// Files, by their descriptors.
 namespace clog::store {
 
-/// @throws Error naming the file, and the system's reason if there is one
-void check(bool succeeded, const std::string& what, const std::string& path);
+enum class FileAction { create, write, read };
 
-/// Brings a file to the disk, whatever signals come. Returns whether that succeeded.
-bool sync(int descriptor);
+/// A system call on a file has failed.
+class FileError : public Error {
+ public:
+  FileError(FileAction action, const std::string& path, std::error_code reason);
+};
+
+/// Why the last system call failed: to be asked at once.
+inline std::error_code last_error() { return {errno, std::generic_category()}; }
+
+/// @throws FileError if there is a reason
+inline void check(std::error_code reason, FileAction action, const std::string& path) {
+  if (reason) throw FileError(action, path, reason);
+}
+
+/// Saves a file to disk. Returns why that failed, if it did.
+std::error_code sync(int descriptor);
 
 /// Locks an open file for this process alone, until it is closed. Returns false if another process holds the
 /// lock.
@@ -20,11 +38,13 @@ bool sync(int descriptor);
 /// allows files without
 bool try_lock(int descriptor, const std::string& path);
 
-/// Fills the bytes from this place of the file on. @throws Error naming the path, also if the file ends
-/// before
-void read_at(int descriptor, std::span<std::byte> bytes, std::uint64_t place, const std::string& path);
+/// Size of an open file [bytes]. @throws FileError naming the path, as do the functions below
+std::size_t size_of(int descriptor, const std::string& path);
 
-/// Whole or not at all: what does not fit is cut off again. @throws Error naming the path
+/// All bytes of a file; fewer than size_of() if somebody shortens it meanwhile.
+std::vector<std::byte> read_all(int descriptor, const std::string& path);
+
+/// Writes all bytes or none: what does not fit is cut off again.
 void write_at(int descriptor, std::span<const std::byte> bytes, std::uint64_t place, const std::string& path);
 
 }  // namespace clog::store

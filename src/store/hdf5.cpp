@@ -1,8 +1,6 @@
 #include "hdf5.hpp"
 
 #include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -16,7 +14,6 @@
 
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/memory.hpp"
-#include "clog/store/regular_file.hpp"
 #include "clog/store/run_table.hpp"
 #include "draft.hpp"
 #include "file_io.hpp"
@@ -42,89 +39,63 @@ namespace {
 
 constexpr std::string_view hdf5_mark = "\x89HDF\r\n\x1a\n";
 
-}  // namespace
-
-void refuse_existing(const std::string& path) {
-  if (std::filesystem::exists(path))
-    throw Error("will not overwrite " + path + " (it exists); give another name, or remove it first");
-}
-
-void refuse_unwritable(const std::string& path) {
-  refuse_existing(path);
-  const Draft draft(path, hdf5_mark);
-}
-
-namespace {
-
 /// The bytes of a file of the earliest format. It is filled in memory, so that the library never meets a disk
 /// that is full, which it does not always survive.
-std::vector<std::byte> file_image(const std::string& path, const std::function<void(hid_t file)>& fill) {
+std::vector<std::byte> file_image(const std::string& path, const std::function<void(hid_t file)>& fill) try {
   prepare_library();
   constexpr std::size_t growth = std::size_t{1} << 20;
   const PropertyList access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
   H5Pset_fapl_core(access, growth, false);
-  errno = 0;
   const File file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
-  check(file.valid(), "create", path);
+  if (!file.valid()) throw LibraryError("create a file");
   fill(file);
-  check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path);
-  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  check(size > 0, "write", path);
-  std::vector<std::byte> image(static_cast<std::size_t>(size));
-  check(H5Fget_file_image(file, image.data(), image.size()) == size, "write", path);
+  const ssize_t size =
+      H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0 ? H5Fget_file_image(file, nullptr, 0) : ssize_t{0};
+  std::vector<std::byte> image(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  if (size <= 0 || H5Fget_file_image(file, image.data(), image.size()) != size)
+    throw LibraryError("copy the file");
   return image;
-}
-
-void write_draft(Draft& draft, const std::string& path, const std::function<void(hid_t file)>& fill) {
-  const std::vector<std::byte> image = file_image(path, fill);
-  const std::string seal = seal_of(image);
-  draft.write(image);
-  draft.write(std::as_bytes(std::span(seal)));
-  draft.unlock();
+} catch (const LibraryError& error) {
+  throw Error("cannot write " + path + " (HDF5 cannot " + error.what() +
+              " in memory); allow more memory (ulimit -v)");
 }
 
 }  // namespace
 
-void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill) {
+void refuse_to_overwrite(const std::string& path) {
+  throw Error("will not overwrite " + path + " (it exists); give another name, or remove it first");
+}
+
+void refuse_existing(const std::string& path) {
+  if (std::filesystem::exists(path)) refuse_to_overwrite(path);
+}
+
+void refuse_unwritable(const std::string& path) {
   refuse_existing(path);
-  Draft draft(path, hdf5_mark);
-  write_draft(draft, path, fill);
-  draft.publish_new();
+  const Draft draft(OutputPath::resolve(path), hdf5_mark);
 }
 
-bool replace_whole(const OutputPath& place, const std::function<void(hid_t file)>& fill) {
+std::optional<std::string> write_whole(const OutputPath& place, const std::string& stamp,
+                                       const std::function<void(hid_t file)>& fill) {
   Draft draft(place, hdf5_mark);
-  write_draft(draft, place.path(), fill);
-  return draft.publish();
-}
-
-std::optional<std::string> replace_whole(const OutputPath& place, const std::string& stamp,
-                                         const std::function<void(hid_t file)>& fill) {
-  Draft draft(place, hdf5_mark);
-  write_draft(draft, place.path(), fill);
-  return draft.publish_over(stamp);
+  const std::vector<std::byte> image = file_image(place.path(), fill);
+  const std::string seal = seal_of(image);
+  draft.write(image);
+  draft.write(std::as_bytes(std::span(seal)));
+  draft.unlock();
+  return draft.publish(stamp);
 }
 
 std::vector<std::byte> read_file(const std::string& path) {
-  const int descriptor = open(require_regular(path).c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0 && errno == ENOENT)
+  const Descriptor file(open(require_regular(path).c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.is_open() && errno == ENOENT)
     throw Error("cannot read " + path + " (no such file); check the name");
-  if (descriptor < 0) throw Error("cannot read " + path + " (" + std::strerror(errno) + ")");
-  try {
-    struct stat status {};
-    check(fstat(descriptor, &status) == 0, "read", path);
-    // The image, two of the library, packed rows, and rows: 25 MB want 165 MB in all.
-    constexpr int copies = 6;
-    require_memory_of_file("read " + path, static_cast<std::size_t>(status.st_size), copies);
-    std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
-    read_at(descriptor, bytes, 0, path);
-    close(descriptor);
-    return bytes;
-  } catch (...) {
-    close(descriptor);
-    throw;
-  }
+  if (!file.is_open()) throw FileError(FileAction::read, path, last_error());
+  // The image, two of the library, packed rows, and rows: 25 MB want 165 MB in all.
+  constexpr int copies = 6;
+  require_memory_of_file("read " + path, size_of(file, path), copies);
+  return read_all(file, path);
 }
 
 File open_image(std::vector<std::byte>& image, const std::string& path) {
@@ -143,6 +114,38 @@ File open_image(std::vector<std::byte>& image, const std::string& path) {
                 "copy, or start "
                 "a new file");
   return file;
+}
+
+Space space_of(std::initializer_list<hsize_t> shape) {
+  return Space(H5Screate_simple(static_cast<int>(shape.size()), std::data(shape), nullptr));
+}
+
+PropertyList checked_chunks(hsize_t num_rows) {
+  PropertyList properties(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_chunk(properties, 1, &num_rows);
+  H5Pset_fletcher32(properties);
+  return properties;
+}
+
+Dataset write_dataset(hid_t parent, const std::string& name, hid_t type, hid_t space, const void* data,
+                      hid_t properties) {
+  Dataset dataset(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT));
+  if (!dataset.valid() || (data && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))
+    throw LibraryError("write " + name);
+  return dataset;
+}
+
+std::optional<hsize_t> length_of(hid_t dataset) {
+  const Space space(H5Dget_space(dataset));
+  hsize_t length = 0;
+  if (H5Sget_simple_extent_ndims(space) != 1 || H5Sget_simple_extent_dims(space, &length, nullptr) != 1)
+    return std::nullopt;
+  return length;
+}
+
+bool can_hold(hid_t dataset, hsize_t number, std::size_t bytes_each) {
+  constexpr hsize_t most_compressed = 1100;  // h5repack's zlib does not exceed 1032
+  return number / most_compressed <= H5Dget_storage_size(dataset) / bytes_each;
 }
 
 Type text_type(std::size_t length) {
@@ -177,7 +180,7 @@ void write_attribute(hid_t object, const std::string& name, const std::string& t
   const Space space(H5Screate(H5S_SCALAR));
   const Attribute attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT));
   if (!attribute.valid() || H5Awrite(attribute, type, text.empty() ? "\0" : text.c_str()) < 0)
-    throw Error("cannot write the attribute " + name);
+    throw LibraryError("write the attribute " + name);
 }
 
 std::string read_attribute(hid_t object, const std::string& name) {
@@ -194,37 +197,6 @@ std::string read_attribute(hid_t object, const std::string& name) {
   std::vector<char> text(H5Tget_size(type));
   if (H5Aread(attribute, type, text.data()) < 0) return {};
   return {text.data(), strnlen(text.data(), text.size())};
-}
-
-namespace {
-
-/// Nothing if they cannot be counted. H5Oget_info has other structures since HDF5 1.12, whose names 1.10 does
-/// not have.
-std::optional<hsize_t> count_attributes(hid_t object) {
-#if H5_VERSION_GE(1, 12, 0)
-  H5O_info2_t info;
-  if (H5Oget_info3(object, &info, H5O_INFO_NUM_ATTRS) < 0) return {};
-#else
-  H5O_info_t info;
-  if (H5Oget_info2(object, &info, H5O_INFO_NUM_ATTRS) < 0) return {};
-#endif
-  return info.num_attrs;
-}
-
-}  // namespace
-
-std::vector<std::pair<std::string, std::string>> read_attributes(hid_t file, const std::string& path) {
-  std::vector<std::pair<std::string, std::string>> all;
-  const std::optional<hsize_t> num_attributes = count_attributes(file);
-  check(num_attributes.has_value(), "read the attributes of", path);
-  for (hsize_t i = 0; i < *num_attributes; ++i) {
-    const Attribute attribute(
-        H5Aopen_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT));
-    char name[256];
-    if (attribute.valid() && H5Aget_name(attribute, sizeof name, name) >= 0)
-      all.emplace_back(name, read_attribute(file, name));
-  }
-  return all;
 }
 
 }  // namespace clog::store

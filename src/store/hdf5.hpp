@@ -4,7 +4,10 @@
 
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,14 +58,16 @@ constexpr int copies_in_writing = 3;
 /// @throws Error if there is not so much
 void require_memory_of_file(const std::string& purpose, std::size_t size, int copies = copies_in_writing);
 
+/// The library could not do something in memory.
+class LibraryError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Has a file of the earliest format filled in memory, writes it as a draft with a seal at its end and
-/// publishes it: the path never holds half a file. @throws Error if the path exists or cannot be written
-void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
-/// The same, replacing a file that is there: Draft::publish(). One process at a time.
-bool replace_whole(const OutputPath& place, const std::function<void(hid_t file)>& fill);
-/// The same, but only in place of the file with this OutputPath::stamp(), or of none: Draft::publish_over().
-std::optional<std::string> replace_whole(const OutputPath& place, const std::string& stamp,
-                                         const std::function<void(hid_t file)>& fill);
+/// publishes it: see Draft::publish(). @param fill  may throw LibraryError. @throws Error naming the path
+std::optional<std::string> write_whole(const OutputPath& place, const std::string& stamp,
+                                       const std::function<void(hid_t file)>& fill);
 
 /// All that a regular file holds. @throws Error that says what is wrong with the path
 std::vector<std::byte> read_file(const std::string& path);
@@ -70,16 +75,27 @@ std::vector<std::byte> read_file(const std::string& path);
 /// @throws Error naming the path if they are no HDF5 file
 File open_image(std::vector<std::byte>& image, const std::string& path);
 
+Space space_of(std::initializer_list<hsize_t> shape);
+/// Chunks of so many rows, with checksums by which other programs notice damage.
+PropertyList checked_chunks(hsize_t num_rows);
+/// Creates and fills a dataset; attributes can be added to what is returned. @throws LibraryError
+/// @param data  nullptr: nothing yet
+Dataset write_dataset(hid_t parent, const std::string& name, hid_t type, hid_t space, const void* data,
+                      hid_t properties = H5P_DEFAULT);
+/// How many elements a list of them has; nothing if it has another shape.
+std::optional<hsize_t> length_of(hid_t dataset);
+/// Can a dataset hold so many elements, of so many bytes each?
+bool can_hold(hid_t dataset, hsize_t number, std::size_t bytes_each);
+
 /// Fixed-length, zero-padded text; the length is at least 1.
 Type text_type(std::size_t length);
 /// Names of what is in a group.
 std::vector<std::string> names_in(hid_t group);
 /// Name of a member of a compound type; empty if there is none.
 std::string member_name(hid_t type, unsigned index);
+/// @throws LibraryError
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
 /// Empty if there is none, or one that is no text of fixed length.
 std::string read_attribute(hid_t object, const std::string& name);
-/// Name and text of every attribute of an open file's root. @throws Error naming the path
-std::vector<std::pair<std::string, std::string>> read_attributes(hid_t file, const std::string& path);
 
 }  // namespace clog::store

@@ -2,18 +2,15 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <string_view>
 #include <utility>
 
 #include "check_sum.hpp"
 #include "clog/core/tools/error.hpp"
-#include "clog/store/regular_file.hpp"
 #include "clog/sweep/columns.hpp"
 #include "draft.hpp"
 #include "file_io.hpp"
@@ -65,22 +62,6 @@ std::uint64_t write_record(int descriptor, const sweep::RunRow& row, std::span<c
   return place + record.size();
 }
 
-std::vector<std::byte> read_all(int descriptor, const std::string& path) {
-  struct stat status {};
-  check(fstat(descriptor, &status) == 0, "read", path);
-  std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t got = pread(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
-    if (got < 0 && errno == EINTR) continue;
-    check(got >= 0, "read", path);
-    if (got == 0) break;  // somebody has shortened it meanwhile
-    done += static_cast<std::size_t>(got);
-  }
-  bytes.resize(done);
-  return bytes;
-}
-
 /// Is the header complete? If its writer died at once, it is missing or incomplete.
 bool has_header(std::span<const std::byte> bytes, const std::string& path) {
   const FileHeader header;
@@ -116,9 +97,12 @@ Journal::Contents parse(std::span<const std::byte> bytes) {
       continue;
     }
     if (place > end) contents.num_unreadable += std::max<std::int64_t>(1, num_passed);
-    const std::span payload = bytes.subspan(begin, header->size);
-    contents.entries.push_back(sweep::report_from(payload));
-    place = end = begin + payload.size();
+    try {
+      contents.entries.push_back(sweep::report_from(bytes.subspan(begin, header->size)));
+    } catch (const Error&) {
+      ++contents.num_unreadable;
+    }
+    place = end = begin + header->size;
     num_passed = 0;
   }
   contents.num_bytes = end;
@@ -128,25 +112,20 @@ Journal::Contents parse(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-std::string journal_path(const std::string& table) { return journal_place(table).path(); }
+std::string journal_path(const std::string& table) {
+  return journal_place(OutputPath::resolve(table)).path();
+}
 
 OutputPath journal_place(const OutputPath& table) {
   OutputPath journal = table.beside(".journal");
-  return journal.is_link() ? OutputPath(journal.path()) : journal;
+  return journal.is_link() ? OutputPath::resolve(journal.path()) : journal;
 }
 
 std::optional<Journal::Contents> Journal::look(const std::string& path) {
-  const int descriptor = open(require_regular(path).c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0 && errno == ENOENT) return std::nullopt;
-  check(descriptor >= 0, "read", path);
-  std::vector<std::byte> bytes;
-  try {
-    bytes = read_all(descriptor, path);
-  } catch (...) {
-    close(descriptor);
-    throw;
-  }
-  close(descriptor);
+  const Descriptor file(open(require_regular(path).c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.is_open() && errno == ENOENT) return std::nullopt;
+  if (!file.is_open()) throw FileError(FileAction::read, path, last_error());
+  const std::vector<std::byte> bytes = read_all(file, path);
   has_header(bytes, path);
   return parse(bytes);
 }
@@ -156,42 +135,40 @@ Journal::Journal(OutputPath place, const OutputPath* table) : place_(std::move(p
   try {
     open_and_lock(table);
     remove_stale_drafts(place_, journal_mark);
-    const std::vector<std::byte> bytes = read_all(descriptor_, place_.path());
+    const std::vector<std::byte> bytes = read_all(file_, place_.path());
     if (has_header(bytes, place_.path())) contents_ = parse(bytes);
     if (bytes.empty()) begin();  // a disk that is full is noticed before hours of work
   } catch (...) {
-    close_file();
+    remove_if_empty();
     throw;
   }
 }
 
-Journal::~Journal() { close_file(); }
+Journal::~Journal() { remove_if_empty(); }
 
 void Journal::open_and_lock(const OutputPath* table) {
   // is_open() of another process holds the lock for a moment, and the file may be removed in between: retry.
   constexpr int most_attempts = 10;
   bool is_busy = false;
-  std::string reason = "it is removed or replaced again and again";
+  std::error_code reason;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     if (attempt > 0) usleep(20'000);
     // A user who may not read the table may not read its journal either.
-    descriptor_ = place_.open(O_RDWR | O_CREAT | O_EXCL, table && table->exists() ? 0600 : 0666);
-    if (descriptor_ >= 0 && table) table->lend_access_to(descriptor_);
-    if (descriptor_ < 0 && errno == EEXIST) {
-      descriptor_ = place_.open(O_RDWR);
-      if (descriptor_ < 0 && errno == ENOENT) continue;
-    }
-    check(descriptor_ >= 0, "write", place_.path());
-    is_busy = !try_lock(descriptor_, place_.path());
-    errno = 0;
-    if (!is_busy && place_.holds(descriptor_)) return;
-    if (errno != 0 && !is_busy) reason = std::string("its state cannot be read: ") + std::strerror(errno);
-    close(std::exchange(descriptor_, -1));
+    file_ = place_.create(table && table->exists() ? 0600 : 0666);
+    if (file_.is_open() && table) table->lend_access_to(file_);
+    if (!file_.is_open()) file_ = place_.open(O_RDWR);
+    if (!file_.is_open() && errno == ENOENT) continue;
+    if (!file_.is_open()) throw FileError(FileAction::write, place_.path(), last_error());
+    is_busy = !try_lock(file_, place_.path());
+    if (!is_busy && place_.holds(file_, &reason)) return;
+    close();
   }
   if (is_busy)
     throw Error("cannot use " + place_.path() +
                 " (another sweep is writing to it); wait for it to end, or give another --output");
-  throw Error("cannot use " + place_.path() + " (" + reason +
+  throw Error("cannot use " + place_.path() + " (" +
+              (reason ? "its state cannot be read: " + reason.message()
+                      : "it is removed or replaced again and again") +
               "); check the file system, or give another --output");
 }
 
@@ -200,38 +177,38 @@ void Journal::open_and_lock(const OutputPath* table) {
 void Journal::begin() {
   if (has_begun_) return;
   if (contents_.num_bytes < sizeof(FileHeader)) {
-    write_header(descriptor_, place_.path());
+    write_header(file_, place_.path());
     contents_.num_bytes = sizeof(FileHeader);
-    check(sync(descriptor_), "write", place_.path());
+    check(sync(file_), FileAction::write, place_.path());
     place_.sync_folder();  // the table of the same folder tells whether that succeeds
   }
-  check(ftruncate(descriptor_, static_cast<off_t>(contents_.num_bytes)) == 0, "write", place_.path());
+  if (ftruncate(file_, static_cast<off_t>(contents_.num_bytes)) != 0)
+    throw FileError(FileAction::write, place_.path(), last_error());
   has_begun_ = true;
 }
 
 bool Journal::is_open(const std::string& path) {
-  const int descriptor = open(require_regular(path).c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return false;
-  const bool is_taken = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  close(descriptor);
-  return is_taken;
+  const Descriptor file(open(require_regular(path).c_str(), O_RDONLY | O_CLOEXEC));
+  return file.is_open() && flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
 void Journal::check_place() const {
-  if (is_there()) return;
+  if (!is_there()) refuse_replaced();
+}
+
+void Journal::refuse_replaced() const {
   throw Error("cannot continue with " + place_.path() +
               " (it was removed or replaced while the sweep was running, and another may have begun there); "
               "when no other sweep is writing to it, the same command resumes the sweep");
 }
 
 bool Journal::make_anew(const OutputPath& table) {
-  close(std::exchange(descriptor_, -1));
-  descriptor_ = place_.open(O_RDWR | O_CREAT | O_EXCL, table.exists() ? 0600 : 0666);
-  if (descriptor_ < 0 && errno == EEXIST) return false;
-  check(descriptor_ >= 0, "write", place_.path());
-  table.lend_access_to(descriptor_);
-  if (!try_lock(descriptor_, place_.path()) || !is_there()) {
-    close(std::exchange(descriptor_, -1));
+  close();
+  file_ = place_.create(table.exists() ? 0600 : 0666);
+  if (!file_.is_open()) return false;
+  table.lend_access_to(file_);
+  if (!try_lock(file_, place_.path()) || !is_there()) {
+    close();
     return false;
   }
   contents_.num_bytes = num_rewritten_bytes_ = 0;
@@ -242,13 +219,13 @@ bool Journal::make_anew(const OutputPath& table) {
 void Journal::add(const sweep::RunRow& row, std::span<const std::byte> snapshot) {
   check_place();
   begin();
-  contents_.num_bytes = write_record(descriptor_, row, snapshot, contents_.num_bytes, place_.path());
+  contents_.num_bytes = write_record(file_, row, snapshot, contents_.num_bytes, place_.path());
 }
 
 void Journal::flush() {
   check_place();
   begin();
-  check(sync(descriptor_), "write", place_.path());
+  check(sync(file_), FileAction::write, place_.path());
 }
 
 bool Journal::is_to_be_rewritten() const {
@@ -260,36 +237,31 @@ void Journal::rewrite(std::span<const Entry* const> entries) {
   check_place();
   Draft draft(place_, journal_mark);
   // Locking a draft is optional; here it must succeed before the rename.
-  errno = EWOULDBLOCK;
-  check(try_lock(draft.descriptor(), place_.path()), "lock", place_.path());
+  if (!try_lock(draft.descriptor(), place_.path())) refuse_replaced();
   write_header(draft.descriptor(), place_.path());
   std::uint64_t size = sizeof(FileHeader);
   for (const Entry* entry : entries)
     size = write_record(draft.descriptor(), entry->row, entry->snapshot, size, place_.path());
-  draft.publish();  // the table of the same folder tells whether the folder can be synchronised
-  close(std::exchange(descriptor_, draft.release()));
+  // The table of the same folder tells whether the folder can be synchronised.
+  if (!draft.publish(place_.stamp())) refuse_replaced();
+  file_ = draft.take_descriptor();
   contents_.num_bytes = num_rewritten_bytes_ = size;
   has_begun_ = true;
 }
 
-bool Journal::remove() {
-  const int reason = is_there() && !place_.remove() ? errno : 0;
+std::error_code Journal::remove() {
+  const std::error_code reason = is_there() ? place_.remove() : std::error_code();
   place_.sync_folder();  // if a power cut restores the file, it holds nothing that is not in the table
-  close(std::exchange(descriptor_, -1));
-  errno = reason;
-  return reason == 0;
+  close();
+  return reason;
 }
 
-/// Removes an empty file.
-void Journal::close_file() {
-  if (descriptor_ < 0) return;
-  struct stat status {};
-  const bool is_empty = contents_.num_bytes <= sizeof(FileHeader) && fstat(descriptor_, &status) == 0 &&
-                        static_cast<std::uint64_t>(status.st_size) <= contents_.num_bytes;
-  if (is_empty)
-    remove();
-  else
-    close(std::exchange(descriptor_, -1));
+void Journal::remove_if_empty() {
+  if (!file_.is_open()) return;
+  const off_t size = lseek(file_, 0, SEEK_END);
+  const bool is_empty = size >= 0 && contents_.num_bytes <= sizeof(FileHeader) &&
+                        static_cast<std::uint64_t>(size) <= contents_.num_bytes;
+  if (is_empty) remove();
 }
 
 }  // namespace clog::store

@@ -5,22 +5,12 @@
 #include <set>
 
 #include "clog/core/tools/error.hpp"
-#include "file_io.hpp"
 #include "hdf5.hpp"
 
 namespace clog::store {
 namespace {
 
 constexpr const char* laboratories_name = "laboratories";
-
-void write_text(hid_t group, const LaboratoryText& laboratory, const std::string& path) {
-  const std::string text = laboratory.text();
-  const Type type = text_type(text.size());
-  const Dataset dataset(H5Dcreate2(group, laboratory.check_sum().c_str(), type, Space(H5Screate(H5S_SCALAR)),
-                                   H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  check(dataset.valid() && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0,
-        "write a laboratory to", path);
-}
 
 /// Empty if it is not a text of fixed length.
 std::string read_text(hid_t group, const std::string& name) {
@@ -43,15 +33,18 @@ bool is_as_written(const std::string& name, const std::string& text) try {
 
 }  // namespace
 
-void write_laboratories(hid_t file, std::span<const sweep::RunRow> rows, const std::string& path) {
+void write_laboratories(hid_t file, std::span<const sweep::RunRow> rows) {
   std::set<std::string> check_sums;
   for (const sweep::RunRow& row : rows)
     if (const std::optional<LaboratoryText>& one = row.parameters.laboratory; one && !one->text().empty())
       check_sums.insert(one->check_sum());
   if (check_sums.empty()) return;
   const Group group(H5Gcreate2(file, laboratories_name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  check(group.valid(), "create the laboratories in", path);
-  for (const std::string& name : check_sums) write_text(group, LaboratoryText::from_check_sum(name), path);
+  if (!group.valid()) throw LibraryError("create the laboratories");
+  for (const std::string& name : check_sums) {
+    const std::string text = LaboratoryText::from_check_sum(name).text();
+    write_dataset(group, name, text_type(text.size()), Space(H5Screate(H5S_SCALAR)), text.data());
+  }
 }
 
 void read_laboratories(hid_t file, std::vector<std::string>& damage) {

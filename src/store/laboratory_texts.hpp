@@ -12,8 +12,8 @@ namespace clog::store {
 
 /// Descriptions of laboratories in a file of runs: the group /laboratories has a text for each, by its
 /// checksum, which rows refer to.
-/// @throws Error if they cannot be written
-void write_laboratories(hid_t file, std::span<const sweep::RunRow> rows, const std::string& path);
+/// @throws LibraryError
+void write_laboratories(hid_t file, std::span<const sweep::RunRow> rows);
 /// Makes the texts known; a sentence goes to the damage for one that is not as it was written.
 void read_laboratories(hid_t file, std::vector<std::string>& damage);
 /// Files before format 10 have one description for all rows, in an attribute.

@@ -7,10 +7,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "clog/core/tools/error.hpp"
@@ -18,10 +17,9 @@
 #include "seal.hpp"
 
 namespace clog::store {
+namespace {
 
 namespace fs = std::filesystem;
-
-namespace {
 
 std::string folder_of(const fs::path& path) {
   const fs::path folder = path.parent_path();
@@ -42,23 +40,19 @@ void refuse_link_of_others(const fs::path& link) {
         " (it belongs to another user, in a folder that everybody can write to); give the path itself");
 }
 
-/// The seal of a file of this size; empty if it has none or cannot be read. Closes the file.
-std::string seal_at_end(int descriptor, off_t size) {
-  if (descriptor < 0) return "";
+/// The seal of a file of this size; empty if it has none or cannot be read.
+std::string seal_at_end(const Descriptor& file, off_t size) {
   std::string end(std::min<std::size_t>(seal_size, static_cast<std::size_t>(size)), '\0');
-  const ssize_t got = pread(descriptor, end.data(), end.size(), size - static_cast<off_t>(end.size()));
-  close(descriptor);
+  const ssize_t got = pread(file, end.data(), end.size(), size - static_cast<off_t>(end.size()));
   return got == static_cast<ssize_t>(seal_size) && has_seal_mark(end) ? end : "";
 }
 
 constexpr const char* access_list = "system.posix_acl_access";
 
-/// Empty if it has none. Closes the file.
-std::vector<char> access_list_of(int descriptor) {
-  if (descriptor < 0) return {};
+/// Empty if the file has none.
+std::vector<char> access_list_of(const Descriptor& file) {
   std::vector<char> list(65536);  // the kernel has none that is longer
-  const ssize_t size = fgetxattr(descriptor, access_list, list.data(), list.size());
-  close(descriptor);
+  const ssize_t size = fgetxattr(file, access_list, list.data(), list.size());
   list.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
   return list;
 }
@@ -68,149 +62,140 @@ std::string follow_links(const std::string& path) {
   fs::path target = path;
   std::error_code none;
   for (int links = 0; fs::is_symlink(target, none); ++links) {
-    errno = ELOOP;
-    check(links < longest_chain, "follow the link", path);
+    if (links == longest_chain)
+      throw Error("cannot follow the link " + path + " (too many links, or a circle); give the path itself");
     refuse_link_of_others(target);
     target = target.parent_path() / fs::read_symlink(target, none);
   }
   return target.string();
 }
 
+/// Has the file system no such way to rename?
+bool is_unsupported(std::error_code reason) {
+  return reason == std::errc::invalid_argument || reason == std::errc::function_not_supported;
+}
+
 }  // namespace
 
-class OutputPath::Folder {
- public:
-  explicit Folder(int descriptor) : descriptor_(descriptor) {}
-  Folder(Folder&&) = delete;
-  ~Folder() { close(descriptor_); }
-  int descriptor() const { return descriptor_; }
-  mutable std::string sync_fault;  // why it could not be synchronised
+std::string require_regular(std::string path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+    throw Error(
+        "cannot use " + path +
+        " (not a regular file: a folder, pipe, device or socket); give another name, or move it away");
+  return path;
+}
 
- private:
-  int descriptor_;
-};
+OutputPath::OutputPath(std::shared_ptr<Folder> folder, std::string name, std::string path)
+    : folder_(std::move(folder)), name_(std::move(name)), path_(std::move(path)) {}
 
-OutputPath::OutputPath(const std::string& path) : path_(follow_links(path)) {
-  name_ = fs::path(path_).filename().string();
-  if (name_.empty() || name_ == "." || name_ == "..")
+OutputPath OutputPath::resolve(const std::string& path) {
+  const std::string target = follow_links(path);
+  const std::string name = fs::path(target).filename().string();
+  if (name.empty() || name == "." || name == "..")
     throw Error("cannot use '" + path + "' (it names no file); give a name such as sweep.h5");
-  const int descriptor = ::open(folder_of(path_).c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
-  check(descriptor >= 0, "create", path_);
-  folder_ = std::make_shared<const Folder>(descriptor);
+  Descriptor folder(::open(folder_of(target).c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  if (!folder.is_open()) throw FileError(FileAction::create, target, last_error());
+  return {std::make_shared<Folder>(Folder{std::move(folder), ""}), name, target};
 }
 
 OutputPath OutputPath::beside(const std::string& ending) const {
-  OutputPath other = *this;
-  other.name_ += ending;
-  other.path_ += ending;
-  return other;
+  return {folder_, name_ + ending, path_ + ending};
 }
 
-int OutputPath::open(int flags, mode_t mode) const {
-  return openat(folder_->descriptor(), name_.c_str(), flags | O_NOFOLLOW | O_CLOEXEC, mode);
+Descriptor OutputPath::open(int flags) const {
+  return Descriptor(openat(folder_->descriptor, name_.c_str(), flags | O_NOFOLLOW | O_CLOEXEC));
+}
+
+Descriptor OutputPath::create(mode_t mode) const {
+  constexpr int flags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+  Descriptor file(openat(folder_->descriptor, name_.c_str(), flags, mode));
+  if (!file.is_open())
+    if (const std::error_code reason = last_error(); reason != std::errc::file_exists)
+      throw FileError(FileAction::create, path_, reason);
+  return file;
+}
+
+std::optional<struct stat> OutputPath::status() const {
+  struct stat there {};
+  if (fstatat(folder_->descriptor, name_.c_str(), &there, AT_SYMLINK_NOFOLLOW) != 0) return std::nullopt;
+  return there;
 }
 
 bool OutputPath::is_link() const {
-  struct stat there {};
-  return fstatat(folder_->descriptor(), name_.c_str(), &there, AT_SYMLINK_NOFOLLOW) == 0 &&
-         S_ISLNK(there.st_mode);
+  const auto there = status();
+  return there && S_ISLNK(there->st_mode);
 }
 
-bool OutputPath::exists() const {
-  struct stat there {};
-  return fstatat(folder_->descriptor(), name_.c_str(), &there, AT_SYMLINK_NOFOLLOW) == 0;
+bool OutputPath::holds(int descriptor, std::error_code* failure) const {
+  struct stat ours {};
+  const auto there = fstat(descriptor, &ours) == 0 ? status() : std::nullopt;
+  if (!there && failure && errno != ENOENT) *failure = last_error();
+  return there && ours.st_ino == there->st_ino && ours.st_dev == there->st_dev;
 }
 
-bool OutputPath::holds(int descriptor) const {
-  struct stat ours {
-  }, there{};
-  return fstat(descriptor, &ours) == 0 &&
-         fstatat(folder_->descriptor(), name_.c_str(), &there, AT_SYMLINK_NOFOLLOW) == 0 &&
-         ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+std::error_code OutputPath::remove() const {
+  const bool is_gone = unlinkat(folder_->descriptor, name_.c_str(), 0) == 0 || errno == ENOENT;
+  return is_gone ? std::error_code() : last_error();
 }
 
-bool OutputPath::remove() const {
-  return unlinkat(folder_->descriptor(), name_.c_str(), 0) == 0 || errno == ENOENT;
+std::error_code OutputPath::rename_to(const OutputPath& other, unsigned flags) const {
+  const int result =
+      renameat2(folder_->descriptor, name_.c_str(), other.folder_->descriptor, other.name_.c_str(), flags);
+  return result == 0 ? std::error_code() : last_error();
 }
 
-bool OutputPath::take_from(const OutputPath& other) const {
-  return renameat(other.folder_->descriptor(), other.name_.c_str(), folder_->descriptor(), name_.c_str()) ==
-         0;
-}
-
-bool OutputPath::take_as_new_from(const OutputPath& other) const {
-  const int folder = folder_->descriptor();
-  if (renameat2(other.folder_->descriptor(), other.name_.c_str(), folder, name_.c_str(), RENAME_NOREPLACE) ==
-      0)
-    return true;
-  if (errno != EINVAL && errno != ENOSYS) return false;  // a file system that cannot promise it
-  if (exists()) {
-    errno = EEXIST;
-    return false;
-  }
-  return take_from(other);
-}
-
-bool OutputPath::exchange_with(const OutputPath& other) const {
-  return renameat2(other.folder_->descriptor(), other.name_.c_str(), folder_->descriptor(), name_.c_str(),
-                   RENAME_EXCHANGE) == 0;
-}
-
-bool OutputPath::replace(const std::string& stamp, const OutputPath& other) const {
-  if (!exists()) return take_as_new_from(other);
-  if (exchange_with(other)) {
-    if (other.stamp() == stamp) {
-      other.remove();
-      return true;
+std::error_code OutputPath::replace(const std::string& stamp, const OutputPath& other) const {
+  const std::error_code occupied = make_error_code(std::errc::file_exists);
+  if (!stamp.empty() && exists()) {
+    const std::error_code reason = other.rename_to(*this, RENAME_EXCHANGE);
+    if (!reason) {
+      if (other.stamp() == stamp) {
+        other.remove();
+        return {};
+      }
+      other.rename_to(*this, RENAME_EXCHANGE);
+      return occupied;
     }
-    exchange_with(other);
-    errno = EEXIST;
-    return false;
+    if (is_unsupported(reason)) return this->stamp() == stamp ? other.rename_to(*this, 0) : occupied;
+    if (reason != std::errc::no_such_file_or_directory) return reason;  // not removed in this moment
   }
-  if (errno == ENOENT) return take_as_new_from(other);   // it was removed in this moment
-  if (errno != EINVAL && errno != ENOSYS) return false;  // a file system that cannot exchange names
-  if (this->stamp() == stamp) return take_from(other);
-  errno = EEXIST;
-  return false;
+  const std::error_code reason = other.rename_to(*this, RENAME_NOREPLACE);
+  if (!is_unsupported(reason)) return reason;
+  return exists() ? occupied : other.rename_to(*this, 0);
 }
 
-bool OutputPath::sync_folder() const {
-  const int descriptor = openat(folder_->descriptor(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return errno == EACCES;                  // a folder that is writable but not readable
-  const bool is_synced = sync(descriptor) || errno == EINVAL;  // some file systems cannot
-  if (!is_synced) folder_->sync_fault = std::strerror(errno);
-  close(descriptor);
-  return is_synced;
+void OutputPath::sync_folder() const {
+  const Descriptor folder(openat(folder_->descriptor, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const std::error_code reason = folder.is_open() ? sync(folder) : last_error();
+  // Folders may be writable but not readable; some file systems synchronise none.
+  const std::errc harmless = folder.is_open() ? std::errc::invalid_argument : std::errc::permission_denied;
+  if (reason && reason != harmless) folder_->sync_fault = reason.message();
 }
 
-const std::string& OutputPath::sync_fault() const { return folder_->sync_fault; }
-
-bool OutputPath::lend_access_to(int descriptor) const {
-  struct stat status {};
-  if (fstatat(folder_->descriptor(), name_.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0 ||
-      !S_ISREG(status.st_mode))
-    return false;
+void OutputPath::lend_access_to(int descriptor) const {
+  const auto there = status();
+  if (!there || !S_ISREG(there->st_mode)) return;
   constexpr uid_t nobody = static_cast<uid_t>(-1);
   // A process that may not change the owner may still change the group to one of its own.
   const bool has_group =
-      fchown(descriptor, status.st_uid, status.st_gid) == 0 || fchown(descriptor, nobody, status.st_gid) == 0;
+      fchown(descriptor, there->st_uid, there->st_gid) == 0 || fchown(descriptor, nobody, there->st_gid) == 0;
   const std::vector<char> list = access_list_of(open(O_RDONLY | O_NONBLOCK));
   constexpr mode_t permissions = 0777;
-  mode_t mode = status.st_mode & permissions;
+  mode_t mode = there->st_mode & permissions;
   // A new group gets only the rights of others.
   if (!has_group) mode &= ~static_cast<mode_t>(S_IRWXG) | ((mode & S_IRWXO) << 3);
   fremovexattr(descriptor, access_list);  // the folder may have given it one
   fchmod(descriptor, mode);
   if (has_group && !list.empty()) fsetxattr(descriptor, access_list, list.data(), list.size(), 0);
-  return true;
 }
 
 std::string OutputPath::stamp() const {
-  struct stat there {};
-  if (fstatat(folder_->descriptor(), name_.c_str(), &there, AT_SYMLINK_NOFOLLOW) != 0) return "";
-  if (const std::string seal = seal_at_end(open(O_RDONLY | O_NONBLOCK), there.st_size); !seal.empty())
-    return fmt::format("{} {}", there.st_size, seal);
-  return fmt::format("{} {} {}", there.st_dev, there.st_ino, there.st_size);
+  const auto there = status();
+  if (!there) return "";
+  if (const std::string seal = seal_at_end(open(O_RDONLY | O_NONBLOCK), there->st_size); !seal.empty())
+    return fmt::format("{} {}", there->st_size, seal);
+  return fmt::format("{} {} {}", there->st_dev, there->st_ino, there->st_size);
 }
 
 }  // namespace clog::store

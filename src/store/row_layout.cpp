@@ -7,7 +7,6 @@
 namespace clog::store {
 
 using sweep::Column;
-using sweep::RunRow;
 
 namespace {
 
@@ -80,15 +79,15 @@ void RowLayout::describe(hid_t table) const {
   for (const Column* column : columns_) write_attribute(table, column->name, described(*column));
 }
 
-RunRow RowLayout::unpack(const std::byte* packed) const {
-  RunRow row;
+sweep::UnpackedRow RowLayout::unpack(const std::byte* packed) const {
+  sweep::UnpackedRow unpacked;
   const auto columns = sweep::columns();
   for (std::size_t i = 0; i < columns.size(); ++i)
     if (places_[i] == absent)
-      columns[i].set_unknown(row);
+      columns[i].set_unknown(unpacked.row);
     else
-      columns[i].unpack(packed + places_[i], row);
-  return row;
+      columns[i].unpack(packed + places_[i], unpacked);
+  return unpacked;
 }
 
 }  // namespace clog::store

@@ -27,7 +27,7 @@ class RowLayout {
   void describe(hid_t table) const;
   /// Columns that the file does not have are unknown.
   /// @param packed  size() bytes
-  sweep::RunRow unpack(const std::byte* packed) const;
+  sweep::UnpackedRow unpack(const std::byte* packed) const;
 
  private:
   explicit RowLayout(std::vector<const sweep::Column*> columns);

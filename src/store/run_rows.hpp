@@ -13,8 +13,8 @@ namespace clog::store {
 inline constexpr const char* trajectory_kind = "clogsweep trajectory";
 
 /// Makes the dataset /runs with these rows in an open file, and the root attributes: kind, format version,
-/// provenance, and the checksums of all of them. @throws Error naming the path that it is to have
+/// provenance, and the checksums of all of them. @throws LibraryError
 void write_runs(hid_t file, const std::string& kind, std::span<const sweep::RunRow> rows,
-                const Provenance& provenance, const std::string& path);
+                const Provenance& provenance);
 
 }  // namespace clog::store

@@ -13,8 +13,8 @@
 #include <optional>
 
 #include "check_sum.hpp"
+#include "clog/core/tools/descriptor.hpp"
 #include "clog/core/tools/error.hpp"
-#include "file_io.hpp"
 
 namespace clog::store {
 namespace {
@@ -46,10 +46,11 @@ rlim_t time_limit(std::size_t num_bytes) {
 std::string death_of_child(std::size_t num_bytes, const std::string& path,
                            const std::function<void()>& read) {
   const pid_t process = fork();
-  check(process >= 0, "start a process to read", path);
   if (process == 0) read_and_leave(num_bytes, read);
   int status = 0;
-  while (waitpid(process, &status, 0) < 0) check(errno == EINTR, "wait for the process that reads", path);
+  if (process < 0 || retried([&] { return waitpid(process, &status, 0); }) < 0)
+    throw Error("cannot read " + path + " (no process could be started for it: " + std::strerror(errno) +
+                "); end other programs, or raise the limit on processes (ulimit -u)");
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
   return WIFSIGNALED(status) ? std::string("ends with ") + strsignal(WTERMSIG(status)) : "fails";
 }

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
-#include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
@@ -26,17 +25,17 @@ std::size_t longest(const std::vector<std::string>& words) {
   return size;
 }
 
-// How a member of RunRow is seen from outside, by its type. Nothing is NaN, -1, or an empty text in a row.
+// How a member of RunRow is seen from outside, by its type.
 
-Value outside(double value) { return std::isnan(value) ? Value() : Value(value); }
+Value outside(double value) { return is_known(value) ? Value(value) : Value(); }
 Value outside(std::int64_t value) { return value; }
 Value outside(const std::string& value) { return value; }
 template <class Enum>
-Value outside(std::optional<Enum> value) {
-  return value ? Value(name(*value)) : Value();
-}
-template <class Enum>
 requires std::is_enum_v<Enum> Value outside(Enum value) { return name(value); }
+template <class T>
+Value outside(const std::optional<T>& value) {
+  return value ? outside(*value) : Value();
+}
 
 void take(const Value& value, double& member) {
   const double* number = std::get_if<double>(&value);
@@ -58,52 +57,51 @@ void take(const Value& value, Enum& member) {
   if (!meant) throw Error("is unknown");
   member = *meant;
 }
-template <class Enum>
-void take(const Value& value, std::optional<Enum>& member) {
+template <class T>
+void take(const Value& value, std::optional<T>& member) {
   member.reset();
-  if (!std::holds_alternative<std::monostate>(value)) take(value, member.emplace());
+  if (value != Value() && value != Value(no_count)) take(value, member.emplace());
 }
 
 template <class T>
 constexpr ValueKind kind_of() {
   if constexpr (std::is_same_v<T, double>) return ValueKind::number;
-  if constexpr (std::is_same_v<T, std::int64_t>) return ValueKind::integer;
+  if constexpr (std::is_same_v<T, std::int64_t> || std::is_same_v<T, std::optional<std::int64_t>>)
+    return ValueKind::integer;
   return ValueKind::word;
 }
 
-/// A column that is a member of the row.
-template <class T>
-Column member(const char* name, T RunRow::*place, ColumnRole role, const char* unit, const char* meaning,
-              std::size_t size = number_size) {
+/// A column that is a member of the row, or a part of one.
+/// @param place  from a row, const or not, to a reference to it
+template <class Place>
+Column column_at(const std::string& name, Place place, ColumnRole role, const char* unit,
+                 const std::string& meaning, std::size_t size = number_size) {
   return {.name = name,
           .symbol = "",
           .unit = unit,
           .meaning = meaning,
           .role = role,
-          .kind = kind_of<T>(),
+          .kind = kind_of<std::remove_cvref_t<decltype(place(std::declval<RunRow&>()))>>(),
           .size = size,
-          .parameter = nullptr,
-          .shapes_array = false,
-          .get = [=](const RunRow& row) { return outside(row.*place); },
-          .set = [=](RunRow& row, const Value& value) { take(value, row.*place); },
-          .set_unknown = [=](RunRow& row) { row.*place = RunRow().*place; }};
-}
-
-/// A number that is part of a member. @param place  from a row, const or not, to a reference to it
-template <class Place>
-Column number_in(const std::string& name, Place place, const char* unit, const std::string& meaning) {
-  return {.name = name,
-          .symbol = "",
-          .unit = unit,
-          .meaning = meaning,
-          .role = ColumnRole::result,
-          .kind = ValueKind::number,
-          .size = number_size,
           .parameter = nullptr,
           .shapes_array = false,
           .get = [=](const RunRow& row) { return outside(place(row)); },
           .set = [=](RunRow& row, const Value& value) { take(value, place(row)); },
-          .set_unknown = [=](RunRow& row) { place(row) = RunRow::not_known; }};
+          .set_unknown =
+              [=](RunRow& row) {
+                const RunRow unknown{};
+                place(row) = place(unknown);
+              }};
+}
+template <class T>
+Column member(const char* name, T RunRow::*place, ColumnRole role, const char* unit, const char* meaning,
+              std::size_t size = number_size) {
+  return column_at(
+      name, [=](auto& row) -> auto& { return row.*place; }, role, unit, meaning, size);
+}
+template <class Place>
+Column number_in(const std::string& name, Place place, const char* unit, const std::string& meaning) {
+  return column_at(name, place, ColumnRole::result, unit, meaning);
 }
 
 bool is_text(const Parameter& parameter) {
@@ -111,25 +109,26 @@ bool is_text(const Parameter& parameter) {
          parameter.kind == ValueKind::text;
 }
 
-Value value_of(const Parameter& parameter, std::size_t place, const RunRow& row) {
-  if (!parameter.applies_to(row.parameters)) {
-    const bool has_none = std::holds_alternative<std::monostate>(parameter.elsewhere);
-    return has_none && is_text(parameter) ? Value("none") : parameter.elsewhere;
-  }
-  return row.unknown[place] ? Value() : parameter.get(row.parameters);
+Value value_of(const Parameter& parameter, const RunRow& row) {
+  if (!parameter.applies_to(row.parameters))
+    return parameter.elsewhere == Value() && is_text(parameter) ? Value("none") : parameter.elsewhere;
+  return row.unknown_parameters.contains(&parameter) ? Value() : parameter.get(row.parameters);
 }
 
-/// A file from before the parameter was there may say nothing of it: then it is not known.
-void set_parameter(const Parameter& parameter, std::size_t place, RunRow& row, const Value& value) {
+/// An empty value is unknown: of a parameter that is younger than the row's file.
+void set_parameter(const Parameter& parameter, RunRow& row, const Value& value) {
   if (!parameter.applies_to(row.parameters)) return;
-  row.unknown[place] = std::holds_alternative<std::monostate>(value);
-  if (!row.unknown[place]) parameter.set(row.parameters, value);
+  row.unknown_parameters.erase(&parameter);
+  if (value == Value())
+    row.unknown_parameters.insert(&parameter);
+  else
+    parameter.set(row.parameters, value);
 }
 
 /// Digits of a check sum stand for what is in a file or text.
 constexpr std::size_t check_sum_size = 16;
 
-Column parameter_column(const Parameter& parameter, std::size_t place) {
+Column parameter_column(const Parameter& parameter) {
   const std::size_t size = !is_text(parameter)                 ? number_size
                            : parameter.kind == ValueKind::word ? text_size(longest(parameter.words))
                                                                : check_sum_size;
@@ -142,11 +141,9 @@ Column parameter_column(const Parameter& parameter, std::size_t place) {
           .size = size,
           .parameter = &parameter,
           .shapes_array = parameter.shapes_array,
-          .get = [&parameter, place](const RunRow& row) { return value_of(parameter, place, row); },
-          .set = [&parameter, place](RunRow& row,
-                                     const Value& value) { set_parameter(parameter, place, row, value); },
-          .set_unknown = [&parameter,
-                          place](RunRow& row) { set_parameter(parameter, place, row, parameter.before); }};
+          .get = [&parameter](const RunRow& row) { return value_of(parameter, row); },
+          .set = [&parameter](RunRow& row, const Value& value) { set_parameter(parameter, row, value); },
+          .set_unknown = [&parameter](RunRow& row) { set_parameter(parameter, row, parameter.before); }};
 }
 
 /// How the array was filled: layout and density in one word.
@@ -171,17 +168,14 @@ Column filling_column() {
               [=](RunRow& row, const Value& value) {
                 ObstacleParameters& obstacles = row.parameters.obstacles;
                 const std::string& word = std::get<std::string>(value);
+                const std::optional<ObstacleLayout> layout = word == to_density || word == until_full
+                                                                 ? ObstacleLayout::random
+                                                                 : meant_by<ObstacleLayout>(word);
+                if (!layout || word == name(ObstacleLayout::random)) throw Error("is unknown");
+                obstacles.layout = *layout;
                 obstacles.density = ObstacleParameters().density;
-                if (word == to_density || word == until_full) {
-                  obstacles.layout = ObstacleLayout::random;
-                  obstacles.density = {};
-                  if (word == to_density)
-                    obstacles.density = RunRow::not_known;  // the column of this name has it
-                } else {
-                  const std::optional<ObstacleLayout> layout = meant_by<ObstacleLayout>(word);
-                  if (!layout || *layout == ObstacleLayout::random) throw Error("is unknown");
-                  obstacles.layout = *layout;
-                }
+                if (word == until_full) obstacles.density = {};
+                if (word == to_density) obstacles.density = RunRow::not_known;  // its column has it
               },
           .set_unknown = [](RunRow&) {}};
 }
@@ -199,30 +193,15 @@ Column density_column() {
   return column;
 }
 
-Column preset_column() {
-  Column column = member(
-      "preset", &RunRow::preset, ColumnRole::parameter, "",
-      "name of the set of interface keys that was used; custom: the interface agrees with none; none for sp",
-      16);
-  column.set = [known = find_key("preset").words](RunRow& row, const Value& value) {
-    take(value, row.preset);
-    if (std::ranges::find(known, row.preset) == known.end() && row.preset != "custom" && row.preset != "none")
-      throw Error("is unknown");
-  };
-  return column;
-}
-
 std::vector<Column> columns_of_dwells() {
   std::vector<Column> all;
   for (std::size_t i = 0; i < Dwells::most; ++i) {
     const std::string name = dwell_column(i);
     const std::string meaning =
-        i == 0
-            ? "longest time in which the droplet came no farther than dwell_length; a dwell that lasts until "
-              "the "
-              "run's end counts with its length so far, that of a clog does not count; NaN: none above ten "
-              "times dwell_length/V_t"
-            : "the longest before " + dwell_column(i - 1) + " began; NaN likewise";
+        i == 0 ? "longest time in which the droplet came no farther than dwell_length; a dwell that lasts "
+                 "until the run's end counts with its length so far, that of a clog does not count; NaN: "
+                 "none above ten times dwell_length/V_t"
+               : "the longest before " + dwell_column(i - 1) + " began; NaN likewise";
     all.push_back(number_in(
         name, [i](auto& row) -> auto& { return row.dwells.longest[i].length; }, "t0", meaning));
     all.push_back(number_in(
@@ -249,14 +228,17 @@ std::vector<Column> make_columns() {
   std::vector<Column> all = {
       member("task", &RunRow::task, circumstance, "", "number of the task in its sweep")};
   // Parameters that decide which others have a meaning come first.
-  const auto schema = parameter_schema();
-  for (std::size_t i = 0; i < schema.size(); ++i) {
-    if (schema[i].has_own_column) all.push_back(parameter_column(schema[i], i));
-    if (schema[i].key == std::string_view("model")) all.push_back(filling_column());
+  for (const Parameter& one : parameter_schema()) {
+    if (one.has_own_column) all.push_back(parameter_column(one));
+    if (one.key == std::string_view("model")) all.push_back(filling_column());
   }
   all.push_back(density_column());
-  all.push_back(preset_column());
   const std::vector<Column> others = {
+      // Any word: presets of another version may have other names.
+      member("preset", &RunRow::preset, parameter, "",
+             "name of the set of interface keys that was used; custom: the interface agrees with none; none "
+             "for sp",
+             16),
       member("model_version", &RunRow::model_version, parameter, "",
              "runs of different versions differ though their parameters agree (parameters.hpp)"),
       member("status", &RunRow::status, result, "",
@@ -391,7 +373,7 @@ void Column::pack(const RunRow& row, std::byte* bytes) const {
   }
 }
 
-void Column::unpack(const std::byte* bytes, RunRow& row) const {
+void Column::unpack(const std::byte* bytes, UnpackedRow& unpacked) const {
   Value value;
   if (kind == ValueKind::word) {
     const std::string_view all(reinterpret_cast<const char*>(bytes), size);
@@ -404,11 +386,11 @@ void Column::unpack(const std::byte* bytes, RunRow& row) const {
     value = outside(number);
   }
   try {
-    set(row, value);
+    set(unpacked.row, value);
   } catch (const std::exception& error) {
-    if (!row.unreadable.empty()) return;
+    if (!unpacked.fault.empty()) return;
     const std::string shown = kind == ValueKind::word ? "'" + text_of(value) + "'" : text_of(value);
-    row.unreadable = name + "=" + shown + " " + error.what();
+    unpacked.fault = name + "=" + shown + " " + error.what();
   }
 }
 

@@ -1,14 +1,21 @@
-#include "contradictions.hpp"
-
 #include <fmt/core.h>
 
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/sweep/settings.hpp"
+#include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
+namespace {
 
-void refuse_contradictions(const Settings& settings) {
+/// Is it given, and something else than what it would be anyway?
+bool is_changed(const Settings& settings, const std::string& key) {
+  return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
+}
+
+/// A key of the interface that another one leaves without effect was given for nothing.
+void refuse_interface_keys(const Settings& settings) {
   if (settings.text("model") == "sp") {
     if (settings.text("preset") != find_key("preset").default_text)
       throw Error("invalid preset=" + settings.text("preset") +
@@ -16,7 +23,7 @@ void refuse_contradictions(const Settings& settings) {
     return;
   }
   const std::string ratio = "perimeter-stiffness-ratio";
-  if (!settings.is_given(ratio) || settings.text(ratio) == find_key(ratio).default_text) return;
+  if (!is_changed(settings, ratio)) return;
   if (settings.text("perimeter-spring") != "rest")
     throw Error(
         fmt::format("invalid {}={} (it belongs to perimeter-spring=rest, not to {}) give "
@@ -27,16 +34,10 @@ void refuse_contradictions(const Settings& settings) {
                             ratio, settings.text(ratio), settings.text("perimeter-stiffness")));
 }
 
-namespace {
-
-/// Is it given, and something else than what it would be anyway?
-bool is_changed(const Settings& settings, const char* key) {
-  return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
-}
-
 }  // namespace
 
-void refuse_useless_keys(const Settings& settings) {
+void refuse_contradictions(const Settings& settings) {
+  refuse_interface_keys(settings);
   if (const std::vector<std::string> missing = settings.missing_files(); !missing.empty())
     throw Error("invalid obstacles=" + missing.front() + " (the file has not been read)");
   const std::string& layout = settings.text("obstacle-layout");

@@ -1,6 +1,9 @@
 #include "clog/sweep/messages.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "clog/core/tools/error.hpp"
 
 namespace clog::sweep {
 
@@ -12,8 +15,11 @@ std::vector<std::byte> to_bytes(const Report& report) {
 }
 
 Report report_from(std::span<const std::byte> bytes) {
+  UnpackedRow unpacked = unpack(bytes.first(packed_size()));
+  if (!unpacked.fault.empty())
+    throw Error("cannot read a row (" + unpacked.fault + "); it is of another version, or damaged");
   const std::span snapshot = bytes.subspan(packed_size());
-  return {unpack(bytes.first(packed_size())), {snapshot.begin(), snapshot.end()}};
+  return {std::move(unpacked.row), {snapshot.begin(), snapshot.end()}};
 }
 
 }  // namespace clog::sweep

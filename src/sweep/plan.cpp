@@ -17,7 +17,6 @@
 #include "clog/core/world/lattice.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
-#include "contradictions.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -92,10 +91,7 @@ class Plan::Builder {
 
   void add_branch(const Settings& branch, const std::string& name) {
     const std::string where = name.empty() ? "" : name + ": ";
-    checked(branch, where, [&] {
-      refuse_contradictions(branch);
-      refuse_useless_keys(branch);
-    });
+    checked(branch, where, [&] { refuse_contradictions(branch); });
     names_.push_back(name);
     add_product(branch);
     const std::size_t product = plan_.products_.size() - 1;
@@ -303,6 +299,15 @@ RunParameters Plan::unresolved(std::size_t product, std::int64_t place, std::uin
       axes_[i].key->apply(run, *values[i]);
   run.seed = seed;
   return run;
+}
+
+RunParameters single_run(const Settings& settings) {
+  const Plan plan(settings);
+  if (plan.size() == 1) return plan.task(0);
+  throw Error(fmt::format(
+      "these settings describe {} runs, but one is needed; give single values, with a point where "
+      "they have decimals, or use clogsweep",
+      plan.size()));
 }
 
 }  // namespace clog::sweep

@@ -12,7 +12,7 @@
 #include "clog/core/droplet/droplet.hpp"
 #include "clog/core/model/model.hpp"
 #include "clog/core/parameters/schema.hpp"
-#include "clog/core/polygon/stability.hpp"
+#include "clog/core/polygon/forces/stability.hpp"
 #include "clog/core/run/dwell_record.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/scene/scene.hpp"
@@ -42,10 +42,12 @@ constexpr double most_mesh_hold = 1e6;
 
 bool is_number_below(double value, double bound) { return std::isfinite(value) && std::abs(value) <= bound; }
 
-std::string named(const char* column, double value) { return fmt::format("{}={}", column, shortest(value)); }
-std::string named(const char* column, std::string_view word) { return fmt::format("{}='{}'", column, word); }
-
-std::string unreadable_column(const RunRow& row) { return row.unreadable; }
+std::string named(std::string_view column, double value) {
+  return fmt::format("{}={}", column, shortest(value));
+}
+std::string named(std::string_view column, std::string_view word) {
+  return fmt::format("{}='{}'", column, word);
+}
 
 /// Rules are those of this program's model.
 std::string parameter_fault(const RunRow& row) {
@@ -56,8 +58,8 @@ std::string parameter_fault(const RunRow& row) {
                                     {"wall_stiffness", run.wall_stiffness.value_or(RunRow::not_known)}})
     if (!(std::isfinite(value) && value > 0)) return named(name, value) + " is not positive";
   if (row.model_version != model_version) return "";
-  for (std::size_t i = 0; i < parameter_schema().size(); ++i)
-    if (row.unknown[i]) return std::string(parameter_schema()[i].column) + " is not known";
+  if (!row.unknown_parameters.empty())
+    return std::string((*row.unknown_parameters.begin())->column) + " is not known";
   try {
     const Scene& scene = scene_of(run);
     if (scene.walls_from == WallsFrom::circles) {
@@ -65,8 +67,8 @@ std::string parameter_fault(const RunRow& row) {
       return "";
     }
     const double density = scene.density(resolve(run).obstacles);
-    const bool agrees = std::isnan(density) ? std::isnan(row.obstacle_density)
-                                            : std::abs(row.obstacle_density - density) <= round_off * density;
+    const bool agrees = is_known(density) ? std::abs(row.obstacle_density - density) <= round_off * density
+                                          : !is_known(row.obstacle_density);
     return agrees ? "" : named("obstacle_density", row.obstacle_density) + " is not that of its array";
   } catch (const Error& error) {
     return error.what();
@@ -80,7 +82,7 @@ std::string bookkeeping_fault(const RunRow& row) {
   if (row.model_version < 1) return fmt::format("model_version={} is none", row.model_version);
   if (!(row.wall_seconds >= 0 && row.wall_seconds <= longest_patience))
     return named("wall_seconds", row.wall_seconds) + " is no time";
-  if (!std::isnan(row.processor_seconds) &&
+  if (is_known(row.processor_seconds) &&
       !(row.processor_seconds >= 0 && row.processor_seconds <= longest_patience))
     return named("processor_seconds", row.processor_seconds) + " is no time";
   return "";
@@ -111,16 +113,16 @@ std::string motion_fault(const RunRow& row) {
                        named("lateral_displacement", row.lateral_displacement), shortest(farthest),
                        named("time", row.time));
   const double slightly_more = (1 + round_off) * row.time;
-  if (!std::isnan(row.transient) && !(row.transient >= 0 && row.transient <= slightly_more))
+  if (is_known(row.transient) && !(row.transient >= 0 && row.transient <= slightly_more))
     return named("transient", row.transient) + " is not within the run";
-  if (!std::isnan(row.travel_time) && !(row.travel_time > 0 && row.travel_time <= slightly_more))
+  if (is_known(row.travel_time) && !(row.travel_time > 0 && row.travel_time <= slightly_more))
     return named("travel_time", row.travel_time) + " is not within the run";
   // An older file does not say over which time; it was one step at least.
-  const double travel_time = std::isnan(row.travel_time) ? time_step_of(row) : row.travel_time;
-  if (!std::isnan(row.mean_speed) && !is_number_below(row.mean_speed * travel_time, 2 * farthest))
+  const double travel_time = is_known(row.travel_time) ? row.travel_time : time_step_of(row);
+  if (is_known(row.mean_speed) && !is_number_below(row.mean_speed * travel_time, 2 * farthest))
     return named("mean_speed", row.mean_speed) + " is faster than a droplet can be";
   const double fastest = std::sqrt(diverged_energy_ratio) * row.parameters.drag.terminal_speed;
-  if (!std::isnan(row.mean_speed_error) && !(row.mean_speed_error >= 0 && row.mean_speed_error <= fastest))
+  if (is_known(row.mean_speed_error) && !(row.mean_speed_error >= 0 && row.mean_speed_error <= fastest))
     return named("mean_speed_error", row.mean_speed_error) + " is no error";
   return "";
 }
@@ -128,9 +130,9 @@ std::string motion_fault(const RunRow& row) {
 /// A dwell begins on the way and in the time of the run.
 std::string dwell_begin_fault(const RunRow& row, const std::string& column, double distance, double begin) {
   if (distance < 0 || distance > farthest_way(row))
-    return named((column + "_at").c_str(), distance) + " is not on the droplet's way";
+    return named(column + "_at", distance) + " is not on the droplet's way";
   if (begin < 0 || begin > (1 + round_off) * row.time)
-    return named((column + "_from").c_str(), begin) + " is not within the run";
+    return named(column + "_from", begin) + " is not within the run";
   return "";
 }
 
@@ -139,22 +141,22 @@ std::string dwell_fault(const RunRow& row, const std::string& column, const Dwel
   if (std::string fault = dwell_begin_fault(row, column, dwell.distance, dwell.begin); !fault.empty())
     return fault;
   if (!(dwell.length > row.dwells.known_from && dwell.length < next.length))
-    return named(column.c_str(), dwell.length) + " is not among those that are kept";
+    return named(column, dwell.length) + " is not among those that are kept";
   if (!(dwell.distance <= next.distance && dwell.begin + dwell.length <= (1 + round_off) * next.begin))
-    return named(column.c_str(), dwell.length) + " does not end before what comes next";
+    return named(column, dwell.length) + " does not end before what comes next";
   return "";
 }
 
 std::string dwells_fault(const RunRow& row) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const Dwells& dwells = row.dwells;
-  const bool is_known = !std::isnan(dwells.known_from);
-  if (std::isnan(dwells.last_distance) == is_known || std::isnan(dwells.last_begin) == is_known)
+  const bool are_known = is_known(dwells.known_from);
+  if (is_known(dwells.last_distance) != are_known || is_known(dwells.last_begin) != are_known)
     return "dwells_known_from, last_dwell_at, last_dwell_from: only some are known";
   // A run too short for any dwell that is kept is over before this time.
   const RunParameters& run = row.parameters;
   const double first = DwellRecord::shortest * run.dwell_length / run.drag.terminal_speed;
-  if (is_known &&
+  if (are_known &&
       !(dwells.known_from > 0 && dwells.known_from <= (1 + round_off) * std::max(first, row.time)))
     return named("dwells_known_from", dwells.known_from) + " is no time";
   if (std::string fault = dwell_begin_fault(row, "last_dwell", dwells.last_distance, dwells.last_begin);
@@ -163,7 +165,7 @@ std::string dwells_fault(const RunRow& row) {
   Dwell next = {.length = infinity, .distance = infinity, .begin = row.time};
   for (std::size_t i = 0; i < Dwells::most; ++i) {
     const Dwell& dwell = dwells.longest[i];
-    if (std::isnan(dwell.length) && std::isnan(dwell.distance) && std::isnan(dwell.begin)) {
+    if (!is_known(dwell.length) && !is_known(dwell.distance) && !is_known(dwell.begin)) {
       next.length = -infinity;  // none before it was longer
       continue;
     }
@@ -184,11 +186,11 @@ std::string shape_fault(const RunRow& row) {
 }
 
 std::string contacts_fault(const RunRow& row) {
-  if (row.contacts < -1) return "a negative number of contacts";
-  if (std::isnan(row.first_contact_at) == (row.contacts > 0))
-    return named("first_contact_at", row.first_contact_at) + ", but " +
-           fmt::format("contacts={}", row.contacts);
-  if (!std::isnan(row.first_contact_at) && !is_number_below(row.first_contact_at, farthest_way(row)))
+  const std::int64_t contacts = row.contacts.value_or(0);
+  if (contacts < 0) return "a negative number of contacts";
+  if (is_known(row.first_contact_at) != (contacts > 0))
+    return fmt::format("{}, but contacts={}", named("first_contact_at", row.first_contact_at), contacts);
+  if (is_known(row.first_contact_at) && !is_number_below(row.first_contact_at, farthest_way(row)))
     return named("first_contact_at", row.first_contact_at) + " is not on the droplet's way";
   return "";
 }
@@ -197,7 +199,7 @@ std::string clog_fault(const RunRow& row) {
   const bool is_clogged = row.status == RunStatus::clogged;
   if (row.clogged_by) {
     const std::string by = named("clogged_by", name(*row.clogged_by));
-    if (is_clogged != (row.clogged_by != FoundBy::nothing))
+    if (is_clogged != (row.clogged_by != FoundBy::not_clogged))
       return is_clogged ? "clogged, but " + by : by + ", but it is not clogged";
     if (row.clogged_by == FoundBy::certified && row.parameters.clog_detection == ClogDetection::threshold)
       return by + ", but clog_detection='threshold'";
@@ -206,13 +208,14 @@ std::string clog_fault(const RunRow& row) {
   }
   if (!is_clogged && row.mechanism.value_or(ClogMechanism::none) != ClogMechanism::none)
     return named("mechanism", name(*row.mechanism)) + ", but it is not clogged";
-  if (!std::isnan(row.wrapped_support) &&
+  if (is_known(row.wrapped_support) &&
       !(is_clogged && row.wrapped_support >= 0 && row.wrapped_support <= 1 + round_off))
     return named("wrapped_support", row.wrapped_support) + " is no share of a clog's support";
-  if (!std::isnan(row.mesh_hold) && !(is_clogged && row.mesh_hold >= 0 && row.mesh_hold <= most_mesh_hold))
+  if (is_known(row.mesh_hold) && !(is_clogged && row.mesh_hold >= 0 && row.mesh_hold <= most_mesh_hold))
     return named("mesh_hold", row.mesh_hold) + " is no part of a clogged droplet's weight";
-  const auto [fewest, most] = std::minmax({row.num_wrapped, row.num_gaps, row.num_arcs});
-  if (fewest < -1) return "a negative number of contacts";
+  const auto [fewest, most] =
+      std::minmax({row.num_wrapped.value_or(0), row.num_gaps.value_or(0), row.num_arcs.value_or(0)});
+  if (fewest < 0) return "a negative number of contacts";
   if (most > most_contacts) return fmt::format("{} contacts are more than a droplet has", most);
   return "";
 }
@@ -238,7 +241,7 @@ std::string passage_fault(const RunRow& row) {
         Place{"smallest_relative_speed_at", row.smallest_relative_speed_at, passage, -way, way},
         Place{"sag", row.sag, Finding::sag, -units::droplet_diameter, farthest_way(row)},
         Place{"top_sag", row.top_sag, Finding::sag, -units::droplet_diameter, farthest_way(row)}}) {
-    if (std::isnan(place.value)) continue;
+    if (!is_known(place.value)) continue;
     if (finding != place.finding)
       return named(place.column, place.value) + ", but there is no " +
              (place.finding == passage ? "channel" : "wall");
@@ -254,11 +257,11 @@ std::string passage_fault(const RunRow& row) {
 /// Only a thinner neck than that makes a droplet break up, and each such neck does.
 std::string neck_fault(const RunRow& row) {
   const double width = row.neck.width, least = row.parameters.dp.break_up_neck;
-  if (std::isnan(width) != std::isnan(row.neck.distance))
+  if (is_known(width) != is_known(row.neck.distance))
     return "thinnest_neck, thinnest_neck_at: only one is known";
   if (row.status == RunStatus::broken && !(width < least))
     return "broken, but " + named("thinnest_neck", width) + " is not below " + named("break_up_neck", least);
-  if (std::isnan(width)) return "";
+  if (!is_known(width)) return "";
   if (row.status != RunStatus::broken && width < least)
     return named("thinnest_neck", width) + " is below " + named("break_up_neck", least) +
            ", but it has not broken";
@@ -272,7 +275,7 @@ std::string neck_fault(const RunRow& row) {
 /// A place of release is known only among user-supplied circles; it is in the array, or in a void across its
 /// border.
 std::string release_fault(const RunRow& row) {
-  if (std::isnan(row.release_x) && std::isnan(row.release_y)) return "";
+  if (!is_known(row.release_x) && !is_known(row.release_y)) return "";
   const ObstacleParameters& obstacles = row.parameters.obstacles;
   const std::string place = named("release_x", row.release_x) + ", " + named("release_y", row.release_y);
   if (obstacles.layout != ObstacleLayout::file) return place + ", but there are no user-supplied circles";
@@ -301,7 +304,7 @@ double farthest_way(const RunRow& row) {
 }
 
 std::string fault_of(const RunRow& row) {
-  for (const auto check : {unreadable_column, bookkeeping_fault, parameter_fault, result_fault})
+  for (const auto check : {bookkeeping_fault, parameter_fault, result_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
 }

@@ -178,8 +178,7 @@ std::string small_part(std::span<const Obstacle> circles, const ObstacleParamete
   if (right.x - left.x > small * along && highest.y - lowest.y > small * obstacles.box) return "";
   return fmt::format(
       "obstacles={} has all circles at x={:.4g} to {:.4g}, y={:.4g} to {:.4g}, a small part of {:.4g} by "
-      "{:.4g}: box, "
-      "length, entrance and exit are in droplet diameters",
+      "{:.4g}: box, length, entrance and exit are in droplet diameters",
       obstacles.own->source(), left.x, right.x, lowest.y, highest.y, along, obstacles.box);
 }
 
@@ -241,7 +240,7 @@ bool may_hang_on_mesh(const RunRow& row) {
   if (row.status != RunStatus::clogged || row.parameters.model != Model::dp) return false;
   const DpParameters& dp = row.parameters.dp;
   const bool hangs = row.mechanism == ClogMechanism::wrapped || row.mechanism == ClogMechanism::hybrid;
-  if (std::isnan(row.mesh_hold)) return hangs;
+  if (!is_known(row.mesh_hold)) return hangs;
   if (dp.friction > 0 && dp.film_friction == FilmFriction::off && hangs) return true;
   return row.mesh_hold > std::max(tolerated_mesh_hold, weight_borne_by_friction(dp));
 }

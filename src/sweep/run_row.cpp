@@ -5,13 +5,13 @@
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 #include "clog/sweep/columns.hpp"
-#include "clog/sweep/settings.hpp"
+#include "clog/sweep/keys.hpp"
 
 namespace clog::sweep {
 namespace {
 
 FoundBy found_by(const std::optional<ClogDetection>& detection) {
-  if (!detection) return FoundBy::nothing;
+  if (!detection) return FoundBy::not_clogged;
   return *detection == ClogDetection::certified ? FoundBy::certified : FoundBy::threshold;
 }
 
@@ -91,15 +91,15 @@ void pack(const RunRow& row, std::span<std::byte> packed) {
   }
 }
 
-RunRow unpack(std::span<const std::byte> packed) {
+UnpackedRow unpack(std::span<const std::byte> packed) {
   assert(packed.size() == packed_size());
-  RunRow row;
+  UnpackedRow unpacked;
   const std::byte* place = packed.data();
   for (const Column& column : columns()) {
-    column.unpack(place, row);
+    column.unpack(place, unpacked);
     place += column.size;
   }
-  return row;
+  return unpacked;
 }
 
 }  // namespace clog::sweep

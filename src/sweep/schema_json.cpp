@@ -2,30 +2,20 @@
 
 #include <nlohmann/json.hpp>
 
-#include "clog/sweep/settings.hpp"
+#include "clog/sweep/keys.hpp"
+
+template <>
+struct clog::Words<clog::ValueKind> {
+  static constexpr Worded<ValueKind> all[] = {
+      {ValueKind::number, "number"},   {ValueKind::number_or_share, "number or share"},
+      {ValueKind::integer, "integer"}, {ValueKind::word, "word"},
+      {ValueKind::file, "file"},       {ValueKind::text, "text"}};
+};
 
 namespace clog::sweep {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-const char* name_of(ValueKind kind) {
-  switch (kind) {
-    case ValueKind::number:
-      return "number";
-    case ValueKind::number_or_share:
-      return "number or share";
-    case ValueKind::integer:
-      return "integer";
-    case ValueKind::file:
-      return "file";
-    case ValueKind::text:
-      return "text";
-    case ValueKind::word:
-      break;
-  }
-  return "word";
-}
 
 Json to_json(const std::optional<Bound>& bound) {
   if (!bound) return nullptr;
@@ -34,7 +24,7 @@ Json to_json(const std::optional<Bound>& bound) {
 
 Json to_json(const Key& key) {
   Json json = {{"key", key.name},
-               {"kind", name_of(key.kind)},
+               {"kind", name(key.kind)},
                {"words", key.words},
                {"default", key.default_text},
                {"help", key.help}};
@@ -61,7 +51,7 @@ Json to_json(const Key& key) {
 Json to_json(const Column& column) {
   Json json = {{"name", column.name},       {"symbol", column.symbol},
                {"unit", column.unit},       {"meaning", column.meaning},
-               {"role", name(column.role)}, {"kind", name_of(column.kind)},
+               {"role", name(column.role)}, {"kind", name(column.kind)},
                {"size", column.size},       {"shapes_array", column.shapes_array}};
   if (const Parameter* parameter = column.parameter) {
     json["key"] = parameter->key;

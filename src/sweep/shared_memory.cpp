@@ -8,6 +8,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstddef>
@@ -17,6 +18,7 @@
 #include <functional>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 namespace clog::sweep {
 namespace {
@@ -35,8 +37,7 @@ bool is_complete_and_own(int descriptor) {
 
 bool write_all(int descriptor, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    const ssize_t written = write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
+    const ssize_t written = retried([&] { return write(descriptor, bytes.data(), bytes.size()); });
     if (written <= 0) return false;
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
@@ -78,16 +79,15 @@ std::string inode_of(const std::string& address) {
 
 SharedMemory::~SharedMemory() {
   if (bytes_.data()) munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
-  close(descriptor_);
 }
 
-std::shared_ptr<const SharedMemory> SharedMemory::map(int descriptor) {
-  std::shared_ptr<SharedMemory> memory(new SharedMemory(descriptor));
+std::shared_ptr<const SharedMemory> SharedMemory::map(Descriptor file) {
   struct stat status;
-  if (fstat(descriptor, &status) != 0 || status.st_size == 0) return nullptr;
+  if (fstat(file, &status) != 0 || status.st_size == 0) return nullptr;
   const auto size = static_cast<std::size_t>(status.st_size);
-  void* const begin = mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
+  void* const begin = mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0);
   if (begin == MAP_FAILED) return nullptr;
+  std::shared_ptr<SharedMemory> memory(new SharedMemory(std::move(file)));
   memory->bytes_ = {static_cast<const std::byte*>(begin), size};
   return memory;
 }
@@ -95,12 +95,8 @@ std::shared_ptr<const SharedMemory> SharedMemory::map(int descriptor) {
 std::shared_ptr<const SharedMemory> SharedMemory::find(const std::string& name) {
   std::shared_ptr<const SharedMemory> memory;
   visit_open_files("/memfd:" + name + " (deleted)", [&](const fs::path& file) {
-    const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) return false;
-    if (is_complete_and_own(descriptor))
-      memory = map(descriptor);
-    else
-      close(descriptor);
+    Descriptor found(open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    if (found.is_open() && is_complete_and_own(found)) memory = map(std::move(found));
     return memory != nullptr;
   });
   return memory;
@@ -108,19 +104,16 @@ std::shared_ptr<const SharedMemory> SharedMemory::find(const std::string& name) 
 
 std::shared_ptr<const SharedMemory> SharedMemory::publish(
     const std::string& name, std::span<const std::span<const std::byte>> pieces) {
-  const int descriptor = memfd_create(name.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  if (descriptor < 0) return nullptr;
-  bool is_whole = true;
-  for (const std::span<const std::byte>& piece : pieces) is_whole = is_whole && write_all(descriptor, piece);
-  if (is_whole && fcntl(descriptor, F_ADD_SEALS, seals) == 0) return map(descriptor);
-  close(descriptor);
-  return nullptr;
+  Descriptor file(memfd_create(name.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  const bool is_whole =
+      file.is_open() && std::ranges::all_of(pieces, [&](auto piece) { return write_all(file, piece); });
+  return is_whole && fcntl(file, F_ADD_SEALS, seals) == 0 ? map(std::move(file)) : nullptr;
 }
 
 NameLock::NameLock(const std::string& name)
     : address_(fmt::format("clogsweep-{}-{}", geteuid(), std::hash<std::string>{}(name))),
       socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-  if (socket_ < 0) return;
+  if (!socket_.is_open()) return;
   // An abstract address, known to this machine only as long as the socket exists. No one ever connects to it.
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -138,10 +131,6 @@ bool NameLock::is_taken_by_another_user() const {
   bool is_own = false;
   visit_open_files("socket:[" + inode + "]", [&](const fs::path&) { return is_own = true; });
   return !is_own && inode_of(address_) == inode;  // otherwise its holder has just ended
-}
-
-NameLock::~NameLock() {
-  if (socket_ >= 0) close(socket_);
 }
 
 }  // namespace clog::sweep

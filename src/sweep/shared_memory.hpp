@@ -4,6 +4,9 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
+
+#include "clog/core/tools/descriptor.hpp"
 
 namespace clog::sweep {
 
@@ -27,11 +30,11 @@ class SharedMemory {
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:
-  int descriptor_ = -1;  // kept open: it is what others find
+  Descriptor file_;  // kept open: it is what others find
   std::span<const std::byte> bytes_;
 
-  explicit SharedMemory(int descriptor) : descriptor_(descriptor) {}
-  static std::shared_ptr<const SharedMemory> map(int descriptor);
+  explicit SharedMemory(Descriptor file) : file_(std::move(file)) {}
+  static std::shared_ptr<const SharedMemory> map(Descriptor file);
 };
 
 /// A lock that at most one process of this user on this machine holds at a time. It ends with the process.
@@ -42,10 +45,6 @@ class NameLock {
   /// Takes the lock, if nobody has it and the system can make one.
   explicit NameLock(const std::string& name);
 
-  NameLock(const NameLock&) = delete;
-  NameLock& operator=(const NameLock&) = delete;
-  ~NameLock();
-
   State state() const { return state_; }
   /// Anybody can take an address, so that others wait for nothing. Takes some time: all processes of this
   /// user are looked at.
@@ -53,7 +52,7 @@ class NameLock {
 
  private:
   std::string address_;
-  int socket_;
+  Descriptor socket_;
   State state_ = State::impossible;
 };
 

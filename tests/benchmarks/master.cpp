@@ -20,6 +20,7 @@
 #include <thread>
 #include <vector>
 
+#include "../scheduler/order_of.hpp"
 #include "clog/results/progress.hpp"
 #include "clog/results/sweep_state.hpp"
 #include "clog/scheduler/scheduler.hpp"
@@ -116,7 +117,7 @@ int main(int argc, char** argv) {
   }
   const Clock::time_point begin = Clock::now();
   const double cpu_before = cpu_seconds();
-  scheduler::Schedule schedule(scheduler::TaskOrder(plan.size(), plan.num_groups()), ranks.size(), false);
+  scheduler::Schedule schedule(scheduler::order_of(plan.size(), plan.num_groups()), ranks.size(), false);
   scheduler::run_tasks(
       ranks, schedule,
       [&](std::int64_t task, std::span<const std::byte>) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tests/benchmarks/run.sh [FOLDER_OF_PROGRAMS]: runs all benchmarks and prints a table, in under 5 minutes. What the
-# numbers mean: docs/explanation/speed.md. Compare numbers of one machine, taken side by side.
+# numbers mean: docs/developer/speed.md. Compare numbers of one machine, taken side by side.
 set -euo pipefail
 cd "$(dirname "$0")"
 bin=$(realpath "${1:-../../build/release/bin}")

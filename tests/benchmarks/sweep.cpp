@@ -16,9 +16,9 @@
 #include "clog/core/droplet/time_step.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
-#include "core/polygon/dp_step_kernel.hpp"
-#include "core/polygon/step_input.hpp"
-#include "core/polygon/step_memory.hpp"
+#include "core/polygon/step/dp_step_kernel.hpp"
+#include "core/polygon/step/step_input.hpp"
+#include "core/polygon/step/step_memory.hpp"
 
 namespace {
 
@@ -43,8 +43,8 @@ class BareStep {
         a_(memory_.arrays()) {
     for (int i = -1; i < n_ + kernel::edges_per_group; ++i) {
       const double angle = 2 * std::numbers::pi * i / n_;
-      a_.x[i] = std::cos(angle) / 2;
-      a_.y[i] = std::sin(angle) / 2;
+      a_.position.x[i] = std::cos(angle) / 2;
+      a_.position.y[i] = std::sin(angle) / 2;
     }
     sums_ = kernel_.measure(n_, a_);
   }
@@ -52,7 +52,7 @@ class BareStep {
   /// @return nanoseconds for each vertex and step
   double time(int steps) {
     constexpr double time_step = 1e-3;
-    const kernel::KickCoefficients coefficients{.kicks = 1,
+    const kernel::KickCoefficients coefficients{.closing_ratio = 1,
                                                 .h1 = time_step / 2,
                                                 .h2 = time_step / 2,
                                                 .weight = 2,

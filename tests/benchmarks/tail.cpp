@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "clog/scheduler/task_order.hpp"
+#include "../scheduler/order_of.hpp"
 
 namespace {
 
-using clog::scheduler::TaskOrder;
+using clog::scheduler::order_of, clog::scheduler::TaskOrder;
 
 constexpr int num_groups = 20;  // parameter sets of both tables
 
@@ -88,10 +88,10 @@ int main(int argc, char** argv) {
     // Workers cannot all be busy to the end, but no order can do better than this.
     const double least = std::max(std::accumulate(lengths.begin(), lengths.end(), 0.0) / num_workers,
                                   *std::max_element(lengths.begin(), lengths.end()));
-    planned.push_back(finish_time(lengths, num_workers, TaskOrder(num_tasks)) / least);
-    expected.push_back(finish_time(lengths, num_workers, TaskOrder(num_tasks, num_groups)) / least);
+    planned.push_back(finish_time(lengths, num_workers, order_of(num_tasks)) / least);
+    expected.push_back(finish_time(lengths, num_workers, order_of(num_tasks, num_groups)) / least);
     std::sort(lengths.rbegin(), lengths.rend());
-    known.push_back(finish_time(lengths, num_workers, TaskOrder(num_tasks)) / least);
+    known.push_back(finish_time(lengths, num_workers, order_of(num_tasks)) / least);
   }
   std::printf(
       "%lld runs, %d workers, time to the end over the least possible: as planned %.3f, "

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "clog/core/droplet/shape.hpp"
-#include "clog/core/polygon/dp_forces.hpp"
+#include "clog/core/polygon/forces/dp_forces.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/core/world/obstacle_array.hpp"

@@ -22,13 +22,9 @@ KINDS = {
     "bits": "a flipped bit of a finished sweep's file",
     "metadata": "damage to what describes a sweep's file, or to its journal",
     "disk": "a full disk, or too little memory",
-    "streams": "standard streams that are closed, full, or not read",
     "kills": "signals to a sweep's processes",
-    "places": "links, folders, tables and journals that are moved under a sweep",
-    "names": "files of circles with names of any bytes",
     "journals": "journals of other sweeps, and with impossible rows and snapshots",
     "attributes": "one damaged attribute of a sweep's file",
-    "rights": "modes and owners of a sweep's files, and links of others",
     "calls": "command lines and files with mistakes",
 }
 

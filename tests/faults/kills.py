@@ -1,5 +1,6 @@
 """Processes of a sweep on two ranks get signals at random moments; then the same command completes it."""
 
+import os
 import signal
 import subprocess
 import time
@@ -37,6 +38,7 @@ class Faults:
         outcome = run(case, "clogsweep", *SWEEP, ranks=RANKS)
         case.expect(outcome.code == 0, f"clogsweep: does not resume, exit code {outcome.code}")
         check_complete(case, case.folder / FILE, self.rows, ignored=[*TIMING, "attempt"])
+        case.expect(os.listdir(case.folder) == [FILE], "a finished sweep leaves a journal or a draft")
 
     def disturb(self, case):
         """Starts the sweep, or resumes it, and sends signals to one or two of its processes."""

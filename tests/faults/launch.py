@@ -10,7 +10,6 @@ from processes import Hung, descend, kill, wait_for
 from support import BIN, MPIRUN
 
 EXIT_CODES = {0, 1, 2, 75}  # docs/reference/exit-codes.md
-READER_GONE = 141  # of a program whose output nobody reads any more
 SUBCOMMANDS = {"status", "verify", "replay", "salvage", "merge", "select", "doctor", "array", "channel", "sag", "calibrate", "compare", "deviation",
                "drag", "report"}
 # Words of a program that met a fault of its own.

@@ -1,7 +1,7 @@
-"""A layer includes the layers that its line in docs/explanation/architecture.md names, and no others; some libraries belong
+"""A layer includes the layers that its line in docs/developer/architecture.md names, and no others; some libraries belong
 to one layer, fmt to no header.
 
-The layers inside core have lines of their own: core/world and so on. Modules of the Python package are its folders, in a
+The layers inside core have lines of their own: core/world, core/polygon/step and so on. Modules of the Python package are its folders, in a
 table of their own; an import inside a function counts, too. Neither layers nor Python files form a circle.
 
     tests/lint/layers.py ROOT
@@ -14,7 +14,7 @@ import pathlib
 import re
 import sys
 
-PAGE = "docs/explanation/architecture.md"
+PAGE = "docs/developer/architecture.md"
 OWN_LIBRARY = {"mpi.h": "scheduler", "hdf5.h": "store", "boost/program_options.hpp": "cli"}
 PACKAGE = pathlib.Path("analysis/clogsweep")
 PYTHON_SECTION = "\n## Modules of the Python package\n"
@@ -34,8 +34,8 @@ def table(text):
 
 def layer_of(parts, layers):
     """The layer of a file. @param parts  its folders below include/clog or src"""
-    inner = "/".join(parts[:2])
-    return inner if inner in layers else parts[0]
+    names = ("/".join(parts[:depth]) for depth in (3, 2))
+    return next((name for name in names if name in layers), parts[0])
 
 
 def includes(root, layers):

@@ -33,7 +33,7 @@ class Layers(unittest.TestCase):
     def found(self, files=(), cpp=CPP, python=PYTHON):
         """The lint's answer for the sound tree with other files, and other lines in its tables."""
         with tempfile.TemporaryDirectory() as folder:
-            for name, text in {**SOUND, "docs/explanation/architecture.md": page(cpp, python), **dict(files)}.items():
+            for name, text in {**SOUND, "docs/developer/architecture.md": page(cpp, python), **dict(files)}.items():
                 path = pathlib.Path(folder, name)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(text)
@@ -51,6 +51,13 @@ class Layers(unittest.TestCase):
                 self.assertIn(f"tools/names.py:{len(text.splitlines())}: tools must not use reading/stored.py\n",
                               self.found({"analysis/clogsweep/tools/names.py": text}))
         self.assertIn("src/base/more.cpp:1: base must not use clog/top/top.hpp", self.found({"src/base/more.cpp": "#include <clog/top/top.hpp>\n"}))
+
+    def test_folders_of_a_layer_inside_core_are_layers(self):
+        layers = [*CPP, ("core", ""), ("core/ball/low", ""), ("core/ball", "`core/ball/low`")]
+        files = {"src/core/ball/ball.cpp": '#include "core/ball/low/low.hpp"\n', "src/core/ball/low/low.hpp": ""}
+        self.assertEqual(self.found(files, cpp=layers), "layers are clean\n")
+        upward = {**files, "src/core/ball/low/low.hpp": '#include "clog/core/ball/ball.hpp"\n'}
+        self.assertIn("low.hpp:1: core/ball/low must not use clog/core/ball/ball.hpp", self.found(upward, cpp=layers))
 
     def test_the_names_of_the_whole_package_are_not_for_its_layers(self):
         self.assertIn("reading/more.py:1: reading must not use __init__.py", self.found({"analysis/clogsweep/reading/more.py": "from .. import open\n"}))

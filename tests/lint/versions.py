@@ -52,7 +52,7 @@ def table_of_dependencies(text):
 
 def faults_of_dependencies(root):
     rows = list(table_of_dependencies((root / "cmake/dependencies.txt").read_text()))
-    page = "docs/how-to/build.md"
+    page = "docs/developer/build.md"
     section = (root / page).read_text().partition("\n## Dependencies\n")[2]
     written = [line for line in section.splitlines() if line.startswith("| ") and not line.startswith("| dependency ")]
     for row in rows:

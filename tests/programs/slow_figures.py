@@ -15,15 +15,7 @@ class Figures(test_figures.Drawn):
                  "7a-saturated": ("clogging-sp-saturated", "clogging_length"), "8a": ("speed", "relative_speed"),
                  "8b": ("speed-diameter", "relative_speed"), "8ca": ("speed", "capillary_number"), "9a": ("speed-sp", "relative_speed"),
                  "E": ("near-wall-drag", "relative_speed")}
-        more = ["6c", "6c-filling", "7c", "7c-saturated", "9b"]
-        done = self.figures(*names, *more, "--ranks", 1)
-        self.assertNotIn("Warning", done.stderr)
-        for name in [*names, *more]:
-            with self.subTest(figure=name):
-                self.assert_drawn(name)
-        for name, (sweep, quantity) in names.items():
-            with self.subTest(figure=name):
-                self.assert_groups(name, sweep, quantity)
+        self.assert_curves(names, "6c", "6c-filling", "7c", "7c-saturated", "9b")
         self.assert_sags("7c")
 
         # Figure 6c: all families, both meshes, every point.
@@ -36,8 +28,6 @@ class Figures(test_figures.Drawn):
 
         file = self.folder / self.PLACE / "sweeps" / "clogging-friction.h5"
         self.assert_clogs(file, "5", "6a", "6b")
-        # Other settings than the file's are refused by clogsweep, in its words.
-        self.refuse_analysis("figures", "6c", "--output", ".", "--programs", BIN, *SET, "--set", "clogging-friction:box=30", words=["box"])
         self.assert_report(file)
 
     def test_the_map_shows_every_density(self):
@@ -50,23 +40,8 @@ class Figures(test_figures.Drawn):
         self.assertEqual({point["obstacle_filling"] for point in points}, {"density", "saturated"})
 
     def test_single_runs_are_drawn_as_they_were_run(self):
-        self.write_profile()
-        names = ["1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "C2", "D"]
-        done = self.figures(*names, "--profile", "measured.csv")
-        # 1 and 2 share it.
-        self.assertEqual(done.stdout.count("sweep channel-0.4:"), 1)
-        for name in names:
-            with self.subTest(figure=name):
-                self.assert_drawn(name)
-        self.assert_passage_and_survival()
-        # Drawn from what is there, whatever the settings; nothing runs again.
-        before = self.times_of_runs()
-        self.assertEqual(len(before), 1 + 1 + 2 + 6 + 1 + 3 + 14 + 2 + 5)  # of 1 to D; A1 needs none
-        self.figures("3", "7b", "B2", "--draw-only", "--set", "channel:max-time=200")
-        self.figures(*names, "--set", "seeds=1..3")
-        self.assertEqual(self.times_of_runs(), before)
-        # Other settings than the sweep's are refused by clogsweep, in its words.
-        self.refuse_analysis("figures", "7b", "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
+        # Runs of 1 to D; A1 needs none.
+        self.assert_single_runs(["1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "C2", "D"], 1 + 1 + 2 + 6 + 1 + 3 + 14 + 2 + 5, "7b", "3", "B2")
 
     def test_channels_are_sweeps_and_what_their_rows_say_is_drawn(self):
         self.figures("3", "A1", "B1", "--ranks", 2)

@@ -22,7 +22,7 @@ from clogsweep.paper.plate import CATALOGUE
 from clogsweep.paper.workshop import Override
 
 FOLLOWED = {*pages.PAGES, *pages.tutorial()}
-PAGES = sorted({str(path.relative_to(ROOT)) for part in ("how-to", "reference", "gallery", "explanation")
+PAGES = sorted({str(path.relative_to(ROOT)) for part in ("how-to", "reference", "gallery", "explanation", "developer")
                 for path in (ROOT / "docs" / part).glob("*.md")} - FOLLOWED)
 PROGRAMS = ("clogsweep", "clogrun", "clogfit")
 LAUNCHERS = {"mpirun": 3, "srun": 1}  # how many words each takes

@@ -113,6 +113,12 @@ class ProgramTest(unittest.TestCase):
             self.assertLess(time.time(), deadline, "it did not happen in time")
             time.sleep(0.02)
 
+    def ended(self, process, code=0):
+        """Waits until it has ended with that exit code. @return what it said on its standard error"""
+        output, error = process.communicate(timeout=LONGEST)
+        self.assertEqual(process.returncode, code, f"{output}{error}")
+        return error
+
     def write(self, name, text):
         (self.folder / name).write_text(text)
         return name
@@ -165,9 +171,6 @@ class SweepTest(ProgramTest):
             for path in self.folder.glob("s.h5*"):
                 path.unlink()
         self.fail("the sweep was always over")
-
-    def wait_for_ranks(self, process, number):
-        self.wait_for(lambda: len(self.ranks_of(process)) == number or process.poll() is not None)
 
     def check_equal(self, name, other):
         rows, others = (table(self.folder / n).drop(columns=TIMING) for n in (name, other))

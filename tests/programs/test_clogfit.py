@@ -3,7 +3,6 @@ import io
 import json
 import math
 import re
-import subprocess
 import sys
 import unittest
 import zlib
@@ -13,7 +12,7 @@ import numpy as np
 import pandas
 
 import stored_rows
-from support import BIN, ROOT, SMALL, ProgramTest
+from support import ROOT, SMALL, ProgramTest
 
 sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.tools import rounded  # noqa: E402
@@ -499,13 +498,6 @@ class Fit(ProgramTest):
     def test_random_arrays_have_no_column_for_migration(self):
         self.sweep("seeds=1..3", "max-time=1")
         self.assertNotIn("lateral/r", self.succeed("clogfit", "sweep.h5").stdout)
-
-    def test_a_full_output_is_a_fault(self):
-        self.sweep("seeds=1", "max-time=1")
-        with open("/dev/full", "w") as full:
-            done = subprocess.run([str(BIN / "clogfit"), "sweep.h5"], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("cannot write the output", done.stderr)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         self.write("text.h5", "not a table")

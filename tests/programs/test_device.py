@@ -436,6 +436,10 @@ class WrongDrawings(Analysis):
             space.add_line(begin, end)
         drawing.saveas(self.folder / "device.dxf")
 
+    def said_of(self, name, *options, **drawn):
+        self.dxf(**drawn)
+        return self.draw("circles", "device.dxf", "--droplet", "200um", "--output", name, *options).stdout
+
     def refuse(self, *options, words):
         super().refuse_analysis("circles", "device.dxf", *self.COMMAND, *options, words=words)
         self.assertFalse((self.folder / "posts.csv").exists())
@@ -472,22 +476,18 @@ class WrongDrawings(Analysis):
         triangles = [[(x, 400), (x + 150, 400 + 1e-4), (x + 75, 550)] for x in (600, 1200, 1800)]
         lines = [side for corners in [box(0, 0, 3600, 1200), *triangles] for side in sides(corners)]
         loose = [((2500, 300), (2900, 700))]
-        self.dxf(lines=lines + loose)
-        told = self.draw("circles", "device.dxf", *self.COMMAND, "--as-rows").stdout
+        told = self.said_of("posts", "--as-rows", lines=lines + loose)
         for words in ("3 posts, device 18 x 6", "13 lines closed into 4 outlines", "skipped: 1 LINE (lines red", "draw closed outlines", "side-walls=on"):
             self.assertIn(words, told)
         self.assertGreater(self.red().sum(), 100)
         crossing = [((500, 450), (2000, 450)), ((2300, 400), (2800, 400)), ((2350, 350), (2600, 900)), ((2750, 350), (2500, 900))]
-        self.dxf(lines=lines + lines[-3:] + crossing)
-        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "crossing", "--as-rows").stdout
+        told = self.said_of("crossing", "--as-rows", lines=lines + lines[-3:] + crossing)
         for words in ("4 posts, device 18 x 6", "19 lines closed into 5 outlines", "skipped: 1 LINE"):
             self.assertIn(words, told)
-        self.dxf(circles=[(800, 300), (1600, 300)], lines=sides(triangles[0])[:2])
-        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "open").stdout
+        told = self.said_of("open", circles=[(800, 300), (1600, 300)], lines=sides(triangles[0])[:2])
         self.assertIn("skipped: 2 LINE", told)
         with mock.patch.dict(sys.modules, {"shapely": None, "shapely.ops": None, "shapely.geometry": None}):
-            self.dxf(circles=[(800, 300), (1600, 300)], lines=lines)
-            told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "other").stdout
+            told = self.said_of("other", circles=[(800, 300), (1600, 300)], lines=lines)
         self.assertIn("2 outlines or lines as long as the device are taken for walls", told)  # lines of its edge
         self.assertIn("skipped: 11 LINE", told)
         self.assertIn("install python3-shapely", told)
@@ -504,8 +504,7 @@ class WrongDrawings(Analysis):
         return begin
 
     def test_without_an_edge_there_is_room_around_the_posts(self):
-        self.dxf(circles=[(800, 300), (1600, 300), (1200, 900)])
-        told = self.draw("circles", "device.dxf", *self.COMMAND).stdout
+        told = self.said_of("posts", circles=[(800, 300), (1600, 300), (1200, 900)])
         self.assertIn("no edge is drawn: the device ends half a droplet diameter beyond the posts on every side; leave out side-walls=on", told)
         self.assertNotIn("to a side", told)
         self.assertIn("box=4.5", self.run_printed(told))
@@ -514,48 +513,38 @@ class WrongDrawings(Analysis):
 
     def test_walls_drawn_as_outlines_are_no_posts(self):
         walls, post = [box(0, -20, 3600, 0), box(0, 1200, 3600, 1220)], box(1500, 500, 1600, 600)
-        self.dxf(circles=[(800, 300), (800, 900)], outlines=[*walls, post])
-        told = self.draw("circles", "device.dxf", *self.COMMAND, "--as-rows").stdout
+        told = self.said_of("posts", "--as-rows", circles=[(800, 300), (800, 900)], outlines=[*walls, post])
         self.assertIn("2 outlines or lines as long as the device are taken for walls: side-walls=on", told)
         self.assertIn("3 posts, device 18 x 6 droplet diameters (between its walls)", told)
         self.assertNotIn("no edge is drawn", told)
         self.assertIn(", to a side 1.25 (250 um), in droplet diameters", told)
         self.assertIn("side-walls=on", self.run_printed(told))
-        self.dxf(circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 1200), walls[0]])
-        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "one").stdout
+        told = self.said_of("one", circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 1200), walls[0]])
         self.assertIn("1 outline or line as long as the device is taken for a wall", told)
         self.assertIn("box=6 length=18", told)
-        self.dxf(circles=[(300, 800), (900, 800)], outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
-        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "down", "--flow", "down").stdout
+        told = self.said_of("down", "--flow", "down", circles=[(300, 800), (900, 800)], outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
         self.assertIn("box=5.95 length=18", told)
         with self.subTest("walls are single lines"):
             sides = [((0, 0), (3600, 0)), ((3600, 1200), (0, 1200))]
-            self.dxf(circles=[(800, 300), (800, 900)], lines=[*sides, ((2500, 300), (2900, 700))])
-            told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "lines").stdout
+            told = self.said_of("lines", circles=[(800, 300), (800, 900)], lines=[*sides, ((2500, 300), (2900, 700))])
             for words in ("2 outlines or lines as long as the device are taken for walls", "2 posts, device 18 x 6", "skipped: 1 LINE (lines red", "box=6 length=18"):
                 self.assertIn(words, told)
 
-        def said_of(name, **drawn):
-            self.dxf(**drawn)
-            return self.draw("circles", "device.dxf", "--droplet", "200um", "--output", name).stdout
-
         posts, edge = [(800, 300), (800, 900)], box(0, 0, 3600, 1200)
         with self.subTest("a dimension line beside the device moves no edge"):
-            self.assertIn("device 18 x 6", said_of("dimension", circles=posts, outlines=[edge], lines=[((0, -200), (3600, -200))]))
-            self.assertIn("device 18 x 6", said_of("farther", circles=posts, lines=[*sides, ((-300, -900), (3900, -900))]))
+            self.assertIn("device 18 x 6", self.said_of("dimension", circles=posts, outlines=[edge], lines=[((0, -200), (3600, -200))]))
+            self.assertIn("device 18 x 6", self.said_of("farther", circles=posts, lines=[*sides, ((-300, -900), (3900, -900))]))
         with self.subTest("of walls that are double lines the inner faces count"):
             double = [((0, -20), (3600, -20)), ((0, 1220), (3600, 1220))]
-            told = said_of("double", circles=posts, lines=[*sides, *double])
+            told = self.said_of("double", circles=posts, lines=[*sides, *double])
             self.assertIn("device 18 x 6", told)
             self.assertNotIn("skipped", told)
         with self.subTest("a long outline that is the only post is none"):
-            self.dxf(outlines=[box(0, 500, 3600, 520)], lines=[((500, 800), (600, 900))])
-            told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "only", "--as-rows").stdout
+            told = self.said_of("only", "--as-rows", outlines=[box(0, 500, 3600, 520)], lines=[((500, 800), (600, 900))])
             self.assertIn("1 post, device", told)
         with self.subTest("a wall with teeth is a post"):
             teeth = [(3600 - 100 * i, 20 + 40 * (i % 2)) for i in range(37)]
-            self.dxf(circles=[(800, 300), (800, 900)], outlines=[[(0, 0), (3600, 0), *teeth], box(0, 1200, 3600, 1220)])
-            told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "teeth", "--as-rows").stdout
+            told = self.said_of("teeth", "--as-rows", circles=[(800, 300), (800, 900)], outlines=[[(0, 0), (3600, 0), *teeth], box(0, 1200, 3600, 1220)])
             self.assertIn("1 outline or line as long", told)
             self.assertIn("3 posts", told)
 

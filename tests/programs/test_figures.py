@@ -151,6 +151,8 @@ class Drawn(Analysis):
         # A figure drawn from files alone is not labelled as another droplet.
         self.call_wrapped(sweep, 0)
         self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-friction-", "leave out --draw-only"])
+        # Other settings than the file's are refused by clogsweep, in its words.
+        self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--set", "clogging-friction:box=30", words=["box"])
 
     def assert_report(self, sweep):
         self.draw("report", sweep, "--output", "report.html", "--examples", 0, "--programs", BIN)
@@ -166,9 +168,32 @@ class Drawn(Analysis):
         self.assertGreaterEqual(page.count("<svg"), 3)
         self.assertIn("command_line: clogsweep", page)
 
-    def write_profile(self):
-        measured = "\n".join(["h [sigma], v [v_t], A", *(f"{h / 10},{0.5 + 0.01 * h},1.0{abs(h)}" for h in range(-9, 10))])
-        self.write("measured.csv", measured)
+    def assert_curves(self, names, *more):
+        """@param names  sweep and quantity of figures with numbers of clogfit"""
+        done = self.figures(*names, *more, "--ranks", 1)
+        self.assertNotIn("Warning", done.stderr)
+        for name in [*names, *more]:
+            with self.subTest(figure=name):
+                self.assert_drawn(name)
+                if name in names:
+                    self.assert_groups(name, *names[name])
+
+    def assert_single_runs(self, names, num_runs, *redrawn):
+        self.write("measured.csv", "\n".join(["h [sigma], v [v_t], A", *(f"{h / 10},{0.5 + 0.01 * h},1.0{abs(h)}" for h in range(-9, 10))]))
+        done = self.figures(*names, "--profile", "measured.csv")
+        self.assertEqual(done.stdout.count("sweep channel-0.4:"), 1, "1 and 2 share it")
+        for name in names:
+            with self.subTest(figure=name):
+                self.assert_drawn(name)
+        self.assert_passage_and_survival()
+        # Drawn from what is there, whatever the settings; nothing runs again.
+        before = self.times_of_runs()
+        self.assertEqual(len(before), num_runs)
+        self.figures(*redrawn, "--draw-only", "--set", "channel:max-time=200")
+        self.figures(*names, "--set", "seeds=1..3")
+        self.assertEqual(self.times_of_runs(), before)
+        # Other settings than the sweep's are refused by clogsweep, in its words.
+        self.refuse_analysis("figures", redrawn[0], "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
 
     def assert_passage_and_survival(self):
         """Figures 2 and C2."""
@@ -191,43 +216,17 @@ class Figures(Drawn):
     """Some figures of every kind. All of them: slow_figures."""
 
     def test_curves_show_what_clogfit_says(self):
-        names = {"7a": ("clogging-sp", "clogging_length"), "8ca": ("speed", "capillary_number")}
-        done = self.figures(*names, "9b", "--ranks", 1)
-        self.assertNotIn("Warning", done.stderr)
-        for name in [*names, "9b"]:
-            with self.subTest(figure=name):
-                self.assert_drawn(name)
-        for name, (sweep, quantity) in names.items():
-            with self.subTest(figure=name):
-                self.assert_groups(name, sweep, quantity)
+        self.assert_curves({"7a": ("clogging-sp", "clogging_length"), "8ca": ("speed", "capillary_number")}, "9b")
         self.assert_sags("9b")
 
     def test_clogs_are_those_of_the_sweep(self):
         self.figures("6b")
         sweep = self.folder / self.PLACE / "sweeps" / "clogging-friction.h5"
         self.assert_clogs(sweep, "6a", "6b")
-        # Other settings than the file's are refused by clogsweep, in its words.
-        self.refuse_analysis("figures", "6b", "--output", ".", "--programs", BIN, *SET, "--set", "clogging-friction:box=30", words=["box"])
         self.assert_report(sweep)
 
     def test_single_runs_are_drawn_as_they_were_run(self):
-        self.write_profile()
-        names = ["1", "2", "C2"]
-        done = self.figures(*names, "--profile", "measured.csv")
-        # 1 and 2 share it.
-        self.assertEqual(done.stdout.count("sweep channel-0.4:"), 1)
-        for name in names:
-            with self.subTest(figure=name):
-                self.assert_drawn(name)
-        self.assert_passage_and_survival()
-        # Drawn from what is there, whatever the settings; nothing runs again.
-        before = self.times_of_runs()
-        self.assertEqual(len(before), 2)
-        self.figures("2", "--draw-only", "--set", "channel:max-time=200")
-        self.figures("2", "C2", "--set", "seeds=1..3")
-        self.assertEqual(self.times_of_runs(), before)
-        # Other settings than the sweep's are refused by clogsweep, in its words.
-        self.refuse_analysis("figures", "2", "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
+        self.assert_single_runs(["1", "2", "C2"], 2, "2")
 
     def test_settings_of_all_figures_are_accepted(self):
         for config in sorted((ROOT / "jobs" / "figures").glob("*.cfg")):
@@ -468,10 +467,6 @@ class Pictures(Analysis):
         for _ in range(2):
             self.draw("clogging-length", "fit.json", "--output", "length")
             self.draw("export-vtk", "run.h5", "--output", "run")
-
-    def test_a_film_has_the_ending_that_was_asked_for(self):
-        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 30, "--output", "run.h5", "--frames", "film.gif")
-        self.assertEqual((self.folder / "film.gif").read_bytes()[:4], b"GIF8")
 
     def test_no_two_outputs_of_a_run_are_one_file(self):
         for options in (["--output", "a.csv", "--write-obstacles", "./a.csv"], ["--output", "film.mp4", "--frames", "film"],

@@ -45,8 +45,7 @@ class TwoHosts(SweepTest):
 
     def test_the_rows_do_not_depend_on_hosts(self):
         process = self.start_on_both()
-        _, error = process.communicate(timeout=LONGEST)
-        self.assertEqual(process.returncode, 0, error)
+        error = self.ended(process)
         self.check_equal("s.h5", undisturbed(FEW_LONG))
         rows = table(self.folder / "s.h5")
         self.assertEqual(set(rows["rank"]), {0, 1})
@@ -59,8 +58,7 @@ class TwoHosts(SweepTest):
         over = before[~before.status.isin(["running", "interrupted"])].task
         self.assertFalse(rows[rows.task.isin(over)].status.isin(["running", "interrupted"]).any(), "a finished row was lost")
         process = self.start_on_both()
-        _, error = process.communicate(timeout=LONGEST)
-        self.assertEqual(process.returncode, 0, error)
+        self.ended(process)
         self.check_equal("s.h5", undisturbed(FEW_LONG))
 
 

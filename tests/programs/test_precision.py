@@ -130,7 +130,7 @@ class Precision(ProgramTest):
         for arguments, words in [
             (["--until-precision=0%"], ["--until-precision=0%", "try 20%"]),
             (["--until-precision=often"], ["--until-precision=often"]),
-            (["seeds=1..4", "--until-precision=20%", "--most-seeds=3"], ["--most-seeds=3", "from 4"]),
+            (["seeds=1..4", "--until-precision=20%", "--most-seeds=3"], ["--most-seeds=3", "4..100000"]),
             (["seeds=4294967290..4294967293", "--until-precision=75%"], ["--most-seeds=80", "smaller seeds"]),
             (["--most-seeds=30"], ["needs --until-precision"]),
         ]:

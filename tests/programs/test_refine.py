@@ -411,10 +411,10 @@ class CriticalAngle(RefineTest):
 
 
 class Optimiser(ProgramTest):
-    """The ten lines of docs/how-to/optimiser.md."""
+    """The ten lines of docs/developer/optimiser.md."""
 
     def test_a_script_may_choose_the_points_and_goes_on_when_called_again(self):
-        page = (ROOT / "docs" / "how-to" / "optimiser.md").read_text()
+        page = (ROOT / "docs" / "developer" / "optimiser.md").read_text()
         script = re.search(r"```python\n(.*?)```", page, re.DOTALL)[1]
         self.assertLessEqual(sum(bool(line.strip()) for line in script.splitlines()), 13)
         self.write("optimiser.py", script)

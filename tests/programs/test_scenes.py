@@ -331,12 +331,8 @@ class OwnCircles(ProgramTest):
         free = sum(row.contacts == 0 for row in rows)
         self.assertTrue(0 < free < len(rows), free)
         group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
-        met = [row for row in rows if row.contacts > 0]
-        clogs = sum(row.status == "clogged" for row in met)
         self.assertEqual((group["met_none"], "met_none" in group["doubts"].split()), (free, True))
-        if clogs:
-            self.assertAlmostEqual(group["clogging_length_met"], sum(row.distance - row.first_contact_at for row in met) / clogs, places=9)
-        self.assertAlmostEqual(group["contacts_per_length"], sum(row.contacts for row in met) / sum(row.distance for row in rows), places=9)
+        self.assertAlmostEqual(group["contacts_per_length"], sum(row.contacts for row in rows) / sum(row.distance for row in rows), places=9)
         self.assertRegex(self.succeed("clogfit", "s.h5").stdout, r"met none +lambda_met")
         self.succeed("clogsweep", "verify", "s.h5")
 
@@ -392,9 +388,7 @@ class OwnCircles(ProgramTest):
         self.assertEqual(told.returncode, 1)
         self.assertIn("its obstacles", told.stdout)
         for command in (["clogfit", "s.h5"], ["clogsweep", "status", "s.h5"], ["clogsweep", *OWN, "--output", "s.h5"]):
-            done = self.run_program(*command)
-            self.assertEqual(done.returncode, 2, done.stdout)
-            self.assertIn("damaged", done.stderr)
+            self.refuse(*command, words=["damaged"])
 
 
 if __name__ == "__main__":

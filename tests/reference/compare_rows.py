@@ -1,15 +1,18 @@
 #!/usr/bin/python3
-"""Do two builds give the same rows, bit for bit?
+"""Do two builds write the same files, bit for bit?
 
     tests/reference/compare_rows.py BEFORE AFTER        (folders of the programs)
 
-A set of small runs goes through both: either model, every preset, layout and instruction set of this processor,
-user-supplied circles, a channel, a wall, a sweep that is interrupted and resumed. Every column that both have must be the same, but for those
-that tell of the circumstances of a run; every number of a trajectory, too. Exit code 1: something differs.
+Each case is a small run by both. Everything in the two files must be the same: datasets, columns, attributes, and thereby
+units and meanings, except what describes the circumstances of a run. The cases give every key of AFTER's schema a value
+other than its default, and every word of every key. Exit code 1: something differs, or no case covers a key.
 """
 
 import argparse
+import collections
+import json
 import pathlib
+import shlex
 import signal
 import subprocess
 import sys
@@ -17,112 +20,165 @@ import tempfile
 import time
 
 import h5py
+import numpy as np
 
-CIRCUMSTANCES = {"wall_seconds", "processor_seconds", "rank", "host", "attempt"}
-SATURATED = "obstacle-density=saturated"  # the default of versions to compare with differs
-DILUTE = ["box=20", "max-time=40", "vertices=64", "seeds=3..4"]
-SMALL = [*DILUTE, SATURATED]
-# Name, arguments of clogsweep.
-SWEEPS = {
-    **{preset: [*SMALL, f"preset={preset}", "line-tension=0.1,1"] for preset in ("robust", "heavy-interface", "elastic", "literal")},
-    **{f"robust-{name}": [*SMALL, "line-tension=0.1,1", f"--instruction-set={name}"] for name in ("baseline", "avx2", "avx512")},
-    "many-vertices": [SATURATED, "box=20", "max-time=10", "vertices=256", "seeds=1"],
-    "soft-disk": [SATURATED, "model=sp", "wall-stiffness=0.5,5", "box=20", "max-time=100", "seeds=1..3"],
-    "lattice": ["obstacle-layout=lattice", "lattice-angle=10", "obstacle-gap=0.8", "box=60", "max-time=40", "vertices=64", "seeds=3..4"],
-    "dilute": [*DILUTE, "obstacle-density=0.5", "boxes=3", "obstacle-gap=0.3"],
-    "mixture": [*SMALL, "obstacle-diameter-spread=0.3", "obstacle-gap=0.4"],
-    "near-wall": [*SMALL, "near-wall-drag=0.07", "relative-drag=0.5", "wall-tension=0.6"],
-    "threshold": [*SMALL, "clog-detection=threshold", "clog-energy=1e-5", "line-tension=3"],
-    "large-array": [SATURATED, "box=200", "max-time=5", "vertices=64", "seeds=1"],
+# Not compared: columns, attributes of the root ("@"), checksums of such columns.
+CIRCUMSTANCES = {*(f"runs/{name}" for name in ("wall_seconds", "processor_seconds", "rank", "host", "attempt")), "row_checksums",
+                 *(f"@{name}" for name in ("version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "checksums",
+                                           "start_time", "command_line", "sessions", "activity", "parts"))}
+INPUTS = {"own.csv": "x,y,diameter\n2,5,0.5\n3.2,4.4,0.3\n3.4,5.9,0.4\n5,5.1,0.6\n7,4.2,0.3\n8.5,6.4,1\n",
+          "points.csv": "line-tension,obstacle-gap\n0.1,0.3\n1,0.6\n"}
+# Dense arrays: the droplet meets obstacles at once.
+ARRAY = "clogsweep box=20 vertices=64 seeds=3..4 obstacle-density=saturated"
+SWEEP = f"{ARRAY} max-time=40"
+DEVICE = "clogsweep obstacles=own.csv obstacle-layout=file box=10 vertices=64 seeds=1..2"
+CHANNEL = "vertices=64 start=-1.5 end=1"
+TENSIONS = f"{SWEEP} line-tension=0.1,1"
+CASES = {
+    **{f"preset-{name}": f"{TENSIONS} preset={name}" for name in ("robust", "heavy-interface", "elastic", "literal")},
+    **{f"instructions-{name}": f"{TENSIONS} --instruction-set={name}" for name in ("baseline", "avx2", "avx512")},
+    "vertices": "clogsweep box=20 max-time=10 vertices=256 seeds=1 obstacle-density=saturated",
+    "soft-disk": "clogsweep model=sp wall-stiffness=0.5,5 dwell-length=0.05,0.5 box=20 max-time=1000 seeds=1..3 obstacle-density=0.5",
+    "lattice": "clogsweep obstacle-layout=lattice lattice-angle=10 obstacle-gap=0.8 box=60 max-time=40 vertices=64 seeds=3..4",
+    "dilute": "clogsweep box=20 max-time=40 vertices=64 seeds=3..4 obstacle-density=0.5 boxes=3 obstacle-gap=0.3",
+    "mixture": f"{SWEEP} obstacle-diameter=0.4 obstacle-diameter-spread=0.3 obstacle-gap=0.4 dwell-length=0.1",
+    "large-array": "clogsweep box=200 max-time=5 vertices=64 seeds=1 obstacle-density=saturated",
+    "drag": f"{SWEEP} terminal-speed=0.05 near-wall-drag=0.07 near-wall-exponent=1 near-wall-cutoff=0.01 relative-drag=0.5",
+    "numerics": f"{ARRAY} max-time=10 inertia=4 time-step=4e-4 area-stiffness=5000 wall-stiffness=50 wall-contact=vertex,edge",
+    "springs": f"{SWEEP} perimeter-spring=along,mean perimeter-stiffness=0.2 contact-range=0.01",
+    "rest-springs": f"{SWEEP} perimeter-spring=rest perimeter-stiffness-ratio=0.1 contact-range=half-vertex gravity=area,vertex",
+    "contact-angles": f"{SWEEP} wall-tension=0.6 receding-angle=100 advancing-angle=150 line-tension=0.3",
+    "dry-friction": f"{SWEEP} preset=elastic friction=0.2 film-friction=on,off line-tension=0.1",
+    "yield-traction": f"{SWEEP} preset=elastic yield-traction=0.1 self-contact=on,off line-tension=0.1",
+    # This droplet folds round an obstacle and clogs.
+    "film-friction": "clogsweep preset=elastic friction=0.2 obstacle-gap=0.3 line-tension=0.05 self-contact-range=0.03 "
+                     "box=20 max-time=1000 vertices=64 seeds=3 obstacle-density=saturated",
+    "break-up": f"{ARRAY} break-up-neck=0.3 line-tension=0.05 obstacle-gap=0.4 max-time=200",
+    "verdict": f"{SWEEP} clog-detection=threshold,certified clog-energy=1e-5 line-tension=3",
+    "own-circles": f"{DEVICE} max-time=40 release=anywhere length=12",
+    "side-walls": f"{DEVICE} max-time=150 side-walls=on release=entrance entrance=1 entrance-from=3 entrance-to=7 exit=4",
+    "laboratory": f"{SWEEP} laboratory='angle = 20 deg; diameter = 1 mm; speed = 1 mm/s'",
+    "wall": "clogsweep obstacle-layout=wall vertices=64 line-tension=1,3",
+    "channel": f"clogsweep obstacle-layout=channel {CHANNEL} orifice=0.8 wedge-angle=30 tip-radius=0.05",
+    "points": f"{SWEEP} --points points.csv",
+    "until-precision": "clogsweep box=20 max-time=100 vertices=64 seeds=1..2 line-tension=3 obstacle-density=saturated "
+                       "--until-precision 10% --most-seeds 4",
+    "merge": f"{TENSIONS} --shard 1/2 --output one.h5\n{TENSIONS} --shard 2/2 --output two.h5\nclogsweep merge one.h5 two.h5",
+    "select": f"{TENSIONS} --output all.h5\nclogsweep select all.h5 line_tension=1",
+    "replay": f"{SWEEP} --output rows.h5\nclogrun replay rows.h5 1 --polygon-interval 5",
+    "run-channel": f"clogrun channel {CHANNEL} orifice=0.7 --polygon-interval 5",
+    "run-flat-channel": "clogrun channel vertices=64 wedge-angle=0 orifice=1.2 start=-1 end=0.5",
+    "run-wall": "clogrun sag vertices=64 line-tension=1",
+    "run-own-circles": "clogrun array obstacles=own.csv box=10 max-time=30 vertices=64 --polygon-interval 5",
+    "run-soft-disk": "clogrun array model=sp wall-stiffness=1 box=20 max-time=30 obstacle-density=saturated --sample-interval 0.5",
+    "interrupted": "clogsweep box=20 max-time=600 vertices=64 seeds=1..4 line-tension=0.1 obstacle-gap=0.6 obstacle-density=saturated",
 }
-RUNS = {
-    "channel": ["channel", "orifice=0.7", "start=-1.5", "end=1", "vertices=64", "line-tension=1"],
-    "flat-channel": ["channel", "wedge-angle=0", "orifice=1.2", "start=-1", "end=0.5", "vertices=64"],
-    "wall": ["sag", "vertices=64", "line-tension=1"],
-    "own-circles": ["array", "--obstacles=own.csv", "box=10", "max-time=30", "vertices=64"],
-}
-OWN_CIRCLES = "x,y,diameter\n2,5,0.5\n3.2,4.4,0.3\n3.4,5.9,0.4\n5,5.1,0.6\n7,4.2,0.3\n8.5,6.4,1\n"
-INTERRUPTED = [SATURATED, "box=20", "max-time=2000", "vertices=64", "seeds=1..4", "line-tension=0.1", "obstacle-gap=0.6"]
 
 
-def is_possible(programs, name):
-    """False for a sweep with an instruction set that this processor lacks."""
-    command = [programs / "clogsweep", *SWEEPS.get(name, []), "--print-config"]
-    return "--instruction-set" not in "".join(SWEEPS.get(name, [])) or subprocess.run(command, capture_output=True).returncode == 0
+def uncovered(programs):
+    """@return the keys that have no other value than their default in any case, and the words of keys that no case has"""
+    given = collections.defaultdict(set)
+    for word in shlex.split("\n".join(CASES.values())):
+        key, _, values = word.partition("=")
+        given[key].update(values.split(","))
+    schema = json.loads(subprocess.run([programs / "clogsweep", "--schema"], check=True, capture_output=True).stdout)
+    for key in schema["keys"]:
+        name, usual = key["key"], {key["default"]}
+        if not given[name] - usual:
+            yield name
+        yield from (f"{name}={word}" for word in sorted({*key["words"]} - usual - given[name]))
 
 
-def sweep(programs, name, folder):
-    path = folder / f"{name}.h5"
-    subprocess.run([programs / "clogsweep", *SWEEPS[name], "--quiet", "--output", path], check=True, cwd=folder)
-    return path
-
-
-def run(programs, name, folder):
-    path = folder / f"{name}.h5"
-    subprocess.run([programs / "clogrun", *RUNS[name], "--output", path], check=True, cwd=folder, capture_output=True)
-    return path
-
-
-def interrupted(programs, folder):
-    path = folder / "interrupted.h5"
-    command = [programs / "clogsweep", *INTERRUPTED, "--quiet", "--output", path]
-    for _ in range(3):
-        process = subprocess.Popen(command, cwd=folder)
-        time.sleep(2)
+def interrupt(command, folder):
+    """Stops the sweep up to three times. @return whether that happened at all"""
+    for count in range(3):
+        process = subprocess.Popen(command, cwd=folder, stderr=subprocess.DEVNULL)
+        time.sleep(0.6)
         process.send_signal(signal.SIGTERM)
-        if process.wait() == 0:
-            break
-    subprocess.run(command, check=True, cwd=folder)
-    return path
+        if process.wait() != 75:
+            return count > 0
+    return True
+
+
+def make(programs, name, folder):
+    """@return the path of the case's file"""
+    folder.mkdir()
+    for file, text in INPUTS.items():
+        (folder / file).write_text(text)
+    for line in CASES[name].splitlines():
+        program, *words = shlex.split(line)
+        command = [programs / program, *words, *([] if "--output" in words else ["--output", "case.h5"])]
+        if name == "interrupted" and not interrupt(command, folder):
+            raise RuntimeError("ended before it was stopped; give it a longer max-time")
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+        if done.returncode:
+            raise RuntimeError(f"{programs / program} failed: {done.stderr.strip()}")
+    return folder / "case.h5"
+
+
+def contents(path):
+    """@return all that a file holds, by its name: type, shape and bytes"""
+    found = {}
+
+    def add(name, value):
+        array = np.asarray(value)
+        found[name] = name in CIRCUMSTANCES or (array.dtype.str, array.shape, array.tobytes())
+
+    def visit(name, node):
+        for attribute, value in node.attrs.items():
+            add(f"{name}@{attribute}", value)
+        if isinstance(node, h5py.Dataset):
+            data = node[...]
+            found[f"{name}, shape and types"] = data.shape, str(data.dtype)
+            for column in data.dtype.names or ():
+                add(f"{name}/{column}", data[column])
+            if not data.dtype.names:
+                add(name, data)
+
+    with h5py.File(path) as file:
+        visit("", file)
+        file.visititems(visit)
+    return found
 
 
 def differences(before, after):
     """Names of what differs between two files."""
-    with h5py.File(before) as one, h5py.File(after) as two:
-        rows = [file["runs"][...] for file in (one, two)]
-        if len(rows[0]) != len(rows[1]):
-            yield "number of rows"
-            return
-        for column in rows[0].dtype.names:
-            if column in CIRCUMSTANCES or column not in rows[1].dtype.names:
-                continue
-            if rows[0][column].tobytes() != rows[1][column].tobytes():
-                yield column
-        for name in ("trajectory", "polygons", "obstacles", "wedges"):
-            if (name in one) != (name in two):
-                yield name
-            elif name in one:
-                before, after = one[name][...], two[name][...]
-                columns = [column for column in before.dtype.names or () if column in after.dtype.names]
-                pairs = [(before[column], after[column]) for column in columns] or [(before, after)]
-                if any(a.tobytes() != b.tobytes() for a, b in pairs):
-                    yield name
+    one, two = contents(before), contents(after)
+    for name in sorted({*one, *two}):
+        if name not in one or name not in two:
+            yield f"{name} (only {'BEFORE' if name in one else 'AFTER'})"
+        elif one[name] != two[name]:
+            yield name
+
+
+def compare(programs, name):
+    """@return names of what differs, or what failed"""
+    with tempfile.TemporaryDirectory(prefix="clog_reference_") as place:
+        try:
+            paths = [make(folder, name, pathlib.Path(place) / which) for which, folder in programs.items()]
+        except RuntimeError as error:
+            return [str(error)]
+        return list(differences(*paths))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("before", type=pathlib.Path)
     parser.add_argument("after", type=pathlib.Path)
-    arguments = parser.parse_args()
-    cases = [*((name, sweep) for name in SWEEPS), *((name, run) for name in RUNS), ("interrupted", None)]
+    programs = {which: folder.resolve() for which, folder in vars(parser.parse_args()).items()}
     num_differing = 0
-    with tempfile.TemporaryDirectory(prefix="clog_reference_") as place:
-        for name, make in cases:
-            if not is_possible(arguments.before.resolve(), name):
-                print(f"{name}: left out, this processor lacks it", flush=True)
-                continue
-            paths = []
-            for which in ("before", "after"):
-                folder = pathlib.Path(place) / which
-                folder.mkdir(exist_ok=True)
-                (folder / "own.csv").write_text(OWN_CIRCLES)
-                programs = getattr(arguments, which).resolve()
-                paths.append(make(programs, name, folder) if make else interrupted(programs, folder))
-            found = list(differences(*paths))
-            num_differing += bool(found)
-            print(f"{name}: {'differs in ' + ', '.join(found) if found else 'same bits'}", flush=True)
-    print(f"{len(cases)} cases, {num_differing} differ")
-    return 1 if num_differing else 0
+    for name in CASES:
+        instructions = name.removeprefix("instructions-")
+        test = [programs["before"] / "clogsweep", "--print-config", f"--instruction-set={instructions}"]
+        if instructions != name and subprocess.run(test, capture_output=True).returncode:
+            print(f"{name}: left out, this processor lacks it", flush=True)
+            continue
+        found = compare(programs, name)
+        num_differing += bool(found)
+        print(f"{name}: {'differs in ' + ', '.join(found) if found else 'same bits'}", flush=True)
+    missing = list(uncovered(programs["after"]))
+    print(f"{len(CASES)} cases, {num_differing} differ; not covered: {', '.join(missing) or 'no key'}")
+    return 1 if num_differing or missing else 0
 
 
 if __name__ == "__main__":

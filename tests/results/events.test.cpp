@@ -30,7 +30,7 @@ class EventsTest : public testing::Test {
     const sweep::Settings settings = settings_of(seeds);
     const sweep::Plan plan(settings);
     store::SweepFile file;
-    file.provenance = {{"config", settings.to_config(false)}};
+    file.provenance = {{"config", settings.to_config()}};
     for (std::int64_t task = 0; task < plan.size(); ++task) {
       file.rows.push_back(sweep::describe(plan.task(task)));
       file.rows.back().task = task;

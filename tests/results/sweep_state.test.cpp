@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "../store/support.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/results/salvage.hpp"
 #include "clog/store/journal.hpp"
@@ -60,7 +61,7 @@ class SweepStateTest : public testing::Test {
   std::string path() const { return (folder_ / "s.h5").string(); }
 
   SweepState open(std::int64_t attempts = 1) {
-    return SweepState(path(), plan_, settings_, {{"config", settings_.to_config(false)}}, 2, attempts);
+    return SweepState(path(), plan_, settings_, {{"config", settings_.to_config()}}, 2, attempts);
   }
   static sweep::Report report(const SweepState& state, std::int64_t task, RunStatus status, double distance,
                               std::vector<std::byte> snapshot = {}) {
@@ -165,7 +166,7 @@ TEST_F(SweepStateTest, ComputesARunAgainWhoseRowHoldsWhatCannotBe) {
     return attribute.first == "kind" || attribute.first == "format_version" ||
            attribute.first == "num_columns";
   });
-  store::publish_sweep(path(), file.rows, file.provenance);
+  store::publish(path(), file.rows, file.provenance);
   SweepState state = open();
   EXPECT_EQ(state.num_faulty(), 1);
   EXPECT_EQ(state.tasks_left(), std::vector<std::int64_t>{1});
@@ -223,7 +224,7 @@ TEST_F(SweepStateTest, PublishesAllThatItKnowsWhenItsJournalIsRemoved) {
 
 TEST_F(SweepStateTest, OverwritesNoTableThatSomebodyElseHasPutThere) {
   const std::string other = (folder_ / "other.h5").string();
-  store::publish_sweep(other, {}, {{"config", "a = 1\n"}});
+  store::publish(other, {}, {{"config", "a = 1\n"}});
   for (const bool has_journal : {true, false}) {
     SweepState state = open();
     if (has_journal) state.start(0, 0);
@@ -241,7 +242,7 @@ TEST_F(SweepStateTest, OverwritesNoTableThatSomebodyElseHasPutThere) {
 
 TEST_F(SweepStateTest, OverwritesNoTableThatComesWhileItsOwnIsBroughtToTheDisk) {
   const std::string other = (folder_ / "other.h5").string();
-  store::publish_sweep(other, {}, {{"config", "a = 1\n"}});
+  store::publish(other, {}, {{"config", "a = 1\n"}});
   move_at_sync_of_folder = {other, path()};
   SweepState state = open();
   EXPECT_FALSE(move_at_sync_of_folder) << "the table was published";
@@ -255,7 +256,7 @@ TEST_F(SweepStateTest, OverwritesNoTableThatComesWhileItsOwnIsBroughtToTheDisk) 
 
 TEST_F(SweepStateTest, LosesNoRowToATableThatComesWhileItsLastIsBroughtToTheDisk) {
   const std::string other = (folder_ / "other.h5").string();
-  store::publish_sweep(other, {}, {{"config", "a = 1\n"}});
+  store::publish(other, {}, {{"config", "a = 1\n"}});
   SweepState state = open();
   for (const std::int64_t task : {0, 1}) {
     state.start(task, 0);
@@ -273,7 +274,7 @@ TEST_F(SweepStateTest, LeavesTheJournalOfAnotherSweepAndKeepsItsOwnRows) {
   state.start(0, 0);
   state.report(report(state, 0, RunStatus::clogged, 2));
   std::filesystem::remove(store::journal_path(path()));
-  const store::Journal other{store::OutputPath(store::journal_path(path()))};
+  const store::Journal other{store::OutputPath::resolve(store::journal_path(path()))};
   const std::string said = refusal([&] { state.finish(); });
   EXPECT_NE(said.find("or its journal"), std::string::npos) << said;
   EXPECT_TRUE(other.is_there());
@@ -294,7 +295,7 @@ TEST_F(SweepStateTest, LeavesTheJournalAsItIsWhenItRefuses) {
   EXPECT_NE(refusal([&] { open(); }).find("other settings"), std::string::npos);
   EXPECT_EQ(std::filesystem::file_size(journal), size);
   std::filesystem::remove(path());
-  store::publish_sweep(path(), {}, {{"config", "line-tension = many\n"}});
+  store::publish(path(), {}, {{"config", "line-tension = many\n"}});
   EXPECT_NE(refusal([&] { open(); }), "");
   EXPECT_EQ(std::filesystem::file_size(journal), size);
 }
@@ -303,11 +304,11 @@ TEST_F(SweepStateTest, RefusesAJournalOfRunsWithOtherSettings) {
   const std::string journal = store::journal_path(path());
   open().finish();
   const auto left_by = [&](const sweep::Settings& settings, std::int64_t version) {
-    store::Journal other{store::OutputPath(journal)};
+    store::Journal other{store::OutputPath::resolve(journal)};
     sweep::RunRow row = sweep::describe(sweep::Plan(settings).task(0));
     row.task = 0;
     row.model_version = version;
-    row.clogged_by = sweep::FoundBy::nothing;
+    row.clogged_by = sweep::FoundBy::not_clogged;
     row.mechanism = ClogMechanism::none;
     other.add(row, {});
     return std::filesystem::file_size(journal);
@@ -345,7 +346,7 @@ TEST_F(SweepStateTest, SalvagesResultsAndSnapshotsThatOnlyItsJournalHas) {
   ASSERT_EQ(file.rows.size(), 2u);
   EXPECT_EQ(file.rows[0].distance, 2);
   EXPECT_EQ(file.rows[1].status, RunStatus::interrupted);
-  SweepState resumed(copy, plan_, settings_, {{"config", settings_.to_config(false)}}, 2, 1);
+  SweepState resumed(copy, plan_, settings_, {{"config", settings_.to_config()}}, 2, 1);
   EXPECT_EQ(resumed.tasks_left(), std::vector<std::int64_t>{1});
   EXPECT_EQ(resumed.start(1, 0).snapshot, snapshot_);
 }
@@ -354,10 +355,10 @@ TEST_F(SweepStateTest, SalvagesNoRecordOfAnotherSweep) {
   open().finish();
   sweep::Settings settings = settings_;
   settings.set("max-time", "17");
-  store::Journal other{store::OutputPath(store::journal_path(path()))};
+  store::Journal other{store::OutputPath::resolve(store::journal_path(path()))};
   sweep::RunRow row = sweep::describe(sweep::Plan(settings).task(0));
   row.task = 0;
-  row.clogged_by = sweep::FoundBy::nothing;
+  row.clogged_by = sweep::FoundBy::not_clogged;
   row.mechanism = ClogMechanism::none;
   other.add(row, {});
   const Salvage found = salvage(path());
@@ -367,7 +368,7 @@ TEST_F(SweepStateTest, SalvagesNoRecordOfAnotherSweep) {
 
 TEST_F(SweepStateTest, NamesTheFileWhoseConfigItCannotRead) {
   open().finish();
-  store::publish_sweep(path(), {}, {{"config", "line-tension = many\n"}});
+  store::publish(path(), {}, {{"config", "line-tension = many\n"}});
   try {
     open();
     FAIL() << "no error";
@@ -389,7 +390,7 @@ TEST_F(SweepStateTest, KeepsAResultOfTheTableWhateverTheJournalLacks) {
     state.finish();
   }
   {
-    store::Journal journal(store::journal_path(path()));
+    store::Journal journal(store::OutputPath::resolve(store::journal_path(path())));
     sweep::RunRow older = store::read_sweep(path()).rows[0];
     older.status = RunStatus::running;
     journal.add(older, snapshot_);

@@ -107,9 +107,10 @@ void a_crash_fails_its_task_and_no_other(const scheduler::Communicator& ranks,
   events.failure_withdrawn = [&](std::int64_t task) { --attempts[task]; };
   events.ended = [&](const scheduler::Report& report) {
     rows[report.row.task] = report.row;
-    if (report.row.status == RunStatus::clogged) processes[report.row.rank].insert(report.row.num_arcs);
+    if (report.row.status == RunStatus::clogged)
+      processes[report.row.rank].insert(report.row.num_arcs.value());
   };
-  const scheduler::SweepEnd end = run_once(ranks, scheduler::TaskOrder(num_tasks, 7), make_job, events, true);
+  const scheduler::SweepEnd end = run_once(ranks, scheduler::order_of(num_tasks, 7), make_job, events, true);
   if (ranks.rank() != 0) return;
   expect(end == scheduler::SweepEnd::complete && rows.size() == num_tasks, "the sweep goes on");
   for (const auto& [task, row] : rows) {
@@ -153,7 +154,7 @@ void a_stopped_task_goes_on_from_its_snapshot(const scheduler::Communicator& ran
   std::vector<std::int64_t> tasks(1000);
   std::iota(tasks.begin(), tasks.end(), first_slow_task);
   const scheduler::SweepEnd end =
-      run_once(ranks, scheduler::TaskOrder(tasks, 1), make_job, events, true, std::chrono::milliseconds(1));
+      run_once(ranks, scheduler::order_of(tasks, 1), make_job, events, true, std::chrono::milliseconds(1));
   expect(ranks.rank() != 0 || end == scheduler::SweepEnd::stopped, "a stop stops");
   std::vector<std::int64_t> left;
   left.reserve(stopped.size());
@@ -166,7 +167,7 @@ void a_stopped_task_goes_on_from_its_snapshot(const scheduler::Communicator& ran
     expect(report.row.status == RunStatus::clogged, "a task goes on to its end");
     expect(report.row.steps == 1 + report.row.task * 7 % 5, "no slice is done twice");
   };
-  run_once(ranks, scheduler::TaskOrder(left, 1), make_job, events, true);
+  run_once(ranks, scheduler::order_of(left, 1), make_job, events, true);
   expect(num_ended == left.size(), "every stopped task goes on");
 }
 
@@ -191,7 +192,7 @@ void hanging_tasks_block_nobody(const scheduler::Communicator& ranks, const swee
     expect(report.snapshot == snapshot, "the last known snapshot is kept");
   };
   const scheduler::SweepEnd end =
-      run_once(ranks, scheduler::TaskOrder(tasks, 1), make_job, events, true, std::chrono::milliseconds(1));
+      run_once(ranks, scheduler::order_of(tasks, 1), make_job, events, true, std::chrono::milliseconds(1));
   expect(ranks.rank() != 0 || (end == scheduler::SweepEnd::complete && num_stopped == tasks.size()),
          "a stop ends all tasks that hang");
   std::iota(tasks.begin(), tasks.end(), first_slow_task);
@@ -199,7 +200,7 @@ void hanging_tasks_block_nobody(const scheduler::Communicator& ranks, const swee
   events.ended = [&](const scheduler::Report& report) {
     expect(report.row.status == RunStatus::clogged, "the next task gets a process that does not hang");
   };
-  run_once(ranks, scheduler::TaskOrder(tasks, 1), make_job, events, true);
+  run_once(ranks, scheduler::order_of(tasks, 1), make_job, events, true);
 }
 
 void a_rank_goes_on_without_its_helper(const scheduler::Communicator& ranks,
@@ -223,7 +224,7 @@ void a_rank_goes_on_without_its_helper(const scheduler::Communicator& ranks,
       expect(report.row.num_arcs == rank_pid, "the rank does the work itself");
     }
   };
-  const scheduler::SweepEnd end = run_once(ranks, scheduler::TaskOrder(tasks, 1), make_job, events, true);
+  const scheduler::SweepEnd end = run_once(ranks, scheduler::order_of(tasks, 1), make_job, events, true);
   if (ranks.rank() != 0) return;
   expect(end == scheduler::SweepEnd::complete && status.size() == tasks.size(), "the sweep goes on");
   for (const auto& [task, last] : status) expect(last == "clogged", "no task is lost");
@@ -241,7 +242,7 @@ void a_later_description_reaches_all_processes(const scheduler::Communicator& ra
   events.ended = [&](const scheduler::Report& report) {
     if (report.row.status == RunStatus::clogged) generations.insert(report.row.sag);
   };
-  run_once(ranks, scheduler::TaskOrder(40, 7), make_job, events, true);
+  run_once(ranks, scheduler::order_of(40, 7), make_job, events, true);
   if (ranks.rank() == 0)
     expect(generations == std::set<double>{2}, "jobs are those of the later description");
 }

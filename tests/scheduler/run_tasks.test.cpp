@@ -32,7 +32,7 @@ void every_task_comes_back_once(const scheduler::Communicator& ranks, bool maste
     expect(row.status == RunStatus::clogged, "a task is run to its end");
   };
   const scheduler::SweepEnd end =
-      run_once(ranks, scheduler::TaskOrder(num_tasks, 7), make_synthetic_job, events, master_computes);
+      run_once(ranks, scheduler::order_of(num_tasks, 7), make_synthetic_job, events, master_computes);
   if (ranks.rank() != 0) return;
   expect(end == scheduler::SweepEnd::complete, "all tasks were handed out");
   expect(static_cast<std::int64_t>(times_ended.size()) == num_tasks, "no task is lost");
@@ -55,7 +55,7 @@ void a_stop_ends_running_tasks_as_interrupted(const scheduler::Communicator& ran
   events.ended = [&](const scheduler::Report&) { stop = ++num_ended >= 10; };
   events.stop_requested = [&] { return stop; };
   const scheduler::SweepEnd end =
-      run_once(ranks, scheduler::TaskOrder(10000, 7), make_synthetic_job, events, true);
+      run_once(ranks, scheduler::order_of(10000, 7), make_synthetic_job, events, true);
   if (ranks.rank() != 0) return;
   expect(end == scheduler::SweepEnd::stopped, "a stopped sweep says that tasks are left");
   expect(num_ended == num_started, "every started task has a row");
@@ -78,7 +78,7 @@ void running_tasks_report_and_go_on_from_there(const scheduler::Communicator& ra
     if (report.row.status == RunStatus::interrupted) snapshots[report.row.task] = report.snapshot;
   };
   events.stop_requested = [&] { return stop; };
-  run_once(ranks, scheduler::TaskOrder(1000), make_synthetic_job, events, true, std::chrono::milliseconds(2));
+  run_once(ranks, scheduler::order_of(1000), make_synthetic_job, events, true, std::chrono::milliseconds(2));
   expect(ranks.rank() != 0 || num_reports > 0, "running tasks report");
   std::vector<std::int64_t> left;
   left.reserve(snapshots.size());
@@ -91,7 +91,7 @@ void running_tasks_report_and_go_on_from_there(const scheduler::Communicator& ra
     expect(report.row.steps == 1 + report.row.task * 7 % 5, "no slice is done twice");
     expect(report.row.status == RunStatus::clogged, "a task goes on to its end");
   };
-  run_once(ranks, scheduler::TaskOrder(left, 1), make_synthetic_job, events, true);
+  run_once(ranks, scheduler::order_of(left, 1), make_synthetic_job, events, true);
   expect(num_ended == static_cast<int>(left.size()), "every interrupted task goes on");
 }
 
@@ -129,7 +129,7 @@ void failed_tasks_are_tried_again(const scheduler::Communicator& ranks) {
     expect(report.row.attempt == attempts[report.row.task], "a row says which attempt it was");
     if (report.row.status == RunStatus::clogged) ++successes[report.row.task];
   };
-  run_once(ranks, scheduler::TaskOrder(20, 4), make_failing, events, true);
+  run_once(ranks, scheduler::order_of(20, 4), make_failing, events, true);
   if (ranks.rank() != 0) return;
   expect(successes.size() == 19 && !successes.contains(3), "what can succeed does");
   expect(attempts[3] == 3, "attempts are limited");
@@ -177,7 +177,7 @@ Outcome sweep(const scheduler::Communicator& ranks, std::int64_t num_tasks, std:
   events.ended = [&](const scheduler::Report& report) {
     outcome.status[report.row.task] = name(report.row.status);
   };
-  outcome.end = run_once(ranks, scheduler::TaskOrder(num_tasks, 5), make_job, events, true);
+  outcome.end = run_once(ranks, scheduler::order_of(num_tasks, 5), make_job, events, true);
   return outcome;
 }
 
@@ -209,7 +209,7 @@ void who_was_set_aside_stays_so_in_the_next_round(const scheduler::Communicator&
     return scheduler::Start();
   };
   events.set_aside = [&](const sweep::RunRow& failed) { set_aside.insert(static_cast<int>(failed.rank)); };
-  scheduler::Schedule schedule(scheduler::TaskOrder(0, 5), ranks.size(), true);
+  scheduler::Schedule schedule(scheduler::order_of(0, 5), ranks.size(), true);
   for (std::int64_t round = 0; round < 3; ++round) {
     std::vector<std::int64_t> tasks(30);
     std::iota(tasks.begin(), tasks.end(), 30 * round);

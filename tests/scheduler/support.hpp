@@ -11,6 +11,7 @@
 
 #include "clog/scheduler/scheduler.hpp"
 #include "clog/sweep/job.hpp"
+#include "order_of.hpp"
 
 /// For programs that test the scheduler under mpirun, where every rank has to leave when one finds a fault.
 

@@ -4,18 +4,20 @@
 
 #include <set>
 
+#include "order_of.hpp"
+
 namespace clog::scheduler {
 namespace {
 
 TEST(TaskOrder, BeginsWithOneTaskOfEveryGroup) {
-  TaskOrder tasks(12, 4);
+  TaskOrder tasks = order_of(12, 4);
   for (int task = 0; task < 12; ++task) EXPECT_EQ(tasks.take(0), task);
   EXPECT_TRUE(tasks.empty());
 }
 
 TEST(TaskOrder, HandsOutEveryTaskOnceWhateverTheirLengths) {
   for (const int num_groups : {1, 3, 7, 20, 30}) {
-    TaskOrder tasks(20, num_groups);
+    TaskOrder tasks = order_of(20, num_groups);
     std::set<std::int64_t> taken;
     for (double now = 0; !tasks.empty(); now += 1) {
       const std::int64_t task = tasks.take(now);
@@ -28,7 +30,7 @@ TEST(TaskOrder, HandsOutEveryTaskOnceWhateverTheirLengths) {
 }
 
 TEST(TaskOrder, GoesOnWithTheGroupThatRanLongest) {
-  TaskOrder tasks(9, 3);
+  TaskOrder tasks = order_of(9, 3);
   for (int group = 0; group < 3; ++group) tasks.take(0);
   tasks.ended(0, 2);
   tasks.ended(1, 5);
@@ -39,7 +41,7 @@ TEST(TaskOrder, GoesOnWithTheGroupThatRanLongest) {
 }
 
 TEST(TaskOrder, RemembersRunTimesInTheNextRound) {
-  TaskOrder tasks(std::vector<std::int64_t>{0, 1, 2}, 3);
+  TaskOrder tasks = order_of(3, 3);
   for (const std::int64_t task : {0, 1, 2}) EXPECT_EQ(tasks.take(0), task);
   tasks.ended(0, 1);
   tasks.ended(1, 3);
@@ -51,7 +53,7 @@ TEST(TaskOrder, RemembersRunTimesInTheNextRound) {
 }
 
 TEST(TaskOrder, ExpectsAGroupWithoutResultsToBeLong) {
-  TaskOrder tasks(6, 3);
+  TaskOrder tasks = order_of(6, 3);
   for (int group = 0; group < 3; ++group) tasks.take(0);
   tasks.ended(0, 2);
   tasks.ended(2, 5);
@@ -61,7 +63,7 @@ TEST(TaskOrder, ExpectsAGroupWithoutResultsToBeLong) {
 }
 
 TEST(TaskOrder, CountsTheTimeOfRunningTasks) {
-  TaskOrder tasks(8, 2);
+  TaskOrder tasks = order_of(8, 2);
   for (int task = 0; task < 4; ++task) tasks.take(0);
   tasks.ended(0, 1);
   tasks.ended(1, 4);

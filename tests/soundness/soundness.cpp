@@ -30,7 +30,7 @@
 #include "clog/sweep/plan.hpp"
 #include "ending.hpp"
 #include "findings.hpp"
-#include "polygon/reference_forces.hpp"
+#include "polygon/forces/reference_forces.hpp"
 
 namespace {
 
@@ -357,14 +357,11 @@ std::vector<CaseReport> planned_runs(const sweep::Plan& plan) {
 }
 
 /// The grid that is run without any arguments.
-cli::CommandLine parse(int argc, char** argv) {
-  namespace po = boost::program_options;
-  cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
-  line.add_options()("releases", po::value<std::string>(),
-                     "only release so many droplets, each with a new seed")(
-      "threads", po::value<std::string>(), "threads to use (all cores)")(
-      "runs", po::value<std::string>(), "CSV file to write, one line for each run")(
-      "longest", po::value<std::string>(), "give a run up after so many seconds of computing");
+bool parse(cli::CommandLine& line, int argc, char** argv) {
+  line.option("releases", "only release so many droplets, each with a new seed")
+      .option("threads", "threads to use (all cores)")
+      .option("runs", "CSV file to write, one line for each run")
+      .option("longest", "give a run up after so many seconds of computing");
   sweep::Settings& settings = line.settings();
   settings.set("line-tension", "0.02,0.03,0.05,0.1,0.3,1,3,10");
   settings.set("obstacle-gap", "0.2,0.35,0.5,1");
@@ -372,7 +369,7 @@ cli::CommandLine parse(int argc, char** argv) {
   settings.set("seeds", "1..4");
   settings.set("max-time", "2000");
   settings.set("box", "100");
-  line.parse(argc, argv);
+  if (!cli::parse_command(line, argc, argv)) return false;
   if (line.has("releases")) {  // the hardest gap, in boxes that cost nothing
     if (!line.has("obstacle-gap")) settings.set("obstacle-gap", "0.2");
     if (!line.has("obstacle-density")) settings.set("obstacle-density", "saturated");
@@ -385,7 +382,7 @@ cli::CommandLine parse(int argc, char** argv) {
                   " (the table has no column for it) " + "give one value");
   if (settings.text("model") != "dp")
     throw Error("invalid model=sp (a soft disk cannot become unsound) use dp");
-  return line;
+  return true;
 }
 
 /// Says how many were sound. Returns the exit code.
@@ -405,22 +402,11 @@ int conclude(const std::vector<CaseReport>& reports) {
   return is_complete ? console::exit_success : console::exit_incomplete;
 }
 
-/// A whole number in 1..most, or the fallback if the option is not given.
-std::int64_t count_given(const cli::CommandLine& line, const std::string& option, std::int64_t fallback,
-                         std::int64_t most) {
-  if (!line.has(option)) return fallback;
-  const double value = line.get_positive(option);
-  if (value != std::floor(value) || value > static_cast<double>(most))
-    throw Error("invalid --" + option + "=" + line.get(option) + " (must be a whole number) use 1.." +
-                std::to_string(most));
-  return static_cast<std::int64_t>(value);
-}
-
 int body(int argc, char** argv) {
-  const cli::CommandLine line = parse(argc, argv);
-  if (cli::answer_help_or_version(line, {})) return console::exit_success;
+  cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
+  if (!parse(line, argc, argv)) return console::exit_success;
   const auto num_threads = static_cast<unsigned>(
-      count_given(line, "threads", std::max(1U, std::thread::hardware_concurrency()), 1000));
+      line.get_whole("threads", std::max(1U, std::thread::hardware_concurrency()), 1, 1000));
   const double longest =
       line.has("longest") ? line.get_positive("longest") : std::numeric_limits<double>::infinity();
   const sweep::Plan plan(line.settings());
@@ -432,7 +418,7 @@ int body(int argc, char** argv) {
   console::catch_stop_signals();  // then only finished cases are reported
   std::vector<CaseReport> reports;
   if (line.has("releases")) {
-    reports = planned_releases(plan, count_given(line, "releases", 0, 10'000'000));
+    reports = planned_releases(plan, line.get_whole("releases", 0, 1, 10'000'000));
     do_all(reports, num_threads, release_case);
     print_release_table(reports, plan.num_groups());
   } else {

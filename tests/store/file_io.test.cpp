@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace {
@@ -45,13 +46,13 @@ class Sync : public testing::Test {
 
 TEST_F(Sync, GoesOnAfterASignal) {
   next_errors = {EINTR, EINTR, EINTR};
-  EXPECT_TRUE(sync(descriptor_));
+  EXPECT_FALSE(sync(descriptor_));
   EXPECT_TRUE(next_errors.empty());
 }
 
 TEST_F(Sync, TellsAFaultOfTheDisk) {
   next_errors = {EIO, EINTR};
-  EXPECT_FALSE(sync(descriptor_));
+  EXPECT_EQ(sync(descriptor_), std::errc::io_error);
   EXPECT_TRUE(next_errors.empty());
 }
 

@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 class JournalTest : public FolderTest {
  protected:
   std::string path(const std::string& name = "sweep.h5.journal") const { return FolderTest::path(name); }
+  OutputPath place() const { return OutputPath::resolve(path()); }
   /// Overwrites a byte.
   void damage(std::uintmax_t place) const {
     std::fstream file(path(), std::ios::in | std::ios::out | std::ios::binary);
@@ -56,46 +57,59 @@ void add_entries(Journal& journal, std::int64_t begin, std::int64_t end) {
 
 TEST_F(JournalTest, GivesBackWhatWasAdded) {
   {
-    Journal journal(path());
+    Journal journal(place());
     EXPECT_TRUE(journal.take_entries().empty());
     add_entries(journal, 0, 3);
   }
   {
-    Journal journal(path());
+    Journal journal(place());
     expect_entries(journal.take_entries(), 3);
     add_entries(journal, 3, 7);
     journal.flush();
   }
-  expect_entries(Journal(path()).take_entries(), 7);
+  expect_entries(Journal(place()).take_entries(), 7);
 }
 
 TEST_F(JournalTest, DropsATornRecordAndGoesOnWhereItBegan) {
-  { add_entries(*std::make_unique<Journal>(path()), 0, 5); }
+  { add_entries(*std::make_unique<Journal>(place()), 0, 5); }
   const auto whole = fs::file_size(path());
   for (const std::uintmax_t cut :
        {1u, 100u, 400u, 401u, 1000u}) {  // the last record has 400 bytes of snapshot
-    { add_entries(*std::make_unique<Journal>(path()), 5, 5); }
+    { add_entries(*std::make_unique<Journal>(place()), 5, 5); }
     fs::resize_file(path(), whole - cut);
-    Journal journal(path());
+    Journal journal(place());
     expect_entries(journal.take_entries(), 4);
     add_entries(journal, 4, 5);
     EXPECT_EQ(fs::file_size(path()), whole) << cut;
   }
-  expect_entries(Journal(path()).take_entries(), 5);
+  expect_entries(Journal(place()).take_entries(), 5);
 }
 
 TEST_F(JournalTest, DropsWhatIsNotWhatWasWritten) {
-  { add_entries(*std::make_unique<Journal>(path()), 0, 5); }
+  { add_entries(*std::make_unique<Journal>(place()), 0, 5); }
   damage(fs::file_size(path()) - 10);
-  Journal journal(path());
+  Journal journal(place());
   expect_entries(journal.take_entries(), 4);
   EXPECT_EQ(journal.num_unreadable(), 0) << "the last one may be torn";
+}
+
+TEST_F(JournalTest, CountsARecordWithAWordThatNoColumnCanHold) {
+  {
+    Journal journal(place());
+    add_entries(journal, 0, 2);
+    sweep::RunRow row = journal_row(2);
+    row.mechanism = ClogMechanism{99};
+    journal.add(row, {});
+  }
+  Journal journal(place());
+  expect_entries(journal.take_entries(), 2);
+  EXPECT_EQ(journal.num_unreadable(), 1);
 }
 
 TEST_F(JournalTest, LosesNoOtherRecordToADamagedOne) {
   std::vector<std::uintmax_t> begins;  // of the records
   {
-    Journal journal(path());
+    Journal journal(place());
     for (std::int64_t i = 0; i < 5; ++i) {
       begins.push_back(journal.num_bytes());
       add_entries(journal, i, i + 1);
@@ -114,7 +128,7 @@ TEST_F(JournalTest, LosesNoOtherRecordToADamagedOne) {
         Case{"two", {begins[0] + 100, begins[2] + 100}, {1, 3, 4}}}) {
     write_text("sweep.h5.journal", whole);
     for (const std::uintmax_t place : damaged.places) damage(place);
-    Journal journal(path());
+    Journal journal(place());
     std::vector<std::int64_t> tasks;
     for (const Journal::Entry& entry : journal.take_entries()) tasks.push_back(entry.row.task);
     EXPECT_EQ(tasks, damaged.tasks) << damaged.what;
@@ -124,7 +138,7 @@ TEST_F(JournalTest, LosesNoOtherRecordToADamagedOne) {
 
 TEST_F(JournalTest, CanBeLookedAtWhileItIsWrittenTo) {
   EXPECT_FALSE(Journal::look(path()));
-  Journal journal(path());
+  Journal journal(place());
   add_entries(journal, 0, 5);
   fs::resize_file(path(), fs::file_size(path()) - 1);
   const Journal::Contents contents = Journal::look(path()).value();
@@ -136,27 +150,27 @@ TEST_F(JournalTest, CanBeLookedAtWhileItIsWrittenTo) {
 TEST_F(JournalTest, RefusesAFileOfAnotherKind) {
   for (const std::string text : {"something else, longer than the journal's header is", "short"}) {
     write_text("sweep.h5.journal", text);
-    EXPECT_THROW(Journal journal(path()), Error);
+    EXPECT_THROW(Journal journal(place()), Error);
     EXPECT_THROW(Journal::look(path()), Error);
     EXPECT_EQ(text_of("sweep.h5.journal"), text);
   }
 }
 
 TEST_F(JournalTest, BeginsAnewWhereItsMakerDiedAtOnce) {
-  { add_entries(*std::make_unique<Journal>(path()), 0, 1); }
+  { add_entries(*std::make_unique<Journal>(place()), 0, 1); }
   for (const std::uintmax_t size : {0u, 5u, 23u}) {
     fs::resize_file(path(), size);
-    Journal journal(path());
+    Journal journal(place());
     EXPECT_TRUE(journal.take_entries().empty());
     add_entries(journal, 0, 2);
   }
-  expect_entries(Journal(path()).take_entries(), 2);
+  expect_entries(Journal(place()).take_entries(), 2);
 }
 
 TEST_F(JournalTest, LeavesNoFileWithoutRecords) {
-  { Journal journal(path()); }
+  { Journal journal(place()); }
   EXPECT_EQ(num_files(), 0);
-  EXPECT_EXIT(run_on_full_disk(10, [&] { Journal journal(path()); }), testing::ExitedWithCode(2),
+  EXPECT_EXIT(run_on_full_disk(10, [&] { Journal journal(place()); }), testing::ExitedWithCode(2),
               "cannot write .*journal");
   EXPECT_EQ(num_files(), 0);
 }
@@ -164,7 +178,7 @@ TEST_F(JournalTest, LeavesNoFileWithoutRecords) {
 TEST_F(JournalTest, RemovesItsStaleDraftsAndNoOthers) {
   write_text("sweep.h5.journal.clogsweep-draft1", "a user's notes");
   write_text("sweep.h5.journal.clogsweep-draft2", "clogsweep jrnl of a process that was killed");
-  Journal journal(path());
+  Journal journal(place());
   EXPECT_EQ(num_files(), 2);
   journal.rewrite({});
   EXPECT_EQ(text_of("sweep.h5.journal.clogsweep-draft1"), "a user's notes");
@@ -174,7 +188,7 @@ TEST_F(JournalTest, RemovesItsStaleDraftsAndNoOthers) {
 TEST_F(JournalTest, IsRewrittenOnlyWhenItHasDoubled) {
   const Journal::Entry large{journal_row(0), some_snapshot(70'000'000)};
   const std::vector<const Journal::Entry*> needed{&large};
-  Journal journal(path());
+  Journal journal(place());
   EXPECT_FALSE(journal.is_to_be_rewritten());
   journal.add(large.row, large.snapshot);
   EXPECT_TRUE(journal.is_to_be_rewritten());
@@ -198,8 +212,8 @@ TEST_F(JournalTest, IsReadByThoseWhoMayReadItsTable) {
   write_text("sweep.h5", "a table");
   for (const fs::perms mode : {fs::perms{0600}, fs::perms{0640}, fs::perms{0666}}) {
     fs::permissions(table, mode);
-    const OutputPath place(table);
-    Journal journal(journal_place(place), &place);
+    const OutputPath table_place = OutputPath::resolve(table);
+    Journal journal(journal_place(table_place), &table_place);
     EXPECT_EQ(fs::status(path()).permissions(), mode);
     add_entries(journal, 0, 2);
     const Journal::Entry entry{journal_row(0), {}};
@@ -207,7 +221,7 @@ TEST_F(JournalTest, IsReadByThoseWhoMayReadItsTable) {
     journal.rewrite(one);
     EXPECT_EQ(fs::status(path()).permissions(), mode) << "rewritten";
     fs::remove(path());
-    EXPECT_TRUE(journal.make_anew(place));
+    EXPECT_TRUE(journal.make_anew(table_place));
     EXPECT_EQ(fs::status(path()).permissions(), mode) << "made anew";
     journal.remove();
   }
@@ -218,7 +232,7 @@ TEST_F(JournalTest, IsOpenOnlyOnceAndItsLockDiesWithItsProcess) {
   ASSERT_EQ(pipe(ready), 0);
   const pid_t other = fork();
   if (other == 0) {
-    Journal journal(path());
+    Journal journal(place());
     add_entries(journal, 0, 2);
     if (write(ready[1], "x", 1) != 1) _exit(1);
     pause();
@@ -226,66 +240,66 @@ TEST_F(JournalTest, IsOpenOnlyOnceAndItsLockDiesWithItsProcess) {
   }
   char byte = 0;
   ASSERT_EQ(read(ready[0], &byte, 1), 1);
-  EXPECT_THROW(Journal journal(path()), Error);
+  EXPECT_THROW(Journal journal(place()), Error);
   EXPECT_TRUE(Journal::is_open(path()));
   kill(other, SIGKILL);
   waitpid(other, nullptr, 0);
   EXPECT_FALSE(Journal::is_open(path()));
-  expect_entries(Journal(path()).take_entries(), 2);
+  expect_entries(Journal(place()).take_entries(), 2);
   close(ready[0]);
   close(ready[1]);
 }
 
 TEST_F(JournalTest, KeepsOnlyWhatItIsRewrittenWith) {
   {
-    Journal journal(path());
+    Journal journal(place());
     add_entries(journal, 10, 20);
     std::vector<Journal::Entry> kept{{journal_row(0), {}}, {journal_row(1), some_snapshot(100)}};
     const std::vector<const Journal::Entry*> pointers{&kept[0], &kept[1]};
     journal.rewrite(pointers);
-    EXPECT_THROW(Journal second(path()), Error) << "it is still locked";
+    EXPECT_THROW(Journal second(place()), Error) << "it is still locked";
     add_entries(journal, 2, 4);
     EXPECT_EQ(fs::file_size(path()), journal.num_bytes());
   }
-  expect_entries(Journal(path()).take_entries(), 4);
+  expect_entries(Journal(place()).take_entries(), 4);
 }
 
 TEST_F(JournalTest, CanBeRemoved) {
-  Journal journal(path());
+  Journal journal(place());
   add_entries(journal, 0, 1);
   journal.remove();
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
 TEST_F(JournalTest, StopsWhenItsFileIsNoLongerInTheFolder) {
-  Journal first(path());
+  Journal first(place());
   fs::remove(path());
   {
-    Journal second(path());
+    Journal second(place());
     EXPECT_THROW(add_entries(first, 0, 1), Error);
     EXPECT_THROW(first.flush(), Error);
     EXPECT_THROW(first.rewrite({}), Error);
     add_entries(second, 0, 2);
     first.remove();
   }
-  expect_entries(Journal(path()).take_entries(), 2);
+  expect_entries(Journal(place()).take_entries(), 2);
 }
 
 TEST_F(JournalTest, IsARegularFile) {
   ASSERT_EQ(mkfifo(path().c_str(), 0600), 0);
-  EXPECT_THROW(Journal journal(path()), Error);
+  EXPECT_THROW(Journal journal(place()), Error);
   EXPECT_THROW(Journal::look(path()), Error);
   EXPECT_THROW(Journal::is_open(path()), Error);
 }
 
 TEST_F(JournalTest, KeepsWholeRecordsWhenTheDiskIsFull) {
   const auto add_until_refused = [&] {
-    Journal journal(path());
+    Journal journal(place());
     add_entries(journal, 0, 1000);
   };
   EXPECT_EXIT(run_on_full_disk(20'000, add_until_refused), testing::ExitedWithCode(2),
               "cannot write .*journal");
-  Journal journal(path());
+  Journal journal(place());
   const std::vector<Journal::Entry> entries = journal.take_entries();
   EXPECT_GT(entries.size(), 5u);
   EXPECT_EQ(fs::file_size(path()), journal.num_bytes());

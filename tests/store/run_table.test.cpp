@@ -60,7 +60,7 @@ std::vector<sweep::RunRow> some_rows(int number) {
 TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
   for (const int number : {0, 1, 200, 1000}) {  // each replaces the table before
     const std::vector<sweep::RunRow> rows = some_rows(number);
-    publish_sweep(path(), rows, {{"version", "1.2.3"}, {"empty", ""}});
+    publish(path(), rows, {{"version", "1.2.3"}, {"empty", ""}});
     const SweepFile file = read_sweep(path());
     ASSERT_EQ(file.rows.size(), rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
@@ -72,7 +72,7 @@ TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
 TEST_F(RunTableTest, KeepsCirclesOfAUsersOwn) {
   const std::vector<CircleFile> circles = {{"one.csv", OwnCircles({{1.0 / 3, 2, 0}, {4, 5, 0.25}})},
                                            {"", OwnCircles({{1, 2, 3}})}};
-  publish_sweep(path(), some_rows(2), {{"config", "a = 1\n"}}, circles);
+  publish(path(), some_rows(2), {{"config", "a = 1\n"}}, circles);
   const SweepFile file = read_sweep(path());
   EXPECT_EQ(file.checked, Checked::everything);
   ASSERT_EQ(file.circles.size(), 2u);
@@ -83,7 +83,7 @@ TEST_F(RunTableTest, KeepsCirclesOfAUsersOwn) {
 }
 
 TEST_F(RunTableTest, KeepsTheProvenance) {
-  publish_sweep(path(), {}, {{"version", "1.2.3"}, {"config", "a = 1\nb = 2\n"}});
+  publish(path(), {}, {{"version", "1.2.3"}, {"config", "a = 1\nb = 2\n"}});
   const SweepFile file = read_sweep(path());
   EXPECT_TRUE(file.rows.empty());
   EXPECT_NE(std::find(file.provenance.begin(), file.provenance.end(),
@@ -92,47 +92,49 @@ TEST_F(RunTableTest, KeepsTheProvenance) {
 }
 
 TEST_F(RunTableTest, LeavesNothingBehindWhereItCannotWrite) {
-  EXPECT_THROW(publish_sweep((folder_ / "no" / "such" / "folder.h5").string(), {}, {}), Error);
+  EXPECT_THROW(publish((folder_ / "no" / "such" / "folder.h5").string(), {}, {}), Error);
   EXPECT_EQ(num_files(), 0);
   for (const rlim_t num_bytes : {0, 10, 1000})
-    EXPECT_EXIT(run_on_full_disk(num_bytes, [&] { publish_sweep(path(), some_rows(1), {}); }),
+    EXPECT_EXIT(run_on_full_disk(num_bytes, [&] { publish(path(), some_rows(1), {}); }),
                 testing::ExitedWithCode(2), "cannot .*sweep.h5");
   EXPECT_EQ(num_files(), 0);
 }
 
 TEST_F(RunTableTest, IsPublishedOnlyInPlaceOfTheFileThatIsKnown) {
-  publish_sweep(path(), some_rows(1), {});
-  const std::string stamp = OutputPath(path()).stamp();
-  EXPECT_TRUE(publish_sweep_over(stamp, path(), some_rows(2), {}, {}));
+  publish(path(), some_rows(1), {});
+  const OutputPath place = OutputPath::resolve(path());
+  const std::string stamp = place.stamp();
+  EXPECT_TRUE(publish_sweep(place, stamp, {some_rows(2), {}, {}}));
   EXPECT_EQ(read_sweep(path()).rows.size(), 2u);
   // Somebody has put another file there.
   write_text("other", "another's");
   fs::rename(path("other"), path());
-  EXPECT_FALSE(publish_sweep_over(stamp, path(), some_rows(3), {}, {}));
-  EXPECT_FALSE(publish_sweep_over("", path(), some_rows(3), {}, {}));
+  EXPECT_FALSE(publish_sweep(place, stamp, {some_rows(3), {}, {}}));
+  EXPECT_FALSE(publish_sweep(place, "", {some_rows(3), {}, {}}));
   EXPECT_EQ(text_of("sweep.h5"), "another's");
   fs::remove(path());
-  EXPECT_TRUE(publish_sweep_over(stamp, path(), some_rows(4), {}, {}));
+  EXPECT_TRUE(publish_sweep(place, stamp, {some_rows(4), {}, {}}));
   EXPECT_EQ(read_sweep(path()).rows.size(), 4u);
   EXPECT_EQ(num_files(), 1) << "no draft is left";
 }
 
 TEST_F(RunTableTest, IsTheSameUnderAnotherInode) {
   // As some network file systems show it after a while.
-  publish_sweep(path(), some_rows(2), {});
-  const std::string stamp = OutputPath(path()).stamp();
+  publish(path(), some_rows(2), {});
+  const OutputPath place = OutputPath::resolve(path());
+  const std::string stamp = place.stamp();
   fs::rename(path(), path("earlier.h5"));
   fs::copy_file(path("earlier.h5"), path());
-  EXPECT_EQ(OutputPath(path()).stamp(), stamp);
-  EXPECT_TRUE(publish_sweep_over(stamp, path(), some_rows(3), {}, {}));
-  EXPECT_NE(OutputPath(path()).stamp(), stamp);
+  EXPECT_EQ(place.stamp(), stamp);
+  EXPECT_TRUE(publish_sweep(place, stamp, {some_rows(3), {}, {}}));
+  EXPECT_NE(place.stamp(), stamp);
 }
 
 TEST_F(RunTableTest, RemovesItsStaleDraftsAndNoOthers) {
   write_text("sweep.h5.new", "a user's");
   write_text("sweep.h5.clogsweep-draft1", "also a user's");
   write_text("sweep.h5.clogsweep-draft2", "\x89HDF\r\n\x1a\n of a process that was killed");
-  publish_sweep(path(), some_rows(2), {});
+  publish(path(), some_rows(2), {});
   EXPECT_EQ(read_sweep(path()).rows.size(), 2u);
   EXPECT_EQ(text_of("sweep.h5.new"), "a user's");
   EXPECT_EQ(text_of("sweep.h5.clogsweep-draft1"), "also a user's");
@@ -144,7 +146,7 @@ TEST_F(RunTableTest, LeavesTheDraftOfALivingProcessAlone) {
   const std::string name = write_text("sweep.h5.clogsweep-draft1", mark);
   const int descriptor = open(name.c_str(), O_RDWR | O_CLOEXEC);
   ASSERT_EQ(flock(descriptor, LOCK_EX), 0);
-  publish_sweep(path(), some_rows(2), {});
+  publish(path(), some_rows(2), {});
   EXPECT_EQ(text_of("sweep.h5.clogsweep-draft1"), mark);
   close(descriptor);
 }
@@ -153,20 +155,20 @@ TEST_F(RunTableTest, UpdatesTheFileThatALinkLeadsTo) {
   fs::create_directory(path("scratch"));
   fs::create_symlink("scratch/target.h5", path());
   for (const int number : {1, 2}) {  // it leads nowhere at first
-    publish_sweep(path(), some_rows(number), {});
+    publish(path(), some_rows(number), {});
     EXPECT_TRUE(fs::is_symlink(path()));
     EXPECT_EQ(read_sweep(path("scratch/target.h5")).rows.size(), static_cast<std::size_t>(number));
     EXPECT_EQ(num_files(), 2);
   }
   fs::create_symlink("loop.h5", path("loop.h5"));
-  EXPECT_THROW(publish_sweep(path("loop.h5"), {}, {}), Error);
+  EXPECT_THROW(publish(path("loop.h5"), {}, {}), Error);
 }
 
 TEST_F(RunTableTest, IsWholeForAReaderAtEveryMoment) {
-  publish_sweep(path(), some_rows(1), {});
+  publish(path(), some_rows(1), {});
   const pid_t writer = fork();
   if (writer == 0) {
-    for (int number = 2; number < 150; ++number) publish_sweep(path(), some_rows(number), {});
+    for (int number = 2; number < 150; ++number) publish(path(), some_rows(number), {});
     _exit(0);
   }
   int num_reads = 0;
@@ -181,10 +183,10 @@ TEST_F(RunTableTest, IsWholeForAReaderAtEveryMoment) {
 
 TEST_F(RunTableTest, IsNeverLockedWhereReadersLookForIt) {
   // HDF5 does this before it reads, in h5py and pandas.
-  publish_sweep(path(), some_rows(1), {});
+  publish(path(), some_rows(1), {});
   const pid_t writer = fork();
   if (writer == 0) {
-    for (int number = 2; number < 150; ++number) publish_sweep(path(), some_rows(number), {});
+    for (int number = 2; number < 150; ++number) publish(path(), some_rows(number), {});
     _exit(0);
   }
   int num_locked = 0, num_looks = 0;
@@ -200,7 +202,7 @@ TEST_F(RunTableTest, IsNeverLockedWhereReadersLookForIt) {
 
 TEST_F(RunTableTest, KeepsTheLastTableWhenTheDiskIsFull) {
   const auto publish_until_refused = [&] {
-    for (int number = 0; number < 1000; ++number) publish_sweep(path(), some_rows(number), {});
+    for (int number = 0; number < 1000; ++number) publish(path(), some_rows(number), {});
   };
   EXPECT_EXIT(run_on_full_disk(200'000, publish_until_refused), testing::ExitedWithCode(2),
               "cannot write .*sweep.h5");
@@ -215,7 +217,7 @@ TEST_F(RunTableTest, SaysWhatIsWrongWithAFile) {
   EXPECT_NE(reading_refusal(path("missing.h5")).find("no such file"), std::string::npos);
   std::ofstream(path("text.h5")) << "not a table";
   EXPECT_NE(reading_refusal(path("text.h5")).find("not an HDF5 file"), std::string::npos);
-  publish_sweep(path(), some_rows(100), {});
+  publish(path(), some_rows(100), {});
   fs::copy_file(path(), path("torn.h5"));
   fs::resize_file(path("torn.h5"), fs::file_size(path()) / 2);
   EXPECT_NE(reading_refusal(path("torn.h5")).find("damaged"), std::string::npos)
@@ -235,7 +237,7 @@ std::string flipped(std::string content, std::size_t byte) {
 constexpr std::size_t seal_size = 64;  // docs/reference/files.md
 
 TEST_F(RunTableTest, NoticesEveryFlippedBit) {
-  publish_sweep(path(), some_rows(3), {{"config", "a = 1\n"}});
+  publish(path(), some_rows(3), {{"config", "a = 1\n"}});
   const std::string content = text_of("sweep.h5");
   const std::size_t seal = content.size() - seal_size;
   for (std::size_t byte = 0; byte < content.size(); byte += byte < seal ? 307 : 1) {
@@ -251,7 +253,7 @@ TEST_F(RunTableTest, NoticesEveryFlippedBit) {
 
 TEST_F(RunTableTest, GivesNoWrongRowOfACopyWithoutASeal) {
   const std::vector<sweep::RunRow> rows = some_rows(3);
-  publish_sweep(path(), rows, {{"config", "a = 1\n"}});
+  publish(path(), rows, {{"config", "a = 1\n"}});
   const std::string content = text_of("sweep.h5").substr(0, fs::file_size(path()) - seal_size);
   write_text("copy.h5", content);
   EXPECT_EQ(read_sweep(path("copy.h5")).checked, Checked::rows_and_settings);
@@ -275,7 +277,7 @@ TEST_F(RunTableTest, GivesNoWrongRowOfACopyWithoutASeal) {
 }
 
 TEST_F(RunTableTest, LosesNoAttributeByADamagedListOfChecksums) {
-  publish_sweep(path(), some_rows(1), {{"config", "a = 1\n"}, {"num_wanted", "12"}});
+  publish(path(), some_rows(1), {{"config", "a = 1\n"}, {"num_wanted", "12"}});
   const std::string content = text_of("sweep.h5").substr(0, fs::file_size(path()) - seal_size);
   const std::string_view mark = " num_wanted\n";
   const std::size_t end = content.find(mark) + mark.size();
@@ -297,7 +299,7 @@ TEST_F(RunTableTest, LosesNoAttributeByADamagedListOfChecksums) {
 }
 
 TEST_F(RunTableTest, TellsWholeRowsFromDamagedOnes) {
-  publish_sweep(path(), some_rows(100), {{"config", "a = 1\n"}, {"version", "1"}});
+  publish(path(), some_rows(100), {{"config", "a = 1\n"}, {"version", "1"}});
   std::string content = text_of("sweep.h5");
   const double distance = some_row(70).distance;
   const std::size_t place =

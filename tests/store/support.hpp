@@ -13,8 +13,10 @@
 #include <functional>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/store/run_table.hpp"
 
 namespace clog::store {
 
@@ -44,6 +46,13 @@ class FolderTest : public testing::Test {
 
   std::filesystem::path folder_;
 };
+
+/// Writes a table, in place of one that is there.
+inline void publish(const std::string& path, const std::vector<sweep::RunRow>& rows,
+                    const Provenance& provenance, const std::vector<CircleFile>& circles = {}) {
+  const OutputPath place = OutputPath::resolve(path);
+  publish_sweep(place, place.stamp(), {rows, provenance, circles});
+}
 
 /// Must run in its own process: a limit on the size of files stands for a full disk. Leaves with exit
 /// code 2 if an Error was thrown, whose text goes to the error stream.

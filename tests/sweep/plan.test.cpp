@@ -101,8 +101,8 @@ TEST(Plan, TakesKeysOfAChannelForAChannel) {
   settings.set("orifice", "0.6,0.7");
   EXPECT_EQ(Plan(settings).size(), 2);
   EXPECT_EQ(Plan(settings).task(0).obstacles.layout, ObstacleLayout::channel);
-  EXPECT_EQ(Plan(Settings::from_config(settings.to_config(false))).size(), 2);
-  EXPECT_EQ(Plan(Settings::from_config(Settings().to_config(false))).task(0).obstacles.layout,
+  EXPECT_EQ(Plan(Settings::from_config(settings.to_config())).size(), 2);
+  EXPECT_EQ(Plan(Settings::from_config(Settings().to_config())).task(0).obstacles.layout,
             ObstacleLayout::random)
       << "a config has every key";
 }
@@ -143,7 +143,7 @@ TEST(Plan, TravelsWithItsCircles) {
   Settings settings = among_circles();
   settings.attach("one.csv", OwnCircles({{1.0 / 3, 5, 0.1}, {8, 5, 0}}));
   const Settings again = Settings::from_packed(settings.packed());
-  EXPECT_EQ(again.to_config(false), settings.to_config(false));
+  EXPECT_EQ(again.to_config(), settings.to_config());
   EXPECT_EQ(again.circle_files().at("one.csv").circles(), settings.circle_files().at("one.csv").circles());
   EXPECT_EQ(again.packed(), settings.packed());
 }
@@ -244,8 +244,8 @@ TEST(Plan, FindsEveryTaskByItsGroupAndSeed) {
 TEST(Plan, IsTheSameAfterItsConfigWasReadBack) {
   Settings settings = settings_of({{"preset", "elastic,robust"}, {"box", "30"}});
   settings.set_points({{"line-tension", "seeds", "obstacles"}, {{"0.5", "1..3", ""}, {"2", "7,9", "none"}}});
-  const Settings again = Settings::from_config(settings.to_config(true));
-  EXPECT_EQ(again.to_config(false), settings.to_config(false));
+  const Settings again = Settings::from_config(settings.to_config(Comments::help));
+  EXPECT_EQ(again.to_config(), settings.to_config());
   EXPECT_EQ(runs_of(Plan(again)), runs_of(Plan(settings)));
   EXPECT_EQ(Settings::from_packed(settings.packed()).points().rows, settings.points().rows);
 }
@@ -255,7 +255,7 @@ TEST(Plan, KeepsNamesOfFilesInPointsWhateverTheirBytes) {
     Settings settings = settings_of({{"box", "10"}, {"seeds", "1"}});
     settings.set_points({{"obstacles"}, {{name}}});
     EXPECT_EQ(settings.missing_files(), std::vector<std::string>{name});
-    EXPECT_EQ(Settings::from_config(settings.to_config(false)).points().rows, settings.points().rows) << name;
+    EXPECT_EQ(Settings::from_config(settings.to_config()).points().rows, settings.points().rows) << name;
   }
 }
 
@@ -266,7 +266,7 @@ TEST(Plan, IsTheUnionOfItsShards) {
   std::multiset<decltype(whole)::value_type> joined;
   for (std::int64_t number = 1; number <= 4; ++number) {
     settings.set_shard({number, 4});
-    const Plan part(Settings::from_config(settings.to_config(false)));
+    const Plan part(Settings::from_config(settings.to_config()));
     const auto runs = runs_of(part);
     joined.insert(runs.begin(), runs.end());
     EXPECT_EQ(part.num_groups(), 6) << "every shard has seeds of each";

@@ -146,9 +146,9 @@ TEST(FaultOf, NamesWhatBelongsToAnotherScene) {
   EXPECT_NE(fault_of(row).find("invalid orifice=0.001"), std::string::npos);
 }
 
-/// The row after its bytes were read from a file that holds another value in one column.
+/// The fault of a row whose file holds another value in one column.
 template <class T>
-RunRow damaged(const Column& column, T value) {
+std::string fault_with(const Column& column, T value) {
   const RunRow& row = row_with(column);
   std::vector<std::byte> bytes(packed_size());
   pack(row, bytes);
@@ -162,21 +162,49 @@ RunRow damaged(const Column& column, T value) {
     std::memcpy(&bytes[place], value.data(), value.size());
   else
     std::memcpy(&bytes[place], &value, sizeof value);
-  return unpack(bytes);
+  const UnpackedRow unpacked = unpack(bytes);
+  return unpacked.fault.empty() ? fault_of(unpacked.row) : unpacked.fault;
 }
 
-TEST(FaultOf, NamesEveryWordThatIsUnknown) {
+TEST(Unpack, NamesEveryWordThatIsUnknown) {
   int num_tried = 0;
   for (const Column& column : columns()) {
     if (column.kind != ValueKind::word || column.role == ColumnRole::circumstance) continue;
+    if (column.name == "preset") continue;  // another version may have others
     const char* what = column.name == "obstacles" ? "is no checksum of circles"
                        : column.name == "laboratory"
                            ? "is no description of a laboratory; give a file by --lab"
                            : "is unknown";
-    EXPECT_EQ(fault_of(damaged<std::string>(column, "wrapqed")), column.name + "='wrapqed' " + what);
+    EXPECT_EQ(fault_with<std::string>(column, "wrapqed"), column.name + "='wrapqed' " + what);
     ++num_tried;
   }
-  EXPECT_EQ(num_tried, 16);
+  EXPECT_EQ(num_tried, 15);
+}
+
+TEST(Unpack, KeepsWhatIsUnknown) {
+  RunRow row = clogged();
+  EXPECT_EQ(row.clogged_by, FoundBy::certified);
+  const RunRow known = row;
+  const char* const names[] = {"clogged_by", "mechanism", "contacts",      "num_wrapped",
+                               "num_gaps",   "num_arcs",  "contact_range", "wrapped_support"};
+  for (const char* name : names) column(name).set_unknown(row);
+  std::vector<std::byte> bytes(packed_size());
+  pack(row, bytes);
+  const UnpackedRow again = unpack(bytes);
+  EXPECT_EQ(again.fault, "");
+  for (const char* name : names) {
+    EXPECT_NE(column(name).get(known), Value()) << name;
+    EXPECT_EQ(column(name).get(again.row), Value()) << name;
+  }
+}
+
+TEST(Unpack, SeparatesNotCloggedFromUnknown) {
+  RunRow row = clogged();
+  row.clogged_by = FoundBy::not_clogged;
+  EXPECT_EQ(column("clogged_by").get(row), Value("none"));
+  EXPECT_EQ(fault_of(row), "clogged, but clogged_by='none'");
+  row.clogged_by.reset();
+  EXPECT_EQ(fault_of(row), "");
 }
 
 TEST(FaultOf, NamesEveryNumberThatIsNone) {
@@ -209,7 +237,7 @@ TEST(FaultOf, NamesEveryNumberThatIsNone) {
     if (column.role != ColumnRole::parameter) values.push_back(1e300);
     for (const double value : values) {
       if (means_nothing || (std::isnan(value) && may_be_unknown.contains(column.name))) continue;
-      std::string fault = fault_of(damaged(column, value));
+      std::string fault = fault_with(column, value);
       std::ranges::replace(fault, '-', '_');
       EXPECT_NE(fault.find(column.name), std::string::npos) << column.name << ' ' << value << ": " << fault;
     }
@@ -218,9 +246,9 @@ TEST(FaultOf, NamesEveryNumberThatIsNone) {
 
 TEST(FaultOf, NamesIntegersThatNoParameterHolds) {
   for (const char* name : {"seed", "boxes", "vertices"})
-    EXPECT_EQ(fault_of(damaged(column(name), std::int64_t{1} << 40)),
+    EXPECT_EQ(fault_with(column(name), std::int64_t{1} << 40),
               std::string(name) + "=1099511627776 is out of range");
-  EXPECT_EQ(fault_of(damaged(column("seed"), std::int64_t{-5})), "seed=-5 is out of range");
+  EXPECT_EQ(fault_with(column("seed"), std::int64_t{-5}), "seed=-5 is out of range");
 }
 
 TEST(FaultOf, NamesWhatContradictsTheRest) {
@@ -244,7 +272,7 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
       {"shape_parameter=0.9", [](RunRow& row) { row.shape_parameter = 0.9; }},
       {"shape_parameter=1e6", [](RunRow& row) { row.shape_parameter = 1e6; }},
       {"kinetic_energy_ratio=", [](RunRow& row) { row.kinetic_energy_ratio = 1e9; }},
-      {"clogged_by='none'", [](RunRow& row) { row.clogged_by = FoundBy::nothing; }},
+      {"clogged_by='none'", [](RunRow& row) { row.clogged_by = FoundBy::not_clogged; }},
       {"not clogged", [](RunRow& row) { row.status = RunStatus::interrupted; }},
       {"clog_detection='threshold'",
        [](RunRow& row) { row.parameters.clog_detection = ClogDetection::threshold; }},

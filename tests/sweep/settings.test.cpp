@@ -33,9 +33,9 @@ TEST(Settings, ReadBackFromTheirOwnText) {
   settings.set("line-tension", "log(0.1,10,3)");
   settings.set("seeds", "4..9");
   settings.set("model", "dp");
-  for (const bool with_comments : {false, true}) {
-    const Settings again = Settings::from_config(settings.to_config(with_comments));
-    EXPECT_EQ(again.to_config(false), settings.to_config(false));
+  for (const Comments comments : {Comments::none, Comments::help}) {
+    const Settings again = Settings::from_config(settings.to_config(comments));
+    EXPECT_EQ(again.to_config(), settings.to_config());
     EXPECT_EQ(again.values("line-tension"), (std::vector<std::string>{"0.1", "1", "10"}));
   }
 }
@@ -76,7 +76,38 @@ TEST(Settings, APresetSetsTheKeysThatWereNotGiven) {
   settings.set("preset", "elastic");
   EXPECT_EQ(settings.text("wall-contact"), "edge");
   EXPECT_EQ(settings.text("perimeter-stiffness-ratio"), "0.1");
-  EXPECT_EQ(Settings::from_config(settings.to_config(true)).to_config(false), settings.to_config(false));
+  EXPECT_EQ(Settings::from_config(settings.to_config(Comments::help)).to_config(), settings.to_config());
+}
+
+TEST(Settings, AGivenKeyDecidesInWhateverOrder) {
+  Settings one, other;
+  one.set("obstacle-layout", "channel");
+  EXPECT_EQ(one.text("seeds"), "1") << "nothing is random";
+  one.set("obstacle-layout", "random");
+  EXPECT_EQ(one.text("seeds"), find_key("seeds").default_text);
+  one.set("release", "anywhere");
+  one.set("obstacles", "c.csv");
+  other.set("obstacles", "c.csv");
+  EXPECT_EQ(other.text("seeds"), "1") << "the droplet starts at the centre";
+  EXPECT_EQ(other.text("obstacle-layout"), "file");
+  other.set("release", "anywhere");
+  other.set("obstacle-layout", "random");
+  EXPECT_EQ(one.to_config(), other.to_config());
+  EXPECT_EQ(one.text("seeds"), find_key("seeds").default_text);
+}
+
+TEST(Settings, ReadBackPointsInSeveralScenes) {
+  Settings settings;
+  settings.attach("c.csv", OwnCircles({{5, 5, 0.3}}));
+  settings.set_points({{"obstacles", "orifice"}, {{"c.csv", ""}, {"", "0.6"}, {"", ""}}});
+  const Settings again = Settings::from_config(settings.to_config());
+  for (const Settings& one : {settings, again}) {
+    std::vector<std::string> layouts;
+    one.visit_branches([&](const Settings& branch, std::int64_t) {
+      layouts.push_back(branch.text("obstacle-layout") + ' ' + branch.text("seeds"));
+    });
+    EXPECT_EQ(layouts, (std::vector<std::string>{"file 1", "channel 1", "random 1..10"}));
+  }
 }
 
 TEST(PresetName, IsFoundFromTheValuesUsed) {
@@ -109,8 +140,8 @@ TEST(Settings, ReadBackNamesOfFilesWithAnyByte) {
       settings.set("obstacles", text);
       const std::string file = settings.values("obstacles").front();
       settings.attach(file, OwnCircles({{5, 5, 0.3}}));
-      for (const bool with_comments : {false, true})
-        EXPECT_EQ(Settings::from_config(settings.to_config(with_comments)).text("obstacles"), text) << byte;
+      for (const Comments comments : {Comments::none, Comments::help})
+        EXPECT_EQ(Settings::from_config(settings.to_config(comments)).text("obstacles"), text) << byte;
       const Settings again = Settings::from_packed(settings.packed());
       EXPECT_EQ(again.text("obstacles"), text) << byte;
       EXPECT_EQ(again.text("line-tension"), settings.text("line-tension")) << byte;

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <boost/program_options.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,26 +20,33 @@ class CommandLine {
  public:
   enum class SweepKeys { none, accepted };
 
-  CommandLine(std::string program, std::string usage, SweepKeys sweep_keys);
+  /// @param program  as it is called, with the name of a command: `clogsweep merge`
+  CommandLine(std::string program, std::string usage, SweepKeys sweep_keys = SweepKeys::none);
 
-  /// Declares the program's own options; to be called before parse().
-  boost::program_options::options_description_easy_init add_options() { return own_.add_options(); }
-  /// Declares what a word without dashes means; at most `most` of them.
-  void add_positional(const std::string& option, int most) { positional_.add(option.c_str(), most); }
+  /// Declares an option without a value; as all declarations, to be called before parse().
+  CommandLine& flag(const char* name, const char* help);
+  /// Declares an option with a value. @param otherwise  its value if it is not given
+  CommandLine& option(const char* name, const char* help, const char* otherwise = nullptr);
+  /// Declares an option that may be a word without dashes: the first, the second ...
+  CommandLine& word(const char* name, const char* help);
+  /// Declares an option of all words without dashes that follow.
+  CommandLine& words(const char* name, const char* help);
   /// Declares what the first word may be instead of a file: a near miss is answered with the command meant.
   void add_commands(std::vector<std::string> names) { commands_ = std::move(names); }
   /// Declares what to say of words for which there is no place, e.g. "one sweep file is read at a time".
   void explain_surplus_words(std::string remedy) { surplus_remedy_ = std::move(remedy); }
 
-  /// @throws Error for anything that is not understood
+  /// Parses what follows the command's name. @throws Error for anything that is not understood
   void parse(int argc, const char* const* argv);
 
   bool has(const std::string& option) const { return values_.count(option) > 0; }
   std::string get(const std::string& option) const { return values_.at(option).as<std::string>(); }
-  /// All values of an option that may be given several times.
+  /// All values of an option that words() has declared.
   std::vector<std::string> get_all(const std::string& option) const;
   /// @throws Error if the option was not given
   std::string require(const std::string& option) const;
+  /// @throws Error if there are fewer
+  std::vector<std::string> require_all(const std::string& option, std::size_t least = 1) const;
   /// @throws Error if the option's value is none of these words
   std::string get_word(const std::string& option, const std::vector<std::string>& words) const;
   /// @throws Error if the option's value is not a number between 0 and 1
@@ -45,8 +55,10 @@ class CommandLine {
   double get_positive(const std::string& option) const;
   /// All values of a list, as of a key: `0.1,0.2` or `log(0.1,1,5)`; none if the option was not given.
   std::vector<double> get_positives(const std::string& option) const;
-  /// The option's value, or the default if it was not given. @throws Error if it is not a finite number
-  double get_number(const std::string& option, double fallback) const;
+  /// The option's value, or the default if it was not given. @throws Error if it is no whole number in the
+  /// range
+  std::int64_t get_whole(const std::string& option, std::int64_t otherwise, std::int64_t least,
+                         std::int64_t most) const;
   const std::string& program() const { return program_; }
   const sweep::Settings& settings() const { return settings_; }
   sweep::Settings& settings() { return settings_; }
@@ -64,6 +76,7 @@ class CommandLine {
       "0.2,0.3  1..50  'lin(a,b,n)'  'log(a,b,n)'  (quotes, since shells read parentheses)"};
   boost::program_options::options_description keys_{"Keys of all else"};
   boost::program_options::positional_options_description positional_;
+  std::set<std::string> words_;  // options that may be words without dashes
   std::vector<std::string> commands_;
   std::string surplus_remedy_ = "options start with --, settings are key=value";
   boost::program_options::variables_map values_;
@@ -71,6 +84,7 @@ class CommandLine {
   std::string text_;
 
   double number(const std::string& option) const;
+  [[noreturn]] void refuse_missing(const std::string& option) const;
   /// Is this an option whose value is the next word?
   bool awaits_value(const std::string& word) const;
   void refuse_misspelt_command(const std::string& word) const;

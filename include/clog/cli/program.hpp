@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,11 +15,22 @@ namespace clog::cli {
 /// and exit code 2.
 int run_program(const std::string& program, const std::function<int()>& body);
 
+/// A command of a program, such as `clogsweep merge`.
+struct Command {
+  const char* name;
+  int (*call)(int argc, const char* const* argv);
+};
+/// Runs the command that the first word names, as run_program() does. Returns nothing if it names none.
+std::optional<int> run_command(const std::string& program, std::span<const Command> commands, int argc,
+                               const char* const* argv);
+
+std::vector<std::string> names_of(std::span<const Command> commands);
+
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
-/// Prints the answer to --help or --version, if one of them was given, and returns whether it did.
+/// Parses the line, and prints the answer to --help or --version. Returns whether something is left to do.
 /// @param libraries  names and versions, printed after the program's own
-bool answer_help_or_version(const CommandLine& line, const NamedTexts& libraries);
+bool parse_command(CommandLine& line, int argc, const char* const* argv, const NamedTexts& libraries = {});
 
 /// Where a file comes from: program, version, what git says of its sources, compiler, config, command line,
 /// time.

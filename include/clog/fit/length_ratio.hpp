@@ -35,7 +35,7 @@ struct LengthRatio {
 
 /// The paired interval is taken where pairs gain for sure: the correlation differs from zero (one-sided, 2.5
 /// %), and at least ten pairs are unlike. With fewer, those few decide everything, and the interval covers
-/// the truth less often than it claims (docs/explanation/statistics.md has a table).
+/// the truth less often than it claims (docs/notes/2026-11-24-paired-intervals.md).
 /// @param here, there  all runs, those of pairs included
 /// @throws std::invalid_argument unless 0 < confidence < 1
 LengthRatio fit_length_ratio(std::span<const Observation> here, std::span<const Observation> there,

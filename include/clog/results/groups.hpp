@@ -20,18 +20,18 @@ namespace clog::results {
 
 inline constexpr int enough_clogs = 5;  ///< with fewer, the interval is wide and its coverage wavers
 
-/// What may spoil a group's clogging length.
+/// What may spoil a group's clogging length; doubt_texts say what each means.
 enum class Doubt {
-  few_clogs,         ///< fewer than enough_clogs
-  not_exponential,   ///< fit::are_not_exponential
-  censored_by_time,  ///< runs ended by max-time, slow ones nearer than fast ones
-  incomplete,        ///< runs are unfinished or failed
-  damaged,           ///< rows hold what cannot be (sweep::fault_of)
-  held_by_mesh,      ///< the polygon's corners may hold a tenth of the clogs or more
-  array_repeats,     ///< runs went farther than the period of their array (sweep::has_met_repetition)
-  met_none,          ///< droplets touched no obstacle on their way
-  below_spacing,     ///< lambda is shorter than one obstacle spacing (sweep::obstacle_spacing)
-  not_proved_sound,  ///< sweep::unproven_parameters
+  few_clogs,
+  not_exponential,
+  censored_by_time,
+  incomplete,
+  damaged,
+  held_by_mesh,
+  array_repeats,
+  met_none,
+  below_spacing,
+  not_proved_sound
 };
 /// One letter each for tables, a word for files, a sentence for readers.
 struct DoubtText {
@@ -70,23 +70,17 @@ const DoubtText& text_of(Doubt doubt);
 /// The ways in which a run may end, competing risks: the mechanism that holds a clog (`other`: none of them),
 /// or the droplet's break-up.
 enum class Cause { wrapped, squeezed, hybrid, other, broken };
-/// Names in files: the number of runs that it ended, their length (S over that number), and the interval of
-/// that length.
+/// Names in files: the number of runs that it ended, and their length (S over that number).
 struct CauseText {
   Cause cause;
   bool is_clog;
-  const char *count, *length, *lower, *upper;
+  const char *count, *length;
 };
-inline constexpr CauseText cause_texts[] = {
-    {Cause::wrapped, true, "wrapped", "clogging_length_wrapped", "clogging_length_wrapped_lower",
-     "clogging_length_wrapped_upper"},
-    {Cause::squeezed, true, "squeezed", "clogging_length_squeezed", "clogging_length_squeezed_lower",
-     "clogging_length_squeezed_upper"},
-    {Cause::hybrid, true, "hybrid", "clogging_length_hybrid", "clogging_length_hybrid_lower",
-     "clogging_length_hybrid_upper"},
-    {Cause::other, true, "other", "clogging_length_other", "clogging_length_other_lower",
-     "clogging_length_other_upper"},
-    {Cause::broken, false, "broken", "break_up_length", "break_up_length_lower", "break_up_length_upper"}};
+inline constexpr CauseText cause_texts[] = {{Cause::wrapped, true, "wrapped", "clogging_length_wrapped"},
+                                            {Cause::squeezed, true, "squeezed", "clogging_length_squeezed"},
+                                            {Cause::hybrid, true, "hybrid", "clogging_length_hybrid"},
+                                            {Cause::other, true, "other", "clogging_length_other"},
+                                            {Cause::broken, false, "broken", "break_up_length"}};
 
 /// The model's units in a laboratory; NaN where they are not known.
 struct LaboratoryScale {
@@ -176,12 +170,12 @@ std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
 bool is_dwell_possible(const Group& group);
 
 using sweep::Value;
-using Field = std::pair<const char*, Value>;
+using Field = std::pair<std::string, Value>;
 /// Columns that make a group: all parameters but the seed. Physical parameters come first, and among
 /// them those that shape the array.
 std::span<const sweep::Column* const> group_columns();
 /// The values of a row in these columns.
-std::vector<Field> parameter_fields(const sweep::RunRow& row);
+std::vector<Value> parameter_values(const sweep::RunRow& row);
 /// False in a channel and on a wall, where nothing is random: each group is one run there, and its row has
 /// the results.
 bool has_clogging_length(const sweep::RunRow& row);

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -39,16 +38,6 @@ class RunList {
 
   ParameterSet& set_of(const sweep::Plan& plan, const sweep::RunRow& run, std::vector<std::string> texts);
   sweep::Points points(const std::vector<std::size_t>& differing) const;
-};
-
-/// Which task of the plan a run is; nothing if it has none.
-class TaskNumbers {
- public:
-  explicit TaskNumbers(const sweep::Plan& plan);
-  std::optional<std::int64_t> of(const sweep::RunRow& row) const;
-
- private:
-  std::unordered_map<std::string, std::int64_t> tasks_;
 };
 
 }  // namespace clog::results

@@ -60,8 +60,6 @@ class SweepState {
   void report(const sweep::Report& report);
   /// Row of a run that has begun.
   const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task).row; }
-  /// The rows of all runs, including those outside this plan.
-  std::vector<sweep::RunRow> rows() const;
   /// The first run if all that have begun have failed, otherwise nullptr.
   const sweep::RunRow* first_if_all_failed() const;
   /// Discards a failure: the task runs again with the same attempt number.
@@ -108,6 +106,7 @@ class SweepState {
   Clock::time_point last_publication_;
   Clock::duration publication_time_{0};
 
+  std::vector<const Entry*> entries() const;  // of all runs
   bool is_over(const sweep::RunRow& row) const;
   sweep::RunRow new_row(std::int64_t task) const;
   void keep_circles(const store::SweepFile& file);
@@ -121,8 +120,12 @@ class SweepState {
   sweep::RunRow published(const sweep::RunRow& row) const;
   void write_down(const Entry& entry);
   void publish();
-  [[noreturn]] void rescue(const std::vector<sweep::RunRow>& rows);
-  void rewrite_journal(bool with_all);
+  /// With the rows of all runs, including those outside this plan.
+  store::SweepFile table() const;
+  [[noreturn]] void rescue();
+  enum class Records { of_unfinished_runs, all };
+  /// @param records  that the journal keeps: all, unless the table has every finished run
+  void rewrite_journal(Records records);
 };
 
 }  // namespace clog::results

@@ -6,10 +6,9 @@
 
 namespace clog::results {
 
-/// The parameter_fields() of these runs as they would be by default: with the row's model and preset, where
-/// `auto` stands for what follows from the row's other parameters. Empty if the row's parameters are
-/// impossible.
-std::vector<Field> usual_parameters(const sweep::RunRow& row);
+/// The parameter_values() by default of a run with this model and preset; of a parameter that may be
+/// automatic the row's value if it is automatic. Empty if the row's parameters are impossible.
+std::vector<Value> usual_parameters(const sweep::RunRow& row);
 
 /// Is this value what `auto` gives for the row's other parameters, or what its preset sets?
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row);

@@ -22,12 +22,7 @@ class TaskOrder {
 
   /// No tasks yet.
   explicit TaskOrder(GroupOf group_of) : number_of_group_(std::move(group_of)) {}
-  /// Tasks from 0 on, task i of group i % num_groups.
-  explicit TaskOrder(std::int64_t num_tasks, std::int64_t num_groups = 1);
-  /// Some of its tasks.
-  TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups);
-
-  /// More of them, for another round; maybe of new groups.
+  /// Tasks of a round; maybe of new groups.
   void add(const std::vector<std::int64_t>& tasks);
 
   bool empty() const { return num_left_ == 0; }

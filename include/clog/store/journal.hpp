@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -48,7 +49,7 @@ class Journal {
 
   const std::string& path() const { return place_.path(); }
   /// Is the open file still the one at its place?
-  bool is_there() const { return place_.holds(descriptor_); }
+  bool is_there() const { return place_.holds(file_); }
   /// Creates and locks an empty journal where the old one was removed. Returns false if another sweep has
   /// started there. @throws Error if it cannot be written
   bool make_anew(const OutputPath& table);
@@ -66,12 +67,12 @@ class Journal {
   /// Replaces the file by one that holds these entries only.
   void rewrite(std::span<const Entry* const> entries);
   /// Removes the file, unless it is no longer the one at the path; nothing may be added afterwards.
-  /// Returns whether that succeeded; otherwise see errno.
-  bool remove();
+  /// Returns why that failed, if it did.
+  std::error_code remove();
 
  private:
   OutputPath place_;
-  int descriptor_ = -1;
+  Descriptor file_;
   Contents contents_;  ///< contents at opening; num_bytes is kept up to date
   std::uint64_t num_rewritten_bytes_ = 0;
   bool has_begun_ = false;
@@ -79,7 +80,10 @@ class Journal {
   void open_and_lock(const OutputPath* table);
   void begin();
   void check_place() const;
-  void close_file();
+  [[noreturn]] void refuse_replaced() const;
+  void close() { file_ = Descriptor(); }
+  /// Removes an empty file.
+  void remove_if_empty();
 };
 
 }  // namespace clog::store

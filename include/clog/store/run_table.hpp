@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +21,7 @@ std::string library_version();
 
 /// @throws Error if the path exists: results are never overwritten
 void refuse_existing(const std::string& path);
+[[noreturn]] void refuse_to_overwrite(const std::string& path);
 /// To be called before hours of work. @throws Error if the path exists or no file can be made there
 void refuse_unwritable(const std::string& path);
 
@@ -31,19 +31,6 @@ struct CircleFile {
   std::string name;
   OwnCircles circles;
 };
-
-/// Makes the sweep's file, or replaces it: at every moment the path names a complete table, the old or the
-/// new, so it can be read at any time. It is on the disk when this returns. Returns whether its folder is,
-/// too: some file systems cannot. @throws Error, and the old file stays
-bool publish_sweep(const OutputPath& place, std::span<const sweep::RunRow> rows, const Provenance& provenance,
-                   std::span<const CircleFile> circles = {});
-/// The same, but only in place of the file with this OutputPath::stamp(), or of none. Returns the stamp of
-/// the file that it wrote, even if somebody has replaced that since; nothing if a different file was there,
-/// which stays.
-std::optional<std::string> publish_sweep_over(const std::string& stamp, const OutputPath& place,
-                                              std::span<const sweep::RunRow> rows,
-                                              const Provenance& provenance,
-                                              std::span<const CircleFile> circles);
 
 /// Which parts of a file have been compared with a checksum.
 enum class Checked {
@@ -57,6 +44,14 @@ struct SweepFile {
   std::vector<CircleFile> circles;  ///< that the rows refer to
   Checked checked = Checked::everything;
 };
+
+/// Writes a sweep's file, in place of the one with this OutputPath::stamp(), if that is still there: at every
+/// moment the path names a complete table, the old or the new, so it can be read at any time. It is on the
+/// disk when this returns. Returns the stamp of the file that it wrote, even if somebody has replaced that
+/// since; nothing if a different file is there, which stays. @throws Error, and the old file stays
+std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp,
+                                         const SweepFile& content);
+
 /// Files of format versions 9 and 10. Columns that a file does not have get Parameter::before, or are
 /// unknown.
 /// @throws Error if the file is missing, not HDF5, not ours, of another format version, or damaged

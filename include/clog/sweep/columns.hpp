@@ -33,7 +33,7 @@ struct clog::Words<clog::sweep::ColumnRole> {
 
 namespace clog::sweep {
 
-/// A row's value in a column. Nothing: it is not known, or has no meaning for the run.
+/// A row's value in a column; std::monostate if it is not known, or has no meaning for the run.
 using Value = ParameterValue;
 
 struct Column {
@@ -57,10 +57,10 @@ struct Column {
     return parameter && parameter->may_be_automatic(run);
   }
 
-  /// Writes `size` bytes as they lie in a file. Nothing is NaN, -1, or an empty text.
+  /// Writes `size` bytes as they lie in a file, where an unknown value is NaN, -1, or an empty text.
   void pack(const RunRow& row, std::byte* bytes) const;
-  /// A value that cannot be is noted in the row. Columns are to be read in the order of columns().
-  void unpack(const std::byte* bytes, RunRow& row) const;
+  /// Reads them; columns are to be read in the order of columns(). Keeps the first fault.
+  void unpack(const std::byte* bytes, UnpackedRow& unpacked) const;
 };
 
 /// All columns, in their order in files.

@@ -24,7 +24,7 @@ struct Report {
 };
 
 std::vector<std::byte> to_bytes(const Report& report);
-/// @param bytes  of to_bytes() of this version
+/// @param bytes  of to_bytes() of this version. @throws Error if the row has a value that no row can hold
 Report report_from(std::span<const std::byte> bytes);
 
 }  // namespace clog::sweep

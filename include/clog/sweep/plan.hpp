@@ -87,4 +87,7 @@ class Plan {
   RunParameters parameters(std::size_t product, std::int64_t place, std::uint32_t seed) const;
 };
 
+/// The one parameter set that the settings mean. @throws Error if they mean several
+RunParameters single_run(const Settings& settings);
+
 }  // namespace clog::sweep

@@ -14,6 +14,11 @@ struct Points {
   std::vector<std::vector<std::string>> rows;
 
   bool empty() const { return keys.empty(); }
+  /// Drops all points, and names the keys of others. @throws Error if there is none, or one is unknown or
+  /// repeated
+  void begin(const std::vector<std::string>& names);
+  /// @throws Error that names the point, if it has not a text for each key, or one that cannot be read
+  void add(const std::vector<std::string>& texts);
 };
 
 /// The part of a sweep that one of several machines takes.
@@ -26,10 +31,5 @@ struct Shard {
   std::string text() const;
   bool is_whole() const { return of == 1; }
 };
-
-/// Lines of a config, which Settings::set_line() reads: the names of the keys, then a point a line.
-std::string config_lines(const Points& points, const Shard& shard);
-/// The texts of such a line.
-std::vector<std::string> texts_of_line(const std::string& line);
 
 }  // namespace clog::sweep

@@ -1,22 +1,22 @@
 #pragma once
 
-#include <bitset>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/parameters/schema.hpp"
 #include "clog/core/run/droplet_run.hpp"
 
 namespace clog::sweep {
 
-/// How a clog was found; `nothing` of a run that has not clogged.
-enum class FoundBy { nothing, threshold, certified };
+/// How a clog was found.
+enum class FoundBy { not_clogged, threshold, certified };
 
 }  // namespace clog::sweep
 
@@ -24,7 +24,7 @@ template <>
 struct clog::Words<clog::sweep::FoundBy> {
   static constexpr Worded<sweep::FoundBy> all[] = {{sweep::FoundBy::certified, "certified"},
                                                    {sweep::FoundBy::threshold, "threshold"},
-                                                   {sweep::FoundBy::nothing, "none"}};
+                                                   {sweep::FoundBy::not_clogged, "none"}};
 };
 
 namespace clog::sweep {
@@ -33,20 +33,21 @@ namespace clog::sweep {
 inline constexpr const char* mixed_instruction_sets = "mixed";
 
 /// One row of the table of runs: parameters, results, circumstances. Its columns, their units and meanings
-/// are listed in columns.cpp.
+/// are listed in columns.cpp. An unknown count or word is an empty optional, an unknown number is NaN: an
+/// optional number would have two unknown values.
 struct RunRow {
   static constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
   std::int64_t task = -1;
 
-  RunParameters parameters;  ///< resolved
-  std::bitset<64> unknown;   ///< by place in parameter_schema(): parameters that the row's file does not have
-  double obstacle_density = 0;     ///< of a saturated array the jamming limit, see Scene
+  RunParameters parameters;                       ///< resolved
+  std::set<const Parameter*> unknown_parameters;  ///< which the row's file does not have
+  double obstacle_density = 0;                    ///< of a saturated array the jamming limit, see Scene
   std::string preset;              ///< the one that the interface agrees with, "custom", or "none" for sp
   std::int64_t model_version = 0;  ///< see parameters.hpp
 
   RunStatus status = RunStatus::running;
-  std::optional<FoundBy> clogged_by;  ///< nothing: not known; so below
+  std::optional<FoundBy> clogged_by;
   double distance = 0;
   double lateral_displacement = 0;
   double time = 0;
@@ -55,15 +56,13 @@ struct RunRow {
   double transient = not_known;
   double travel_time = not_known;
   Dwells dwells;
-  std::int64_t contacts = -1;  ///< -1: not known
+  std::optional<std::int64_t> contacts;
   double first_contact_at = not_known;
   double kinetic_energy_ratio = 0;
   double shape_parameter = 0;
   std::optional<ClogMechanism> mechanism;
   double wrapped_support = not_known;
-  std::int64_t num_wrapped = -1;  ///< -1: not known
-  std::int64_t num_gaps = -1;
-  std::int64_t num_arcs = -1;
+  std::optional<std::int64_t> num_wrapped, num_gaps, num_arcs;
   double mesh_hold = not_known;
   double largest_shape_parameter = not_known;  ///< of a passage through a channel; so the next
   double largest_shape_parameter_at = not_known;
@@ -85,9 +84,10 @@ struct RunRow {
   std::string host;
   std::int64_t attempt = 1;
   std::string message;
-
-  std::string unreadable;  ///< which column of a stored row holds what no row can hold; no column itself
 };
+
+/// Is this number of a row known?
+inline bool is_known(double number) { return !std::isnan(number); }
 
 /// Has the run come to its end, so that it has a result?
 inline bool is_result(RunStatus status) {
@@ -101,7 +101,7 @@ inline bool is_unfinished(RunStatus status) {
 
 /// Cost of a run so far [s]: its processor time, or its wall-clock time if that is not known.
 inline double cost_seconds(const RunRow& row) {
-  return std::isnan(row.processor_seconds) ? row.wall_seconds : row.processor_seconds;
+  return is_known(row.processor_seconds) ? row.processor_seconds : row.wall_seconds;
 }
 
 /// What was run, seed included, as bytes: equal for equal runs, whatever their place in a sweep.
@@ -117,6 +117,12 @@ void record(const RunResult& result, RunRow& row);
 /// version.
 std::size_t packed_size();
 void pack(const RunRow& row, std::span<std::byte> packed);
-RunRow unpack(std::span<const std::byte> packed);
+
+/// A row, and what is wrong with its bytes: the first value that no row can hold; empty if there is none.
+struct UnpackedRow {
+  RunRow row;
+  std::string fault;
+};
+UnpackedRow unpack(std::span<const std::byte> packed);
 
 }  // namespace clog::sweep

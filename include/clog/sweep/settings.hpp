@@ -5,31 +5,14 @@
 #include <map>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "clog/core/parameters/circles.hpp"
-#include "clog/core/parameters/schema.hpp"
 #include "clog/core/scene/scene.hpp"
+#include "clog/sweep/keys.hpp"
 #include "clog/sweep/points.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
-
-/// One key of the config file, which is also an option of the programs: a parameter, or the preset, which
-/// sets several.
-struct Key {
-  std::string name;
-  ValueKind kind;
-  std::vector<std::string> words;  ///< see expand_list
-  std::string default_text;
-  std::string help;            ///< meaning and unit
-  const Parameter* parameter;  ///< nullptr: preset
-
-  /// Not of the key obstacles, whose values name files: Plan knows what is in these.
-  /// @throws Error, without the key's name, if the value cannot be read or is out of the type's range
-  void apply(RunParameters& run, const std::string& value) const;
-};
 
 /// A value in a line of a config, from which unescaped() makes the same text, whatever bytes it has: what
 /// would end or cut the line (control characters, #, a backslash, blanks at the ends) becomes a backslash, x
@@ -42,41 +25,23 @@ std::string unescaped(const std::string& text);
 using CircleFiles = std::map<std::string, OwnCircles>;
 inline constexpr const char* circles_key = "obstacles";
 
-/// Every key, in the order in which they are shown. The one place that knows them.
-const std::vector<Key>& keys();
-/// What a word that is none of the names may have meant: the key of a paper's symbol (Gamma, w_ob), up to
-/// three names that it is a part of, or the nearest name. Empty if there is none.
-std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names);
-/// @throws Error that names the nearest key
-const Key& find_key(std::string_view name);
+/// Does a config explain its keys?
+enum class Comments { none, help };
 
-/// A parameter's value as a config file has it.
-std::string written(const ParameterValue& value, const Parameter& parameter);
-/// Do two texts of a list mean the same value, as 1e-3 and 0.001 do?
-bool is_same_value(const std::string& a, const std::string& b);
-
-/// The preset whose interface this resolved parameter set has, or `custom`.
-std::string preset_name(const RunParameters& run);
-
-/// The settings of a sweep: for every key the text given, or that of the preset, or the default. The
-/// parameter sets are the product of all lists; or points, each with the product of the other keys' lists.
+/// The settings of a sweep: the texts given, and what follows from them for the other keys. The parameter
+/// sets are the product of all lists; or points, each with the product of the other keys' lists.
 class Settings {
  public:
-  Settings();
-
   /// Reads the text that to_config() wrote. @throws Error as set(), or if a line is not one of a config
   static Settings from_config(const std::string& text);
 
-  /// A preset sets the keys that have not been given themselves, before or after it. Other keys set what
-  /// follows from them in the same way: user-supplied circles and keys of a channel set the layout; a channel
-  /// or a wall, where nothing is random, sets the seed.
   /// @throws Error if there is no such key or its list cannot be read
   void set(const std::string& name, const std::string& text);
-  /// Whether set() gave the key its text, not a preset or default.
+  /// Did set() give the key its text? Other keys have that of the preset, one that follows, or the default.
   bool is_given(const std::string& name) const { return given_.contains(name); }
-  const std::string& text(const std::string& name) const { return texts_.at(name); }
+  const std::string& text(const std::string& name) const { return entry(name).text; }
   /// The expanded values of a key.
-  const std::vector<std::string>& values(const std::string& name) const { return values_.at(name); }
+  const std::vector<std::string>& values(const std::string& name) const { return entry(name).values; }
   /// The scene of all runs; nullptr if they have several.
   const Scene* scene() const;
 
@@ -109,23 +74,31 @@ class Settings {
   std::string packed() const;
   static Settings from_packed(const std::string& text);
 
-  /// All keys as a config file, each with its meaning as a comment if wanted. Reads back as the same
-  /// settings.
-  std::string to_config(bool with_comments) const;
+  /// All keys as a config file, which reads back as the same settings.
+  std::string to_config(Comments comments = Comments::none) const;
 
  private:
-  std::set<std::string> given_;
-  std::map<std::string, std::string> texts_;
-  std::map<std::string, std::vector<std::string>> values_;
+  struct Entry {
+    std::string text;
+    std::vector<std::string> values;
+  };
+  using Entries = std::map<std::string, Entry>;
+
+  Entries given_;
+  mutable Entries all_;  // resolved() since the last set(); empty until somebody asks
   CircleFiles circle_files_;
   Points points_;
   Shard shard_;
 
-  Settings without_points() const;
-  void begin_points(Points& points, const std::vector<std::string>& keys) const;
-  void add_point(Points& points, const std::vector<std::string>& texts) const;
+  const Entry& entry(const std::string& name) const;
+  Entries resolved() const;
   std::set<std::string> keys_that_follow() const;
-  void assign(const std::string& name, const std::string& text);
 };
+
+/// Refuses keys that another key, or the scene, leaves without effect, beyond those that check_each() knows.
+/// @param settings  with one value for each key of words; no parameter set is made of them yet. @throws Error
+void refuse_contradictions(const Settings& settings);
+/// A question about a list that could be a decimal below one; empty for any other.
+std::string possible_decimal(const Key& key, const Settings& settings);
 
 }  // namespace clog::sweep

@@ -6,14 +6,14 @@
 #include "clog/core/droplet/droplet_model.hpp"
 #include "clog/core/droplet/equilibrium.hpp"
 #include "clog/core/droplet/shape.hpp"
-#include "clog/core/polygon/automatic_values.hpp"
 #include "clog/core/polygon/clog_geometry.hpp"
-#include "clog/core/polygon/dp_droplet.hpp"
-#include "clog/core/polygon/dp_forces.hpp"
+#include "clog/core/polygon/forces/automatic_values.hpp"
+#include "clog/core/polygon/forces/dp_forces.hpp"
 #include "clog/core/polygon/neck.hpp"
+#include "clog/core/polygon/step/dp_droplet.hpp"
 #include "clog/core/tools/units.hpp"
-#include "core/polygon/polygon_release.hpp"
-#include "core/polygon/rest_forces.hpp"
+#include "core/polygon/release/polygon_release.hpp"
+#include "core/polygon/release/rest_forces.hpp"
 
 namespace clog {
 namespace {

@@ -112,12 +112,13 @@ bool DropletRun::advance(int num_checks) {
     droplet_->advance(steps);
     steps_done_ += steps;
     check();
-    if (status_ == RunStatus::running && steps_done_ % steps_per_snapshot == 0) take_snapshot();
+    if (status_ == RunStatus::running && steps_done_ % steps_per_snapshot == 0)
+      start_afresh_and_take_snapshot();
   }
   return status_ != RunStatus::running;
 }
 
-void DropletRun::take_snapshot() {
+void DropletRun::start_afresh_and_take_snapshot() {
   droplet_->start_afresh();
   ByteWriter bytes;
   bytes.put(snapshot_kind);

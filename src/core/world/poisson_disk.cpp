@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <numbers>
 #include <random>
 #include <span>
@@ -23,101 +22,13 @@
 #define HWY_TARGET_INCLUDE "core/world/poisson_disk.cpp"
 #include <hwy/foreach_target.h>
 // The code is plain; Highway compiles it for each of its targets.
-#include <hwy/highway.h>
+#include "core/world/surroundings-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clog::HWY_NAMESPACE {
 namespace {
 
-// This file is compiled without fused multiply-adds: the same array with every instruction set.
-
-/// Places are kept in single precision, relative to a cell; this much more distance makes up for the
-/// rounding.
-constexpr double rounding = 1e-5;
-constexpr float nowhere = 1e6;
-
-struct Point {
-  float x, y;  // from the corner of its cell
-};
-
-// No function here that takes or returns vectors is ever called: all are inlined.
-#pragma GCC diagnostic ignored "-Wpsabi"
-constexpr int lanes = 8;
-using Floats [[gnu::vector_size(lanes * sizeof(float))]] = float;
-using Integers [[gnu::vector_size(lanes * sizeof(float))]] = std::int32_t;
-
-/// The points around a cell whose discs are all of one size. No branch depends on the random pattern of taken
-/// cells: mispredicted ones would cost more than the work itself.
-struct Surroundings {
-  const Point* cell;
-  std::ptrdiff_t row_length;
-  float cell_size;
-  float distance2;
-
-  /// Cells are this part of the distance or larger: from the lower half of one, a search need not look
-  /// further than two cells down and one up.
-  static constexpr double smallest_cell = 1 / 1.49;
-
-  /// Is a point within the distance of a place in the cell?
-  bool reach(float place_x, float place_y) const {
-    Integers is_near{};
-    visit_points(place_x, place_y, [&](const Floats& x, const Floats& y) {
-      const Floats dx = x - place_x;
-      const Floats dy = y - place_y;
-      is_near |= dx * dx + dy * dy < distance2;
-    });
-    return any(is_near) != 0;
-  }
-
-  /// The quarters, each of this size, of a square in the cell that lie wholly within the distance of one
-  /// point. One bit each: first along x, then along y.
-  std::int32_t cover_quarters(float square_x, float square_y, float size) const {
-    const float half = size / 2;
-    const auto far2 = [half](const Floats& from_corner) {
-      const Floats far = absolute(from_corner - half) + half;
-      return far * far;
-    };
-    Integers is_covered{};
-    visit_points(square_x, square_y, [&](const Floats& x, const Floats& y) {
-      const Floats x0 = far2(x - square_x), x1 = far2(x - (square_x + size));
-      const Floats y0 = far2(y - square_y), y1 = far2(y - (square_y + size));
-      is_covered |= ((x0 + y0 < distance2) & 1) | ((x1 + y0 < distance2) & 2) | ((x0 + y1 < distance2) & 4) |
-                    ((x1 + y1 < distance2) & 8);
-    });
-    return any(is_covered);
-  }
-
- private:
-  static Floats absolute(const Floats& values) {
-    return reinterpret_cast<Floats>(reinterpret_cast<Integers>(values) & 0x7fffffff);
-  }
-
-  static std::int32_t any(const Integers& values) {
-    std::int32_t bits = 0;
-    for (int lane = 0; lane < lanes; ++lane) bits |= values[lane];
-    return bits;
-  }
-
-  /// Calls visit(x, y), seen from the cell's corner, for the points that can be within the distance of a
-  /// place in the same quarter of the cell, 2 rows of 4 cells at a time.
-  template <class Visit>
-  void visit_points(float place_x, float place_y, Visit visit) const {
-    const int first_column = -1 - static_cast<int>(place_x < cell_size / 2);
-    const int first_row = -1 - static_cast<int>(place_y < cell_size / 2);
-    // Points are visited in the order of a vector instruction.
-    const Floats columns = Floats{0, 1, 0, 1, 2, 3, 2, 3} + static_cast<float>(first_column);
-    const Floats rows = Floats{0, 0, 1, 1, 0, 0, 1, 1} + static_cast<float>(first_row);
-    const Point* points = cell + first_row * row_length + first_column;
-    for (int row = 0; row < 4; row += 2) {
-      Floats lower, upper;
-      std::memcpy(&lower, points + row * row_length, sizeof lower);
-      std::memcpy(&upper, points + (row + 1) * row_length, sizeof upper);
-      const Floats x = __builtin_shufflevector(lower, upper, 0, 2, 8, 10, 4, 6, 12, 14);
-      const Floats y = __builtin_shufflevector(lower, upper, 1, 3, 9, 11, 5, 7, 13, 15);
-      visit(x + columns * cell_size, y + (rows + static_cast<float>(row)) * cell_size);
-    }
-  }
-};
+// Compiled without fused multiply-adds: the same array with every instruction set.
 
 /// Random sequential addition of discs, surfaces at least a gap apart, in a period.
 ///

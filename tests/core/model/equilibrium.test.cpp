@@ -69,8 +69,7 @@ Eigen::Array2d centre(const DropletState& state) {
 }
 
 RunResult finished(DropletRun run) {
-  while (!run.advance(100)) {
-  }
+  while (!run.advance(100)) continue;
   return run.result();
 }
 
@@ -132,8 +131,7 @@ TEST_P(Certified, RestIsFoundFromNearbyOnly) {
   const DropletState slow = droplet.droplet().state();
   const auto found = model_of(run).equilibrium(run, droplet.obstacles(), slow);
   ASSERT_TRUE(found.has_value());
-  while (!droplet.advance(100)) {
-  }
+  while (!droplet.advance(100)) continue;
   EXPECT_LT((centre(*found) - centre(droplet.droplet().state())).matrix().norm(), 1e-3);
   DropletState far = slow;
   far.x() -= 2 * farthest_rest;

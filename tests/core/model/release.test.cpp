@@ -8,12 +8,12 @@
 #include <tuple>
 
 #include "clog/core/disk/sp_droplet.hpp"
-#include "clog/core/polygon/dp_droplet.hpp"
+#include "clog/core/polygon/step/dp_droplet.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
-#include "core/polygon/rest_forces.hpp"
-#include "polygon/reference_forces.hpp"
+#include "core/polygon/release/rest_forces.hpp"
+#include "polygon/forces/reference_forces.hpp"
 #include "support.hpp"
 
 namespace clog {

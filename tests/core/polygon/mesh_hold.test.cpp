@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "clog/core/polygon/clog_geometry.hpp"
-#include "clog/core/polygon/dp_droplet.hpp"
+#include "clog/core/polygon/step/dp_droplet.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "support.hpp"
 

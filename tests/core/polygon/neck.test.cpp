@@ -30,7 +30,7 @@ Eigen::ArrayXd closed_curve(int num_vertices, Point point) {
   return polygon_of(points);
 }
 
-Eigen::ArrayXd ellipse(int num_vertices, double along, double across) {
+Eigen::ArrayXd ellipse_of_axes(int num_vertices, double along, double across) {
   return closed_curve(num_vertices,
                       [=](double t) { return Eigen::Array2d(along * std::cos(t), across * std::sin(t)); });
 }
@@ -83,7 +83,7 @@ TEST(ThinnestNeck, IsNotThereInCirclesAndEllipses) {
   for (const int num_vertices : {32, 128, 129, 512, 2048})
     for (const double across : {0.5, 0.1, 0.01, 0.001})
       for (const double angle : {0.0, 0.7})
-        EXPECT_EQ(thinnest_neck(turned(ellipse(num_vertices, 0.5, across), angle)), INFINITY)
+        EXPECT_EQ(thinnest_neck(turned(ellipse_of_axes(num_vertices, 0.5, across), angle)), INFINITY)
             << num_vertices << " vertices, " << across;
 }
 

@@ -34,8 +34,7 @@ RunParameters small_run(double line_tension = 1, int vertices = 64) {
 
 RunResult result_of(const RunParameters& parameters, int checks_at_a_time) {
   DropletRun run(parameters);
-  while (!run.advance(checks_at_a_time)) {
-  }
+  while (!run.advance(checks_at_a_time)) continue;
   return run.result();
 }
 
@@ -160,8 +159,7 @@ TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
     for (const std::vector<std::byte>& snapshot : snapshots) {
       DropletRun resumed = resume_in_array(run, snapshot);
       EXPECT_GT(resumed.time(), 200);
-      while (!resumed.advance(7)) {
-      }
+      while (!resumed.advance(7)) continue;
       expect_identical(resumed.result(), whole.result());
       EXPECT_EQ(resumed.result().speed.mean, whole.result().speed.mean);
       EXPECT_TRUE((resumed.droplet().state().position == whole.droplet().state().position).all());
@@ -273,8 +271,7 @@ TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   parameters.max_time = 5000;
   parameters.clog_detection = ClogDetection::threshold;
   DropletRun run(parameters);
-  while (!run.advance(1000)) {
-  }
+  while (!run.advance(1000)) continue;
   ASSERT_EQ(run.result().status, RunStatus::clogged);
   EXPECT_LT(run.result().kinetic_energy_ratio, 1e-17);
   EXPECT_LT(run.result().time, 5000);
@@ -429,8 +426,7 @@ TEST(BreakUp, ComesBeforeACertifiedClog) {
   run.seed = 3;
   run = resolve(run);
   DropletRun hung(run);
-  while (!hung.advance(1000)) {
-  }
+  while (!hung.advance(1000)) continue;
   ASSERT_EQ(hung.result().clogged_by, ClogDetection::certified);
   const DropletState state = hung.droplet().state();
   const std::optional<DropletState> rest = model_of(run).equilibrium(run, hung.obstacles(), state);
@@ -442,8 +438,7 @@ TEST(BreakUp, ComesBeforeACertifiedClog) {
   for (const double share : {-0.5, 0.5}) {  // on either side of the neck at rest
     run.dp.break_up_neck = at_rest + share * (now - at_rest);
     DropletRun on(run, obstacles, state);
-    while (!on.advance(1000)) {
-    }
+    while (!on.advance(1000)) continue;
     EXPECT_EQ(on.result().status, share > 0 ? RunStatus::broken : RunStatus::clogged)
         << at_rest << " " << now;
   }

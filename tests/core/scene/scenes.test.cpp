@@ -31,8 +31,7 @@ RunParameters parameters(double line_tension, int vertices = 256) {
 
 DropletRun at_rest_on_a_wall(const RunParameters& run) {
   DropletRun droplet(test::onto_wall(run));
-  while (!droplet.advance(100)) {
-  }
+  while (!droplet.advance(100)) continue;
   EXPECT_EQ(droplet.result().status, RunStatus::clogged);
   return droplet;
 }
@@ -155,8 +154,7 @@ TEST(OnAWall, VerticesStayEvenlySpreadWhereThoseOfTheLiteralModelSlideDown) {
   run.max_time = 60;
   const auto ratio_after = [](const RunParameters& parameters) {
     DropletRun droplet(test::onto_wall(parameters));
-    while (!droplet.advance(100)) {
-    }
+    while (!droplet.advance(100)) continue;
     return edge_ratio(droplet.droplet().state());
   };
   EXPECT_LT(ratio_after(run), 1.05);
@@ -302,8 +300,7 @@ TEST(InAChannel, ADropletPassesUpToTheLineTensionThatStaticsAllows) {
     run.drag.terminal_speed = 0.1;
     run.max_time = 150;
     DropletRun droplet(test::in_channel(run, {.orifice = 0.7, .start = -0.8, .end = 0.6}));
-    while (!droplet.advance(100)) {
-    }
+    while (!droplet.advance(100)) continue;
     EXPECT_EQ(droplet.result().status == RunStatus::passed, part < 1) << part;
   }
 }
@@ -320,8 +317,7 @@ TEST(InAChannel, ParallelWallsSlowACircleByTheMeanDragOfItsVertices) {
   for (const double distance : {0.1, 1.0}) {
     DropletRun droplet(
         test::in_channel(run, {.orifice = 1 + 2 * distance, .wedge_angle = 0, .start = 0, .end = 0.6}));
-    while (!droplet.advance(100)) {
-    }
+    while (!droplet.advance(100)) continue;
     double mean = 0;
     for (int i = 0; i < 128; ++i)
       mean += std::pow(distance + 0.5 * (1 - std::abs(std::sin(2 * pi * i / 128))),

@@ -33,8 +33,7 @@ RunParameters lattice_disk(double angle, std::uint32_t seed = 1) {
 }
 
 RunResult lattice_result(DropletRun run) {
-  while (!run.advance(1000)) {
-  }
+  while (!run.advance(1000)) continue;
   return run.result();
 }
 

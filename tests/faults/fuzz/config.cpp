@@ -9,8 +9,8 @@ using namespace clog;
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   may_be_refused([&] {
     const auto settings = sweep::Settings::from_config(text_of(data, size));
-    const std::string config = settings.to_config(true);
-    require(sweep::Settings::from_config(config).to_config(true) == config);
+    const std::string config = settings.to_config(sweep::Comments::help);
+    require(sweep::Settings::from_config(config).to_config(sweep::Comments::help) == config);
     const sweep::Plan plan(settings);
     require(plan.size() > 0);
     plan.task(plan.size() - 1);

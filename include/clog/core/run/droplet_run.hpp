@@ -155,7 +155,7 @@ class DropletRun {
   bool has_fallen() const { return time() > first_quiet_time_; }
   void check();
   Sag sag(const Droplet& droplet) const;
-  void take_snapshot();
+  void start_afresh_and_take_snapshot();
   bool has_broken();
   bool is_quiet(double energy_ratio);
   bool finds_rest(double energy_ratio);

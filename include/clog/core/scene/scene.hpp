@@ -18,7 +18,7 @@ enum class WallsFrom {
 
 /// What a droplet meets, where it starts, and where its way ends. There is one scene for each ObstacleLayout:
 /// a new one is a word of that, a file with a scene of its own, a line in scene.cpp, and what
-/// docs/how-to/add-a-scene.md says besides.
+/// docs/developer/add-a-scene.md says besides.
 struct Scene {
   Finding finding;
   WallsFrom walls_from;

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/polygon/contact/wall_contacts.hpp"
+
+namespace clog {
+namespace kernel {
+struct VertexPair {
+  int first, second;
+};
+}  // namespace kernel
+
+/// Pairs of a vertex and an edge of the same droplet that may touch.
+///
+/// Contact is between vertices and edges, so it holds when edges are longer than the vertex diameter. Every
+/// edge within reach pushes by itself, with its own nearest point: then energy and force are continuous
+/// wherever the vertex goes, also in a concave corner, where it is as near to two edges. Edges close along
+/// the contour do not count as contact, or every vertex would touch its neighbours. Close means both: less
+/// than three ranges away along the present contour, and fewer vertices away than make up three ranges at
+/// rest. In a compressed contour the number of vertices decides; it is fixed, so that contacts there do not
+/// depend on when the pairs were made. In a stretched one the length decides, so that long edges cannot cross
+/// in a sharp fold.
+class SelfContacts {
+ public:
+  struct Pair {
+    int vertex;
+    int edge;  ///< edge e joins vertices e and e + 1 (mod N)
+  };
+
+  /// @param range  distance below which the interface repels itself [sigma]
+  /// @param rest_edge  length of an edge of the droplet at rest [sigma]
+  SelfContacts(double range, double rest_edge) : range_(range) { set_rest_edge(rest_edge); }
+
+  /// Renews the length of an edge at rest, for a droplet that grows.
+  void set_rest_edge(double length);
+
+  /// Renews the pairs when the shape may change too much on the way to the next update.
+  void update(const DropletState& state, const Travel& travel);
+  void invalidate() { reference_.resize(0); }
+  /// Do the pairs hold until the next update? Changes nothing.
+  /// @param moved  bound on how far any vertex is from where it was at renew(), relative to the mean of all
+  /// [sigma]
+  bool hold(double moved, const Travel& travel) const;
+  void renew(const DropletState& state, const Travel& travel);
+  /// Where the vertices were then, relative to their mean, all x then all y, and behind them room for a whole
+  /// vector; null: there are no pairs.
+  const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
+  const std::vector<Pair>& pairs() const { return pairs_; }
+  double range() const { return range_; }
+  /// How many vertices make up three ranges at rest.
+  int exclusion() const { return exclusion_; }
+  /// Are these vertices so close along the contour that they do not count as contact?
+  bool are_neighbours(int a, int b) const;
+
+  /// The same pairs for vectors: a group of WallContacts::edges_per_group edges and as many consecutive
+  /// vertices. Strands that face each other run in opposite directions, so the last of these vertices is
+  /// paired with the first edge; where a strand is compressed upon itself it is the first.
+  struct Item {
+    int edges;           ///< the first of a group
+    int vertices;        ///< the first; those from N on are the contour's first
+    std::uint8_t pairs;  ///< bit b: edge `edges` + b and the b-th vertex
+    bool backwards;      ///< are vertices counted from the last?
+  };
+  const std::vector<Item>& items() const { return items_; }
+
+ private:
+  double range_;
+  double rest_edge_ = 0;
+  int exclusion_ = 1;
+  Eigen::ArrayXd reference_;  // positions relative to their mean when the pairs were made
+  std::vector<Pair> pairs_;
+  std::vector<Item> items_;
+  std::vector<double> along_;    // the contour, from vertex 0; behind the last its whole length
+  std::vector<double> contour_;  // x, y and along_, with the beginning repeated; see kernel::CloseSearch
+  std::vector<double> groups_;   // memory of the search
+  std::vector<kernel::VertexPair> close_;
+  std::vector<Pair> sorted_;       // memory of the sort
+  std::vector<int> end_of_group_;  // where the pairs of a group of edges end
+  std::vector<int> item_of_;       // by direction and first vertex
+
+  double skin_ = 0;  // of the present pairs
+
+  /// Fills along_. Returns the length of the longest edge.
+  double measure_edges(const double* x, const double* y, int n);
+  void find_close(const double* x, const double* y, double longest_edge, double reach);
+  void rebuild(const DropletState& state, double skin);
+  void sort_pairs_by_groups(int n);
+  void fill_items(const DropletState& state);
+};
+
+/// Nearest point of an edge to a vertex.
+struct EdgeContact {
+  double distance;  ///< [sigma]
+  double fraction;  ///< the point's place on the edge, 0 at its first vertex, 1 at the next
+  double dx, dy;    ///< from the point to the vertex [sigma]
+};
+inline EdgeContact nearest_point(const SelfContacts::Pair& pair, const double* x, const double* y,
+                                 int num_vertices) {
+  const int begin = pair.edge;
+  const int end = begin + 1 < num_vertices ? begin + 1 : 0;
+  const double ex = x[end] - x[begin];
+  const double ey = y[end] - y[begin];
+  const double rx = x[pair.vertex] - x[begin];
+  const double ry = y[pair.vertex] - y[begin];
+  const double fraction = std::clamp((rx * ex + ry * ey) / (ex * ex + ey * ey), 0.0, 1.0);
+  const double dx = rx - fraction * ex;
+  const double dy = ry - fraction * ey;
+  return {std::sqrt(dx * dx + dy * dy), fraction, dx, dy};
+}
+
+}  // namespace clog

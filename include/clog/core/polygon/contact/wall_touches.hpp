@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/polygon/contact/film_touches.hpp"
+#include "clog/core/polygon/contact/self_contacts.hpp"
+#include "clog/core/polygon/contact/wall_contacts.hpp"
+#include "clog/core/polygon/contact/wall_touch.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+
+namespace clog {
+
+/// Finds the vertices that walls push, and hold by friction. Same contacts as in DpForces.
+class WallTouches {
+ public:
+  /// @param run  resolved parameters  @param obstacles  must outlive this
+  WallTouches(const RunParameters& run, const ObstacleArray& obstacles);
+
+  /// @param circles  all that may touch  @param self  for friction through films  @return valid until the
+  /// next call
+  const std::vector<WallTouch>& find(const Contour& contour, const LocalFrame& frame,
+                                     std::span<const WallContacts::Item> circles, const SelfContacts& self);
+  const std::vector<WallTouch>& find(const DropletState& state, std::span<const WallContacts::Item> circles,
+                                     const SelfContacts& self);
+
+  /// Memory for the queries of what walls hold.
+  KnownAnchors& known_anchors() { return known_anchors_; }
+
+ private:
+  /// What is known so far of a vertex and a wall.
+  struct Part {
+    int vertex;
+    WallPlace wall;
+    Eigen::Array2d push{0, 0};
+    double wetted = 0;
+    int next;  ///< part of the same vertex, -1: none
+  };
+  const ObstacleArray* obstacles_;
+  double range_, stiffness_;
+  bool meets_edges_, acts_through_films_;
+  FilmTouches films_;
+  std::vector<int> first_part_;  // of each vertex
+  std::vector<Part> parts_;
+  std::vector<WallPlace> wedges_;
+  std::vector<WallTouch> touches_;
+  std::vector<double> closed_contour_;
+  // The parts' distance from the wall (x, y), its radius, normal (x, y), and radius divided by distance.
+  std::array<std::vector<double>, 6> directions_;
+  KnownAnchors known_anchors_;
+
+  int part(int vertex, const WallPlace& wall);
+  void add_edges(const Contour& contour, const WallContacts::Item& item, const WallPlace& circle);
+  void add_vertex(const Contour& contour, int vertex, const WallPlace& wall, double distance,
+                  const Eigen::Array2d& normal);
+  void keep_pushed(const Contour& contour);
+};
+
+}  // namespace clog

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/droplet/energy.hpp"
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/polygon/contact/self_contacts.hpp"
+#include "clog/core/polygon/contact/wall_contacts.hpp"
+#include "clog/core/polygon/contact/wall_friction.hpp"
+#include "clog/core/polygon/contact/wall_touches.hpp"
+#include "clog/core/polygon/wetting/wetted_walls.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+
+namespace clog {
+
+/// Terms of the interface's force.
+struct InterfaceTerms {
+  double line_tension;   ///< gamma
+  double spring;         ///< k_l N_v
+  double spring_length;  ///< l0 or the mean edge length
+  double spreading;      ///< k_l N_v of springs that act along the interface only
+  double pressure;       ///< -k_a (a - a0)
+  double vertex_weight;  ///< M g / N_v along +x
+};
+
+/// Potential energy of a deformable polygon among obstacles, and what the passes of a step (DpStepper,
+/// RestForces) need for its negative gradient.
+/// Contacts act through lists: update_contacts() must have been called, and since then nothing may have
+/// travelled farther than it was told.
+class DpForces {
+ public:
+  /// @param run  resolved parameters (see resolve())
+  DpForces(const RunParameters& run, const ObstacleArray& obstacles);
+
+  /// @param travel  bound on the way until the next call
+  void update_contacts(const DropletState& state, const Travel& travel);
+  /// Would update_contacts() leave the lists as they are? Also false if only the state can tell.
+  /// @param moved           bound on the way of any vertex since walls() were renewed [sigma]
+  /// @param moved_relative  the same, relative to their mean, since self_contacts() were renewed [sigma]
+  bool contacts_hold(double moved, double moved_relative, const Travel& travel) const;
+  /// Are there contact lists that nobody has invalidated?
+  bool has_contact_lists() const {
+    return walls_.reference() != nullptr &&
+           (dp_.self_contact == SelfContact::off || self_.reference() != nullptr);
+  }
+  /// Forgets the lists of obstacles. To be called when a shift of the frame has changed local coordinates.
+  void forget_contacts();
+  /// Forgets the pairs of self-contact, too, which a shift does not change.
+  void forget_all_contacts();
+
+  PotentialEnergy energy(const DropletState& state) const;
+
+  /// Deepest overlap of the interface with a wall's contact range [sigma]: of its edges or of its vertices,
+  /// as the contact counts them.
+  double deepest_overlap(const DropletState& state) const;
+  /// Distance from an obstacle's surface at which contact begins [sigma].
+  double contact_range() const { return walls_.range(); }
+
+  double vertex_diameter() const { return vertex_diameter_; }
+
+  /// For the integrator: the terms of the interface at this area and perimeter, and the contacts.
+  InterfaceTerms interface(double area, double perimeter) const;
+  double contact_stiffness() const { return contact_stiffness_; }
+  const WallContacts& walls() const { return walls_; }
+  const WallContacts& nearest_walls() const { return nearest_walls_; }
+  const SelfContacts& self_contacts() const { return self_; }
+  const std::vector<Wedge>& wedges() const { return obstacles_->wedges(); }
+  const WallFriction& friction() const { return friction_; }
+  /// Lets walls yield to friction's springs or to those of the contact line, see WallFriction::follow().
+  /// @param circles  all that may touch
+  WallYield let_walls_yield(DropletState& state, WallTouches& touches,
+                            std::span<const WallContacts::Item> circles, Purpose purpose) const;
+  bool has_anchors() const { return friction_.is_on() || wetted_walls_.hold_ends(); }
+  const WettedWalls& wetted_walls() const { return wetted_walls_; }
+
+  /// For the release, where the droplet grows without weight.
+  void set_rest_area(double area);
+  void set_weight(double weight) { weight_ = weight; }
+  double weight() const { return weight_; }
+
+ private:
+  DpParameters dp_;
+  const ObstacleArray* obstacles_;
+  double vertex_diameter_;
+  double contact_stiffness_;
+  double rest_area_;
+  double rest_edge_;
+  double weight_;
+  bool has_near_wall_drag_;
+  WallContacts walls_;
+  WallContacts nearest_walls_;  // kept only with near-wall drag
+  WettedWalls wetted_walls_;
+  SelfContacts self_;
+  WallFriction friction_;
+
+  /// Calls visit(overlap) for every half edge (vertex) and slot or wedge [sigma]; negative where they do not
+  /// touch.
+  template <class Visit>
+  void visit_overlaps(const DropletState& state, Visit visit) const;
+};
+
+}  // namespace clog

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/parameters/contact_angle.hpp"
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/polygon/contact/wall_contacts.hpp"
+#include "clog/core/world/wedge.hpp"
+
+namespace clog {
+
+/// Do contact angles differ from Young's?
+bool has_hysteresis(const DpParameters& dp);
+
+/// How far the tension has changed to that of a wetted wall, and its derivative by the distance [1/sigma].
+struct WettedShare {
+  double share, slope;
+};
+/// A smooth step from 1 where contact begins to 0 in `width` beyond it, so that energies and forces are
+/// continuous.
+inline WettedShare wetted_share(double distance, double contact_range, double width) {
+  const double t = std::clamp((contact_range + width - distance) / width, 0.0, 1.0);
+  return {t * t * t * (10 + t * (6 * t - 15)), -30 * t * t * (1 - t) * (1 - t) / width};
+}
+
+/// k_p over Gamma and the vertex diameter, of the springs that hold the ends of wetted arcs. Before the wall
+/// yields, an end then slips by half a vertex diameter times the difference of the angles' cosines.
+inline constexpr double pinning_stiffness = 2;
+/// Bound on the sum of squares of an end's gradient: shares of the last vertices, and their distances.
+inline constexpr double pinning_gradient2 = 1.5;
+
+/// The vertices of a droplet.
+struct VertexPlaces {
+  Eigen::Index size;
+  const double *x, *y;  ///< [sigma]
+  explicit VertexPlaces(const DropletState& state)
+      : VertexPlaces(state.size(), state.position.data(), state.position.data() + state.size()) {}
+  VertexPlaces(Eigen::Index num_vertices, const double* all_x, const double* all_y)
+      : size(num_vertices), x(all_x), y(all_y) {}
+};
+
+/// Contact-angle hysteresis. The end of a wetted arc is at
+///   q = u_m + sum share_e (u_e' - u_e)
+/// along the wall, u the wall's own coordinate, summed over the edges e from a wetted vertex m outwards,
+/// share_e their share of wetting; counted positive outwards. Where the interface is smooth, the gradient of
+/// q is normal to it, so that q does not depend on which vertices are there. A spring holds it,
+///   U = (k_p/2) (q - q*)^2,  -Gamma (cos Y - cos A) <= f <= Gamma (cos R - cos Y),
+/// Y, A, R Young's, the advancing and the receding angle. A spring that asks for more than the wall bears
+/// pulls its anchor q* along, so that the wall just bears it.
+class ContactLine {
+ public:
+  /// @param run  resolved parameters  @param wedges  must outlive this
+  ContactLine(const RunParameters& run, std::span<const Wedge> wedges);
+
+  bool is_on() const { return is_on_; }
+
+  /// One end of a wetted arc.
+  struct End {
+    WallPlace wall;
+    Eigen::Index side;                          ///< 0: the arc's first, 1: its last along the contour
+    double place;                               ///< q, counted outwards [sigma]
+    std::size_t first_gradient, num_gradients;  ///< of q by vertices, in Ends::gradients
+  };
+  struct Gradient {
+    Eigen::Index vertex;
+    Eigen::Array2d by_place;
+  };
+  class Ends;
+  /// @param circles  all that may be wetted, by vertex
+  /// @param ends     what is found; its memory is used again
+  void find_ends(const VertexPlaces& vertices, const LocalFrame& frame,
+                 std::span<const WallContacts::Item> circles, Ends& ends) const;
+
+  /// Adds the forces of the springs at their present anchors: all x, then all y [g rho sigma^2].
+  void add_forces(std::span<const WallAnchor> anchors, const Ends& ends, Eigen::ArrayXd& force) const;
+  /// [g rho sigma^3]
+  double energy(std::span<const WallAnchor> anchors, const Ends& ends) const;
+  /// Lets walls yield: anchors follow. An end keeps the nearest anchor of its wall and side; new ends get one
+  /// of their own, and the anchors of ends that are no more are forgotten. Afterwards there is one anchor for
+  /// each end, in their order.
+  WallYield follow(std::vector<WallAnchor>& anchors, const Ends& ends, Purpose purpose) const;
+
+ private:
+  struct Zone;
+  struct Beside;
+  bool is_on_;
+  double stiffness_, most_outwards_, most_inwards_;  // k_p, and limits of the force
+  double contact_range_, width_;                     // of the contact and of the share's fall [sigma]
+  std::span<const Wedge> wedges_;
+
+  Beside beside(const WallPlace& wall, const VertexPlaces& vertices, Eigen::Index vertex) const;
+  void add_to(Zone& zone, const VertexPlaces& vertices, Eigen::Index vertex) const;
+  void add_ends(const Zone& zone, const VertexPlaces& vertices, Ends& ends) const;
+  /// The number of each end's anchor; -1: none. Valid until the next call.
+  static const std::vector<Eigen::Index>& matched(std::span<const WallAnchor> anchors, const Ends& ends);
+};
+
+/// A wall near the interface, and the vertices near it in the order of their numbers.
+struct ContactLine::Zone {
+  WallPlace wall;
+  struct Vertex {
+    Eigen::Index vertex;
+    double share, slope;
+    Eigen::Array2d normal;
+  };
+  std::vector<Vertex> vertices;
+};
+
+/// The ends of wetted arcs, with memory that finding and matching them needs.
+class ContactLine::Ends {
+ public:
+  const std::vector<End>& all() const { return all_; }
+  std::span<const Gradient> gradients(const End& end) const {
+    return std::span(gradients_).subspan(end.first_gradient, end.num_gradients);
+  }
+
+ private:
+  friend class ContactLine;
+  std::vector<End> all_;
+  std::vector<Gradient> gradients_;
+  std::vector<Zone> zones_;  // of which the first are used
+  std::size_t num_zones_ = 0;
+  struct Match {
+    double way;
+    std::size_t end, anchor;
+  };
+  mutable std::vector<Match> matches_;
+  mutable std::vector<Eigen::Index> anchor_of_;
+  mutable std::vector<char> is_taken_;
+  mutable std::vector<WallAnchor> after_;
+
+  Zone& add_zone(const WallPlace& wall);
+};
+
+}  // namespace clog

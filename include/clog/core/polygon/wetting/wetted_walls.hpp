@@ -1,0 +1,86 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/polygon/contact/wall_contacts.hpp"
+#include "clog/core/polygon/wetting/contact_line.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+
+namespace clog {
+
+/// Walls whose tension differs from that of the interface, and walls that hold the ends of wetted arcs. The
+/// tension changes from Gamma, far from a wall, to that of the wetted wall where contact begins: a smooth
+/// step, so that the energy and the force are continuous, and wide enough for the edges to follow its bend.
+class WettedWalls {
+ public:
+  /// @param run  resolved parameters  @param obstacles  must outlive this
+  WettedWalls(const RunParameters& run, const ObstacleArray& obstacles);
+
+  bool is_on() const { return extra_tension_ != 0 || line_.is_on(); }
+  bool hold_ends() const { return line_.is_on(); }
+
+  /// Lists of the obstacles near the vertices, kept only where walls are wetted; see WallContacts.
+  WallContacts& lists() { return lists_; }
+  const WallContacts& lists() const { return lists_; }
+
+  /// Forces on the vertices, and memory that finding them needs. All x, then all y [g rho sigma^2].
+  struct Forces {
+    Eigen::ArrayXd gradient;  ///< minus the gradient of the energy
+    /// Cancels the part of `gradient` along the interface if springs carry no tension (`along`), otherwise 0.
+    /// It derives from no energy.
+    Eigen::ArrayXd spreading;
+    std::vector<int> vertices;  ///< on all others both forces are 0
+    ContactLine::Ends ends;     ///< of wetted arcs
+
+    /// The net force of `spreading`. The liquid takes it: weight on the area is reduced by it.
+    Eigen::Array2d net_spreading{0, 0};
+
+    explicit Forces(int num_vertices);
+
+   private:
+    friend class WettedWalls;
+    struct Vertex {
+      double distance;        // from the nearest wall
+      Eigen::Array2d normal;  // away from it
+      WettedShare share{0, 0};
+      bool is_near = false, is_listed = false;
+    };
+    std::vector<Vertex> of_vertices;
+    std::vector<int> near;  // vertices that walls may wet
+
+    void clear();
+    void list_vertices();
+  };
+  /// Finds the forces and the ends.
+  void find_forces(const VertexPlaces& vertices, const LocalFrame& frame, std::span<const WallAnchor> anchors,
+                   Forces& forces) const;
+  /// The same of a droplet that moves: walls yield first.
+  WallYield follow_and_find_forces(const VertexPlaces& vertices, const LocalFrame& frame,
+                                   std::vector<WallAnchor>& anchors, Forces& forces) const;
+  /// Lets walls yield, see ContactLine::follow().
+  WallYield follow(DropletState& state, Purpose purpose) const;
+
+  /// Energies of the difference of tensions, and of the springs that hold ends [g rho sigma^3].
+  double tension_energy(const DropletState& state) const;
+  double spring_energy(const DropletState& state) const;
+
+ private:
+  double extra_tension_;  // of a wetted wall [g rho sigma^2]
+  bool spreads_;          // do springs carry no tension?
+  double contact_range_, width_;
+  const ObstacleArray* obstacles_;
+  WallContacts lists_;
+  ContactLine line_;
+
+  void add_up(const VertexPlaces& vertices, const LocalFrame& frame, std::span<const WallAnchor> anchors,
+              Forces& forces) const;
+  void find_near(const VertexPlaces& vertices, const LocalFrame& frame, Forces& forces) const;
+  void add_tension(const VertexPlaces& vertices, Forces& forces) const;
+  void spread(const VertexPlaces& vertices, Forces& forces) const;
+};
+
+}  // namespace clog

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "clog/core/parameters/schema.hpp"
+
+namespace clog::sweep {
+
+/// One key of the config file, which is also an option of the programs: a parameter, or the preset, which
+/// sets several.
+struct Key {
+  std::string name;
+  ValueKind kind;
+  std::vector<std::string> words;  ///< see expand_list
+  std::string default_text;
+  std::string help;            ///< meaning and unit
+  const Parameter* parameter;  ///< nullptr: preset
+
+  /// Not of the key obstacles, whose values name files: Plan knows what is in these.
+  /// @throws Error, without the key's name, if the value cannot be read or is out of the type's range
+  void apply(RunParameters& run, const std::string& value) const;
+};
+
+/// Every key, in the order in which they are shown. The one place that knows them.
+const std::vector<Key>& keys();
+/// What a word that is none of the names may have meant: the key of a paper's symbol (Gamma, w_ob), up to
+/// three names that it is a part of, or the nearest name. Empty if there is none.
+std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names);
+/// @throws Error that names the nearest key
+const Key& find_key(std::string_view name);
+
+/// A parameter's value as a config file has it.
+std::string written(const ParameterValue& value, const Parameter& parameter);
+/// Do two texts of a list mean the same value, as 1e-3 and 0.001 do?
+bool is_same_value(const std::string& a, const std::string& b);
+
+std::vector<std::string> preset_names();
+/// The keys of the interface and of its numerics with their values in a preset; none if there is no such
+/// preset.
+std::vector<std::pair<const char*, const char*>> preset_texts(std::string_view name);
+/// The preset whose interface this resolved parameter set has, or `custom`.
+std::string preset_name(const RunParameters& run);
+
+}  // namespace clog::sweep

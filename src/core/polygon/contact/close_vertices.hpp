@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "clog/core/polygon/contact/self_contacts.hpp"
+
+/// Which parts of a contour are near each other? Compiled for several instruction sets; the same pairs with
+/// each of them.
+namespace clog::kernel {
+
+/// A closed contour. Arrays repeat it behind its end for `close_vertices_beyond` entries; `along` goes on
+/// there.
+struct CloseSearch {
+  int n;
+  const double *x, *y;
+  const double* along;  ///< the contour, from vertex 0 [sigma]
+  double longest_edge, reach;
+  int exclusion;
+  double arc;
+};
+inline constexpr int close_vertices_beyond = 24;
+
+/// Finds all pairs of vertices within `reach` that are `exclusion` vertices or more, or `arc` or more, apart
+/// along the contour, each once. @param groups  memory
+void find_close_vertices(const CloseSearch& search, std::vector<double>& groups,
+                         std::vector<VertexPair>& pairs);
+
+}  // namespace clog::kernel

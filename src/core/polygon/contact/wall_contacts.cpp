@@ -1,0 +1,182 @@
+#include "clog/core/polygon/contact/wall_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "clog/core/droplet/shape.hpp"
+
+namespace clog {
+namespace {
+
+// A droplet moves 0.05 sigma in about 1000 steps: renewals are then too rare to cost anything. A list of
+// possible nearest obstacles grows with the skin, so it gets a thinner one.
+constexpr double touching_skin = 0.05;
+constexpr double nearest_skin = 0.02;
+
+}  // namespace
+
+WallContacts::WallContacts(const ObstacleArray& array, double range, Keep keep)
+    : array_(&array), range_(range), keep_(keep) {}
+
+void WallContacts::update(const DropletState& state, const Travel& travel) {
+  const Eigen::Index n = state.size();
+  if (reference_.size() == 2 * n + edges_per_group) {
+    const double farthest2 =
+        ((state.x() - reference_.head(n)).square() + (state.y() - reference_.segment(n, n)).square())
+            .maxCoeff();
+    if (hold(std::sqrt(farthest2), travel)) return;
+  }
+  renew(state, travel);
+}
+
+bool WallContacts::hold(double moved, const Travel& travel) const {
+  const double sway = keep_ == Keep::touched_by_edge ? refined_sway : 1;
+  return reference_.size() > 0 && sway * (moved + travel.absolute) < skin_;
+}
+
+void WallContacts::renew(const DropletState& state, const Travel& travel) {
+  // A fast droplet needs more than the usual skin even to reach the next update.
+  const double usual_skin = keep_ == Keep::nearest_to_vertex ? nearest_skin : touching_skin;
+  rebuild(state, std::clamp(2 * refined_sway * travel.absolute, usual_skin, widest_skin));
+}
+
+void WallContacts::gather_nearby(const DropletState& state) {
+  const auto x = state.x();
+  const auto y = state.y();
+  // Middles of edges stick out of the vertices' bounds by an eighth of an edge at most.
+  double longest2 = 0;
+  for (Eigen::Index i = 0, j = x.size() - 1; i < x.size(); j = i++)
+    longest2 = std::max(longest2, (x[i] - x[j]) * (x[i] - x[j]) + (y[i] - y[j]) * (y[i] - y[j]));
+  ObstacleArray::Window window{state.frame.origin[0],
+                               state.frame.origin[1],
+                               x.minCoeff(),
+                               x.maxCoeff(),
+                               y.minCoeff(),
+                               y.maxCoeff(),
+                               range_ + skin_ + std::sqrt(longest2) / 8};
+  nearby_.clear();
+  array_->gather(window, nearby_);
+  // A wedge's flanks touch vertices first, but its tip can come between two of them.
+  if (keep_ == Keep::touched_by_edge)
+    for (const Wedge& wedge : array_->wedges())
+      if (!wedge.is_flat()) {
+        const Eigen::Array2d centre =
+            wedge.centre() - state.frame.origin - state.frame.image.cast<double>() * state.frame.period;
+        nearby_.push_back({centre[0], centre[1], wedge.radius});
+      }
+  if (keep_ != Keep::nearest_to_vertex) return;
+  // The nearest obstacle may be far away in a sparse array: look as far as a period (a periodic array holds
+  // at least one obstacle there, if it holds any).
+  for (window.margin = 0.5; window.margin < 2 * array_->period().along(); window.margin *= 2) {
+    nearby_.clear();
+    array_->gather(window, nearby_);
+    measure_distances(state);
+    const double worst = nearest_.maxCoeff();
+    if (worst + 2 * skin_ <= window.margin || array_->obstacles().empty()) return;
+  }
+}
+
+void WallContacts::rebuild(const DropletState& state, double skin) {
+  skin_ = skin;
+  num_points_ = state.size();
+  reference_.resize(2 * num_points_ + edges_per_group);
+  reference_.head(2 * num_points_) = state.position;
+  reference_.tail(edges_per_group).setZero();
+  items_.clear();
+  if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
+  gather_nearby(state);
+  if (keep_ == Keep::touched_by_edge) {
+    list_by_edge(refined(state.position));
+  } else {
+    list_by_vertex(state);
+    fill_items();
+  }
+  const auto [smallest, largest] =
+      std::minmax_element(nearby_.begin(), nearby_.end(),
+                          [](const Obstacle& a, const Obstacle& b) { return a.radius < b.radius; });
+  smallest_radius_ = nearby_.empty() ? 0 : smallest->radius;
+  largest_radius_ = nearby_.empty() ? 0 : largest->radius;
+}
+
+/// Lists the edges of a group that a circle near the group's bounds can touch: an obstacle is in contact
+/// later only if it is within range + skin now.
+/// @param fine  the refined contour, see refined()
+void WallContacts::list_by_edge(const Eigen::ArrayXd& fine) {
+  constexpr double rounding = 1e-12;
+  const int n = static_cast<int>(num_points_);
+  const auto point = [&](int k) {
+    const int wrapped = k < 2 * n ? k : k - 2 * n;
+    return Eigen::Array2d(fine[wrapped], fine[2 * n + wrapped]);
+  };
+  bounds_.clear();
+  for (int first = 0; first < n; first += edges_per_group) {
+    Bounds bounds{point(2 * first), point(2 * first)};
+    for (int k = 2 * first + 1; k <= 2 * std::min(first + edges_per_group, n); ++k) {
+      bounds.least = bounds.least.min(point(k));
+      bounds.most = bounds.most.max(point(k));
+    }
+    bounds_.push_back(bounds);
+  }
+  const double reach = range_ + skin_;
+  for (const Obstacle& obstacle : nearby_) {
+    const Eigen::Array2d centre{obstacle.x, obstacle.y};
+    const double radius = obstacle.radius, far = (radius + reach) * (1 + rounding);
+    for (int group = 0; group < static_cast<int>(bounds_.size()); ++group) {
+      const Bounds& bounds = bounds_[static_cast<std::size_t>(group)];
+      if ((bounds.least - centre).max(centre - bounds.most).max(0).square().sum() > far * far) continue;
+      Item item{centre[0], centre[1], radius + range_, group, 0};
+      const int first = group * edges_per_group;
+      for (int i = first; i < std::min(first + edges_per_group, n); ++i) {
+        const Eigen::Array2d begin = point(2 * i), middle = point(2 * i + 1), end = point(2 * i + 2);
+        const double nearest =
+            std::min(distance_to_segment(centre, begin, middle), distance_to_segment(centre, middle, end));
+        if (nearest - radius > reach) continue;
+        item.edges |= static_cast<std::uint8_t>(1u << (i - first));
+      }
+      if (item.edges != 0) items_.push_back(item);
+    }
+  }
+}
+
+/// Measures the distances of all vertices from all circles nearby, and from the nearest.
+void WallContacts::measure_distances(const DropletState& state) {
+  const auto num_nearby = static_cast<Eigen::Index>(nearby_.size());
+  distances_.resize(state.size(), num_nearby);
+  nearest_.setConstant(state.size(), std::numeric_limits<double>::infinity());
+  for (Eigen::Index k = 0; k < num_nearby; ++k) {
+    const Obstacle& obstacle = nearby_[static_cast<std::size_t>(k)];
+    distances_.col(k) =
+        ((obstacle.x - state.x()).square() + (obstacle.y - state.y()).square()).sqrt() - obstacle.radius;
+    nearest_ = nearest_.min(distances_.col(k));
+  }
+}
+
+/// An obstacle is the nearest later only if it is within 2 skins of the nearest now.
+void WallContacts::list_by_vertex(const DropletState& state) {
+  measure_distances(state);
+  candidates_.resize(num_points_);
+  for (std::vector<int>& one : candidates_) one.clear();
+  for (Eigen::Index k = 0; k < distances_.cols(); ++k)
+    for (Eigen::Index i = 0; i < num_points_; ++i) {
+      const double reach = keep_ == Keep::nearest_to_vertex ? nearest_[i] + 2 * skin_ : range_ + skin_;
+      if (distances_(i, k) <= reach) candidates_[i].push_back(static_cast<int>(k));
+    }
+}
+
+void WallContacts::fill_items() {
+  constexpr std::size_t none = -1;
+  item_of_.assign(nearby_.size(), none);
+  for (Eigen::Index i = 0; i < num_points_; ++i) {
+    const int group = static_cast<int>(i) / edges_per_group;
+    for (const int k : candidates_[i]) {
+      if (item_of_[k] == none || items_[item_of_[k]].group != group) {
+        item_of_[k] = items_.size();
+        items_.push_back({nearby_[k].x, nearby_[k].y, nearby_[k].radius + range_, group, 0});
+      }
+      items_[item_of_[k]].edges |= static_cast<std::uint8_t>(1u << (i % edges_per_group));
+    }
+  }
+}
+
+}  // namespace clog

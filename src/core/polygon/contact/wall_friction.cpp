@@ -1,0 +1,66 @@
+#include "clog/core/polygon/contact/wall_friction.hpp"
+
+#include <cmath>
+
+namespace clog {
+
+WallFoot WallFriction::foot(const DropletState& state, const WallAnchor& anchor) const {
+  const WallPlace& wall = anchor.wall;
+  return foot_on(wall, wedges_, {state.x()[anchor.holder] - wall.x, state.y()[anchor.holder] - wall.y});
+}
+
+void WallFriction::add_force(const WallAnchor& anchor, const WallFoot& at, Eigen::ArrayXd& force) const {
+  const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
+  const double pull = -stiffness_ * anchor.slip_of_force(slip) * at.gradient;
+  force[anchor.holder] += pull * at.along[0];
+  force[force.size() / 2 + anchor.holder] += pull * at.along[1];
+}
+
+void WallFriction::add_forces(const DropletState& state, Eigen::ArrayXd& force) const {
+  for (const WallAnchor& anchor : state.anchors) add_force(anchor, foot(state, anchor), force);
+}
+
+double WallFriction::energy(const DropletState& state) const {
+  double energy = 0;
+  for (const WallAnchor& anchor : state.anchors) {
+    const WallFoot at = foot(state, anchor);
+    energy += 0.5 * stiffness_ * (at.point - Eigen::Array2d(anchor.x, anchor.y)).square().sum();
+  }
+  return energy;
+}
+
+/// hold_group() in dp_step_holds-inl.hpp does the same for circles that meet edges.
+WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
+                               KnownAnchors& known, Eigen::ArrayXd* force) const {
+  WallYield yield;
+  if (state.anchors.empty() && touches.empty()) return yield;
+  known.take(state.anchors, state.size());
+  for (const WallTouch& touch : touches) {
+    const WallFoot& at = touch.foot;
+    if (!(at.gradient > 0)) continue;  // a sharp tip: there is nothing to slip along
+    const double bears = coefficient_ * touch.push + traction_ * touch.wetted;
+    if (!(bears > 0)) continue;
+    WallAnchor* const before = known.find(touch.vertex, touch.wall);
+    if (before == nullptr) {
+      state.anchors.push_back({touch.vertex, touch.wall, at.point[0], at.point[1]});  // it pulls nowhere yet
+      continue;
+    }
+    WallAnchor anchor = *before;
+    before->holder = -1;  // it is not lost
+    const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
+    const double most = bears / (stiffness_ * at.gradient);
+    const double held = yield.hold(anchor, slip, -most, most, stiffness_, purpose);
+    if (held != slip) {
+      const Eigen::Array2d moved = at.point - held * at.along;
+      anchor.x = moved[0];
+      anchor.y = moved[1];
+    }
+    state.anchors.push_back(anchor);
+    if (force != nullptr) add_force(anchor, at, *force);
+  }
+  for (const WallAnchor& anchor : known.all())
+    if (anchor.holder >= 0) yield.forget(anchor, stiffness_);
+  return yield;
+}
+
+}  // namespace clog

@@ -1,0 +1,162 @@
+#include "core/polygon/release/polygon_release.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "clog/core/droplet/fire.hpp"
+#include "clog/core/droplet/release.hpp"
+#include "clog/core/droplet/shape.hpp"
+#include "clog/core/polygon/forces/automatic_values.hpp"
+#include "clog/core/polygon/forces/dp_forces.hpp"
+#include "clog/core/polygon/forces/stability.hpp"
+#include "clog/core/tools/units.hpp"
+#include "core/polygon/release/rest_forces.hpp"
+
+namespace clog {
+namespace {
+
+constexpr double radius = units::droplet_diameter / 2;
+
+/// A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
+FireOptions fire_options(const RunParameters& run, double perimeter) {
+  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter, perimeter / *run.dp.vertices);
+  return {.mass = units::droplet_mass / *run.dp.vertices,
+          .largest_step = 0.5 * largest_stable_step(modes),
+          .max_move = 0.05 * units::regular_edge_length(*run.dp.vertices)};
+}
+
+/// A small circle in the nearest void, at rest, and its area.
+struct Seed {
+  DropletState state;
+  double area;
+};
+Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
+  const int n = *run.dp.vertices;
+  const Eigen::Array2d place = nearest_void(obstacles);
+  // A hundredth less, so that nothing touches.
+  const double room = 0.99 * (clearance(obstacles, place[0], place[1], 2 * radius) - *run.dp.contact_range);
+  const double smallest_radius = 4 * run.dp.self_contact_range / (2 * std::numbers::pi);
+  if (room < smallest_radius)
+    refuse_release("no void near the centre of the box",
+                   "a wider obstacle-gap or a smaller self-contact-range");
+  const double area = units::rest_area * std::min(1.0, room * room / (radius * radius));
+  const Period& period = obstacles.period();
+  return {state_at_rest(regular_polygon(n, area), place, {period.along(), period.across()}), area};
+}
+
+/// The droplet grows with every contact, and its vertices are kept evenly spread, whatever its own interface
+/// is: vertices that run together make the interface too stiff for any step, and obstacles slip between those
+/// that are far apart. Springs along the interface have no energy, so they must be gentle for the minimiser;
+/// under a large tension they must not be, since contact then pulls vertices together at the corners of a
+/// squeezed droplet.
+RunParameters with_growing_interface(RunParameters run) {
+  run.dp.inertia = 1;  // it starts at rest, whatever that is
+  run.dp.perimeter_spring = PerimeterSpring::along;
+  run.dp.perimeter_stiffness = 0.01 + 0.03 * run.dp.line_tension;
+  run.dp.wall_contact = WallContact::edge;
+  run.dp.self_contact = SelfContact::on;
+  run.dp.receding_angle.reset();  // walls hold it from the start of the run on
+  run.dp.advancing_angle.reset();
+  run.dp.gravity = Gravity::vertex;  // without weight: the springs need no reaction on the area yet
+  return run;
+}
+
+double vertex_weight(const RunParameters& run) {
+  return units::droplet_mass * units::gravity / *run.dp.vertices;
+}
+
+DpForces weightless_forces(const RunParameters& run, const ObstacleArray& obstacles) {
+  DpForces forces(run, obstacles);
+  forces.set_weight(0);
+  return forces;
+}
+
+/// Grows the droplet in stages to its full area.
+/// @param area  that it has
+void grow(const RunParameters& growing, double area, DpForces& forces, DropletState& state) {
+  constexpr double growth = 1.02;  // of the area, per stage
+  RestForces rest_forces(growing, forces);
+  while (area < units::rest_area) {
+    area = std::min(units::rest_area, area * growth);
+    forces.set_rest_area(area);
+    FireOptions stage = fire_options(growing, polygon_shape(state.position).perimeter);
+    stage.force_tolerance = vertex_weight(growing);
+    stage.max_iterations = 400;
+    minimize_fire(rest_forces, state, stage);
+    if (state.recentre().any()) forces.forget_contacts();
+  }
+}
+
+constexpr double damping_rate = 3;  // near that of the softest modes [1/t0]
+
+/// Returns whether it does.
+bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpForces& forces,
+                   const FireOptions& options, const FireOptions& longer, DropletState& state) {
+  RestForces rest_forces(growing, forces);
+  bool rests = minimize_fire(rest_forces, state, options).converged ||
+               settle(rest_forces, state, longer, damping_rate).converged;
+  // As the springs along the interface have no energy, what is left of its sliding may go round a small cycle
+  // for ever. Weaker springs drive it less.
+  constexpr double weaker = 0.3;
+  constexpr int most_weakenings = 4;
+  for (int i = 0; i < most_weakenings && !rests; ++i) {
+    *growing.dp.perimeter_stiffness *= weaker;
+    DpForces weaker_forces = weightless_forces(growing, obstacles);
+    RestForces weaker_rest_forces(growing, weaker_forces);
+    rests = settle(weaker_rest_forces, state, longer, damping_rate).converged;
+  }
+  return rests;
+}
+
+}  // namespace
+
+DropletState release_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
+  auto [state, area] = seed_polygon(run, obstacles);
+  RunParameters growing = with_growing_interface(run);
+  DpForces forces = weightless_forces(growing, obstacles);
+  grow(growing, area, forces, state);
+
+  FireOptions options = fire_options(growing, polygon_shape(state.position).perimeter);
+  options.force_tolerance = release_force_tolerance * vertex_weight(run);
+  options.max_iterations = 100000;
+  FireOptions longer = options;
+  longer.max_iterations = 500000;
+  bool rests = comes_to_rest(growing, obstacles, forces, options, longer, state);
+  // Then with its own interface; only springs with a tension of their own begin to act with the run.
+  RunParameters own = run;
+  own.dp.inertia = growing.dp.inertia;
+  own.dp.receding_angle = growing.dp.receding_angle;
+  own.dp.advancing_angle = growing.dp.advancing_angle;
+  if (own.dp.perimeter_spring != PerimeterSpring::along) {
+    own.dp.perimeter_spring = growing.dp.perimeter_spring;
+    own.dp.perimeter_stiffness = growing.dp.perimeter_stiffness;
+  }
+  DpForces own_forces = weightless_forces(own, obstacles);
+  RestForces own_rest_forces(own, own_forces);
+  if (rests) {
+    const DropletState relaxed = state;
+    if (!minimize_fire(own_rest_forces, state, options).converged) {
+      state = relaxed;
+      rests = settle(own_rest_forces, state, longer, damping_rate).largest_force <=
+              release_sliding_tolerance * vertex_weight(run);
+    }
+  }
+  if (!rests)
+    refuse_release(
+        "the grown droplet does not come to rest",
+        run.dp.line_tension > nearly_rigid_tension
+            ? fmt::format(
+                  "line-tension={}, since stiffer droplets are nearly rigid, fewer obstacles, the soft "
+                  "disk (model=sp)",
+                  nearly_rigid_tension)
+            : std::string("a larger line-tension"));
+  if (num_enclosed(state, obstacles) > 0)
+    refuse_release("the grown droplet encloses an obstacle", "more vertices");
+  return state;
+}
+
+}  // namespace clog

@@ -1,0 +1,265 @@
+/// Circles that push the contour off and hold it by friction; part of dp_step_kernel.cpp.
+
+#if defined(CLOG_DP_STEP_HOLDS) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLOG_DP_STEP_HOLDS
+#undef CLOG_DP_STEP_HOLDS
+#else
+#define CLOG_DP_STEP_HOLDS
+#endif
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "core/polygon/step/dp_step_circles-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+// NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
+namespace clog::kernel::HWY_NAMESPACE {
+
+/// Adds to each vertex its share of the interface on a circle: of each half edge that touches, three quarters
+/// of the length go to the vertex at its end, one quarter to the other vertex of the edge.
+void add_wetted(const WallWindow& window, V span, const StepArrays& a, const ContourArray& wetted) {
+  const V reach = all(window.reach), zero = all(0);
+  for (int lane = 0; lane < edges_per_group; lane += lanes) {
+    const int i = window.first + lane;
+    const M listed = lanes_of(window.edges, lane);
+    const RefinedEdgeVectors e(i, a);
+    const HalvesAtCircle halves(e, all(window.x), all(window.y), span);
+    const auto length = [&](const NearestOnHalves& half, V dx, V dy) {
+      const M touches = hn::And(listed, half.are_nearer_than(reach));
+      const V squared = hn::Max(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), all(1e-300));
+      return hn::IfThenElse(touches, square_root(squared).root, zero);
+    };
+    const V first = length(halves.first, hn::Sub(e.middle_x, e.x), hn::Sub(e.middle_y, e.y));
+    const V second = length(halves.second, hn::Sub(e.next_x, e.middle_x), hn::Sub(e.next_y, e.middle_y));
+    const V own = hn::MulAdd(all(0.75), first, hn::Mul(all(0.25), second));
+    const V of_next = hn::MulAdd(all(0.25), first, hn::Mul(all(0.75), second));
+    hn::StoreU(hn::Add(load_at(wetted + i), own), D(), wetted + i);
+    hn::StoreU(hn::Add(load_at(wetted + i + 1), of_next), D(), wetted + i + 1);
+  }
+}
+
+/// Edges reach one vertex before the contour and `beyond` vertices behind it: adds what they gave there to
+/// the vertices of the other end.
+HWY_INLINE void fold_ends(const ContourArray& p, int n, int beyond = 2) {
+  p[n - 1] += std::exchange(p[-1], 0);
+  for (int i = 0; i < beyond; ++i) p[i] += std::exchange(p[n + i], 0);
+}
+HWY_INLINE void fold_ends(const ContourPair& p, int n, int beyond = 2) {
+  fold_ends(p.x, n, beyond);
+  fold_ends(p.y, n, beyond);
+}
+
+/// Which vertices a circle holds, and how.
+enum class Films { none, those_of_one_circle, those_of_several };
+
+/// What a circle has to do with the vertices of a vector.
+struct CircleAtVertices {
+  V normal_x, normal_y;
+  V inverse;   ///< of the distance from the centre
+  V distance;  ///< from the surface
+
+  HWY_INLINE CircleAtVertices(const HoldingCircle& circle, std::ptrdiff_t i, const StepArrays& a) {
+    const Pair place = load(a.position, i);
+    const V dx = hn::Sub(place.x, all(circle.x)), dy = hn::Sub(place.y, all(circle.y));
+    const Root root = square_root(hn::Max(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), all(1e-300)));
+    inverse = root.inverse;
+    normal_x = hn::Mul(dx, inverse);
+    normal_y = hn::Mul(dy, inverse);
+    distance = hn::Sub(root.root, all(circle.radius));
+  }
+};
+
+/// Adds to the pushes of a group what one circle pushes and holds there. With films, what is added is kept
+/// apart, until all circles have seen what self-contact pushes. Returns what the wall took. It is
+/// WallFriction::follow() for a vector of vertices; dp_step.test.cpp compares them.
+/// @param pushes  does the circle push vertices of the group by itself?
+template <bool wets, Films films, bool pushes = true>
+HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCircles& walls,
+                        const WallGrip& grip, const StepArrays& a) {
+  constexpr bool has_films = films != Films::none;
+  const V radius = all(circle.radius), stiffness = all(grip.stiffness);
+  V taken = all(0);
+  const unsigned held_before = walls.holds[entry];
+  unsigned holds = 0;
+  for (int lane = 0; lane < edges_per_group; lane += lanes) {
+    const std::ptrdiff_t i = std::ptrdiff_t{walls.groups[entry]} * edges_per_group + lane;
+    const std::ptrdiff_t k = std::ptrdiff_t{entry} * edges_per_group + lane;
+    const V push_x = pushes ? load(walls.push.x + i) : all(0),
+            push_y = pushes ? load(walls.push.y + i) : all(0);
+    const M is_known = lanes_of(static_cast<int>(held_before), lane);
+    M touched_or_held = hn::Or(is_known, hn::Or(hn::Ne(push_x, all(0)), hn::Ne(push_y, all(0))));
+    // The nearest point of a half edge may be its end, so that the wall does not push all that it wets.
+    if constexpr (wets && pushes)
+      touched_or_held = hn::Or(touched_or_held, hn::Gt(load(walls.wetted + i), all(0)));
+    V self_x = all(0), self_y = all(0);
+    if constexpr (has_films) {
+      self_x = load(a.push.x + i);
+      self_y = load(a.push.y + i);
+      touched_or_held = hn::Or(touched_or_held, hn::Or(hn::Ne(self_x, all(0)), hn::Ne(self_y, all(0))));
+    }
+    if (hn::AllFalse(D(), touched_or_held)) {
+      if constexpr (has_films) {
+        store(all(0), walls.added_x + k);
+        store(all(0), walls.added_y + k);
+      }
+      continue;
+    }
+    const CircleAtVertices at(circle, i, a);
+    // At the end of a contact, the last middle pulls the vertex beyond it a little towards the wall
+    // (refined_far is negative); that does not count as a push.
+    V push = hn::Max(hn::MulAdd(push_x, at.normal_x, hn::Mul(push_y, at.normal_y)), all(0));
+    if constexpr (has_films) {
+      M counts = hn::Lt(at.distance, all(grip.film_reach));
+      if constexpr (films == Films::those_of_several)
+        counts = hn::And(counts, hn::Le(at.distance, load(walls.nearest + i)));
+      const V by_self = hn::MulAdd(self_x, at.normal_x, hn::Mul(self_y, at.normal_y));
+      counts = hn::And(counts, hn::Ge(hn::Abs(by_self), all(grip.least_film_push)));
+      push = hn::Max(hn::Add(push, hn::IfThenElseZero(counts, by_self)), all(0));
+    }
+    V bears = hn::Mul(all(grip.coefficient), push);
+    if constexpr (wets && pushes) bears = hn::MulAdd(all(grip.traction), load(walls.wetted + i), bears);
+    const M touches = hn::Gt(bears, all(0));
+
+    // The wall's point next to the vertex is radius * normal. Slips count along (-normal_y, normal_x).
+    const V anchor_x = load(walls.anchor_x + k), anchor_y = load(walls.anchor_y + k);
+    const V slip =
+        hn::IfThenElseZero(is_known, hn::MulSub(at.normal_y, anchor_x, hn::Mul(at.normal_x, anchor_y)));
+    const V spring = hn::Mul(stiffness, hn::Mul(radius, at.inverse));
+    const V most = hn::Mul(bears, reciprocal(spring));
+    const V held = hn::Min(hn::Max(slip, hn::Neg(most)), most);
+    const M rests = hn::And(is_known, hn::Eq(held, slip));
+    store(hn::IfThenElse(rests, anchor_x, hn::MulAdd(radius, at.normal_x, hn::Mul(held, at.normal_y))),
+          walls.anchor_x + k);
+    store(hn::IfThenElse(rests, anchor_y, hn::MulSub(radius, at.normal_y, hn::Mul(held, at.normal_x))),
+          walls.anchor_y + k);
+    // What the wall takes, by the trapezoidal rule of the integrator: the old force acts on half of the way,
+    // the new one on the other half. Where the vertex has left the wall, the spring's energy is lost.
+    const V before = load(walls.slip + k);
+    const V lost =
+        hn::IfThenElse(touches, hn::Mul(hn::Add(before, held), hn::Sub(slip, held)), hn::Mul(before, before));
+    taken = hn::MulAdd(all(0.5), hn::IfThenElseZero(is_known, lost), taken);
+    store(hn::IfThenElseZero(touches, held), walls.slip + k);
+    holds |= bits_of(touches) << lane;
+
+    const V pull = hn::Mul(spring, held);
+    const V added_x = hn::MulAdd(pull, at.normal_y, push_x),
+            added_y = hn::NegMulAdd(pull, at.normal_x, push_y);
+    if constexpr (has_films) {
+      store(added_x, walls.added_x + k);
+      store(added_y, walls.added_y + k);
+    } else {
+      const Pair others = load(a.push, i);
+      store({hn::Add(others.x, added_x), hn::Add(others.y, added_y)}, a.push, i);
+    }
+  }
+  walls.holds[entry] = static_cast<std::uint8_t>(holds);
+  return taken;
+}
+
+/// Puts together what one circle pushes the vertices, and what of them lies on it.
+template <bool wets>
+HWY_INLINE void gather_circle(int n, const HoldingCircle& circle, const HoldingCircles& walls, V span,
+                              const StepArrays& a) {
+  for (int k = circle.first_group; k < circle.end_own_group; ++k)
+    gather_pushes(walls.groups[k], circle.pushes, walls.push);
+  if constexpr (wets) {
+    for (int k = circle.first_group; k < circle.end_own_group; ++k)
+      for (int lane = 0; lane < edges_per_group; lane += lanes)
+        store(all(0), walls.wetted + std::ptrdiff_t{walls.groups[k]} * edges_per_group + lane);
+    for (int k = circle.first_window; k < circle.end_window; ++k)
+      add_wetted(walls.windows[k], span, a, walls.wetted);
+  }
+  if (circle.wraps) {
+    fold_ends(walls.push, n);
+    if constexpr (wets) fold_ends(walls.wetted, n);
+  }
+}
+
+template <bool wets>
+double push_off_and_hold(int n, const HoldingCircles& given, const WallGrip& grip, const Contact& contact,
+                         const StepArrays& a) {
+  const HoldingCircles walls = given;
+  const V span = all(contact.span), stiffness = all(contact.stiffness);
+  const int num_groups = (n + edges_per_group - 1) / edges_per_group;
+  V taken = all(0);
+  for (const HoldingCircle* circle = walls.all; circle != walls.all + walls.num; ++circle) {
+    for (int k = circle->first_window; k < circle->end_window; ++k)
+      push_window<false>(walls.windows[k], span, stiffness, circle->pushes, a);
+    gather_circle<wets>(n, *circle, walls, span, a);
+    for (int k = circle->first_group; k < circle->end_own_group; ++k)
+      if (walls.groups[k] >= 0 && walls.groups[k] < num_groups)
+        taken = hn::Add(taken, hold_group<wets, Films::none>(*circle, k, walls, grip, a));
+  }
+  return sum(taken);
+}
+
+/// Finds how far the vertices are from the nearest of the circles that push the droplet.
+void find_nearest(int num_groups, const HoldingCircles& walls, const StepArrays& a) {
+  const auto visit = [&](auto what) CLOG_INLINE {
+    for (std::size_t c = 0; c < walls.num; ++c)
+      for (int k = walls.all[c].first_group; k < walls.all[c].end_group; ++k)
+        if (walls.touches[c] != 0 && walls.groups[k] >= 0 && walls.groups[k] < num_groups)
+          for (int lane = 0; lane < edges_per_group; lane += lanes)
+            what(walls.all[c], std::ptrdiff_t{walls.groups[k]} * edges_per_group + lane);
+  };
+  visit([&](const HoldingCircle&, std::ptrdiff_t i) CLOG_INLINE { store(all(1e300), walls.nearest + i); });
+  visit([&](const HoldingCircle& circle, std::ptrdiff_t i) CLOG_INLINE {
+    store(hn::Min(load(walls.nearest + i), CircleAtVertices(circle, i, a).distance), walls.nearest + i);
+  });
+}
+
+/// Adds what circles push and hold to what self-contact pushes.
+/// @param films  of all circles that push the droplet
+template <bool wets, Films films>
+double hold_with_films(int n, const HoldingCircles& walls, const WallGrip& grip, V span,
+                       const StepArrays& a) {
+  const int num_groups = (n + edges_per_group - 1) / edges_per_group;
+  const auto is_inside = [&](int k) { return walls.groups[k] >= 0 && walls.groups[k] < num_groups; };
+  V taken = all(0);
+  for (std::size_t c = 0; c < walls.num; ++c) {
+    const HoldingCircle& circle = walls.all[c];
+    WallGrip own = grip;
+    if (walls.touches[c] == 0) own.film_reach = -1e300;
+    gather_circle<wets>(n, circle, walls, span, a);
+    for (int k = circle.first_group; k < circle.end_own_group; ++k)
+      if (is_inside(k)) taken = hn::Add(taken, hold_group<wets, films>(circle, k, walls, own, a));
+    for (int k = circle.end_own_group; k < circle.end_group; ++k)
+      taken = hn::Add(taken, hold_group<wets, films, false>(circle, k, walls, own, a));
+  }
+  for (std::size_t c = 0; c < walls.num; ++c)
+    for (int k = walls.all[c].first_group; k < walls.all[c].end_group; ++k)
+      for (int lane = 0; is_inside(k) && lane < edges_per_group; lane += lanes) {
+        const std::ptrdiff_t i = std::ptrdiff_t{walls.groups[k]} * edges_per_group + lane;
+        const std::ptrdiff_t from = std::ptrdiff_t{k} * edges_per_group + lane;
+        const Pair push = load(a.push, i);
+        store({hn::Add(push.x, load(walls.added_x + from)), hn::Add(push.y, load(walls.added_y + from))},
+              a.push, i);
+      }
+  return sum(taken);
+}
+
+/// The same where friction acts through films, too (see FilmTouches). The pushes are those of self-contact
+/// alone before.
+template <bool wets>
+double push_off_and_hold_with_films(int n, const HoldingCircles& given, const WallGrip& grip,
+                                    const Contact& contact, const StepArrays& a) {
+  const HoldingCircles walls = given;
+  const V span = all(contact.span), stiffness = all(contact.stiffness);
+  for (std::size_t c = 0; c < walls.num; ++c) {
+    const HoldingCircle& circle = walls.all[c];
+    bool touches = false;
+    for (int k = circle.first_window; k < circle.end_window; ++k)
+      touches |= push_window<false>(walls.windows[k], span, stiffness, circle.pushes, a);
+    walls.touches[c] = touches ? 1 : 0;
+  }
+  if (!walls.are_close) return hold_with_films<wets, Films::those_of_one_circle>(n, walls, grip, span, a);
+  find_nearest((n + edges_per_group - 1) / edges_per_group, walls, a);
+  return hold_with_films<wets, Films::those_of_several>(n, walls, grip, span, a);
+}
+
+}  // namespace clog::kernel::HWY_NAMESPACE
+// NOLINTEND(misc-definitions-in-headers)
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,247 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "clog/core/polygon/contact/self_contacts.hpp"
+#include "clog/core/polygon/contact/wall_contacts.hpp"
+#include "core/polygon/contact/wedge_place.hpp"
+
+/// The step of a deformable polygon as two passes over its vertices, written with vector types and compiled
+/// for several instruction sets. Tests compare it with plain loops (polygon/forces/reference_forces.hpp).
+/// In a pass there is no branch per vertex, no call and no allocation; square roots are
+/// Newton iterations where the instruction set has a first guess for them.
+namespace clog::kernel {
+
+/// Contacts are tested for this many consecutive edges at once, whatever the instruction set.
+inline constexpr int edges_per_group = WallContacts::edges_per_group;
+
+/// An entry for each vertex or edge, the first on a cache line. Valid from [-1] to [n + edges_per_group - 1]:
+/// entries beyond the ends repeat the contour, the passes see to that.
+struct ContourArray {
+  double* first;
+
+  double* operator+(std::ptrdiff_t i) const { return first + i; }
+  double& operator[](std::ptrdiff_t i) const { return first[i]; }
+};
+struct ContourPair {
+  ContourArray x, y;
+};
+struct StepArrays {
+  ContourPair position, velocity;
+  ContourPair tangent;         ///< of the edges
+  ContourArray length;         ///< of the edges
+  ContourPair push;            ///< kick of the vertices by contact
+  ContourPair wetting;         ///< the part of the kick by wetting that has no energy
+  ContourPair grad_x, grad_y;  ///< 6 a times the gradient of the centroid's x, of its y
+  ContourArray rate;           ///< drag rate of a vertex [1/t0], if it differs
+  ContourArray damping, kept;  ///< s and s (1 - h2 r), with the rate; see KickCoefficients
+  ContourPair kicked;          ///< w, if it is wanted; see KickCoefficients
+  ContourPair chord;           ///< between a vertex' neighbours, with an implicit pressure
+};
+
+/// Sums over the edges.
+struct Sums {
+  double area;
+  double perimeter;
+  double moment_x;  ///< of the area, area times its centroid [sigma^3]
+  double moment_y;
+};
+
+/// A kick is what a force does to a vertex' velocity in half a time step: F below is the force times
+/// h/(M/N_v).
+struct InterfaceKick {
+  double line_tension;  ///< tension where the spring is at length 0
+  double spring;        ///< of springs that carry tension
+  double spreading;     ///< of springs along the interface
+  double half_pressure;
+  double vertex_weight;  ///< along +x
+};
+/// A force on the area, spread over the vertices by the gradient of the area's centroid.
+struct AreaForce {
+  double area;                ///< [sigma^2]
+  double centre_x, centre_y;  ///< of the area [sigma]
+  double x, y;                ///< kick, all but the reaction to the springs along the interface
+};
+/// Coefficients of one kick. With r a vertex's drag rate and s = 1/(1 + h1 r),
+///   w = s (v + closing_ratio F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a):
+/// w is the velocity kicked by force and own drag, v' the next velocity once c and a are known (see
+/// Coupling). One kick thereby ends a time step and begins the next. q takes the place of the velocity.
+struct KickCoefficients {
+  double closing_ratio;  ///< h1 / half_step: of the half step that ends a time step to that of the forces
+  double h1, h2;         ///< [t0]
+  double weight;         ///< (h1 + h2) / half_step, h1 / half_step where no time step begins
+  double half_step;      ///< that of the forces [t0]
+  bool keeps_kicked;     ///< is w wanted afterwards?
+  /// Of an implicit pressure: K_a half_step^2/(M/N_v), K_a the area stiffness. The half kick that ends a step
+  /// of another length takes that of the step that begins.
+  double softening = 0;
+};
+/// Which terms a kick has. The combinations are compiled apart.
+struct KickTerms {
+  bool elastic;                     ///< springs that carry tension; otherwise those along the interface
+  bool on_area;                     ///< weight and mean drag act on the area; they are then coupled
+  bool varying_rate;                ///< drag rates are those of the array; otherwise `rate`
+  bool coupled;                     ///< does any force depend on all velocities?
+  bool implicit_pressure;           ///< see Coupling
+  double rate;                      ///< [1/t0]
+  double relative_rate, area_rate;  ///< at which the mean velocities of vertices and area act [1/t0]
+};
+/// Mean velocities, and what they add to those of the vertices.
+///
+/// An implicit pressure follows the area that would be reached if its present acceleration lasted for a time
+/// step: A + dt^2 d^2A/dt^2, with the acceleration by all forces on vertices and area, the added pressure
+/// among them, and by the area's drag; the vertices' own drag and the change of the area's gradient are left
+/// out. That is Newmark's method with beta = 1 for this one mode, while all others move by velocity Verlet:
+/// its frequency omega becomes omega/sqrt(1 + (omega dt)^2), stable for every step. Where the area is not
+/// accelerated, at rest and in steady fall, nothing is added.
+struct Coupling {
+  double mean_x = 0, mean_y = 0;  ///< of the vertices
+  double area_x = 0, area_y = 0;  ///< of the area's centroid
+  double c_x = 0, c_y = 0;
+  double a_x = 0, a_y = 0;   ///< with the force on the area, over 6 a
+  double half_pressure = 0;  ///< that an implicit pressure adds, as a kick
+};
+/// Powers, each for M/N_v = 1.
+struct Power {
+  double drag;                ///< sum r_i v_i^2, the vertices' own share of the dissipation
+  double spreading;           ///< sum F_i v_i of what spreads vertices along the interface, F_i the kick
+  double spread_x, spread_y;  ///< sum F_i
+};
+/// A circle and the edges_per_group edges from `first` on, those that may touch it as bits.
+struct WallWindow {
+  double x, y;   ///< of the circle's centre [sigma]
+  double reach;  ///< radius + range [sigma]
+  int first;
+  std::uint8_t edges;
+};
+/// What edges give their vertices, as windows store it: six arrays, of x and then of y what edges give their
+/// first vertex, their second one, and each of the two beyond them. Zero where no window is.
+struct WindowPushArrays {
+  double* first;  ///< entry of edge 0; readable from two groups before to two groups behind the windows
+  std::ptrdiff_t stride;
+};
+inline constexpr int num_window_push_arrays = 6;
+/// How circles push the contour off; see WallPlan.
+struct WallWindows {
+  const WallWindow* all;
+  int num_own;  ///< the first of them share no edge with each other
+  int num_all;
+  const int* groups;  ///< of vertices that windows may push; -1 and the one behind the last are the other
+                      ///< end's
+  int num_groups;
+  WindowPushArrays pushes;
+};
+/// A circle that pushes vertices and holds them by friction.
+struct HoldingCircle {
+  double x, y, radius;  ///< [sigma]
+  int first_window, end_window;
+  int first_group, end_group;  ///< of vertices that it may push, by itself or through films
+  int end_own_group;           ///< behind the groups that it may push by itself, which come first
+  bool wraps;                  ///< does it push vertices -1, n or n + 1, which are the other end's?
+  WindowPushArrays pushes;     ///< of its own
+};
+/// How circles push the contour off and hold it; see WallHold. Every group of vertices that a circle may push
+/// has edges_per_group entries of anchor_x, anchor_y, slip, and one of holds.
+struct HoldingCircles {
+  const HoldingCircle* all;
+  std::size_t num;
+  const WallWindow* windows;
+  const int* groups;
+  double *anchor_x, *anchor_y;  ///< from the circle's centre [sigma]
+  double* slip;                 ///< way along the wall from the anchor to what it holds [sigma]
+  std::uint8_t* holds;          ///< vertices that have an anchor, as bits
+  ContourPair push;             ///< on the vertices, by one circle; memory
+  ContourArray wetted;          ///< length of the interface on one circle [sigma]; memory
+  double *added_x, *added_y;    ///< what circles add to self-contact, an entry for each anchor; memory
+  ContourArray nearest;   ///< distance of the vertices from the nearest circle that pushes [sigma]; memory
+  std::uint8_t* touches;  ///< does a circle push the droplet? memory
+  bool are_close;         ///< may a vertex be in the film's reach of two circles?
+};
+/// What walls bear, as kicks.
+struct WallGrip {
+  double coefficient;      ///< of friction
+  double traction;         ///< for each sigma of wetted length
+  double stiffness;        ///< k_t of the springs between interface and wall
+  double film_reach;       ///< of friction through films, from the surface; 0: there is none [sigma]
+  double least_film_push;  ///< less of self-contact is none
+};
+struct Contact {
+  double stiffness;   ///< k_c as a kick
+  double span;        ///< of walls; 1: edges, 0: their first vertices alone
+  double self_range;  ///< distance below which the interface repels itself [sigma]
+};
+/// What may be nearest to the vertices.
+struct NearWalls {
+  const WallContacts::Item* items;  ///< circles, by group
+  std::size_t num_items;
+  double range;   ///< of the items' reach [sigma]
+  bool alike;     ///< have all circles this radius?
+  double radius;  ///< [sigma]
+  const WedgePlace* wedges;
+  std::size_t num_wedges;
+};
+struct NearWallDrag {
+  double shortest;  ///< distances count as no less [sigma]
+  double relative, near_wall, exponent;
+  double far_rate;  ///< [1/t0]
+};
+
+/// What the checks between steps need to know.
+struct Survey {
+  double perimeter, shortest;    ///< of the edges [sigma]
+  double speed, relative_speed;  ///< of the fastest vertex, and relative to their mean [sqrt(sigma g)]
+  double moved, moved_relative;  ///< farthest from where vertices were, see StepKernel::survey [sigma]
+};
+
+/// One instruction set's versions of the passes.
+struct StepKernel {
+  /// Edges and sums over them.
+  Sums (*measure)(int n, const StepArrays& arrays);
+  /// @param walls, self  where vertices were, all x then all y, the latter relative to their mean; may be
+  /// null
+  Survey (*survey)(int n, const double* walls, const double* self, const StepArrays& arrays);
+  /// How far every edge of every item is from contact, edges_per_group for each; negative where it is in
+  /// contact [sigma]. Returns the least, at most 0.
+  double (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
+                        const StepArrays& arrays, double* gaps);
+  /// The edges of one item with a gap of at most `way`, as bits.
+  std::uint8_t (*edges_within)(const double* gaps, double way);
+  /// How far every item's nearest pair is from contact.
+  double (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
+                      const StepArrays& arrays, double* gaps);
+  /// clear_pushes() sets the pushes on all vertices to zero. push() finds those of circles, on the groups of
+  /// vertices that `walls` names, and those of the droplet on itself.
+  void (*clear_pushes)(int n, const StepArrays& arrays);
+  void (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
+               const Contact& contact, const StepArrays& arrays);
+  /// As push(), on all groups; circles also hold by friction what they push. Returns the energy that walls
+  /// took, over k_t [sigma^2].
+  double (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
+                          const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
+                          const StepArrays& arrays);
+  /// Adds the vertices' contact with wedges' surfaces up to `range` [sigma]. Edges
+  /// need not be tested: they meet a wedge's tip first, which is a circle.
+  void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
+                          double stiffness, const StepArrays& arrays);
+  /// rate = far_rate (relative + near_wall (sigma/d)^exponent), d a vertex' distance to the nearest wall; and
+  /// what follows from it for a kick.
+  void (*near_wall_rates)(int n, const NearWalls& walls, const NearWallDrag& drag,
+                          const KickCoefficients& coefficients, const StepArrays& arrays);
+  /// First pass: forces and velocities.
+  Coupling (*kick)(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
+                   const KickCoefficients& coefficients, const StepArrays& arrays);
+  /// Between the passes, if it is wanted: powers at the end of a time step, of which the kick has kept w.
+  Power (*power)(int n, const KickTerms& terms, const InterfaceKick& interface,
+                 const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays);
+  /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges there. Of the sums the perimeter is
+  /// given for elastic droplets only, and moments where forces act on the area.
+  Sums (*drift)(int n, const KickTerms& terms, const KickCoefficients& coefficients, const Coupling& coupling,
+                double dt, const StepArrays& arrays);
+};
+
+/// The kernel for these terms, of the widest instruction set of this processor or of the one that
+/// use_instruction_set() asks for.
+StepKernel step_kernel(const KickTerms& terms);
+
+}  // namespace clog::kernel

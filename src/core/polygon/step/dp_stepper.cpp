@@ -1,0 +1,307 @@
+#include "dp_stepper.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "clog/core/droplet/time_step.hpp"
+#include "clog/core/tools/units.hpp"
+#include "step_input.hpp"
+
+namespace clog {
+
+namespace {
+
+/// The rate of the drag far from walls [1/t0].
+double far_rate_of(const RunParameters& run) { return 1 / relaxation_time(run); }
+
+/// See kernel::WallGrip.
+double film_reach_of(const RunParameters& run, const DpForces& forces) {
+  return run.dp.film_friction == FilmFriction::on
+             ? film_reach(forces.walls().range(), forces.self_contacts().range())
+             : 0;
+}
+
+kernel::KickTerms with_implicit_pressure(kernel::KickTerms terms) {
+  terms.implicit_pressure = true;
+  return terms;
+}
+
+/// Surveys are so frequent that vertices cannot move far in between, which keeps the lists short.
+int steps_between_surveys(double time_step) {
+  constexpr double longest = 0.04;  // [t0]
+  int steps = most_steps_per_survey;
+  while (steps > 1 && steps * time_step > longest) steps /= 2;
+  return steps;
+}
+
+/// The pressure may be implicit if the drag on vertices that move relative to their mean damps what that
+/// feeds into the motion of a droplet that swings (docs/notes/2026-11-26-time-step.md).
+Pressure most_pressure(const RunParameters& run) {
+  constexpr double most_steps = 32;
+  const bool is_damped =
+      relaxation_time(run) <= most_steps * run.time_step.value() * std::min(1.0, run.drag.relative);
+  return is_damped && run.drag.near_wall == 0 ? Pressure::implicit : Pressure::present;
+}
+
+}  // namespace
+
+DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, DpForces& forces)
+    : run_(run),
+      forces_(&forces),
+      n_(*run.dp.vertices),
+      holds_circles_(forces.friction().is_on() && run.dp.wall_contact == WallContact::edge &&
+                     obstacles.wedges().empty()),
+      steps_per_survey_(steps_between_surveys(run.time_step.value())),
+      most_pressure_(most_pressure(run)),
+      terms_(kick_terms(run, far_rate_of(run))),
+      kernel_(kernel::step_kernel(terms_)),
+      implicit_kernel_(kernel::step_kernel(with_implicit_pressure(terms_))),
+      memory_(n_),
+      near_{.plan = WallPlan(n_), .hold = WallHold(n_, forces.walls().range(), film_reach_of(run, forces))},
+      wetting_(n_),
+      friction_{.touches = WallTouches(run, obstacles), .force = Eigen::ArrayXd::Zero(Eigen::Index{2} * n_)} {
+}
+
+void DpStepper::start_afresh(const DropletState& state) {
+  forces_->forget_all_contacts();
+  forces_->update_contacts(state, state.possible_travel(steps_per_survey_ * run_.time_step.value()));
+}
+
+std::int64_t DpStepper::move(DropletState& state, int num_steps, Droplet::Work* work) {
+  std::int64_t num_taken = 0;
+  load(state);
+  for (int done = 0; done < num_steps; done += steps_per_survey_) {
+    const kernel::Survey now = survey();
+    // Its contact lists would take all memory. The run sees it at its next check.
+    if (!(now.perimeter < burst_perimeter)) break;
+    const int steps = std::min(steps_per_survey_, num_steps - done);
+    prepare_contacts(state, now, steps * run_.time_step.value(), work);
+    const StiffModes modes = stiff_modes(run_.dp, *run_.wall_stiffness, now.perimeter, now.shortest);
+    const Steps stable = stable_steps(modes, steps, run_.time_step.value(), most_pressure_);
+    advance(state, stable, work);
+    num_taken += stable.num;
+  }
+  finish(state, work);
+  return num_taken;
+}
+
+void DpStepper::move(DropletState& state, std::span<const Steps> all, Droplet::Work* work) {
+  load(state);
+  for (const Steps& steps : all) {
+    prepare_contacts(state, survey(), steps.num * steps.length, work);
+    advance(state, steps, work);
+  }
+  finish(state, work);
+}
+
+/// Copies the droplet's positions and velocities into the arrays of the step.
+void DpStepper::load(DropletState& state) {
+  if (state.recentre().any()) forces_->forget_contacts();
+  const kernel::StepArrays& a = memory_.arrays();
+  memory_.load(state.position, a.position);
+  memory_.load(state.velocity, a.velocity);
+  near_.wedges = wedges_in(state.frame, forces_->wedges());
+  sums_ = kernel_.measure(n_, a);
+  near_.hold.forget();
+  rates_.steps_left = 0;
+  open_.length = 0;
+}
+
+kernel::Survey DpStepper::survey() const {
+  return kernel_.survey(n_, forces_->walls().reference(), forces_->self_contacts().reference(),
+                        memory_.arrays());
+}
+
+/// Renews the contact lists if they do not hold for this time, and selects from them what may touch.
+void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now, double time,
+                                 Droplet::Work* work) {
+  const kernel::StepArrays& a = memory_.arrays();
+  const Travel travel{.absolute = possible_way(now.speed, time),
+                      .relative = possible_way(now.relative_speed, time)};
+  if (!forces_->contacts_hold(now.moved, now.moved_relative, travel)) {
+    memory_.store(a.position, state.position);
+    memory_.store(a.velocity, state.velocity);
+    forces_->update_contacts(state, travel);
+  }
+  rates_.fastest = now.speed;
+  kernel_.clear_pushes(n_, a);  // the lists may name other groups than before
+  // A contact accelerates the vertices in it, by at most half its depth per step, for a few steps. `travel`
+  // does not include that.
+  constexpr double thrown = 4;
+  const double unforeseen =
+      0.1 * forces_->vertex_diameter() +
+      thrown * near_.contacts.measure(kernel_, contact_as_kick(run_, *forces_, 0), *forces_, a);
+  near_.contacts.keep(kernel_, *forces_, refined_sway * (travel.absolute + unforeseen),
+                      2 * (travel.relative + unforeseen));
+  if (holds_circles_) {
+    const WallHold::Near near{near_.contacts.walls(), near_.contacts.self(), travel.absolute + unforeseen};
+    const double lost = forces_->friction().stiffness() * near_.hold.make(near, a.position, state);
+    if (work != nullptr) work->dissipated += lost;
+  } else {
+    near_.plan.make(near_.contacts.walls());
+  }
+}
+
+/// Leaves the last half kick open: positions are those of the steps' end, velocities those of half a step
+/// before.
+void DpStepper::advance(DropletState& state, const Steps& steps, Droplet::Work* work) {
+  open_.pressure = steps.pressure;
+  for (int step = 0; step < steps.num; ++step) kick_and_drift(state, 0.5 * steps.length, steps.length, work);
+}
+
+/// Makes the last half kick, and copies the droplet back.
+void DpStepper::finish(DropletState& state, Droplet::Work* work) {
+  if (open_.length != 0) kick_and_drift(state, 0.5 * open_.length, 0, work);
+  memory_.store(memory_.arrays().position, state.position);
+  memory_.store(memory_.arrays().velocity, state.velocity);
+  near_.hold.hand_back(state);
+}
+
+/// One force evaluation, the half kicks on its two sides, and the drift to the next one; without a drift only
+/// the first half kick.
+void DpStepper::kick_and_drift(DropletState& state, double half_step, double drift_time,
+                               Droplet::Work* work) {
+  kernel::StepArrays& a = memory_.arrays();
+  const double h_before = 0.5 * open_.length, closing_ratio = h_before / half_step;
+  const bool only_closes = drift_time == 0;
+  const kernel::KickCoefficients coefficients{
+      .closing_ratio = closing_ratio,
+      .h1 = h_before,
+      .h2 = half_step,
+      .weight = closing_ratio + (only_closes ? 0 : 1),
+      .half_step = half_step,
+      .keeps_kicked = only_closes || work != nullptr,
+      .softening = run_.dp.area_stiffness.value() * half_step * half_step / vertex_mass()};
+  const double impulse = half_step / vertex_mass();
+  push_off_everything(state, coefficients, impulse, work);
+  const kernel::InterfaceKick interface =
+      interface_kick(forces_->interface(sums_.area, sums_.perimeter), impulse);
+  const Eigen::Array2d weight{units::droplet_mass * units::gravity, 0};
+  const kernel::AreaForce force = area_force(sums_, impulse * (weight - wetting_.net_spreading));
+  const kernel::StepKernel& kernel = open_.pressure == Pressure::implicit ? implicit_kernel_ : kernel_;
+  const kernel::Coupling coupling = kernel.kick(n_, terms_, interface, force, coefficients, a);
+  if (work != nullptr) {
+    const Droplet::Work now = power(interface, coefficients, coupling);
+    if (open_.length != 0) {
+      work->dissipated += h_before * (open_.power.dissipated + now.dissipated);
+      work->spreading += h_before * (open_.power.spreading + now.spreading);
+    }
+    open_.power = now;
+  }
+  if (only_closes) std::swap(a.velocity, a.kicked);  // w has no second half kick
+  sums_ = kernel.drift(n_, terms_, coefficients, coupling, drift_time, a);
+  open_.length = drift_time;
+}
+
+void DpStepper::push_off_circles(const kernel::Contact& touching, double impulse, Droplet::Work* work) {
+  const std::vector<SelfContacts::Item>& self = near_.contacts.self();
+  if (!holds_circles_) {
+    kernel_.push(n_, near_.plan.windows(), self.data(), self.size(), touching, memory_.arrays());
+    return;
+  }
+  const WallFriction& friction = forces_->friction();
+  const double taken =
+      kernel_.push_and_hold(n_, near_.hold.circles(),
+                            {.coefficient = friction.coefficient(),
+                             .traction = impulse * friction.yield_traction(),
+                             .stiffness = impulse * friction.stiffness(),
+                             .film_reach = near_.hold.film_reach(),
+                             .least_film_push = least_film_push * touching.stiffness * touching.self_range},
+                            self.data(), self.size(), touching, memory_.arrays());
+  if (work != nullptr) work->dissipated += friction.stiffness() * taken;
+}
+
+void DpStepper::push_off_everything(DropletState& state, const kernel::KickCoefficients& coefficients,
+                                    double impulse, Droplet::Work* work) {
+  const kernel::Contact touching = contact_as_kick(run_, *forces_, impulse);
+  const std::vector<kernel::WedgePlace>& wedges = near_.wedges;
+  const bool touches = !near_.contacts.walls().empty() || !wedges.empty() || !state.anchors.empty();
+  const bool slides = forces_->friction().is_on() && !holds_circles_ && touches;
+  // Whatever these add, to vertices beyond the listed groups too, is gone before the next step.
+  if (!wedges.empty() || forces_->wetted_walls().is_on() || slides || friction_.has_pushed)
+    kernel_.clear_pushes(n_, memory_.arrays());
+  friction_.has_pushed = slides;
+  push_off_circles(touching, impulse, work);
+  kernel_.push_off_wedges(n_, wedges.data(), wedges.size(), forces_->walls().range(), touching.stiffness,
+                          memory_.arrays());
+  if (forces_->wetted_walls().is_on()) add_wetting(state, impulse, work);
+  if (slides) hold_by_friction(state, impulse, work);
+  if (terms_.varying_rate) renew_rates(coefficients);
+}
+
+/// The near-wall drag, if it is not yet known (see most_steps_per_rate).
+void DpStepper::renew_rates(const kernel::KickCoefficients& coefficients) {
+  if (rates_.steps_left > 0 && coefficients.h1 == rates_.h1 && coefficients.h2 == rates_.h2) {
+    --rates_.steps_left;
+    return;
+  }
+  const double way = rates_.fastest * 2 * coefficients.half_step;  // of the fastest vertex in a step
+  const double steps = 1 + farthest_way_per_rate * run_.drag.near_wall_cutoff / way;
+  rates_.steps_left = static_cast<int>(std::min(most_steps_per_rate, steps)) - 1;
+  rates_.h1 = coefficients.h1;
+  rates_.h2 = coefficients.h2;
+  const WallContacts& nearest = forces_->nearest_walls();
+  kernel_.near_wall_rates(n_,
+                          {.items = nearest.items().data(),
+                           .num_items = nearest.items().size(),
+                           .range = nearest.range(),
+                           .alike = nearest.radii_are_equal(),
+                           .radius = nearest.largest_radius(),
+                           .wedges = near_.wedges.data(),
+                           .num_wedges = near_.wedges.size()},
+                          {.shortest = run_.drag.near_wall_cutoff,
+                           .relative = run_.drag.relative,
+                           .near_wall = run_.drag.near_wall,
+                           .exponent = run_.drag.near_wall_exponent,
+                           .far_rate = far_rate_of(run_)},
+                          coefficients, memory_.arrays());
+}
+
+void DpStepper::add_wetting(DropletState& state, double impulse, Droplet::Work* work) {
+  const kernel::StepArrays& a = memory_.arrays();
+  for (const int i : wetting_.vertices) a.wetting.x[i] = a.wetting.y[i] = 0;
+  const WallYield yield = forces_->wetted_walls().follow_and_find_forces(
+      {n_, a.position.x.first, a.position.y.first}, state.frame, state.anchors, wetting_);
+  if (work != nullptr) work->dissipated += yield.dissipated;
+  for (const int i : wetting_.vertices) {
+    a.wetting.x[i] = impulse * wetting_.spreading[i];
+    a.wetting.y[i] = impulse * wetting_.spreading[n_ + i];
+    a.push.x[i] += impulse * wetting_.gradient[i] + a.wetting.x[i];
+    a.push.y[i] += impulse * wetting_.gradient[n_ + i] + a.wetting.y[i];
+  }
+}
+
+/// Walls yield where they have to, and hold the vertices by what they bear.
+void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::Work* work) {
+  const kernel::StepArrays& a = memory_.arrays();
+  const std::vector<WallTouch>& touches =
+      friction_.touches.find({n_, a.position.x.first, a.position.y.first}, state.frame,
+                             near_.contacts.walls(), forces_->self_contacts());
+  const WallYield yield = forces_->friction().follow(state, touches, Purpose::motion,
+                                                     friction_.touches.known_anchors(), &friction_.force);
+  if (work != nullptr) work->dissipated += yield.dissipated;
+  for (const WallAnchor& anchor : state.anchors) {  // if a vertex has two, the first adds both forces
+    const Eigen::Index x = anchor.holder, y = n_ + x;
+    a.push.x[x] += impulse * std::exchange(friction_.force[x], 0.0);
+    a.push.y[x] += impulse * std::exchange(friction_.force[y], 0.0);
+  }
+}
+
+double DpStepper::vertex_mass() const { return run_.dp.inertia * units::droplet_mass / n_; }
+
+/// The power of the drag and of the springs along the interface at the end of a time step.
+Droplet::Work DpStepper::power(const kernel::InterfaceKick& interface,
+                               const kernel::KickCoefficients& coefficients,
+                               const kernel::Coupling& coupling) const {
+  const kernel::Power vertices =
+      kernel_.power(n_, terms_, interface, coefficients, coupling, memory_.arrays());
+  const double mean2 = coupling.mean_x * coupling.mean_x + coupling.mean_y * coupling.mean_y;
+  const double area2 = coupling.area_x * coupling.area_x + coupling.area_y * coupling.area_y;
+  const double reaction = vertices.spread_x * coupling.area_x + vertices.spread_y * coupling.area_y;
+  return {.dissipated = vertex_mass() *
+                        (vertices.drag + n_ * (terms_.area_rate * area2 - terms_.relative_rate * mean2)),
+          .spreading = vertex_mass() / coefficients.half_step * (vertices.spreading - reaction)};
+}
+
+}  // namespace clog

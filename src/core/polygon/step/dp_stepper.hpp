@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "clog/core/droplet/droplet.hpp"
+#include "clog/core/polygon/contact/wall_touches.hpp"
+#include "clog/core/polygon/forces/dp_forces.hpp"
+#include "clog/core/polygon/forces/stability.hpp"
+#include "dp_step_kernel.hpp"
+#include "near_contacts.hpp"
+#include "step_memory.hpp"
+#include "wall_hold.hpp"
+#include "wall_plan.hpp"
+
+namespace clog {
+
+/// Contacts, speeds and stability are surveyed once in at most so many steps.
+inline constexpr int most_steps_per_survey = 32;
+/// The rates of the near-wall drag are kept for at most so many steps, in which no vertex moves by more than
+/// this part of the smallest distance (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
+inline constexpr double most_steps_per_rate = 4, farthest_way_per_rate = 0.2;
+
+/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls a droplet is its state
+/// and nothing else.
+class DpStepper {
+ public:
+  /// @param run        resolved parameters
+  /// @param obstacles  must outlive this object
+  /// @param forces     of the same run, whose contact lists are renewed as need be; must outlive this object
+  DpStepper(const RunParameters& run, const ObstacleArray& obstacles, DpForces& forces);
+
+  /// Makes the contact lists of a droplet anew.
+  void start_afresh(const DropletState& state);
+  /// Moves a droplet by `num_steps` time steps of the run, in shorter ones where they would not be stable; no
+  /// further if it bursts. Returns the number of steps taken.
+  /// @param work  if not null, what drag and springs do is added to it
+  std::int64_t move(DropletState& state, int num_steps, Droplet::Work* work);
+  /// The same by these steps, whatever the run's time step and the bounds of stability are. What may touch is
+  /// surveyed before each entry. An implicit pressure does not go with near-wall drag.
+  void move(DropletState& state, std::span<const Steps> all, Droplet::Work* work);
+
+ private:
+  /// What may touch the droplet before the next survey.
+  struct Near {
+    NearContacts contacts{};
+    WallPlan plan;                             // without holds_circles_
+    WallHold hold;                             // with holds_circles_
+    std::vector<kernel::WedgePlace> wedges{};  // in the droplet's frame
+  };
+  /// Friction on vertices, without holds_circles_.
+  struct VertexFriction {
+    WallTouches touches;
+    Eigen::ArrayXd force;     // all x then all y; zero between steps
+    bool has_pushed = false;  // in the last step
+  };
+  struct KeptRates {
+    double fastest = 0;  // speed of a vertex at the last survey [sqrt(sigma g)]
+    int steps_left = 0;  // with the present rates
+    double h1 = 0, h2 = 0;
+  };
+  /// The step whose last half kick is to come.
+  struct OpenStep {
+    double length = 0;  // 0: there is none
+    Pressure pressure = Pressure::present;
+    Droplet::Work power;  // at its beginning
+  };
+  RunParameters run_;
+  DpForces* forces_;
+  int n_;
+  bool holds_circles_;  // does friction act, and only at edges that meet circles?
+  int steps_per_survey_;
+  Pressure most_pressure_;
+  kernel::KickTerms terms_;
+  kernel::StepKernel kernel_, implicit_kernel_;  // the latter with an implicit pressure
+  StepMemory memory_;
+  kernel::Sums sums_{};
+  Near near_;
+  WettedWalls::Forces wetting_;
+  VertexFriction friction_;
+  KeptRates rates_;
+  OpenStep open_;
+
+  void load(DropletState& state);
+  kernel::Survey survey() const;
+  void prepare_contacts(DropletState& state, const kernel::Survey& now, double time, Droplet::Work* work);
+  void advance(DropletState& state, const Steps& steps, Droplet::Work* work);
+  void finish(DropletState& state, Droplet::Work* work);
+  void kick_and_drift(DropletState& state, double half_step, double drift_time, Droplet::Work* work);
+  void push_off_circles(const kernel::Contact& touching, double impulse, Droplet::Work* work);
+  void push_off_everything(DropletState& state, const kernel::KickCoefficients& coefficients, double impulse,
+                           Droplet::Work* work);
+  void renew_rates(const kernel::KickCoefficients& coefficients);
+  void add_wetting(DropletState& state, double impulse, Droplet::Work* work);
+  void hold_by_friction(DropletState& state, double impulse, Droplet::Work* work);
+  double vertex_mass() const;  // that resists a change of speed
+  Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,
+                      const kernel::Coupling& coupling) const;
+};
+
+}  // namespace clog

@@ -1,0 +1,36 @@
+#include "near_contacts.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace clog {
+
+double NearContacts::measure(const kernel::StepKernel& kernel, const kernel::Contact& contact,
+                             const DpForces& forces, const kernel::StepArrays& arrays) {
+  const auto& walls = forces.walls().items();
+  const auto& self = forces.self_contacts().items();
+  wall_gaps_.resize(walls.size() * std::size_t{kernel::edges_per_group});
+  self_gaps_.resize(self.size());
+  return -std::min(kernel.circle_gaps(walls.data(), walls.size(), contact, arrays, wall_gaps_.data()),
+                   kernel.pair_gaps(self.data(), self.size(), contact, arrays, self_gaps_.data()));
+}
+
+void NearContacts::keep(const kernel::StepKernel& kernel, const DpForces& forces, double wall_way,
+                        double self_way) {
+  walls_.clear();
+  const auto& walls = forces.walls().items();
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const std::uint8_t edges =
+        kernel.edges_within(&wall_gaps_[k * std::size_t{kernel::edges_per_group}], wall_way);
+    if (edges == 0) continue;
+    walls_.push_back(walls[k]);
+    walls_.back().edges = edges;
+  }
+  self_.clear();
+  const auto& self = forces.self_contacts().items();
+  for (std::size_t k = 0; k < self.size(); ++k)
+    if (self_gaps_[k] <= self_way) self_.push_back(self[k]);
+}
+
+}  // namespace clog

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "clog/core/polygon/forces/dp_forces.hpp"
+#include "dp_step_kernel.hpp"
+
+namespace clog {
+
+/// The entries of the contact lists that may touch before the next look.
+class NearContacts {
+ public:
+  /// Measures how far all that is listed is from contact. Returns how deep the deepest contact is [sigma].
+  double measure(const kernel::StepKernel& kernel, const kernel::Contact& contact, const DpForces& forces,
+                 const kernel::StepArrays& arrays);
+  /// Keeps what measure() found within these distances from contact [sigma].
+  void keep(const kernel::StepKernel& kernel, const DpForces& forces, double wall_way, double self_way);
+
+  const std::vector<WallContacts::Item>& walls() const { return walls_; }
+  const std::vector<SelfContacts::Item>& self() const { return self_; }
+
+ private:
+  std::vector<WallContacts::Item> walls_;
+  std::vector<SelfContacts::Item> self_;
+  std::vector<double> wall_gaps_, self_gaps_;  // of the lists' items
+};
+
+}  // namespace clog

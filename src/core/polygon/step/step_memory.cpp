@@ -1,0 +1,37 @@
+#include "step_memory.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace clog {
+
+StepMemory::StepMemory(int num_vertices) : n_(num_vertices) {
+  // Every array on a cache line, with room for an entry before and a group behind it.
+  constexpr int line = 8;
+  const int stride = (n_ + line - 1) / line * line + 3 * line;
+  memory_ = aligned_zeros(sizeof arrays_ / sizeof(kernel::ContourArray) * static_cast<std::size_t>(stride));
+  double* next = memory_.get() + line - stride;
+  const auto array = [&]() -> kernel::ContourArray { return {next += stride}; };
+  const auto pair = [&]() -> kernel::ContourPair { return {array(), array()}; };
+  arrays_ = {pair(), pair(),  pair(),  array(), pair(), pair(), pair(),
+             pair(), array(), array(), array(), pair(), pair()};
+  // Edges of the last group that do not exist are divided by as well.
+  std::fill_n(arrays_.length.first, stride - line, 1.0);
+}
+
+void StepMemory::load(const Eigen::ArrayXd& from, const kernel::ContourPair& to) const {
+  const double* source = from.data();
+  for (const kernel::ContourArray& array : {to.x, to.y}) {
+    std::copy_n(source, n_, array.first);
+    array[-1] = array[n_ - 1];
+    std::copy_n(array.first, kernel::edges_per_group, array + n_);
+    source += n_;
+  }
+}
+
+void StepMemory::store(const kernel::ContourPair& from, Eigen::ArrayXd& to) const {
+  std::copy_n(from.x.first, n_, to.data());
+  std::copy_n(from.y.first, n_, to.data() + n_);
+}
+
+}  // namespace clog

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "aligned_memory.hpp"
+#include "clog/core/polygon/contact/wall_contacts.hpp"
+#include "dp_step_kernel.hpp"
+
+namespace clog {
+
+/// How circles push a contour off until the next make(). Each window (see list_windows()) stores what its
+/// edges give their vertices; afterwards these are added up once for each vertex. An edge that may touch two
+/// circles is in two windows: the second adds to what the first has stored.
+class WallPlan {
+ public:
+  explicit WallPlan(int num_vertices);
+  /// @param near  circles and edges that may touch, one circle after another, each with its groups in their
+  /// order
+  void make(const std::vector<WallContacts::Item>& near);
+  /// Valid until the next make().
+  const kernel::WallWindows& windows() const { return windows_; }
+
+ private:
+  int num_groups_;  // of edges
+  hwy::AlignedFreeUniquePtr<double[]> memory_;
+  std::vector<kernel::WallWindow> listed_, all_, sharing_;
+  std::vector<std::uint8_t> is_taken_;   // edges, by a window
+  std::vector<std::uint8_t> is_pushed_;  // groups of vertices, the first is the one before the contour
+  std::vector<int> groups_;
+  kernel::WallWindows windows_{};
+
+  void clear_pushes();
+  void add(const kernel::WallWindow& window);
+  void find_groups();
+};
+
+}  // namespace clog

@@ -1,0 +1,88 @@
+#include <functional>
+#include <string>
+
+#include "clog/cli/obstacle_file.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/console/signals.hpp"
+#include "clog/console/streams.hpp"
+#include "clog/core/run/droplet_run.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/results/stored_sweep.hpp"
+#include "clog/sweep/plan.hpp"
+#include "clog/sweep/settings.hpp"
+#include "clogrun_commands.hpp"
+
+namespace clog::programs {
+namespace {
+
+/// Everything that can be wrong is found before anything is computed or written.
+/// @param config  printed by --dry-run
+/// @param begin  called unless there is nothing to run
+int follow_run(const cli::CommandLine& line, const RunParameters& parameters, const std::string& config,
+               const std::function<void(const DropletRun&)>& begin) {
+  const std::string output = line.get("output");
+  const auto often = intervals(line, *parameters.time_step);
+  store::refuse_unwritable(output);
+  if (line.has("write-obstacles")) store::refuse_unwritable(line.get("write-obstacles"));
+
+  single_run::RecordedRun watched(DropletRun(parameters), often);
+  if (line.has("dry-run")) return single_run::print_preview(config, watched.measure_cost());
+  begin(watched.run());
+  console::catch_stop_signals();
+  watched.follow();
+  store::write_trajectory(output, watched.trajectory(sweep::describe(parameters), cli::origin(line)));
+  return report(line, watched);
+}
+
+void say_what_is_coarse(const RunParameters& run) {
+  constexpr int fine = 128;
+  if (run.model == Model::dp && *run.dp.vertices < fine)
+    console::say("vertices=" + std::to_string(*run.dp.vertices) +
+                 " may clog where 128 and more pass (corners of the polygon catch on the wedges' tips); use "
+                 "vertices=128 or more");
+}
+
+/// The row says all that there is to say of the run.
+void refuse_keys(const cli::CommandLine& line) {
+  for (const sweep::Key& key : sweep::keys())
+    if (line.has(key.name))
+      throw Error("clogrun replay takes its parameters from the row, " + key.name +
+                  " contradicts it; leave it out, or use clogrun array");
+}
+
+}  // namespace
+
+int clogrun_array(cli::CommandLine& line) {
+  const Scene* scene = line.settings().scene();
+  if (scene && scene->finding != Finding::clogging_length)
+    throw Error("obstacle-layout=" + line.settings().text("obstacle-layout") + " is no array; use clogrun " +
+                (scene->finding == Finding::sag ? "sag" : "channel"));
+  const RunParameters parameters = sweep::single_run(line.settings());
+  return follow_run(line, parameters, line.settings().to_config(), [&](const DropletRun& run) {
+    if (line.has("write-obstacles"))
+      cli::write_obstacles(line.get("write-obstacles"), run.obstacles().obstacles());
+    say_what_is_unproven(sweep::Plan(line.settings()));
+  });
+}
+
+int clogrun_channel(cli::CommandLine& line) {
+  refuse_options(line, "channel", {"write-obstacles"});
+  const RunParameters parameters = sweep::single_run(line.settings());
+  return follow_run(line, parameters, line.settings().to_config(), [&](const DropletRun&) {
+    say_what_is_unproven(sweep::Plan(line.settings()));
+    say_what_is_coarse(parameters);
+  });
+}
+
+int clogrun_replay(cli::CommandLine& line) {
+  refuse_options(line, "replay", {"write-obstacles", "seed"});
+  refuse_keys(line);
+  if (!line.has("file") || !line.has("task"))
+    throw Error("missing sweep file or task; try clogrun replay sweep.h5 0 --output run.h5");
+  const store::SweepFile file = results::read_with_caution(line.get("file"));
+  sweep::RunRow row = results::replayable_row(file, line.get("task"));
+  if (line.has("to-rest")) row.parameters.clog_detection = ClogDetection::threshold;
+  return follow_run(line, row.parameters, "", [](const DropletRun&) {});
+}
+
+}  // namespace clog::programs

@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "clog/console/build_info.hpp"
+#include "clog/console/json_text.hpp"
+#include "clog/console/printable.hpp"
+#include "clog/results/group_table.hpp"
+#include "clog/results/stored_sweep.hpp"
+#include "clog/results/usual_parameters.hpp"
+#include "clog/sweep/schema_json.hpp"
+#include "result_columns.hpp"
+#include "value_json.hpp"
+
+namespace clog::results {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json passages_json(const std::vector<Passage>& passages) {
+  Json list = Json::array();
+  for (const Passage& one : passages)
+    list.push_back({{"x", one.x},
+                    {"passed", one.num_passed},
+                    {"stopped", one.num_stopped},
+                    {"lower", one.share.lower},
+                    {"upper", one.share.upper}});
+  return list;
+}
+
+Json scale_json(const LaboratoryScale& scale) {
+  return {{"length_mm", json_of(Value(scale.length))},
+          {"time_s", json_of(Value(scale.time))},
+          {"speed_mm_per_s", json_of(Value(scale.speed))},
+          {"tension_mN_per_m_of_gamma_1", json_of(Value(scale.tension))}};
+}
+
+/// @param with_laboratory  if any of the groups has one
+std::vector<Field> all_fields(const Group& group, bool with_laboratory) {
+  std::vector<Field> fields;
+  const std::vector<Value> values = parameter_values(group.first_row);
+  for (std::size_t i = 0; i < values.size(); ++i) fields.emplace_back(group_columns()[i]->name, values[i]);
+  for (Field& field : result_fields(group)) fields.push_back(std::move(field));
+  if (with_laboratory)
+    for (Field& field : laboratory_fields(group)) fields.push_back(std::move(field));
+  return fields;
+}
+
+/// Units of a group's fields, where they have one, and of the entries of its lists.
+Json field_units(const std::vector<Group>& groups) {
+  Json all;
+  for (const auto& [name, value] : all_fields(groups.front(), have_laboratory(groups)))
+    if (const std::string_view unit = unit_of(name); !unit.empty()) all[name] = unit;
+  all["survival"] = all["incidence"] = {{"distance", "sigma"}};
+  all["censored_distances"] = "sigma";
+  return all;
+}
+
+/// @param step  of a survival curve or an incidence; @param name  of its number of ends
+Json group_json(const Group& group, bool with_laboratory) {
+  Json entry;
+  for (const auto& [name, value] : all_fields(group, with_laboratory)) entry[name] = json_of(value);
+  // For who draws them: such values separate no curves and need no mention.
+  entry["automatic"] = Json::array();
+  for (const sweep::Column* column : group_columns())
+    if (separating_value(*column, group.first_row) == Value() && column->get(group.first_row) != Value())
+      entry["automatic"].push_back(column->name);
+  if (group.laboratory) entry["laboratory_scale"] = scale_json(*group.laboratory);
+  entry["survival"] = Json::array();
+  for (const fit::SurvivalStep& step : group.survival)
+    entry["survival"].push_back(step_json(step, "clogs", step.num_clogs));
+  entry["incidence"] = Json::object();
+  for (const Group::EndsBy& cause : group.causes)
+    for (const fit::IncidenceStep& step : cause.incidence)
+      entry["incidence"][cause.text->count].push_back(step_json(step, "ends", step.num_ends));
+  if (is_device(group.first_row.parameters)) entry["passages"] = passages_json(group.passages);
+  entry["censored_distances"] = group.censored_distances;
+  return entry;
+}
+
+}  // namespace
+
+std::string to_csv(const std::vector<Group>& groups) {
+  std::vector<std::vector<Field>> rows;
+  for (const Group& group : groups) rows.push_back(all_fields(group, have_laboratory(groups)));
+  return csv_table(rows);
+}
+
+std::string to_json(const std::vector<Group>& groups, double confidence,
+                    const store::Provenance& provenance) {
+  const bool with_laboratory = have_laboratory(groups);
+  Json list = Json::array();
+  for (const Group& group : groups) list.push_back(group_json(group, with_laboratory));
+  Json sentences;
+  for (const DoubtText& doubt : doubt_texts) sentences[doubt.word] = doubt.sentence;
+  Json columns = Json::array();
+  for (const sweep::Column* column : group_columns()) columns.push_back(sweep::to_json(*column));
+  Json origin = Json::object();
+  for (const char* name : {"version", "git_describe", "git_hash", "start_time", "command_line", "config"})
+    if (std::string text = attribute(provenance, name); !text.empty()) origin[name] = std::move(text);
+  const console::BuildInfo build = console::build_info();
+  Json document = {{"version", build.version},
+                   {"git_describe", build.git_describe},
+                   {"confidence", confidence},
+                   {"doubts", sentences},
+                   {"units", field_units(groups)},
+                   {"columns", columns},
+                   {"lists", listed_columns(provenance)},
+                   {"sweep", origin},
+                   {"groups", list}};
+  // One scale for all groups, or for each its own.
+  for (const Group& group : groups)
+    if (const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory)
+      document["laboratories"][own->check_sum()] = console::printable(own->text());
+  const std::optional<LaboratoryScale>& first = groups.front().laboratory;
+  if (first && std::ranges::all_of(groups, [&](const Group& group) {
+        return group.laboratory && scale_json(*group.laboratory) == scale_json(*first);
+      }))
+    document["laboratory"] = scale_json(*first);
+  return console::json_text(document);
+}
+
+}  // namespace clog::results

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "clog/store/run_table.hpp"
+
+/// Attributes of a file's root. One of them has the checksum of every other one, and of the table. Texts that
+/// are too long for one attribute are stored in several.
+namespace clog::store {
+
+using NamedCheckSum = std::pair<std::string, std::uint32_t>;
+
+/// @param table  what the list says of the table. @throws LibraryError
+void write_attributes(hid_t file, const NamedCheckSum& table, const Provenance& attributes);
+
+/// An attribute's text: of the candidates the one that was written, as its checksum says, if it is damaged.
+std::string text_as_written(hid_t file, const std::string& name,
+                            std::span<const std::string_view> candidates);
+/// An attribute's text; empty if it is missing or damaged.
+std::string intact_text(hid_t file, const std::string& name);
+
+/// Appends the intact attributes to `whole`, and a sentence for each damaged one, or a table that differs, to
+/// `damage`.
+void compare_attributes(hid_t file, const NamedCheckSum& table, Provenance& whole,
+                        std::vector<std::string>& damage);
+
+}  // namespace clog::store

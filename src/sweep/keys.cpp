@@ -1,0 +1,143 @@
+#include "clog/sweep/keys.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/excerpt.hpp"
+#include "clog/core/tools/joined.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::sweep {
+namespace {
+
+Key key_of(const Parameter& parameter) {
+  const bool is_ensemble = parameter.role == ParameterRole::ensemble;
+  const std::string unit = *parameter.unit ? fmt::format(" [{}]", parameter.unit) : "";
+  return {.name = parameter.key,
+          .kind = parameter.kind,
+          .words = parameter.words,
+          .default_text = is_ensemble ? "1..10" : written(parameter.get({}), parameter),
+          .help = parameter.meaning + unit,
+          .parameter = &parameter};
+}
+
+Key preset_key() {
+  return {.name = "preset",
+          .kind = ValueKind::word,
+          .words = preset_names(),
+          .default_text = "robust",
+          .help =
+              "sets the keys of the interface together, those given by hand excepted: robust (weight on the "
+              "liquid), heavy-interface (weight on the interface), elastic (the same, and it stretches like "
+              "rubber, K_l = 0.1 Gamma; shows the published trends), literal (the published equations)",
+          .parameter = nullptr};
+}
+
+std::vector<Key> make_keys() {
+  std::vector<Key> all;
+  all.reserve(parameter_schema().size());
+  for (const Parameter& parameter : parameter_schema()) all.push_back(key_of(parameter));
+  all.insert(all.begin() + 1, preset_key());  // behind the model
+  return all;
+}
+
+std::string replaced(std::string text, std::string_view part, std::string_view other) {
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + other.size()))
+    text.replace(at, part.size(), other);
+  return text;
+}
+
+/// One text for all ways to type a symbol: as TeX writes it, in Latin letters, without the dash below.
+std::string plain_symbol(std::string text) {
+  constexpr std::pair<const char*, const char*> words[] = {
+      {"\\mathrm", ""}, {"\\", ""},     {"{", ""},      {"}", ""},      {"_", ""},
+      {"$", ""},        {"Γ", "Gamma"}, {"Δ", "Delta"}, {"α", "alpha"}, {"β", "beta"},
+      {"γ", "gamma"},   {"δ", "delta"}, {"θ", "theta"}, {"μ", "mu"},    {"µ", "mu"},
+      {"ρ", "rho"},     {"σ", "sigma"}, {"τ", "tau"},   {"∞", "infty"}};
+  for (const auto& [typed, plain] : words) text = replaced(std::move(text), typed, plain);
+  return text;
+}
+
+/// Empty if no key has this symbol.
+std::string key_of_symbol(std::string_view symbol) {
+  const std::string plain = plain_symbol(std::string(symbol));
+  const auto lower = [](std::string text) {
+    for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    return text;
+  };
+  for (const Parameter& parameter : parameter_schema())
+    if (!plain.empty() && plain_symbol(parameter.symbol) == plain) return parameter.key;
+  // One letter is too little to guess by.
+  for (const Parameter& parameter : parameter_schema())
+    if (plain.size() > 1 && lower(plain_symbol(parameter.symbol)) == lower(plain)) return parameter.key;
+  return "";
+}
+
+}  // namespace
+
+std::string written(const ParameterValue& value, const Parameter& parameter) {
+  if (const auto* number = std::get_if<double>(&value)) return shortest(*number);
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
+  if (const auto* word = std::get_if<std::string>(&value)) {
+    const bool is_check_sum = parameter.kind == ValueKind::text && *word != parameter.words.front();
+    const std::string text = is_check_sum ? LaboratoryText::from_check_sum(*word).text() : "";
+    return text.empty() ? *word : text;
+  }
+  return parameter.words.front();  // automatic
+}
+
+const std::vector<Key>& keys() {
+  static const std::vector<Key> all = make_keys();
+  return all;
+}
+
+void Key::apply(RunParameters& run, const std::string& value) const {
+  if (!parameter || kind == ValueKind::file) return;  // a preset acts through other keys
+  const auto parsed = [&]() -> ParameterValue {
+    if (kind == ValueKind::word || kind == ValueKind::text) return value;
+    if (std::find(words.begin(), words.end(), value) != words.end()) return {};
+    if (kind == ValueKind::integer) return std::int64_t{to_integer(value)};
+    if (value.ends_with('%')) return value;
+    return to_number(value);
+  };
+  parameter->set(run, parsed());
+}
+
+std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names) {
+  constexpr std::size_t most_named = 3;
+  if (const std::string key = key_of_symbol(word); std::ranges::find(names, key) != names.end()) return {key};
+  std::vector<std::string> all = with_part(word, names);
+  const std::string near = did_you_mean(word, names);
+  std::erase(all, near);
+  // A word that lacks its last letters, such as a plural's, comes before words that only contain it.
+  if (!near.empty() && (all.empty() || near.starts_with(word))) all.insert(all.begin(), near);
+  if (all.size() > most_named) all.resize(most_named);
+  return all;
+}
+
+const Key& find_key(std::string_view name) {
+  const auto key = std::find_if(keys().begin(), keys().end(), [&](const Key& k) { return k.name == name; });
+  if (key != keys().end()) return *key;
+  std::vector<std::string> names;
+  names.reserve(keys().size());
+  for (const Key& k : keys()) names.push_back(k.name);
+  const std::string word = excerpt(name);
+  const std::vector<std::string> meant = meant_names(word, names);
+  throw Error(meant.empty() ? fmt::format("unknown key '{}'; --help lists the keys", word)
+                            : fmt::format("unknown key '{}'; did you mean {}?", word, joined(meant, " or ")));
+}
+
+bool is_same_value(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  try {
+    return to_number(a) == to_number(b);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace clog::sweep

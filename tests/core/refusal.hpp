@@ -1,0 +1,30 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/error.hpp"
+
+namespace clog::test {
+
+/// The message with which resolve() refuses these parameters; empty if it accepts them.
+inline std::string refusal_of(const RunParameters& run) {
+  try {
+    resolve(run);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// In one line that has these words.
+inline void expect_refused(const RunParameters& run, std::string_view words) {
+  const std::string message = refusal_of(run);
+  EXPECT_NE(message.find(words), std::string::npos) << words << "\nis not in\n" << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
+}  // namespace clog::test
