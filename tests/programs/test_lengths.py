@@ -4,13 +4,16 @@ import json
 import sys
 import unittest
 
+import scipy.stats
+
+import support
 from support import FEW, ROOT, ProgramTest
 
 sys.path.insert(0, str(ROOT / "analysis"))
-import pathlib  # noqa: E402
-
+from clogsweep import style  # noqa: E402
 from clogsweep.drawing import measured  # noqa: E402
 from clogsweep.results import fit  # noqa: E402
+from clogsweep.tools.errors import UserError  # noqa: E402
 
 # Survival after leukaemia, with and without maintenance chemotherapy: data set aml of R's package survival 3.5-3.
 AML = {"Maintained": "9 1, 13 1, 13 0, 18 1, 23 1, 28 0, 31 1, 34 1, 45 0, 48 1, 161 0",
@@ -69,14 +72,14 @@ class Lengths(ProgramTest):
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         for text, words in [("distance,clogged\n1,1\n", ["no unit", "distance [mm]"]), ("distance [ft],clogged\n1,1\n", ["'ft'"]),
-                            ("distance [mm]\n1\n", ["no column clogged"]), ("way [mm],clogged\n1,1\n", ["no column distance"]),
+                            ("distance [mm],wall\n1,2\n", ["no column clogged"]), ("way [mm],clogged\n1,1\n", ["no column distance"]),
                             ("distance [mm],clogged\n-1,1\n", ["line 2", "0 or more"]), ("distance [mm],clogged\n1,2\n", ["line 2", "clogged is '2'"]),
                             ("distance [mm],clogged\nnan,1\n", ["line 2"]), ("distance [mm],clogged\n1\n", ["line 2", "1 cell"]),
                             ("distance [mm],clogged\n", ["holds no distances"]), ("", ["holds no distances"]),
                             ("distance [mm],clogged,distance [cm]\n1,1,1\n", ["two columns"])]:
             with self.subTest(text=text):
                 self.refuse("clogfit", "lengths", self.write("own.csv", text), words=["own.csv", *words])
-        self.refuse("clogfit", "lengths", words=["needs one table"])
+        self.refuse("clogfit", "lengths", words=["missing table"])
 
 
 class Beside(ProgramTest):
@@ -92,11 +95,11 @@ class Beside(ProgramTest):
         return json.loads(self.succeed("clogfit", "compare", *arguments, "--format", "json").stdout)["comparisons"]
 
     def test_distances_that_a_sweep_holds_have_the_ratio_1_to_it(self):
-        rows = fit.stored.read_rows(self.folder / "sweep.h5", None)
-        lines = [f"{2 * row.distance},{int(row.status == 'clogged')},{row.line_tension}" for row in rows.itertuples()]
+        rows = support.table(self.folder / "sweep.h5")
+        lines = [f"{2 * row.distance!r},{int(row.status == 'clogged')},{row.line_tension}" for row in rows.itertuples()]
         self.write("own.csv", "\n".join(["distance [mm],clogged,line-tension", *lines]))
         found = self.compare("own.csv", "sweep.h5", "--lab", "lab.cfg")
-        self.assertEqual([one["line-tension"] for one in found] if "line-tension" in found[0] else [one["line_tension"] for one in found], list(self.groups))
+        self.assertEqual([one["line_tension"] for one in found], list(self.groups))
         for one, group in zip(found, self.groups.values()):
             self.assertEqual((one["runs_here"], one["runs_there"], one["pairs"]), (2, 2, 0))
             if group["clogging_length"]:
@@ -108,8 +111,12 @@ class Beside(ProgramTest):
         self.write("own.csv", "distance [sigma],clogged,wall\n3,1,glass\n5,1,glass\n9,0,steel\n")
         found = self.compare("sweep.h5", "own.csv")
         self.assertEqual([(one["wall"], one["line_tension"]) for one in found], [(wall, tension) for wall in ("glass", "steel") for tension in self.groups])
-        # Snedecor's F with 4 and 4 degrees of freedom is what scipy.stats.f gives for two clogs on both sides.
         self.assertEqual({one["clogs_here"] for one in found}, {0, 2})
+        # Two lengths whose droplets all clogged: their ratio follows Snedecor's F with 2 d and 2 d degrees of freedom.
+        one = next(one for one in found if one["wall"] == "glass" and one["clogs_there"] == 2)
+        quantile = scipy.stats.f.ppf(0.975, 4, 4)
+        self.assertAlmostEqual(one["ratio_lower"], one["ratio"] / quantile, places=6)
+        self.assertAlmostEqual(one["ratio_upper"], one["ratio"] * quantile, places=6)
 
     def test_what_cannot_be_compared_is_refused(self):
         self.write("own.csv", "distance [mm],clogged\n3,1\n")
@@ -120,18 +127,15 @@ class Beside(ProgramTest):
 
     def test_the_picture_shows_measured_lengths_in_droplet_diameters(self):
         self.write("own.csv", "distance [mm],clogged,line-tension\n6,1,1\n10,1,1\n4,1,3\n8,0,3\n")
-        (self.folder / "own.csv").chmod(0o444)
         groups = fit.read(self.folder / "sweep.h5", None, "--lab", self.folder / "lab.cfg").known
         own = measured.lengths_of(self.folder / "own.csv", groups, None)
         self.assertEqual([group["clogging_length"] for group in own], [4, 6])
-        from clogsweep import style
         figure = style.figure_of(lambda axes, these: measured.draw_on(axes, own, these, "own.csv"), groups)
         stars = [line for line in figure.axes[0].lines if line.get_marker() == "*"]
         self.assertEqual([(line.get_xdata()[0], line.get_ydata()[0]) for line in stars], [(1, 4), (3, 6)])
         self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()][0], "own.csv")
-        self.refuse_picture = fit.read(self.folder / "sweep.h5", None).known
-        with self.assertRaisesRegex(Exception, "--lab"):
-            measured.lengths_of(pathlib.Path(self.folder / "own.csv"), self.refuse_picture, None)
+        with self.assertRaisesRegex(UserError, "--lab"):
+            measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None).known, None)
 
 
 if __name__ == "__main__":
