@@ -29,5 +29,5 @@ def write(table: pandas.DataFrame, path: pathlib.Path, source: str) -> None:
         with h5py.File(fresh, "w") as file:
             file.attrs["source"] = source[:2**14]  # an attribute holds 64 kB at most
             for name, column in table.items():
-                dataset = file.create_dataset(name, data=column.to_numpy(), dtype=h5py.string_dtype() if column.dtype == object else None)
+                dataset = file.create_dataset(name, data=column.str.encode("utf-8").to_numpy("S") if column.dtype == object else column)
                 dataset.attrs.update(unit=units[name], meaning=meanings[name])
