@@ -16,8 +16,6 @@ from . import command_line
 
 
 def body() -> int:
-    arguments = command_line.sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json", command_line.add_lab)
+    arguments = command_line.sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json", [command_line.add_lab, command_line.add_width])
     fitted = fit.read(arguments.sweep, arguments.programs, *command_line.lab_options(arguments))
-    picture = style.Picture(style.figure_of(curve.draw_on, fitted.known.with_lengths(arguments.sweep)), fitted.source)
-    command_line.tell(f"{picture.save(arguments.output)} (and .pdf)")
-    return 0
+    return command_line.save(style.Picture(style.figure_of(curve.draw_on, fitted.known.with_lengths(arguments.sweep)), fitted.source), arguments)
