@@ -24,7 +24,7 @@ from ..tools import outputs, rounded
 from ..tools.hints import AnyPath, Group
 from ..tools.texts import printable
 from . import journal
-from .journal import NOTES, in_lines
+from .journal import NOTES, in_lines as in_lines
 
 # Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
