@@ -29,6 +29,7 @@ COMMANDS = {
     "calibrate": "line tension and near-wall drag from measured passages through a channel, as clogfit calibrate",
     "deviation": "Delta_v and Delta_A of one passage from others, as clogfit deviation",
     "drag": "exponent of the near-wall drag from speeds along a wall, as clogfit drag",
+    "export": "the rows of a sweep as CSV, or as HDF5 with a dataset for each column",
     "export-vtk": "one run for ParaView",
 }
 

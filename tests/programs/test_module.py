@@ -50,7 +50,9 @@ class Module(Analysis):
         self.assertEqual(fit.told, told)
         self.assertEqual(fit.groups.line_tension.tolist(), [0.5, 3])
         self.assertEqual(fit.groups.clogging_length.tolist(), [group["clogging_length"] for group in told["groups"]])
-        self.assertEqual(fit.survival(1).probability.tolist(), [step["probability"] for step in told["groups"][1]["survival"]])
+        curve = fit.survival(1)
+        self.assertEqual(curve.iloc[0].to_dict(), {"distance": 0, "at_risk": 4, "clogs": 0, "probability": 1, "standard_error": 0, "lower": 1, "upper": 1})
+        self.assertEqual(curve.probability.tolist()[1:], [step["probability"] for step in told["groups"][1]["survival"]])
         self.assertEqual((fit.units["clogging_length"], fit.confidence), ("sigma", 0.95))
 
     def test_mean_speeds_of_fewer_than_three_runs_are_told_nowhere(self):

@@ -19,13 +19,13 @@ from ..results import fit
 from . import command_line
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    command_line.add_lab(parser)
+def add_measured(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--with", dest="measured", metavar="TABLE", type=pathlib.Path, help="table of measured distances, see clogfit lengths: drawn, too")
 
 
 def body() -> int:
-    arguments = command_line.sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json", add_options)
+    arguments = command_line.sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json",
+                                           [command_line.add_lab, add_measured, command_line.add_width])
     lab = command_line.lab_options(arguments)
     fitted = fit.read(arguments.sweep, arguments.programs, *lab)
     groups = fitted.known.with_lengths(arguments.sweep)
@@ -33,5 +33,4 @@ def body() -> int:
     figure = style.figure_of(curve.draw_on, groups)
     if own:
         measured.draw_on(figure.axes[0], own, groups, arguments.measured.name)
-    command_line.tell(f"{style.Picture(figure, fitted.source).save(arguments.output)} (and .pdf)")
-    return 0
+    return command_line.save(style.Picture(figure, fitted.source), arguments)

@@ -12,7 +12,7 @@ import argparse
 
 from ..drawing import clogs
 from ..results.sweep import Sweep
-from .command_line import sweep_to_draw, tasks, tell, whole
+from .command_line import save, sweep_to_draw, tasks, whole
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -23,8 +23,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def body() -> int:
-    arguments = sweep_to_draw(__doc__, "clogs", more=add_options)
+    arguments = sweep_to_draw(__doc__, "clogs", more=[add_options])
     found = Sweep(arguments.sweep, arguments.programs).clogs(
         mechanism=arguments.mechanism, tasks=arguments.tasks, most=arguments.most, jobs=arguments.jobs)
-    tell(f"{found.picture().save(arguments.output)} (and .pdf)")
-    return 0
+    return save(found.picture(), arguments)

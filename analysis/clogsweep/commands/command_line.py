@@ -1,5 +1,7 @@
 """Calls every command here, and reports mistakes as the programs do: one line, exit code 2."""
 
+from __future__ import annotations
+
 import argparse
 import contextlib
 import io
@@ -9,13 +11,16 @@ import os
 import pathlib
 import sys
 import warnings
-from collections.abc import Callable, Iterator
-from typing import NoReturn, TextIO
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, NoReturn, TextIO
 
 from ..reading import programs
 from ..tools import outputs
 from ..tools.errors import ProgramFailed, UserError, lacking
 from ..tools.texts import printable
+
+if TYPE_CHECKING:
+    from ..style import Picture
 
 USER_FAULT = 2
 INTERRUPTED = 75
@@ -112,17 +117,18 @@ def beside(source: pathlib.Path, ending: str) -> pathlib.Path:
 
 
 def sweep_to_draw(about: str | None, ending: str, what: str = "file of clogsweep --output",
-                  more: Callable[[argparse.ArgumentParser], None] = lambda _: None) -> argparse.Namespace:
+                  more: Sequence[Callable[[argparse.ArgumentParser], None]] = ()) -> argparse.Namespace:
     """Options of a command that makes one picture of a sweep: sweep, output, programs.
 
     @param about  the command's docstring; @param ending  of the picture's name, which begins with that of the sweep
-    @param what  is given as the sweep; @param more  adds other options. @throws UserError  if the picture could not be written
+    @param what  is given as the sweep; @param more  add other options. @throws UserError  if the picture could not be written
     """
     parser = Parser(about)
     parser.add_argument("sweep", type=pathlib.Path, help=what)
     add_output(parser, f"name of the picture; .png and .pdf are made (SWEEP-{ending})", ".png", ".pdf")
     programs.add_option(parser)
-    more(parser)
+    for add in more:
+        add(parser)
     arguments = parser.parse_args()
     arguments.output = arguments.output or beside(arguments.sweep, ending)
     outputs.refuse_unwritable_picture(arguments.output, arguments.sweep)
@@ -141,6 +147,19 @@ def add_format(parser: argparse.ArgumentParser) -> None:
 
 def add_lab(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--lab", type=pathlib.Path, help="file that describes the laboratory, see clogfit units: scales in its units, too")
+
+
+def add_width(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--width", type=between(4, 30, "a width in cm"), metavar="CM",
+                        help="lay the picture out for a column of a journal, such as 8.6; what its caption has to say is printed")
+
+
+def save(picture: Picture, arguments: argparse.Namespace) -> int:
+    """@param arguments  with output, perhaps with width. @return exit code 0"""
+    if width := getattr(arguments, "width", None):
+        picture.for_journal(width)
+    tell("\n".join(filter(None, [f"{picture.save(arguments.output)} (and .pdf)", picture.caption])))
+    return 0
 
 
 def lab_options(arguments: argparse.Namespace) -> list[object]:

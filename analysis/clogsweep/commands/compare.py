@@ -15,7 +15,7 @@ from .. import style
 from ..drawing import ratios
 from ..reading import programs
 from ..tools import outputs
-from .command_line import Parser, add_output, beside, tell
+from .command_line import Parser, add_output, add_width, beside, save
 
 
 def body() -> int:
@@ -25,13 +25,13 @@ def body() -> int:
     parser.add_argument("--within", help="clogs of a pair so near to each other are at the same place [sigma]")
     parser.add_argument("--confidence", help="of the intervals (0.95)")
     add_output(parser, "name of the picture; .png and .pdf are made (FIRST-compare)", ".png", ".pdf")
+    add_width(parser)
     programs.add_option(parser)
     arguments = parser.parse_args()
-    output = arguments.output or beside(arguments.sweeps[0], "compare")
-    outputs.refuse_unwritable_picture(output, arguments.sweeps[0])
+    arguments.output = arguments.output or beside(arguments.sweeps[0], "compare")
+    outputs.refuse_unwritable_picture(arguments.output, arguments.sweeps[0])
     options = [word for name in ("by", "within", "confidence") if (value := getattr(arguments, name)) is not None for word in (f"--{name}", value)]
     clogfit = programs.programs_in(arguments.programs) / "clogfit"
     told = json.loads(programs.run_program(clogfit, "compare", *arguments.sweeps, *options, "--format", "json"))
     source = f"clogfit compare {' '.join(map(str, [*arguments.sweeps, *options]))}"
-    tell(f"{style.Picture(style.figure_of(ratios.draw_on, told), source).save(output)} (and .pdf)")
-    return 0
+    return save(style.Picture(style.figure_of(ratios.draw_on, told), source), arguments)

@@ -12,7 +12,7 @@ came past each place along the flow. All lengths are in droplet diameters, place
 import argparse
 
 from ..results.sweep import Sweep
-from .command_line import sweep_to_draw, tell, whole
+from .command_line import save, sweep_to_draw, whole
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -22,7 +22,5 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def body() -> int:
-    arguments = sweep_to_draw(__doc__, "device", more=add_options)
-    found = Sweep(arguments.sweep, arguments.programs).device(ways=arguments.ways, map=arguments.map, jobs=arguments.jobs)
-    tell(f"{found.save(arguments.output)} (and .pdf)")
-    return 0
+    arguments = sweep_to_draw(__doc__, "device", more=[add_options])
+    return save(Sweep(arguments.sweep, arguments.programs).device(ways=arguments.ways, map=arguments.map, jobs=arguments.jobs), arguments)

@@ -49,8 +49,7 @@ def body() -> int:
 def draw_picture(arguments: argparse.Namespace) -> int:
     outputs.refuse_unwritable_picture(arguments.output, arguments.run)
     run = trajectory.read(arguments.run)
-    command_line.tell(f"{Picture(way.draw(run, arguments.outlines), stored.source(run.attributes)).save(arguments.output)} (and .pdf)")
-    return 0
+    return command_line.save(Picture(way.draw(run, arguments.outlines), stored.source(run.attributes)), arguments)
 
 
 def draw_film(arguments: argparse.Namespace) -> int:

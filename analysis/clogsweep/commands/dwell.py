@@ -17,7 +17,7 @@ from . import command_line
 
 
 def body() -> int:
-    arguments = command_line.sweep_to_draw(__doc__, "dwell", more=command_line.add_lab)
+    arguments = command_line.sweep_to_draw(__doc__, "dwell", more=[command_line.add_lab, command_line.add_width])
     with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs):
         pass
     clogfit = programs.programs_in(arguments.programs) / "clogfit"
@@ -25,5 +25,4 @@ def body() -> int:
     fit = Fit(*fits.fitted(clogfit, arguments.sweep, *lab))
     times = dwell.times_of(fit.known.with_lengths(arguments.sweep))
     known = [Groups(*fits.fitted(clogfit, arguments.sweep, "--dwell", repr(time), *lab)).with_lengths(arguments.sweep) for time in times]
-    command_line.tell(f"{Picture(dwell.draw(times, known), fit.source).save(arguments.output)} (and .pdf)")
-    return 0
+    return command_line.save(Picture(dwell.draw(times, known), fit.source), arguments)

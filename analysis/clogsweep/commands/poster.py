@@ -12,6 +12,5 @@ from . import command_line
 
 
 def body() -> int:
-    arguments = command_line.sweep_to_draw(__doc__, "poster", more=command_line.add_lab)
-    command_line.tell(f"{Sweep(arguments.sweep, arguments.programs).poster(lab=arguments.lab).save(arguments.output)} (and .pdf)")
-    return 0
+    arguments = command_line.sweep_to_draw(__doc__, "poster", more=[command_line.add_lab])
+    return command_line.save(Sweep(arguments.sweep, arguments.programs).poster(lab=arguments.lab), arguments)

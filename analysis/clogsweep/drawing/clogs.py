@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Sequence
 from typing import overload
 
 import numpy as np
+import scipy.spatial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Polygon
@@ -160,19 +161,6 @@ def overlaps(clog: Clog) -> Numbers:
     return clog.row["contact_range"] - np.array(surfaces)
 
 
-def hull(points: Numbers) -> Numbers:
-    """Corners of the convex hull, counter-clockwise (Andrew's monotone chain)."""
-    def chain(ordered: Numbers) -> list[Numbers]:
-        corners: list[Numbers] = []
-        for p in ordered:
-            while len(corners) > 1 and np.linalg.det([corners[-1] - corners[-2], p - corners[-2]]) <= 0:
-                corners.pop()
-            corners.append(p)
-        return corners[:-1]
-    ordered = points[np.lexsort(points.T[::-1])]
-    return np.array(chain(ordered) + chain(ordered[::-1]))
-
-
 def title(row: np.void) -> str:
     """Describes in words the droplet and its clog."""
     wrapped = f"{row['num_wrapped']} wrapped (bears {100 * row['wrapped_support']:.0f} %)" if row["num_wrapped"] > 0 else "none wrapped"
@@ -188,7 +176,8 @@ def draw(axes: Axes, clog: Clog) -> None:
     middle, half = (low + high) / 2, (high - low).max() / 2 + 0.3
     interface = polygon - middle[:, None]
     axes.fill(*interface, facecolor="#E69F00", edgecolor="black", linewidth=0.6, alpha=0.7)
-    axes.plot(*np.vstack([hull(interface.T), hull(interface.T)[:1]]).T, color="0.4", linewidth=0.6, linestyle="--")
+    corners = scipy.spatial.ConvexHull(interface.T).vertices
+    axes.plot(*interface[:, [*corners, corners[0]]], color="0.4", linewidth=0.6, linestyle="--")
     patches: list[Patch] = [Circle(obstacle[:2] - middle, obstacle[2] / 2) for obstacle in clog.obstacles]
     patches += [Polygon(trajectory.wedge_outline(wedge) - middle) for wedge in clog.wedges]
     for patch, depths in zip(patches, overlaps(clog)):

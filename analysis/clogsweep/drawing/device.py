@@ -251,7 +251,7 @@ def draw_scale(figure: Figure, panels: Sequence[Axes], drawn: AxesImage, parts: 
     scale.set_label(f"share of {most}{' each' if len(parts) > 1 else ''}\nthat passed over it", fontsize=8)
 
 
-def draw_part(axes: Axes, part: Part) -> None:
+def draw_part(axes: Axes, part: Part, legend_columns: int) -> None:
     place = part.place
     device_plan.draw_posts(axes, place.circles)
     device_plan.frame(axes, place.length, place.width, "-" if place.has_walls else ":")
@@ -263,7 +263,7 @@ def draw_part(axes: Axes, part: Part) -> None:
         axes.plot(*unbroken(way, place).T, color=style.COLOURS[number % len(style.COLOURS)], linewidth=1.0, zorder=3)
     axes.plot(*place.wrapped(place.releases).T, "|", color="#009E73", markersize=7, label=f"released: {len(place.rows)}", zorder=4)
     draw_ends(axes, place)
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=4, fontsize=8, frameon=False, borderaxespad=0.2)
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=legend_columns, fontsize=8, frameon=False, borderaxespad=0.2)
 
 
 def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None) -> Figure:
@@ -272,18 +272,20 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
     place = parts[0].place
     beside = BESIDE + OF_LETTER * max(len(part.label) for part in parts) if len(parts) > 1 else BESIDE if parts[0].mapped else 0
     figure, (*panels, below) = device_plan.axes_for(place.length, place.width, len(parts), strip=1.5, beside=beside)
+    is_grid = below.get_gridspec().ncols > 1
     maps = [draw_map(axes, part) for axes, part in zip(panels, parts) if part.mapped]
     for axes, part in zip(panels, parts):
-        draw_part(axes, part)
+        draw_part(axes, part, 2 if is_grid else 4)
     if maps:
         draw_scale(figure, panels, maps[0], parts)
-    device_plan.draw_flow(panels[-1], 12)
+    device_plan.draw_flow(panels[-1], 26 if is_grid else 12)
     draw_passages(below, parts)
     below.set_xlabel(r"$x/\sigma$, along the flow" + (rf"; $\sigma$ = {droplet_mm:.4g} mm" if droplet_mm else ""))
     walls = "between walls" if place.has_walls else "periodic across the flow"
     some = f"; {len(parts)} of {num_parts} parameter sets" if len(parts) < num_parts else ""
     figure.suptitle(f"{literal(place.name)}: {place.length:.4g} x {place.width:.4g} droplet diameters, {walls}{some}", fontsize=9)
-    align(below, panels[-1])
+    if not is_grid:
+        align(below, panels[-1])
     return figure
 
 

@@ -19,19 +19,30 @@ from ..tools.texts import literal
 from . import surroundings
 
 WIDEST, NARROWEST = 14.0, 5.0  # figures [inches]
-TALLEST = 24.0  # all panels together [inches]
+TALLEST = 11.0  # all panels together [inches]
 RED = "#D00000"
 
 
-def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0, beside: float = 0.0) -> tuple[Figure, Numbers]:
-    """A figure and its axes, one above the other, with equal scales along and across a device of this shape.
+def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0, beside: float = 0.0) -> tuple[Figure, list[Axes]]:
+    """A figure and its axes, with equal scales along and across a device of this shape: in one column, or in as many as keep the
+    figure from growing too tall.
     @param strip  height of a last one, below the devices [inches]; @param beside  width for what is drawn beside them [inches]"""
     figure_width = min(WIDEST, max(NARROWEST, 0.45 * length))
-    height = min(TALLEST / panels, max(2.2, figure_width * width / length))
-    heights = [height] * panels + ([strip] if strip else [])
-    figure, axes = style.subplots(len(heights), figsize=(figure_width + beside, sum(heights) + 1.3 + 0.45 * (panels - 1)), squeeze=False, sharex=True,
-                                  height_ratios=heights)
-    return figure, axes[:, 0]
+    shapes = [(columns, -(-panels // columns)) for columns in range(1, panels + 1)]
+    columns, rows = next((shape for shape in shapes if figure_width / shape[0] * shape[1] * width / length <= TALLEST), shapes[-1])
+    height = min(TALLEST / rows, max(2.2, figure_width / columns * width / length))
+    heights = [height] * rows + ([strip] if strip else [])
+    figure = style.new_figure(figsize=(figure_width + beside, sum(heights) + 1.3 + 0.45 * (rows - 1)), layout="constrained")
+    grid = figure.add_gridspec(len(heights), columns, height_ratios=heights)
+    axes = [figure.add_subplot(grid[number // columns, number % columns]) for number in range(panels)]
+    axes += [figure.add_subplot(grid[-1, :])] if strip else []
+    for one in axes[1:]:
+        one.sharex(axes[0])
+    for one in axes:
+        one.label_outer()
+    for one in axes[panels - columns:panels] if columns > 1 else []:
+        one.tick_params(labelbottom=True)
+    return figure, axes
 
 
 def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> None:

@@ -33,9 +33,11 @@ def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
     curves = list(zip(*(groups.members for groups in fits)))
     for index, members in enumerate(curves):
         places = [time * style.side_by_side(index, len(curves), times) for time in times]
-        draw_lengths(axes, places, members, index, fits[-1].label_of(members[-1]))
+        label = fits[-1].label_of(members[-1])
+        with style.curve(axes, label):
+            draw_lengths(axes, places, members, index, label)
     style.logarithmic_abscissa(axes, times)
-    axes.xaxis.set_major_formatter("{x:g}")  # times may be long
+    axes.xaxis.set_major_formatter(lambda time, _: f"{time:.3g}" if time < 1000 else f"{time:.0f}")
     lengths = fits[-1].values("dwell_length")
     moved = f"{lengths.pop():g}" + r"\,\sigma" if len(lengths) == 1 else r"\delta_\mathrm{d}"
     axes.set_xlabel(f"time without having moved by ${moved}$ that counts as clogged $/t_0$")

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.path import Path
 from PIL import Image
+from scipy import ndimage
 
 from .. import style
 from ..reading import trajectory
@@ -48,15 +49,10 @@ def chosen_frames(run: trajectory.Trajectory, most: int) -> npt.NDArray[np.int64
     return np.arange(count - 1, -1, -step)[:most][::-1]
 
 
-def around(values: Numbers, width: int) -> Numbers:
-    """Every value with its neighbours, `width` on either side. @return one row each"""
-    return np.lib.stride_tricks.sliding_window_view(np.pad(values, width, mode="edge"), 2 * width + 1)
-
-
 def smoothed(values: Numbers, width: int) -> Numbers:
     """Moving average with weights that rise and fall. @param width  in frames"""
     weights = np.hanning(2 * width + 3)[1:-1]
-    return around(values, width) @ (weights / weights.sum())
+    return np.asarray(ndimage.convolve1d(values, weights / weights.sum(), mode="nearest"))
 
 
 class Camera:
@@ -73,7 +69,7 @@ class Camera:
         self._aspect = aspect
         self._middle = np.stack([smoothed(middle, frames_of_a_turn) for middle in ((low + high) / 2).T], axis=1)
         # Averages the largest nearby, so that it is nowhere too small.
-        self._half_height = smoothed(around(half_height, frames_of_a_turn).max(axis=1), frames_of_a_turn)
+        self._half_height = smoothed(ndimage.maximum_filter1d(half_height, 2 * frames_of_a_turn + 1, mode="nearest"), frames_of_a_turn)
 
     def corners(self, frame: int) -> tuple[Numbers, Numbers]:
         half = self._half_height[frame] * np.array([self._aspect, 1.0])

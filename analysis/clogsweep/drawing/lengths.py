@@ -40,11 +40,10 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
     """Explains the bars, hollow markers, triangles and dotted lines of draw_lengths() that occur.
     @param panels  the axes with the curves
     @return  lines of text"""
+    labels = {line.get_label() for axes in panels for line in axes.lines}
     marks = [f"bars: {100 * confidence:g} % confidence intervals"] if any(group["clogs"] > 0 for group in groups) else []
     if any(group["clogs"] == 0 for group in groups):
-        are_dotted = any(line.get_label() == THROUGH_BOUNDS for axes in panels for line in axes.lines)
-        marks.append("triangles: lower bounds (no run clogged)" + (", joined by dotted lines" if are_dotted else ""))
-    labels = {line.get_label() for axes in panels for line in axes.lines}
+        marks.append("triangles: lower bounds (no run clogged)" + (", joined by dotted lines" if THROUGH_BOUNDS in labels else ""))
     if labels & {FITTED, FITTED_TO_COMMON_OBSTACLES}:
         marks.append(f"lines: fitted curves, with {100 * confidence:g} % bands")
     lines = ["; ".join(marks)] if marks else []
@@ -66,11 +65,7 @@ def excluded_notes(groups: Groups) -> list[str]:
 def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
     """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given"""
     style.logarithmic_ordinate(axes)
-    axes.set_ylabel(AXES["length"])
-    style.grid(axes)
-    style.legend(axes, drawn, other)
-    style.caption(axes, groups.caption())
-    style.notes(axes, [*length_notes(drawn, groups.confidence, [axes]), *excluded_notes(groups)])
+    style.finish(axes, AXES["length"], groups.caption(), [*length_notes(drawn, groups.confidence, [axes]), *excluded_notes(groups)], drawn, other)
 
 
 def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
@@ -88,7 +83,7 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     axes.errorbar(places, lengths, yerr=bars if has_bars else None, color=colour, linestyle=linestyle or line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
                   gid=style.mark("curve", groups))
     for x, y, group in zip(places, lengths, groups):
-        face = "white" if reasons_for_hollow_marker(group) else colour
+        face = "white" if reasons_for_hollow_marker(group) else "auto"  # the colour that the marker has, also later
         axes.plot(x, y, color=colour, marker=style.MECHANISM_MARKERS[style.main_mechanism(group)], markerfacecolor=face, markersize=size, zorder=3,
                   gid=style.mark("point", [group]) if group["clogs"] > 0 else None)
     if linestyle != "none" and len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
@@ -100,8 +95,8 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
 
 
 def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, column: str = "relative_speed") -> None:
-    """Mean speeds relative to the terminal speed, with standard errors from the scatter between runs.
-    @param column  "relative_speed", the mean of runs that went far enough to have a speed, as published; or OF_ALL_RUNS"""
+    """Mean speeds relative to the terminal speed, with standard errors from the scatter between runs; of one run there is none.
+    @param column  "relative_speed", the mean of runs that went far enough to have a speed, as published; or OF_ALL_RUNS, "lateral_slope" """
     points = sorted(((place, group) for place, group in zip(places, groups) if group[column] is not None), key=lambda point: point[0])
     known = [group for _, group in points]
     drawn = axes.errorbar(
@@ -151,7 +146,8 @@ def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> 
     """@param draw_curve  draw_lengths or draw_speeds: axes, places, groups of the curve, its index, its label"""
     curves = groups.curves()
     for index, (label, members) in enumerate(curves):
-        draw_curve(axes, places(groups, members, index, len(curves)), members, index, label)
+        with style.curve(axes, label):
+            draw_curve(axes, places(groups, members, index, len(curves)), members, index, label)
     draw_abscissa(axes, groups)
 
 
@@ -199,9 +195,5 @@ def draw_on(axes: Axes, groups: Groups) -> None:
 def draw_speeds_on(axes: Axes, groups: Groups) -> None:
     draw_curves(axes, groups, functools.partial(draw_speeds, column=speed_column(groups.members)))
     add_laboratory(axes, groups, "speed")
-    axes.set_ylabel(AXES["speed"])
-    style.grid(axes)
-    style.legend(axes)
-    style.caption(axes, groups.caption())
-    if any(curve.lines[0].get_xdata().size for curve in axes.containers):
-        style.notes(axes, speed_notes(groups.members))
+    has_points = any(curve.lines[0].get_xdata().size for curve in axes.containers)
+    style.finish(axes, AXES["speed"], groups.caption(), speed_notes(groups.members) if has_points else [])

@@ -1,7 +1,7 @@
 """How far droplets in lattices migrate sideways, against what the sweep varies: the angle of the rows, as a rule."""
 
+import functools
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,18 +9,7 @@ from matplotlib.axes import Axes
 from .. import style
 from ..labels import AXES
 from ..labels.groups import Groups
-from ..tools.hints import Group
 from . import lengths
-
-
-def draw_slopes(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str) -> None:
-    """Lateral displacement per distance, with standard errors from the scatter between runs; of one run it has none."""
-    points = sorted(((place, group) for place, group in zip(places, groups) if group["lateral_slope"] is not None), key=lambda point: point[0])
-    known = [group for _, group in points]
-    drawn = axes.errorbar(
-        [x for x, _ in points], [group["lateral_slope"] for group in known], yerr=[group["lateral_slope_error"] or 0.0 for group in known],
-        **style.curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label, gid=style.mark("curve", known))
-    drawn.lines[0].set_gid(style.mark("point", known))
 
 
 def draw_rows(axes: Axes, groups: Groups) -> None:
@@ -40,10 +29,6 @@ def notes(groups: Groups) -> list[str]:
 
 
 def draw_on(axes: Axes, groups: Groups) -> None:
-    lengths.draw_curves(axes, groups, draw_slopes)
+    lengths.draw_curves(axes, groups, functools.partial(lengths.draw_speeds, column="lateral_slope"))
     draw_rows(axes, groups)
-    axes.set_ylabel(AXES["slope"])
-    style.grid(axes)
-    style.legend(axes)
-    style.caption(axes, groups.caption())
-    style.notes(axes, notes(groups))
+    style.finish(axes, AXES["slope"], groups.caption(), notes(groups))

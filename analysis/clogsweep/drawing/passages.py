@@ -77,12 +77,8 @@ def draw_curves(axes: Axes, groups: Groups, column: str) -> None:
             axes.plot(group[groups.abscissa], group[column], color=look["color"], markersize=6, gid=style.mark("point", [group]),
                       **markers.get(group["status"], {"marker": "X"}))
     lengths.draw_abscissa(axes, groups)
-    axes.set_ylabel(kind.curves[column])
-    style.grid(axes)
-    style.legend(axes)
     ends = {group["status"] for group in groups.members}
-    style.caption(axes, groups.caption())
-    style.notes(axes, ["; ".join(
+    style.finish(axes, kind.curves[column], groups.caption(), ["; ".join(
         f"{sign}: {kind.outcomes[status]}" for sign, status in (("dots", kind.goal), ("crosses", "clogged"), ("triangles", "broken"), ("hollow", "flowing"))
         if status in ends and (sign == "dots" or status != kind.goal))])
 

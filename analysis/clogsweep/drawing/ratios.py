@@ -30,10 +30,16 @@ def curves_of(told: dict[str, Any], abscissa: str) -> list[tuple[str, list[Compa
     for one in told["comparisons"]:
         curves.setdefault((one["here"], *(one[name] for name in others)), []).append(one)
     told_apart = {key[0] for key in curves}
-    labels = [", ".join([*([literal(key[0])] if len(told_apart) > 1 or not others else []),
+    labels = [", ".join([*([side(told, key[0])] if len(told_apart) > 1 or not others else []),
                          *(f"{name.replace('_', ' ')} {value:g}" if isinstance(value, int | float) else literal(value) for name, value in zip(others, key[1:]))])
               for key in curves]
     return list(zip(labels, curves.values()))
+
+
+def side(told: dict[str, Any], name: str) -> str:
+    """What is compared, in words: a file, or a key and its value."""
+    key, _, value = name.partition("=")
+    return f"{key.replace('_', ' ')} {literal(value)}" if key in told["differing"] else literal(name)
 
 
 def draw_curve(axes: Axes, places: Sequence[float], curve: Sequence[Comparison], index: int, label: str) -> None:
@@ -44,7 +50,7 @@ def draw_curve(axes: Axes, places: Sequence[float], curve: Sequence[Comparison],
                   yerr=[[abs(one["ratio"] - one[end]) for _, one in known] for end in ("ratio_lower", "ratio_upper")],
                   color=looks["color"], linestyle=looks["linestyle"], linewidth=1, elinewidth=1, capsize=2.5, label=label)
     for x, one in known:
-        face = looks["color"] if one["interval"] == "paired" else "white"
+        face = "auto" if one["interval"] == "paired" else "white"
         axes.plot(x, one["ratio"], color=looks["color"], marker=looks["marker"], markerfacecolor=face, markersize=5.5, zorder=3)
 
 
@@ -75,7 +81,8 @@ def draw_on(axes: Axes, told: dict[str, Any]) -> None:
             places = [one[abscissa] * style.side_by_side(index, len(curves), values) for one in curve]
         else:
             places = [one[abscissa] for one in curve]
-        draw_curve(axes, places, curve, index, label)
+        with style.curve(axes, label):
+            draw_curve(axes, places, curve, index, label)
     axes.axhline(1, color="0.4", linewidth=0.8, linestyle="--", zorder=1)
     style.logarithmic_ordinate(axes)
     if is_logarithmic:
@@ -84,8 +91,8 @@ def draw_on(axes: Axes, told: dict[str, Any]) -> None:
         axes.set_xlabel(AXES.get(abscissa, abscissa.replace("_", " ")))
     else:
         axes.set_xticks([])
-    reference = literal(comparisons[0]["there"])
-    names = {literal(one["here"]) for one in comparisons}
+    reference = side(told, comparisons[0]["there"])
+    names = {side(told, one["here"]) for one in comparisons}
     axes.set_ylabel(rf"$\lambda$ of {names.pop()} / $\lambda$ of {reference}" if len(names) == 1 else rf"$\lambda$ / $\lambda$ of {reference}")
     style.grid(axes)
     if len(curves) > 1 or not abscissa:

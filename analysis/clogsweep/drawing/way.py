@@ -21,6 +21,7 @@ def view(run: trajectory.Trajectory) -> tuple[Numbers, Numbers]:
 
 
 LONGEST_STRIP = 30.0  # of a way; a longer one is drawn in several, below each other [sigma]
+MOST_STRIPS = 10  # which are longer where these are not enough
 
 
 def draw(run: trajectory.Trajectory, num_outlines: int) -> Figure:
@@ -38,7 +39,7 @@ def draw(run: trajectory.Trajectory, num_outlines: int) -> Figure:
 def draw_strips(run: trajectory.Trajectory, num_outlines: int) -> Figure:
     """A long way from the top to the bottom, from the left to the right."""
     low, high = view(run)
-    count = math.ceil((high[0] - low[0]) / LONGEST_STRIP)
+    count = min(math.ceil((high[0] - low[0]) / LONGEST_STRIP), MOST_STRIPS)
     ends = np.linspace(low[0], high[0], count + 1)
     middles = run.polygons[:, 0].mean(axis=1)
     strips = []

@@ -142,8 +142,8 @@ class Groups:
 
     def curve_parameters(self) -> list[str]:
         """Names of what tells the curves apart."""
-        # A laboratory says more than what follows from it.
-        told = ["laboratory"] if self.varies("laboratory") else []
+        # A laboratory and circles say more than what follows from them, such as the place of an exit.
+        told = [name for name in ("laboratory", "obstacles") if self.varies(name)]
         told += [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
                  and not self._is_automatic(name) and not (told and self.follows(name, told))]
         # Words and automatic values that follow from what is told say nothing new. A preset says more than its parts.

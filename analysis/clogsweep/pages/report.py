@@ -82,7 +82,7 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
         style.grid(axes)
     all_axes[0][0].set_ylabel("probability of having ended this way within $r$")
     mark_steps(all_axes[0][0])
-    style.heading(figure, label or groups.caption())
+    figure.suptitle(style.in_lines(label or groups.caption(), lambda line: len(line) <= 16 * figure.get_figwidth()), fontsize=8)
     return figure
 
 
@@ -260,14 +260,11 @@ def example_pictures(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pat
     if not shown:
         return "<p>No polygon has clogged.</p>"
     caption = "touched obstacles blue, contact red, convex hull dashed"
-    return side_by_side(framed(charts.draw(clog.picture().figure, caption), caption) for clog in run_examples(shown, sweep, clogrun))
-
-
-def run_examples(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pathlib.Path) -> clogs.Clogs:
     try:
-        return clogs.run_all(clogrun, sweep, shown, 2)
+        again = clogs.run_all(clogrun, sweep, shown, 2)
     except UserError as error:
         raise UserError(f"{error}; use --examples 0 to skip the replays") from error
+    return side_by_side(framed(charts.draw(clog.picture().figure, caption), caption) for clog in again)
 
 
 def progress_of(status: dict[str, Any], rows: pandas.DataFrame) -> str:

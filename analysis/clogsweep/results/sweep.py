@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..reading import fits, programs, replays, stored
+from ..reading import export, fits, programs, replays, stored
 from ..tools import checked
 from ..tools.errors import ProgramFailed, UserError
 from ..tools.texts import printable
@@ -153,6 +153,13 @@ class Sweep:
         from ..style import Picture
 
         return Picture(poster.draw(self.path, programs.programs_in(self._programs), *(["--lab", lab] if lab is not None else [])), stored.source(self.attributes))
+
+    def export(self, output: str | os.PathLike[str]) -> pathlib.Path:
+        """Writes `rows` for other programs, with the columns' units: .csv, or .h5 with a dataset for each column.
+        @return the file. @throws UserError  if it is there already"""
+        path = pathlib.Path(output)
+        export.write(self.rows, path, stored.source(self.attributes))
+        return path
 
     def __repr__(self) -> str:
         """Names all files, if the sweep has several."""

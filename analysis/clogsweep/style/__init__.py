@@ -13,16 +13,18 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Any
 
 import matplotlib
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
-from matplotlib.lines import Line2D
 
 from ..tools import outputs, rounded
 from ..tools.hints import AnyPath, Group
 from ..tools.texts import printable
+from . import journal
+from .journal import NOTES, in_lines as in_lines
 
 # Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
@@ -30,13 +32,12 @@ MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
 MECHANISM_COLOURS = {"wrapped": COLOURS[0], "squeezed": COLOURS[1], "hybrid": COLOURS[2], "other": COLOURS[3]}
 CAUSE_COLOURS = {**MECHANISM_COLOURS, "broken": COLOURS[4]}
 PASSED_COLOUR = "0.62"
-PASSED_COLOUR = "0.62"
 MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
 VIRIDIS = matplotlib.colormaps["viridis"]
 PASSAGES = matplotlib.colormaps["YlOrBr"]  # light where few went; lines and markers stay visible on it
 OBSTACLE = "0.72"
 NOTE_SIZE = 8
-NOTES = "notes"  # the name (`gid`) of what explains marks
+CURVE = "curve "  # the beginning of the name (`gid`) of what belongs to a curve; its label follows
 DROPLET = "#D55E00"
 
 
@@ -68,6 +69,16 @@ def curve_style(index: int) -> dict[str, Any]:
     return {"color": COLOURS[which], "marker": MARKERS[which], "linestyle": line}
 
 
+@contextlib.contextmanager
+def curve(axes: Axes, label: str) -> Iterator[None]:
+    """Names what the block draws, for Picture.curves."""
+    before = set(axes.get_children())
+    yield
+    for artist in axes.get_children():
+        if artist not in before and artist.get_gid() is None:
+            artist.set_gid(CURVE + label)
+
+
 def mark(kind: str, groups: Collection[Group]) -> str | None:
     """The name (`gid`) of what stands for groups of a report (report.write()); elsewhere they have no numbers.
     @param kind  point, curve or legend"""
@@ -95,11 +106,11 @@ def main_mechanism(group: Group) -> str:
 def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs") -> None:
     """Legend of named curves and of the markers that draw_lengths() gave these groups. A long legend is placed
     beside the axes, and the figure gets wider. @param other  what clogs are called that are of no mechanism"""
-    curves = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels()) if label]
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
-    markers = [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else other)
-               for name, marker in MECHANISM_MARKERS.items() if name in names]
-    entries = [*curves, *markers]
+    for name, marker in MECHANISM_MARKERS.items():
+        if name in names:
+            axes.plot([], [], color="0.4", marker=marker, linestyle="none", label=f"most clogs {name}" if name != "other" else other)
+    entries = journal.legend_entries(axes)
     if len(entries) > len(COLOURS):
         made = axes.legend(*zip(*entries), frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
                            loc="upper left", bbox_to_anchor=(1, 1))
@@ -108,8 +119,8 @@ def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs
             figure.set_figwidth(figure.get_figwidth() + made.get_window_extent(figure.canvas.get_renderer()).width / figure.dpi)
     elif entries:
         made = axes.legend(*zip(*entries), frameon=False)
-    if curves:
-        mark_legend(made, [handle for handle, _ in curves])
+    if entries:
+        mark_legend(made, [handle for handle, _ in entries])
 
 
 def logarithmic_margin(values: Collection[float]) -> float:
@@ -189,36 +200,18 @@ def label(axes: Axes, along: str, up: str) -> None:
 
 def caption(axes: Axes, text: str) -> None:
     """Above the axes; lines that are wider than these go on below."""
-    title = axes.set_title(text, fontsize=8, color="0.25")
-    renderer = axes.figure.canvas.get_renderer()
-    widest = 1.1 * axes.get_window_extent(renderer).width  # the layout makes axes wider than they are now
-
-    def fits(line: str) -> bool:
-        title.set_text(line)
-        return bool(title.get_window_extent(renderer).width <= widest)
-
-    title.set_text(in_lines(text, fits))
+    widest = 1.1 * axes.get_window_extent().width  # the layout makes axes wider than they are now
+    axes.set_title(in_lines(text, journal.fitting(axes, 8, widest)), fontsize=8, color="0.25")
 
 
-def in_lines(text: str, fits: Callable[[str], bool]) -> str:
-    """Lines that fit, broken between phrases only: within one a break would spoil a formula."""
-    lines = []
-    for line in text.strip().split("\n"):
-        first, *others = line.split(", ")
-        lines.append(first)
-        for phrase in others:
-            if fits(f"{lines[-1]}, {phrase}"):
-                lines[-1] += f", {phrase}"
-            else:
-                lines[-1] += ","
-                lines.append(phrase)
-    return "\n".join(lines)
-
-
-def heading(figure: Figure, text: str) -> None:
-    """Above all axes of a figure."""
-    letters_per_inch = 16
-    figure.suptitle(in_lines(text, lambda line: len(line) <= letters_per_inch * figure.get_figwidth()), fontsize=8)
+def finish(axes: Axes, up: str, shared: str, lines: Sequence[str], groups: Collection[Group] = (), other: str = "other clogs") -> None:
+    """The ordinate's label, grid, legend, caption and notes of a picture of curves. @param groups, other  see legend()"""
+    axes.set_ylabel(up)
+    grid(axes)
+    legend(axes, groups, other)
+    caption(axes, shared)
+    if lines:
+        notes(axes, lines)
 
 
 def notes(axes: Axes, lines: Sequence[str]) -> None:
@@ -232,16 +225,17 @@ def notes_of_panels(figure: Figure, lines: Sequence[str]) -> None:
     figure.supxlabel("\n".join(lines), fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
 
 
-def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None) -> None:
-    """Writes OUTPUT.png and OUTPUT.pdf. @param output  path without ending"""
+def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None, dpi: float = 160) -> None:
+    """Writes OUTPUT.png and OUTPUT.pdf. @param output  path without ending; @param dpi  of the .png"""
     # Not with_suffix(): a name may hold a dot.
     metadata = {key: printable(value, "\n") for key, value in (metadata or {}).items()}
     with outputs.replaced(f"{output}.png") as fresh:
-        figure.savefig(fresh, dpi=160, metadata=metadata)
+        figure.savefig(fresh, dpi=dpi, metadata=metadata)
     # Laid out once.
     figure.set_layout_engine("none")
     subject = {"Title": metadata.get("Title"), "Subject": metadata.get("Description")}
-    with outputs.replaced(f"{output}.pdf") as fresh:
+    # Journals refuse fonts of type 3, matplotlib's default.
+    with outputs.replaced(f"{output}.pdf") as fresh, matplotlib.rc_context({"pdf.fonttype": 42}):
         figure.savefig(fresh, metadata={key: value for key, value in subject.items() if value})
 
 
@@ -261,11 +255,34 @@ def without_warnings() -> Iterator[None]:
 
 class Picture:
     """Shows itself in a notebook; `figure` is matplotlib's, to be changed at will. `source` says where its numbers come
-    from, and is kept in what is saved: as Description of the .png, as Subject of the .pdf."""
+    from, and is kept in what is saved: as Description of the .png, as Subject of the .pdf. `caption` is what for_journal()
+    takes from the picture."""
 
     def __init__(self, figure: Figure, source: str = "") -> None:
         self.figure = figure
         self.source = source
+        self.caption = ""
+        self._dpi = 160.0
+
+    @property
+    def curves(self) -> dict[str, list[Artist]]:
+        """What is drawn of each curve (lines, bars, markers, band), by its label in the legend; that of an only curve is empty."""
+        found: dict[str, list[Artist]] = {}
+        for artist in self.figure.findobj(lambda artist: (artist.get_gid() or "").startswith(CURVE)):
+            found.setdefault(artist.get_gid().removeprefix(CURVE), []).append(artist)
+        return found
+
+    def for_journal(self, width_cm: float = 8.6, height_cm: float | None = None, *, font_size: float = 8) -> Picture:
+        """Lays the picture out for a column of a journal: text of one size, the legend above the axes, no labels that overlap. To
+        be called last, after changes of the figure. Conditions and notes leave the picture for `caption`.
+
+        @param width_cm, height_cm  of the picture; without a height it has one that suits its legend
+        @param font_size  of all text [pt]. @return the same picture. @throws UserError  if it has several panels
+        """
+        with without_warnings():
+            self.caption = journal.lay_out(self.figure, width_cm, height_cm, font_size) or self.caption
+        self._dpi = 600.0
+        return self
 
     def png(self, dpi: float = 110) -> bytes:
         out = io.BytesIO()
@@ -280,7 +297,7 @@ class Picture:
             path = path.with_suffix("")
         outputs.refuse_unwritable_picture(path)
         with without_warnings():
-            save(self.figure, path, {"Description": self.source, "Software": "clogsweep"} if self.source else None)
+            save(self.figure, path, {"Description": self.source, "Software": "clogsweep"} if self.source else None, self._dpi)
         return pathlib.Path(f"{path}.png")
 
     def __repr__(self) -> str:

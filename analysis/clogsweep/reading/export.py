@@ -1,0 +1,33 @@
+"""Rows of a sweep in files that other programs read."""
+
+from __future__ import annotations
+
+import pathlib
+from typing import TYPE_CHECKING
+
+import h5py
+
+from ..tools import outputs
+from ..tools.errors import UserError
+
+if TYPE_CHECKING:
+    import pandas
+
+
+def write(table: pandas.DataFrame, path: pathlib.Path, source: str) -> None:
+    """@param table  see stored.read_table(); @param path  .csv: a unit follows the name of its column in brackets; .h5: a dataset
+    for each column, with the attributes `unit` and `meaning`. @param source  of the rows. @throws UserError"""
+    if path.suffix not in (".csv", ".h5"):
+        raise UserError(f"cannot write {path} (it can only be .csv or .h5); give another ending")
+    if path.exists():  # perhaps a sweep, or a table of the user's own
+        raise UserError(f"will not overwrite {path} (it exists); give another name, or remove it first")
+    units, meanings = table.attrs["units"], table.attrs["meanings"]
+    with outputs.replaced(path) as fresh:
+        if path.suffix == ".csv":
+            table.rename(columns=lambda name: f"{name} [{units[name]}]" if units[name] else name).to_csv(fresh, index=False)
+            return
+        with h5py.File(fresh, "w") as file:
+            file.attrs["source"] = source[:2**14]  # an attribute holds 64 kB at most
+            for name, column in table.items():
+                dataset = file.create_dataset(name, data=column.str.encode("utf-8").to_numpy("S") if column.dtype == object else column)
+                dataset.attrs.update(unit=units[name], meaning=meanings[name])
