@@ -7,6 +7,7 @@ import sys
 
 from docutils import nodes
 from sphinx import addnodes
+from sphinx.directives.patches import CSVTable
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -17,7 +18,7 @@ release = version = re.search(r"project\(clogsweep\s+VERSION\s+([\d.]+)", (ROOT 
 
 extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx_copybutton"]
 source_suffix = {".md": "markdown"}
-exclude_patterns = ["_static", "README.md", "paper"]
+exclude_patterns = ["_static", "README.md", "paper", "gallery/tables"]
 if tags.has("site"):  # noqa: F821, Sphinx's
     # What man pages need not.
     sys.path.insert(0, str(ROOT / "docs"))
@@ -107,6 +108,14 @@ class ForTerminals(SphinxPostTransform):
         return made
 
 
+class Results(CSVTable):
+    """A table of a CSV file, without its comments."""
+
+    def get_csv_data(self):
+        lines, source = super().get_csv_data()
+        return [line for line in lines if not line.startswith("#")], source
+
+
 def in_fields(app, what, name, thing, options, lines):
     """Our @param, @return and @throws as Sphinx writes them; several may stand in one line."""
     text = re.sub(r"[;.]? *@param +([\w, ]+?)  ", lambda found: "\n\n:param " + found[1] + ": ", "\n".join(lines))
@@ -123,6 +132,7 @@ def with_plain_search(app, page, template, context, doctree):
 
 def setup(app):
     app.add_post_transform(ForTerminals)
+    app.add_directive("results", Results)
     if "sphinx.ext.autodoc" in extensions:
         app.connect("autodoc-process-docstring", in_fields)
         app.connect("html-page-context", with_plain_search)

@@ -19,7 +19,7 @@ look() {
   case $1 in
     format | scripts) "tests/gates/$1.sh" ;;
     types) mypy --config-file tests/gates/mypy.ini analysis/clogsweep ;;
-    docs) docs/build.sh && /usr/bin/python3 tests/gates/site.py build/docs/html ;;
+    docs) python3 tests/gates/ages.py && docs/build.sh && /usr/bin/python3 tests/gates/site.py build/docs/html ;;
     width | spelling | phrases) python3 "tests/gates/$1.py" ;;
     warnings) python3 tests/gates/clang.py warnings ;;
     tidy) python3 tests/gates/clang.py tidy "${limits[@]}" ;;

@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+"""The table of docs/gallery/index.md lists every picture of the gallery with the model version of its rows. Rows of
+another version than the program's need a later note, whose CSV file shows for each of these pictures what a part of it
+was then and is now, with the program's version: the same. The table of agreement has rows of the program's version."""
+
+import csv
+import re
+import sys
+
+import known
+
+GALLERY = known.ROOT / "docs/gallery"
+VERSION = re.search(r"int model_version = (\d+);", (known.ROOT / "include/clog/core/parameters/parameters.hpp").read_text())[1]
+ROW = re.compile(r"^\| ([^|]+) \| \w+ \| (\d+) \| ([\d-]+) \|(.*)\|$", re.MULTILINE)
+NOTE = re.compile(r"\]\(\.\./notes/(([\d-]{10})-[\w-]+)\.md\)")
+
+
+def same_now(link, date):
+    """The pictures of which a note after that date found the same with the program's version."""
+    if not link or link[2] <= date:
+        return set()
+    with open(known.ROOT / f"docs/notes/{link[1]}.csv", newline="") as file:
+        lines = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return {line["picture"] for line in lines} - {line["picture"] for line in lines if line["then"] != line["now"] or line["version"] != VERSION}
+
+
+def faults():
+    listed = set()
+    for names, version, date, note in ROW.findall((GALLERY / "index.md").read_text()):
+        listed |= {*names.split(", ")}
+        if version != VERSION:
+            yield from (f"{name} has rows of model version {version}, and no note found the same with {VERSION}; draw it anew, or recompute a part"
+                        for name in sorted({*names.split(", ")} - same_now(NOTE.search(note), date)))
+    shown = {name for page in GALLERY.glob("*.md") for name in re.findall(r"pictures/(?:figure-)?([\w-]+)\.png", page.read_text())} | {"density"}
+    yield from (f"{name} is missing in the table of model versions, or in the gallery" for name in sorted(shown ^ listed))
+    if f"All rows have model version {VERSION}." not in (GALLERY / "tables/agreement.md").read_text():
+        yield f"the table of agreement is of another model version than {VERSION}; make it anew"
+
+
+if __name__ == "__main__":
+    sys.exit("\n".join(f"docs/gallery: {fault}" for fault in faults()) or None)
