@@ -7,7 +7,6 @@ import sys
 
 from docutils import nodes
 from sphinx import addnodes
-from sphinx.directives.patches import CSVTable
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -108,14 +107,6 @@ class ForTerminals(SphinxPostTransform):
         return made
 
 
-class Results(CSVTable):
-    """A table of a CSV file, without its comments."""
-
-    def get_csv_data(self):
-        lines, source = super().get_csv_data()
-        return [line for line in lines if not line.startswith("#")], source
-
-
 def in_fields(app, what, name, thing, options, lines):
     """Our @param, @return and @throws as Sphinx writes them; several may stand in one line."""
     text = re.sub(r"[;.]? *@param +([\w, ]+?)  ", lambda found: "\n\n:param " + found[1] + ": ", "\n".join(lines))
@@ -132,7 +123,6 @@ def with_plain_search(app, page, template, context, doctree):
 
 def setup(app):
     app.add_post_transform(ForTerminals)
-    app.add_directive("results", Results)
     if "sphinx.ext.autodoc" in extensions:
         app.connect("autodoc-process-docstring", in_fields)
         app.connect("html-page-context", with_plain_search)

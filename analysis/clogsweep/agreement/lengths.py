@@ -99,14 +99,14 @@ def two_mechanisms(groups: list[Group]) -> Finding:
 
 
 @statement_of_families("4.2, figure 6a", "wrapped clogs carry additional forces from neighbouring obstacles",
-                       in_kind="most hang on the obstacles around which they wrap alone", does_not_agree=SLIDES)
+                       in_kind="most hang on the obstacles around which they wrap alone", does_not_agree="all hang on these alone", not_known=SLIDES)
 def neighbours_support(shop: Workshop, family: Family) -> Finding:
     shop.sweep(family.config)
     rows = shop.rows(family.config)
     support = rows.wrapped_support[(rows.mechanism == "wrapped") & np.isclose(rows.friction, family.friction)]
     helped = int((support < 0.999).sum())
-    words = f"{helped} of {len(support)} wrapped clogs, which have {1 - support.median():.1%} of their support from neighbours in the median" if len(support) else "no wrapped clog"
-    return Finding(DOES_NOT if helped == 0 else AGREES if 2 * helped > len(support) else IN_KIND, words)
+    verdict = NOT_KNOWN if support.empty else DOES_NOT if helped == 0 else AGREES if 2 * helped > len(support) else IN_KIND
+    return Finding(verdict, f"{helped} of {len(support)} wrapped clogs, {1 - support.median():.1%} of the support in the median" if len(support) else "no wrapped clog")
 
 
 def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) -> Finding:
