@@ -3,6 +3,7 @@
 import collections
 import csv
 import io
+import textwrap
 from collections.abc import Callable, Sequence
 
 from .statements import AGREES, BY_MESH, DOES_NOT, FITTED, FORCED, IN_KIND, NOT_KNOWN, NOT_RUN, Judged
@@ -24,7 +25,7 @@ def counts(judged: Sequence[Judged]) -> str:
 
 def markdown(judged: Sequence[Judged], version: int) -> str:
     """A table for each place of the article."""
-    lines = [f"Of {len(judged)} statements {counts(judged)}. All rows have model version {version}."]
+    lines = [textwrap.fill(f"Of {len(judged)} statements {counts(judged)}. All rows have model version {version}.", 118)]
     for where in dict.fromkeys(one.statement.where for one in judged):
         lines += ["", f"**{where[0].upper()}{where[1:]}**", "", "| statement | here | verdict | variants |", "|---|---|---|---|"]
         for _, text, here, verdict, reason, variants in (cells(one) for one in judged if one.statement.where == where):
