@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""The table of docs/gallery/index.md lists every picture of the gallery with the model version of its rows. Rows of
-another version than the program's need a later note, whose CSV file shows for each of these pictures what a part of it
-was then and is now, with the program's version: the same. The table of agreement has rows of the program's version."""
+"""The table of docs/gallery/index.md has every picture of the gallery with the model version of its rows. Another version than
+the program's needs a later note whose CSV file shows that a part of each of these pictures is the same with the program's."""
 
 import csv
 import re
@@ -16,7 +15,7 @@ NOTE = re.compile(r"\]\(\.\./notes/(([\d-]{10})-[\w-]+)\.md\)")
 
 
 def same_now(link, date):
-    """The pictures of which a note after that date found the same with the program's version."""
+    """The pictures of which a note after that date found the same."""
     if not link or link[2] <= date:
         return set()
     with open(known.ROOT / f"docs/notes/{link[1]}.csv", newline="") as file:
@@ -28,14 +27,12 @@ def faults():
     listed = set()
     for names, version, date, note in ROW.findall((GALLERY / "index.md").read_text()):
         listed |= {*names.split(", ")}
-        if version != VERSION:
-            yield from (f"{name} has rows of model version {version}, and no note found the same with {VERSION}; draw it anew, or recompute a part"
-                        for name in sorted({*names.split(", ")} - same_now(NOTE.search(note), date)))
+        aged = {*names.split(", ")} - same_now(NOTE.search(note), date) if version != VERSION else ()
+        yield from (f"{name} has rows of model version {version}, and no note found the same with {VERSION}; draw it anew, or recompute a part" for name in sorted(aged))
     shown = {name for page in GALLERY.glob("*.md") for name in re.findall(r"pictures/(?:figure-)?([\w-]+)\.png", page.read_text())} | {"density"}
     yield from (f"{name} is missing in the table of model versions, or in the gallery" for name in sorted(shown ^ listed))
     if f"All rows have model version {VERSION}." not in " ".join((GALLERY / "tables/agreement.md").read_text().split()):
         yield f"the table of agreement is of another model version than {VERSION}; make it anew"
 
 
-if __name__ == "__main__":
-    sys.exit("\n".join(f"docs/gallery: {fault}" for fault in faults()) or None)
+sys.exit("\n".join(f"docs/gallery: {fault}" for fault in faults()) or None)

@@ -73,12 +73,6 @@ class Lengths(unittest.TestCase):
         for points, verdict in [([(0.1, 40), (0.2, -2000), (1, 10)], AGREES), ([(0.1, -2000), (0.2, 400), (1, 10)], IN_KIND), ([(0.1, 40), (0.2, 400), (1, 10)], DOES_NOT)]:
             self.assertEqual(lengths.flows_between(curve(*points)).verdict, verdict)
 
-    def test_results_are_similar_if_there_is_a_peak_at_every_density(self):
-        dense = [one | {"obstacle_density": 0.7} for one in self.RISES_AND_FALLS]
-        falling = [one | {"obstacle_density": 0.1} for one in curve((0.1, -2000), (0.3, 700), (1.09, 13))]
-        for groups, verdict in [(self.RISES_AND_FALLS + dense, AGREES), (self.RISES_AND_FALLS + falling, IN_KIND), (falling, DOES_NOT)]:
-            self.assertEqual(lengths.similar_at_other_densities(groups).verdict, verdict)
-
     def test_hybrids_are_sought_between_the_branches(self):
         def clogs(between, elsewhere):
             return [point(0.05, 40, wrapped=10, squeezed=0, hybrid=elsewhere), point(0.1, 40, wrapped=10, squeezed=0, hybrid=between),

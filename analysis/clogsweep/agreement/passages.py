@@ -48,7 +48,7 @@ def top_behind(way: Any) -> Any:
 
 
 def tops_of_speeds(shop: Workshop, orifice: float) -> tuple[list[float], str]:
-    """Of the droplets of figure 4 that pass."""
+    """The largest speeds of the droplets of figure 4 that pass, and all in words."""
     tops = {tension: top_behind(run.table) for tension, run in channels.overshooting(shop, orifice).items()}
     words = [f"{tension:g} does not pass" if top is None else f"{top['speed_ratio']:.2f} at {tension:g}" for tension, top in tops.items()]
     return [top["speed_ratio"] for top in tops.values() if top is not None], f"w = {orifice:g}, b_0/b_∞ = {channels.OVERSHOOTS[orifice]:g}: {', '.join(words)}"

@@ -104,7 +104,7 @@ class Judged:
 
     @property
     def reason(self) -> str:
-        """Of a verdict that is not known or no agreement also what was tried."""
+        """Why, and what was tried if the verdict is not known or no agreement."""
         figures = ", ".join(self.statement.figures) if self.finding.verdict in (DOES_NOT, NOT_KNOWN) else ""
         return "; ".join(filter(None, [self.statement.reasons.get(self.finding.verdict), figures and f"tried: runs of figure {figures}"]))
 
