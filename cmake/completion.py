@@ -18,7 +18,7 @@ IN_PYTHON = {"calibrate", "curve", "deviation", "drag", "report"}  # whose modul
 POSITIONAL = {"--file", "--system", "--task"}
 FILES = {"--config", "--frames", "--lab", "--output", "--picture", "--points", "--programs", "--write-obstacles"}
 # Those of an option are the ones that its help names.
-WORDS = {"--format": ["text", "csv", "json"], "--instruction-set": ["avx512", "avx2", "baseline"], "--isolate": ["yes", "no"],
+WORDS = {"--format": ["text", "csv", "json", "peaks"], "--instruction-set": ["avx512", "avx2", "baseline"], "--isolate": ["yes", "no"],
          "--master-computes": ["auto", "yes", "no"]}
 ANY_FILE = "/"  # stands for names of files among words
 

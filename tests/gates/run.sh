@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tests/gates/run.sh [--all] [GATE...]: installs what is missing, then looks at the sources by every gate, or those named.
-# clang-tidy looks at what changed, with --all at everything. Exit code 1: a gate has found something. See README.md.
+# clang-tidy looks at what changed, with --all at everything. Only a call by name runs ages. Exit code 1: a gate has found something. See README.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 every=(format width spelling phrases scripts types docs warnings tidy)
@@ -11,7 +11,7 @@ if [ "${1:-}" = --all ]; then
 fi
 if [ $# -eq 0 ]; then set -- "${every[@]}"; fi
 for gate in "$@"; do
-  [[ " ${every[*]} " == *" $gate "* ]] || { echo "no gate is called $gate; there are: ${every[*]}" >&2; exit 2; }
+  [[ " ${every[*]} ages " == *" $gate "* ]] || { echo "no gate is called $gate; there are: ${every[*]}" >&2; exit 2; }
 done
 ./jobs/install-dependencies.sh gates
 
@@ -19,6 +19,7 @@ look() {
   case $1 in
     format | scripts) "tests/gates/$1.sh" ;;
     types) mypy --config-file tests/gates/mypy.ini analysis/clogsweep ;;
+    ages) python3 tests/gates/ages.py ;;
     docs) docs/build.sh && /usr/bin/python3 tests/gates/site.py build/docs/html ;;
     width | spelling | phrases) python3 "tests/gates/$1.py" ;;
     warnings) python3 tests/gates/clang.py warnings ;;

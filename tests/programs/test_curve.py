@@ -76,6 +76,14 @@ class Curve(ProgramTest):
         self.assertEqual([float(line["clogging_length"]) for line in lines], [place["clogging_length"] for place in curve["curve"]])
         self.assertTrue(all(line["clogging_length_squeezed"] == "" for line in lines))
 
+    def test_the_table_of_peaks_has_none_where_a_curve_only_rises(self):
+        command = ("clogfit", "curve", "sweep.h5", "--key=line-tension", "--format=peaks")
+        self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
+        (peak,), found = csv.DictReader(io.StringIO(self.succeed(*command).stdout)), self.curve()["curves"][0]["peak"]
+        self.assertEqual({name: peak[name] for name in list(peak)[:-1]}, {name: f"{found[name]:.3g}" for name in list(peak)[:-1]})
+        self.sweep(FAR[0], FAR[2], "line-tension=0.1,0.3,1,3", "terminal-speed=50,100", lengths={0.1: 1.0, 0.3: 3.0, 1.0: 10.0, 3.0: 30.0})
+        self.assertEqual([line["line_tension"] for line in csv.DictReader(io.StringIO(self.succeed(*command).stdout))], ["none", "none"])
+
     def test_a_wider_confidence_has_a_wider_band(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
         narrow, wide = (self.curve(f"--confidence={confidence}")["curves"][0]["curve"][40] for confidence in (0.5, 0.99))

@@ -1,7 +1,7 @@
 """What counts as a clear difference, and numbers as the table prints them.
 
 Lengths differ *clearly* if their confidence intervals do not overlap, speeds if they differ by more than two standard
-errors of the difference.
+errors of the difference. A curve with R^2 of LEAST_LINEARITY or more is a straight line.
 """
 
 import math
@@ -11,6 +11,8 @@ from typing import Any
 from ..tools import rounded
 from ..tools.hints import Group
 from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
+
+LEAST_LINEARITY = 0.99
 
 
 def bounds(group: Group) -> tuple[float, float]:
@@ -81,23 +83,3 @@ def by_tolerance(value: float, published: float, tolerance: float) -> str:
     """`agrees` within the tolerance, `qualitatively` within four times the tolerance."""
     difference = abs(value - published)
     return AGREES if difference <= tolerance else IN_KIND if difference <= 4 * tolerance else DOES_NOT
-
-
-def fisher_p_value(hits: int, number: int, other_hits: int, other_number: int) -> float:
-    """Fisher's exact test, one-sided: the probability that the first sample has that many hits or more by chance."""
-    total, total_hits = number + other_number, hits + other_hits
-    return sum(math.comb(number, k) * math.comb(other_number, total_hits - k)
-               for k in range(hits, min(number, total_hits) + 1)) / math.comb(total, total_hits)
-
-
-def grow_with_gap(ranges: Mapping[float, tuple[float, float]]) -> Finding:
-    """Do ranges of the line tension lie higher for wider gaps? Compares the narrowest gap with the widest."""
-    words = "; ".join(f"gap {gap:g}: {low:g} to {high:g}" for gap, (low, high) in ranges.items())
-    if len(ranges) < 2:
-        return Finding(NOT_KNOWN, words or "in no gap")
-    (low, high), *_, (last_low, last_high) = ranges.values()
-    if last_low > high:
-        return Finding(AGREES, words)
-    if last_high < low:
-        return Finding(DOES_NOT, words)
-    return Finding(IN_KIND if last_low * last_high > low * high else NOT_KNOWN, words)

@@ -1,21 +1,22 @@
-"""Section 4.2, appendix C: clogging lengths of polygons and disks."""
+"""Sections 4.2 and 5, appendix C: clogging lengths of polygons and disks."""
 
 import math
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
+from scipy import stats
 
-from ..paper import dilute
-from ..paper.arrays import sags
-from ..paper.dilute import PUBLISHED, Family
+from ..curves import features, model, points
+from ..paper import arrays, dilute
+from ..paper.dilute import FAMILIES, MAPS, PUBLISHED, Family
 from ..paper.workshop import Workshop
-from ..tools.hints import Group
-from .evidence import bounds, curves, fall_with_stiffness, falls, fisher_p_value, grow_with_gap, length_of, overall, shorter, trend
-from .statements import AGREES, DOES_NOT, FITTED, IN_KIND, NOT_KNOWN, Finding, statement, statement_of_family, statement_of_walls
+from ..tools import rounded
+from ..tools.hints import Group, Numbers
+from .evidence import LEAST_LINEARITY, bounds, curves, fall_with_stiffness, falls, length_of, overall, shorter, trend
+from .statements import AGREES, DOES_NOT, FITTED, IN_KIND, NOT_KNOWN, Finding, statement, statement_of_families, statement_of_walls
 
-
-DENSITY = "the density of the published arrays is unknown, and λ depends on it"
-BY_DENSITY = "the density was fitted to this length, with other seeds"
+SLIDES = "nothing holds a soft droplet that hangs over an obstacle; it slides off"
+CONFIDENCE = 0.95
 
 
 def peak(curve: Sequence[Group]) -> Group | None:
@@ -25,121 +26,169 @@ def peak(curve: Sequence[Group]) -> Group | None:
     return max(found, key=dilute.known_length) if found else None
 
 
-def peak_range(curve: Sequence[Group]) -> tuple[float, float]:
-    """Range of line tensions where lambda may be longest: of the points that are not clearly below another."""
-    candidates = [point["line_tension"] for point in curve if not any(shorter(point, other) for other in curve)]
-    return min(candidates), max(candidates)
+def shape(curve: Sequence[Group]) -> str:
+    """Is a curve non-monotonic? Not if it falls where the softest droplets do not clog."""
+    return AGREES if peak(curve) else DOES_NOT if falls(curve, shorter) and curve[0]["clogs"] == 0 else NOT_KNOWN
 
 
 @statement_of_walls("4.2, figure 6c", "λ(Γ) is non-monotonic: it rises, peaks and falls",
-                    does_not_agree="nothing holds a soft droplet that hangs over an obstacle; it slides off",
-                    not_known="too few clogs")
+                    in_kind="not in every gap", does_not_agree=SLIDES, not_known="too few clogs")
 def is_not_monotonic(groups: list[Group]) -> Finding:
-    verdicts, words = [], []
-    for gap, curve in curves(groups, "obstacle_gap").items():
-        top = peak(curve)
-        clogs_when_soft = curve[0]["clogs"] > 0
-        verdicts.append(AGREES if top else DOES_NOT if falls(curve, shorter) and not clogs_when_soft else NOT_KNOWN)
-        highest = top or max(curve, key=dilute.known_length)
-        words.append(f"gap {gap:g}: {length_of(curve[0])} at {curve[0]['line_tension']:g}, {length_of(highest)} at {highest['line_tension']:g}, "
-                     f"{length_of(curve[-1])} at {curve[-1]['line_tension']:g}")
-    return Finding(overall(verdicts), "; ".join(words))
+    by_gap = curves(groups, "obstacle_gap")
+    verdicts = [shape(curve) for curve in by_gap.values()]
+    gap, curve = next(iter(by_gap.items()))
+    highest = peak(curve) or max(curve, key=dilute.known_length)
+    return Finding(overall(verdicts), f"peak in {verdicts.count(AGREES)} of {len(verdicts)} gaps; gap {gap:g}: "
+                   + ", ".join(f"{length_of(point)} at {point['line_tension']:g}" for point in (curve[0], highest, curve[-1])))
+
+
+def peak_draws(curve: Sequence[Group], seed: int) -> tuple[features.Peak, Numbers]:
+    """The fitted peak, and the logarithms of its place in curves drawn from the posterior. @param seed  so that curves are independent"""
+    known = model.Points(np.log([[group["line_tension"]] for group in curve]), *(np.array([group[name] for group in curve], float) for name in ("clogs", "total_distance")))
+    places = points.grid_over(known.places)
+    fitted = model.fit_curve(known, places)
+    return features.find_peak(fitted, places, CONFIDENCE), features.tops(features.drawn_curves(fitted, seed=seed), places)[0][:, 0]
 
 
 @statement_of_walls("4.2, figure 6c", "the peak moves to larger Γ as gaps widen",
-                    in_kind="the peak's ranges for the narrowest and the widest gap overlap",
-                    not_known="fewer than two curves have a peak, or their ranges overlap")
+                    does_not_agree="there is no peak, or it moves the other way", not_known="fewer than two curves have a peak, or the sign of the slope is uncertain")
 def peak_moves(groups: list[Group]) -> Finding:
-    return grow_with_gap({gap: peak_range(curve) for gap, curve in curves(groups, "obstacle_gap").items() if peak(curve)})
+    """By the share of posterior draws in which the regression of log Gamma_peak on the gap has a slope of zero or less."""
+    by_gap = curves([group for group in groups if group["total_distance"]], "obstacle_gap")
+    found = {gap: peak_draws(curve, seed) for seed, (gap, curve) in enumerate(by_gap.items(), 1)
+             if sum(group["clogs"] > 0 for group in curve) >= points.FEWEST_CLOGGING}
+    inside = {gap: one for gap, one in found.items() if one[0].probability_inside >= CONFIDENCE}
+    words = "; ".join(f"gap {gap:g}: {rounded.with_interval(*np.exp([one.place[0], one.place_lower[0], one.place_upper[0]]))}" for gap, (one, _) in inside.items())
+    if len(inside) < 2:
+        return Finding(NOT_KNOWN if inside else DOES_NOT, words or "no peak in the range")
+    slopes = np.polyfit(list(inside), np.array([draws for _, draws in inside.values()]), 1)[0]
+    share = float(np.mean(slopes <= 0))
+    verdict = AGREES if share <= 1 - CONFIDENCE else DOES_NOT if share >= CONFIDENCE else NOT_KNOWN
+    return Finding(verdict, f"peaks at {words}; slope of zero or less in {100 * share:.2g} % of draws")
 
 
 def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
     """The crossover of the branches: the largest line tension at which wrapped clogs prevail, the next at which squeezed ones do."""
-    wrapped = [point["line_tension"] for point in curve if point["wrapped"] > point["squeezed"]]
-    if not wrapped:
-        return None
-    squeezed = [point["line_tension"] for point in curve if point["squeezed"] > point["wrapped"] and point["line_tension"] > max(wrapped)]
-    return (max(wrapped), min(squeezed)) if squeezed else None
+    wrapped = max((point["line_tension"] for point in curve if point["wrapped"] > point["squeezed"]), default=math.inf)
+    squeezed = [point["line_tension"] for point in curve if point["squeezed"] > point["wrapped"] and point["line_tension"] > wrapped]
+    return (wrapped, min(squeezed)) if squeezed else None
 
 
-@statement_of_walls("4.2, figure 6c", "wrapping gives way to squeezing at larger Γ as gaps widen",
-                    does_not_agree="wrapped clogs nowhere prevail",
-                    in_kind="the ranges for the narrowest and the widest gap overlap",
-                    not_known="the branches meet in fewer than two gaps, or their ranges overlap")
+@statement_of_walls("4.2, figure 6c", "wrapping gives way to squeezing at larger Γ as gaps widen", in_kind="the ranges of the narrowest and the widest gap overlap",
+                    does_not_agree="wrapped clogs nowhere prevail", not_known="the branches meet in fewer than two gaps, or their ranges overlap")
 def transition_moves(groups: list[Group]) -> Finding:
+    """Compares the crossovers of the narrowest gap and the widest."""
     found = {gap: range_ for gap, curve in curves(groups, "obstacle_gap").items() if (range_ := transition(curve))}
-    if not found and sum(group["clogs"] for group in groups) >= 20:
-        return Finding(DOES_NOT, f"{sum(group['wrapped'] for group in groups)} of {sum(group['clogs'] for group in groups)} clogs are wrapped")
-    return grow_with_gap(found)
+    wrapped, clogs = (sum(group[name] for group in groups) for name in ("wrapped", "clogs"))
+    if len(found) < 2:
+        return Finding(DOES_NOT if not found and clogs >= 20 else NOT_KNOWN, f"{wrapped} of {clogs} clogs are wrapped")
+    (low, high), *_, (last_low, last_high) = found.values()
+    verdict = AGREES if last_low > high else DOES_NOT if last_high < low else IN_KIND if last_low * last_high > low * high else NOT_KNOWN
+    return Finding(verdict, "; ".join(f"gap {gap:g}: {first:g} to {second:g}" for gap, (first, second) in found.items()))
 
 
 @statement_of_walls("4.2, figure 6a, b", "soft droplets clog by wrapping, stiff ones by squeezing",
-                    in_kind="not in every gap", does_not_agree="soft droplets slide off")
+                    in_kind="not in every gap", does_not_agree=SLIDES, not_known="too few clogs")
 def two_mechanisms(groups: list[Group]) -> Finding:
+    ends = [(curve[0], curve[-1]) for curve in curves(groups, "obstacle_gap").values()]
+    verdicts = [NOT_KNOWN if stiff["clogs"] == 0 else AGREES if 2 * soft["wrapped"] > soft["clogs"] and 2 * stiff["squeezed"] > stiff["clogs"] else DOES_NOT
+                for soft, stiff in ends]
+    counted = [f"{sum(point[mechanism] for point in of_end)} of {sum(point['clogs'] for point in of_end)} {mechanism} at {of_end[0]['line_tension']:g}"
+               for of_end, mechanism in zip(zip(*ends), ("wrapped", "squeezed"))]
+    return Finding(overall(verdicts), ", ".join(counted))
+
+
+@statement_of_families("4.2, figure 6a", "wrapped clogs carry additional forces from neighbouring obstacles",
+                       in_kind="most hang on the obstacles around which they wrap alone", does_not_agree="all hang on these alone", not_known=SLIDES)
+def neighbours_support(shop: Workshop, family: Family) -> Finding:
+    shop.sweep(family.config)
+    rows = shop.rows(family.config)
+    support = rows.wrapped_support[(rows.mechanism == "wrapped") & np.isclose(rows.friction, family.friction)]
+    helped = int((support < 0.999).sum())
+    verdict = NOT_KNOWN if support.empty else DOES_NOT if helped == 0 else AGREES if 2 * helped > len(support) else IN_KIND
+    return Finding(verdict, f"{helped} of {len(support)} wrapped clogs, {1 - support.median():.1%} of the support in the median" if len(support) else "no wrapped clog")
+
+
+def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) -> Finding:
+    """Is lambda longer in the widest gap than in the narrowest at every abscissa beyond one? Where no run clogged nothing is known."""
+    verdicts, words = {}, []
+    for place, members in curves(groups, abscissa).items():
+        members = sorted(members, key=lambda group: group["obstacle_gap"])
+        narrow, wide = members[0], members[-1]
+        if place <= beyond or len(members) < 2 or narrow["clogs"] + wide["clogs"] == 0:
+            continue
+        verdicts[place] = trend(shorter(narrow, wide), shorter(wide, narrow))
+        if verdicts[place] != NOT_KNOWN:
+            words.append(f"{length_of(narrow)} and {length_of(wide)} at {place:g}")
+    alike = [f"{place:g}" for place, verdict in verdicts.items() if verdict == NOT_KNOWN]
+    verdict = overall(list(verdicts.values()))
+    return Finding(IN_KIND if verdict == AGREES and alike else verdict, "; ".join(words + ([f"alike at {', '.join(alike)}"] if alike else [])))
+
+
+@statement_of_walls("4.2, figure 6c", "λ grows with the gap, right of the peak",
+                    in_kind="not for stiff droplets at equal density; at equal filling also for them (figure 6c-filling)", not_known="too few clogs")
+def longer_in_wide_gaps(groups: list[Group]) -> Finding:
+    tops = [top["line_tension"] for curve in curves(groups, "obstacle_gap").values() if (top := peak(curve))]
+    return grows_with_gap(groups, "line_tension", max(tops, default=0.0))
+
+
+@statement_of_walls("4, text", "at intermediate Γ droplets flow continuously", in_kind="not in every gap, or also at small Γ", does_not_agree="some clog at every Γ")
+def flows_between(groups: list[Group]) -> Finding:
+    """Is there a line tension at which none clogs, between others at which some do?"""
     verdicts, words = [], []
     for gap, curve in curves(groups, "obstacle_gap").items():
-        soft, stiff = curve[0], curve[-1]
-        words.append(f"gap {gap:g}: {soft['wrapped']} of {soft['clogs']} wrapped at {soft['line_tension']:g}, {stiff['squeezed']} of {stiff['clogs']} squeezed at {stiff['line_tension']:g}")
-        if stiff["clogs"] > 0:
-            right = 2 * stiff["squeezed"] > stiff["clogs"]
-            left = 2 * soft["wrapped"] > soft["clogs"]
-            verdicts.append(AGREES if left and right else DOES_NOT)
-        else:
-            verdicts.append(NOT_KNOWN)
+        free = [i for i, point in enumerate(curve) if point["clogs"] == 0]
+        between = [i for i in free if any(point["clogs"] for point in curve[:i]) and any(point["clogs"] for point in curve[i:])]
+        verdicts.append(AGREES if between else IN_KIND if free else DOES_NOT)
+        words.append(f"gap {gap:g}: none clogs at {', '.join(format(curve[i]['line_tension'], 'g') for i in free) or 'no Γ'}")
     return Finding(overall(verdicts), "; ".join(words))
 
 
-def grows_with_gap(groups: Iterable[Group], abscissa: str) -> Finding:
-    longer, less, words = 0, 0, []
-    for place, members in curves(groups, abscissa).items():
-        members = sorted(members, key=lambda group: group["obstacle_gap"])
-        if len(members) < 2:
-            continue
-        narrow, wide = members[0], members[-1]
-        if shorter(narrow, wide) or shorter(wide, narrow):
-            words.append(f"{length_of(narrow)} and {length_of(wide)} at {place:g}")
-        longer += shorter(narrow, wide)
-        less += shorter(wide, narrow)
-    return Finding(trend(longer > 0, less > 0), "; ".join(words) or "no clear difference between the narrowest and the widest gap")
-
-
-@statement_of_walls("4.2, figure 6c", "λ grows with the gap", in_kind="at some line tensions it shrinks",
-                    not_known="too few clogs")
-def longer_in_wide_gaps(groups: list[Group]) -> Finding:
-    return grows_with_gap(groups, "line_tension")
-
-
 @statement_of_walls("5", "hybrid clogs (wrapping and squeezing at once) occur where the two branches meet",
-                    in_kind="more often there than elsewhere, but not significantly",
-                    does_not_agree="not more often there than elsewhere",
+                    in_kind="more often there than elsewhere, but not significantly", does_not_agree="not more often there than elsewhere",
                     not_known="the branches do not meet, or no clog is hybrid")
 def hybrids_between(groups: list[Group]) -> Finding:
-    inside, outside = np.zeros(2, int), np.zeros(2, int)
-    for curve in curves(groups, "obstacle_gap").values():
-        range_ = transition(curve)
-        if range_ is None:
-            continue
-        for point in curve:
-            count = inside if range_[0] <= point["line_tension"] <= range_[1] else outside
-            count += [point["hybrid"], point["clogs"]]
-    hybrid, clogs = (int(number) for number in inside)
-    others, other_clogs = (int(number) for number in outside)
-    words = f"{hybrid} of {clogs} where they meet, {others} of {other_clogs} elsewhere"
-    if clogs == 0 or other_clogs == 0 or hybrid + others == 0:
+    ranges = {gap: range_ for gap, curve in curves(groups, "obstacle_gap").items() if (range_ := transition(curve))}
+    known = [group for group in groups if group["obstacle_gap"] in ranges]
+    return more_hybrids(known, lambda group: ranges[group["obstacle_gap"]][0] <= group["line_tension"] <= ranges[group["obstacle_gap"]][1], "where they meet")
+
+
+def more_hybrids(groups: Sequence[Group], is_inside: Callable[[Group], bool], where: str) -> Finding:
+    inside, outside = (np.array([[group["hybrid"], group["clogs"]] for group in groups if is_inside(group) == side] or [[0, 0]]).sum(axis=0).tolist() for side in (True, False))
+    words = f"{inside[0]} of {inside[1]} {where}, {outside[0]} of {outside[1]} elsewhere"
+    if inside[1] == 0 or outside[1] == 0 or inside[0] + outside[0] == 0:
         return Finding(NOT_KNOWN, words)
-    p = fisher_p_value(hybrid, clogs, others, other_clogs)
-    more = hybrid * other_clogs > others * clogs
+    p = stats.fisher_exact([[hits, number - hits] for hits, number in (inside, outside)], alternative="greater")[1]
+    more = inside[0] * outside[1] > outside[0] * inside[1]
     return Finding(AGREES if p < 0.05 else IN_KIND if more else DOES_NOT, f"{words}, p = {p:.2g}")
 
 
-@statement_of_walls("appendix C", "λ = 24 ± 1 at Γ = 1.09 and a gap of 0.2",
-                    fitted=BY_DENSITY, in_kind=DENSITY, does_not_agree=DENSITY)
+# The map: other densities
+
+@statement_of_walls("5", "hybrid clogs depend on the density: dense arrays have more", "map", MAPS, in_kind="more often there, but not significantly",
+                    does_not_agree="not more often there", not_known="no clog is hybrid")
+def hybrids_in_dense_arrays(groups: list[Group]) -> Finding:
+    return more_hybrids(groups, lambda group: group["obstacle_density"] > PUBLISHED["obstacle_density"], f"beyond {PUBLISHED['obstacle_density']:g} obstacles per σ²")
+
+
+@statement_of_walls("4, text", "results are qualitatively similar over a wide range of densities: λ(Γ) has a peak", "map", MAPS,
+                    in_kind="not at all densities", does_not_agree="λ falls with Γ: " + SLIDES, not_known="too few clogs")
+def similar_at_other_densities(groups: list[Group]) -> Finding:
+    verdicts, words = [], []
+    for is_saturated, density in sorted({dilute.density_key(group) for group in groups}):
+        members = [group for group in groups if dilute.density_key(group) == (is_saturated, density)]
+        of_gaps = [shape(curve) for curve in curves(members, "obstacle_gap").values()]
+        verdicts.append(overall(of_gaps))
+        words.append(f"{of_gaps.count(AGREES)} of {len(of_gaps)} gaps at {'saturation' if is_saturated else format(density, 'g')}")
+    return Finding(overall(verdicts), "peak in " + ", ".join(words))
+
+
+# Single lengths
+
+@statement_of_walls("appendix C, figure C2", "λ = 24 ± 1 at Γ = 1.09 and a gap of 0.2", "C2", [Family("survival", FAMILIES[0].name), *FAMILIES],
+                    fitted="the density was fitted to this length, with other seeds", in_kind="the published density is unknown", does_not_agree="the published density is unknown", not_known="no run clogged")
 def published_length(groups: list[Group]) -> Finding:
     found = [group for group in groups if all(math.isclose(group[name], PUBLISHED[name]) for name in ("line_tension", "obstacle_gap"))]
-    return length_as_published(found)
-
-
-def length_as_published(found: Sequence[Group]) -> Finding:
     if not found or found[0]["clogs"] == 0:
         return Finding(NOT_KNOWN, "no run clogged, or none of this line tension")
     low, high = bounds(found[0])
@@ -148,82 +197,75 @@ def length_as_published(found: Sequence[Group]) -> Finding:
     return Finding(verdict, f"{length_of(found[0])} at {found[0]['obstacle_density']:g} obstacles per σ²")
 
 
-@statement("appendix C, figure C2", "λ = 24 ± 1 at Γ = 1.09 and a gap of 0.2", "C2",
-           fitted=BY_DENSITY, in_kind=DENSITY, does_not_agree=DENSITY)
-def length_of_survival(shop: Workshop) -> Finding:
-    return length_as_published(shop.sweep("survival"))
-
-
-def is_law_exponential(group: Group) -> Finding:
-    if group["weibull_shape"] is None or group["weibull_p_value"] is None:
-        return Finding(NOT_KNOWN, f"{group['clogs']} clogs")
-    verdict = NOT_KNOWN if group["clogs"] < dilute.ENOUGH_CLOGS else AGREES if group["weibull_p_value"] >= 0.05 else DOES_NOT
-    return Finding(verdict, f"Weibull's shape {group['weibull_shape']:.2f} of {group['clogs']} clogs, p = {group['weibull_p_value']:.2g}")
-
-
 @statement("4.2, appendix C", "P(r) is exponential", "C2",
-           does_not_agree="λ is no longer than the release void, or the runs differ")
+           does_not_agree="λ is no longer than the release void, or the runs differ", not_known="too few clogs")
 def is_exponential(shop: Workshop) -> Finding:
-    return is_law_exponential(shop.sweep("survival")[0])
+    group = shop.sweep("survival")[0]
+    if group["clogs"] < dilute.ENOUGH_CLOGS or group["weibull_p_value"] is None:
+        return Finding(NOT_KNOWN, f"{group['clogs']} clogs")
+    return Finding(AGREES if group["weibull_p_value"] >= 0.05 else DOES_NOT,
+                   f"Weibull's shape {group['weibull_shape']:.2f} of {group['clogs']} clogs, p = {group['weibull_p_value']:.2g}")
+
+
+@statement("appendix C, figure C1", "E_k of a droplet that clogs decays exponentially to the threshold", "C1")
+def energy_decays(shop: Workshop) -> Finding:
+    """On the last ten decades."""
+    run = arrays.energies(shop)[0.3]
+    if run.word("status") != "clogged":
+        return Finding(DOES_NOT, f"the droplet is {run.word('status')}")
+    energy = run.table["kinetic_energy_ratio"]
+    tail = np.arange(len(energy)) > np.flatnonzero(energy > 1e10 * run.row["clog_energy"]).max(initial=0)
+    r_squared = stats.linregress(run.table["time"][tail], np.log(energy[tail])).rvalue ** 2
+    return Finding(AGREES if r_squared >= LEAST_LINEARITY else DOES_NOT, f"R² = {r_squared:.4f} of ln E_k over {np.log10(energy[tail].max() / energy[tail].min()):.0f} decades")
 
 
 # Figure 7: soft disks, and both models over the sag
 
-@statement("4.2, figure 7a", "λ of soft disks falls monotonically with E_w", "7a")
-def disks_are_monotonic(shop: Workshop) -> Finding:
-    return fall_with_stiffness(curves(shop.sweep("clogging-sp"), "obstacle_gap"), shorter, length_of)
-
-
-@statement("4.2, figure 7a", "λ of soft disks grows with the gap", "7a", not_known="too few clogs")
-def disks_travel_farther_in_wide_gaps(shop: Workshop) -> Finding:
-    return grows_with_gap(shop.sweep("clogging-sp"), "wall_stiffness")
-
+statement("4.2, figure 7a", "λ of soft disks falls monotonically with E_w", "7a", not_known="too few clogs")(
+    lambda shop: fall_with_stiffness(curves(shop.sweep("clogging-sp"), "obstacle_gap"), shorter, length_of))
+statement("4.2, figure 7a", "λ of soft disks grows with the gap", "7a", in_kind="at equal density not for stiff disks", not_known="too few clogs")(
+    lambda shop: grows_with_gap(shop.sweep("clogging-sp"), "wall_stiffness"))
 
 APART = 0.25  # the published sag beyond which the models differ
 ALIKE = 2.0  # factor within which lengths are alike
 
 
-def compared(shop: Workshop, family: Family) -> list[tuple[float, float, bool]]:
-    """Polygons and disks of the same sag, gap 0.2.
+def over_the_sag(shop: Workshop, config: str, groups: Sequence[Group]) -> list[tuple[float, Group]]:
+    chosen = [group for group in groups if math.isclose(group["obstacle_gap"], 0.2)]
+    return sorted(zip(arrays.sags(shop, config, chosen), chosen), key=lambda point: point[0])
 
-    @return for each polygon its sag, the ratio of its clogging length to that of a disk, and whether the two are the same: their
-    intervals overlap, or they differ by less than ALIKE. Lower bounds count as lengths.
-    """
-    def curve(config: str, groups: Sequence[Group]) -> list[tuple[float, Group]]:
-        chosen = [group for group in groups if math.isclose(group["obstacle_gap"], 0.2)]
-        return sorted(zip(sags(shop, config, chosen), chosen), key=lambda point: point[0])
 
-    disks = curve("clogging-sp", shop.sweep("clogging-sp"))
-    polygons = curve(family.config, family.of(shop.sweep(family.config)))
+def compared(shop: Workshop, family: Family, is_beyond: bool) -> Finding:
+    """Polygons and disks of the same sag on one side of APART are alike if their intervals overlap, or if they differ by less than ALIKE.
+    Lower bounds count as lengths."""
+    disks = over_the_sag(shop, "clogging-sp", shop.sweep("clogging-sp"))
     logs = [math.log(sag) for sag, _ in disks]
 
     def of_disk(sag: float, number: Callable[[Group], float]) -> float:
         return math.exp(np.interp(math.log(sag), logs, [math.log(min(number(group), 1e12)) for _, group in disks]))
 
-    found = []
-    for sag, polygon in polygons:
-        if not disks[0][0] <= sag <= disks[-1][0]:
-            continue
-        ratio = dilute.known_length(polygon) / of_disk(sag, dilute.known_length)
-        low, high = bounds(polygon)
-        overlap = low <= of_disk(sag, lambda group: bounds(group)[1]) and high >= of_disk(sag, lambda group: bounds(group)[0])
-        found.append((sag, ratio, overlap or 1 / ALIKE <= ratio <= ALIKE))
-    return found
+    right, words = [], []
+    for sag, polygon in over_the_sag(shop, family.config, family.of(shop.sweep(family.config))):
+        if disks[0][0] <= sag <= disks[-1][0] and (sag > APART) == is_beyond:
+            ratio = dilute.known_length(polygon) / of_disk(sag, dilute.known_length)
+            low, high = bounds(polygon)
+            overlap = low <= of_disk(sag, lambda group: bounds(group)[1]) and high >= of_disk(sag, lambda group: bounds(group)[0])
+            right.append((overlap or 1 / ALIKE <= ratio <= ALIKE) != is_beyond)
+            words.append(f"{ratio:.2g} at {sag:.3f}")
+    verdict = NOT_KNOWN if not right else AGREES if all(right) else IN_KIND if any(right) else DOES_NOT
+    return Finding(verdict, f"polygon/disk ratio at each sag: {', '.join(words)}" if words else "no polygon of such a sag")
 
 
-def over_the_sag(is_beyond: bool) -> Callable[[Workshop, Family], Finding]:
-    def judge(shop: Workshop, family: Family) -> Finding:
-        points = [point for point in compared(shop, family) if (point[0] > APART) == is_beyond]
-        words = ", ".join(f"{ratio:.2g} at {sag:.3f}" for sag, ratio, _ in points)
-        if not points:
-            return Finding(NOT_KNOWN, "no polygon of such a sag")
-        right = [is_alike != is_beyond for *_, is_alike in points]
-        return Finding(AGREES if all(right) else IN_KIND if any(right) else DOES_NOT, f"polygon/disk ratio at each sag: {words}")
-
-    return judge
+statement_of_families("4.2, figure 7c", "λ against the sag is the same for disks and polygons below 0.25 σ", "7c", in_kind="they separate at a smaller sag")(
+    lambda shop, family: compared(shop, family, is_beyond=False))
+statement_of_families("4.2, figure 7c", "λ against the sag differs between disks and polygons beyond 0.25 σ", "7c", not_known="the softest polygon does not sink that far")(
+    lambda shop, family: compared(shop, family, is_beyond=True))
 
 
-statement_of_family("4.2, figure 7c", "λ against the sag is the same for disks and polygons below 0.25 σ", "7c", over_the_sag(is_beyond=False),
-                    in_kind="they separate at a smaller sag", not_known="no polygon of such a sag")
-statement_of_family("4.2, figure 7c", "λ against the sag differs between disks and polygons beyond 0.25 σ", "7c", over_the_sag(is_beyond=True),
-                    not_known="the softest polygon does not sink that far")
+@statement_of_families("4.2, figure 7c", "λ of polygons tends to 0 at large sag", "7c", does_not_agree=SLIDES, in_kind="it falls, but not below a droplet's diameter",
+                       not_known="the softest polygons do not differ")
+def polygons_stop_at_once(shop: Workshop, family: Family) -> Finding:
+    curve = over_the_sag(shop, family.config, family.of(shop.sweep(family.config)))
+    (last_sag, softest), (top_sag, longest) = curve[-1], max(curve, key=lambda point: dilute.known_length(point[1]))
+    verdict = AGREES if bounds(softest)[1] < 1 else IN_KIND if shorter(softest, longest) else DOES_NOT if softest["clogs"] == 0 else NOT_KNOWN
+    return Finding(verdict, f"{length_of(longest)} at a sag of {top_sag:.2f}, {length_of(softest)} at {last_sag:.2f}")

@@ -3,10 +3,12 @@
 import math
 from typing import Any
 
-from ..paper.arrays import sags
+from scipy import stats
+
+from ..paper import arrays
 from ..paper.workshop import Workshop
 from ..tools.hints import Group
-from .evidence import by_tolerance, curves, fall_with_stiffness, falls, overall, rises, slower, speed_of, trend
+from .evidence import LEAST_LINEARITY, by_tolerance, curves, fall_with_stiffness, falls, overall, rises, slower, speed_of, trend
 from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding, statement
 
 
@@ -25,11 +27,8 @@ def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Findi
     return Finding(overall(verdicts), "; ".join(words))
 
 
-@statement("4.3, figure 8a", "the mean speed rises with Γ in gaps of 1 and wider", "8a",
-           in_kind="it has a maximum, then falls to the plateau",
-           does_not_agree="without friction, walls do not slow soft droplets down")
-def speeds_rise_with_tension(shop: Workshop) -> Finding:
-    return speeds_rise(shop, "speed", "obstacle_gap", "gap")
+statement("4.3, figure 8a", "the mean speed rises with Γ in gaps of 1 and wider", "8a", in_kind="it has a maximum, then falls to the plateau",
+          does_not_agree="walls do not slow soft droplets down")(lambda shop: speeds_rise(shop, "speed", "obstacle_gap", "gap"))
 
 
 def plateau(shop: Workshop, config: str, parameter: str) -> list[Group]:
@@ -69,9 +68,8 @@ def speed_by_capillary_number(shop: Workshop) -> Finding:
     return Finding(overall(verdicts), "; ".join(words))
 
 
-@statement("4.3, figure 9a", "the speed of soft disks falls with E_w", "9a")
-def disks_slow_down(shop: Workshop) -> Finding:
-    return fall_with_stiffness(speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness"), slower, speed_of)
+statement("4.3, figure 9a", "the speed of soft disks falls with E_w", "9a")(
+    lambda shop: fall_with_stiffness(speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness"), slower, speed_of))
 
 
 @statement("4.3, figure 9a", "the speed of soft disks tends to v_t as E_w tends to 0", "9a",
@@ -86,7 +84,7 @@ def speed_pairs(shop: Workshop) -> list[tuple[float, Group, float, Group]]:
     found = []
     for config in ("speed", "speed-sp"):
         groups = [group for group in shop.sweep(config) if math.isclose(group["obstacle_gap"], 1.1) and group["relative_speed"] is not None]
-        found.append(sorted(zip(sags(shop, config, groups), groups), key=lambda point: point[0]))
+        found.append(sorted(zip(arrays.sags(shop, config, groups), groups), key=lambda point: point[0]))
     return [(*found[0][end], *found[1][end]) for end in (0, -1)]
 
 
@@ -110,6 +108,13 @@ def nothing_clogs_in_wide_gaps(shop: Workshop) -> Finding:
     return Finding(AGREES if clogs == 0 else IN_KIND if clogs <= 0.05 * runs else DOES_NOT, f"{clogs} of {runs} runs clogged, {on_mesh} of them by corner pinning")
 
 
+@statement("appendix D, figure D", "r(t) is linear", "D", in_kind="the softest droplet stops and goes")
+def displacement_is_linear(shop: Workshop) -> Finding:
+    found = {tension: stats.linregress(run.table["time"], run.table["distance"]).rvalue ** 2 for tension, run in arrays.displacements(shop).items()}
+    right = [r_squared >= LEAST_LINEARITY for r_squared in found.values()]
+    return Finding(AGREES if all(right) else IN_KIND if any(right) else DOES_NOT, "R² = " + ", ".join(f"{r_squared:.4f} at {tension:g}" for tension, r_squared in found.items()))
+
+
 @statement("appendix E, figure E", "near-wall drag slows droplets down", "E")
 def drag_slows_down(shop: Workshop) -> Finding:
     lines = list(speed_curves(shop, "near-wall-drag", "near_wall_drag", "line_tension").values())
@@ -119,7 +124,5 @@ def drag_slows_down(shop: Workshop) -> Finding:
                    "; ".join(f"{speed_of(first)} and {speed_of(last)} at {first['line_tension']:g}" for first, last in pairs))
 
 
-@statement("appendix E, figure E", "the speed rises monotonically with Γ for every near-wall drag", "E",
-           in_kind="it has a maximum")
-def speeds_rise_with_drag(shop: Workshop) -> Finding:
-    return speeds_rise(shop, "near-wall-drag", "near_wall_drag", "b_0")
+statement("appendix E, figure E", "the speed rises monotonically with Γ for every near-wall drag", "E", in_kind="it has a maximum")(
+    lambda shop: speeds_rise(shop, "near-wall-drag", "near_wall_drag", "b_0"))

@@ -5,27 +5,28 @@ verdict is computed. Only the reason for a verdict other than `agrees` is writte
 """
 
 import dataclasses
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
 
 from ..paper.dilute import FAMILIES, Family
 from ..paper.workshop import Workshop
 from ..tools.errors import NotThere, UserError
-from ..tools.hints import Group
 
 AGREES, IN_KIND, FITTED = "agrees", "qualitatively", "by construction"
+FORCED, BY_MESH = "agrees with an added force", "artefact of the mesh"
 DOES_NOT, NOT_KNOWN, NOT_RUN = "does not agree", "not known", "not run"
 
 
 @dataclasses.dataclass(frozen=True)
 class Finding:
-    """The result of this program. @param value  in words, with numbers and their intervals"""
+    """The result of this program. @param value  in words, with numbers and their intervals; @param variants  the same of other models"""
 
     verdict: str
     value: str
+    variants: str = ""
 
 
-Judge = Callable[[Workshop], Finding]
-JudgeOfWalls = Callable[[list[Group]], Finding]
+Judge = Callable[..., Finding]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -34,52 +35,63 @@ class Statement:
     text: str
     figures: tuple[str, ...]  # whose sweeps it is judged from
     judge: Judge
-    walls: str = ""  # the family, for statements that are judged for each
     reasons: Mapping[str, str] = dataclasses.field(default_factory=dict)  # by verdict
 
 
 STATEMENTS: list[Statement] = []
-
-
-def _by_verdict(reasons: Mapping[str, str]) -> dict[str, str]:
-    names = {"in_kind": IN_KIND, "fitted": FITTED, "does_not_agree": DOES_NOT, "not_known": NOT_KNOWN}
-    return {names[name]: why for name, why in reasons.items()}
+NAMES = {"in_kind": IN_KIND, "fitted": FITTED, "does_not_agree": DOES_NOT, "not_known": NOT_KNOWN}
+ALWAYS = {FORCED: "without it nothing holds a soft droplet that hangs over an obstacle",
+          BY_MESH: "only corners of the polygon hold a soft droplet, the less the more vertices it has"}
 
 
 def statement(where: str, text: str, *figures: str, **reasons: str) -> Callable[[Judge], Judge]:
     """Registers a function that judges a statement.
 
     @param figures  whose sweeps it needs
-    @param reasons  for a verdict: in_kind, fitted, does_not_agree, not_known
+    @param reasons  for a verdict, by NAMES
     """
 
     def register(judge: Judge) -> Judge:
-        STATEMENTS.append(Statement(where, text, figures, judge, reasons=_by_verdict(reasons)))
+        STATEMENTS.append(Statement(where, text, figures, judge, ALWAYS | {NAMES[name]: why for name, why in reasons.items()}))
         return judge
 
     return register
 
 
-def statement_of_family(where: str, text: str, figure: str, judge: Callable[[Workshop, Family], Finding], **reasons: str) -> None:
-    """Registers a statement that is judged once for each family of walls."""
-    for family in FAMILIES:
-        def of_family(shop: Workshop, family: Family = family) -> Finding:
-            return judge(shop, family)
-
-        STATEMENTS.append(Statement(where, text, (figure,), of_family, family.in_words, _by_verdict(reasons)))
+def tried(judge: Judge, *arguments: Any) -> Finding:
+    try:
+        return judge(*arguments)
+    except NotThere:
+        return Finding(NOT_RUN, "")
 
 
-def statement_of_walls(where: str, text: str, **reasons: str) -> Callable[[JudgeOfWalls], JudgeOfWalls]:
-    """Registers a function that judges the clogging lengths of figure 6c, once for each family of walls.
+def with_variants(found: Mapping[Family, Finding]) -> Finding:
+    """The finding of the first family, the nearest to the published model. If it does not agree, the verdict says what makes another agree."""
+    (_, nearest), *others = found.items()
+    verdict = nearest.verdict
+    if verdict in (DOES_NOT, NOT_KNOWN):
+        helps = [family for family, finding in others if finding.verdict == AGREES]
+        verdict = FORCED if any(family.friction > 0 for family in helps) else BY_MESH if helps else verdict
+    return Finding(verdict, nearest.value, "; ".join(f"{family.in_words}: {finding.verdict}" + (f", {finding.value}" if finding.value else "")
+                                                     for family, finding in others))
 
-    The function gets the family's groups in the order of gap, then line tension.
-    """
 
-    def register(judge: JudgeOfWalls) -> JudgeOfWalls:
+def statement_of_families(where: str, text: str, figure: str = "6c", families: Sequence[Family] = FAMILIES, **reasons: str) -> Callable[[Judge], Judge]:
+    """Registers a judge of the sweeps and one family of walls. @param families  the nearest to the published model first"""
+    def register(judge: Judge) -> Judge:
+        statement(where, text, figure, **reasons)(lambda shop: with_variants({family: tried(judge, shop, family) for family in families}))
+        return judge
+
+    return register
+
+
+def statement_of_walls(where: str, text: str, figure: str = "6c", families: Sequence[Family] = FAMILIES, **reasons: str) -> Callable[[Judge], Judge]:
+    """The same of the family's groups, in the order of gap, then line tension."""
+    def register(judge: Judge) -> Judge:
         def of_family(shop: Workshop, family: Family) -> Finding:
             return judge(sorted(family.of(shop.sweep(family.config)), key=lambda group: (group["obstacle_gap"], group["line_tension"])))
 
-        statement_of_family(where, text, "6c", of_family, **reasons)
+        statement_of_families(where, text, figure, families, **reasons)(of_family)
         return judge
 
     return register
@@ -92,26 +104,25 @@ class Judged:
 
     @property
     def reason(self) -> str:
-        return self.statement.reasons.get(self.finding.verdict, "")
+        """Why, and what was tried if the verdict is not known or no agreement."""
+        figures = ", ".join(self.statement.figures) if self.finding.verdict in (DOES_NOT, NOT_KNOWN) else ""
+        return "; ".join(filter(None, [self.statement.reasons.get(self.finding.verdict), figures and f"tried: runs of figure {figures}"]))
 
 
 def judge(shop: Workshop, one: Statement) -> Judged:
-    try:
-        return Judged(one, one.judge(shop))
-    except NotThere:
-        return Judged(one, Finding(NOT_RUN, f"python3 -m clogsweep figures {' '.join(one.figures)}"))
+    found = tried(one.judge, shop)
+    return Judged(one, Finding(NOT_RUN, f"python3 -m clogsweep figures {' '.join(one.figures)}") if found.verdict == NOT_RUN else found)
 
 
-def judge_all(shop: Workshop) -> list[Judged]:
-    """@param shop  that runs nothing. @throws UserError  if its sweeps are of several model versions"""
-    found = [judge(shop, one) for one in STATEMENTS]
-    refuse_mixed(shop.model_versions())
-    return found
+def judge_all(shop: Workshop) -> tuple[list[Judged], int]:
+    """@param shop  that runs nothing. @return  also the model version. @throws UserError  if its sweeps are of several"""
+    return [judge(shop, one) for one in STATEMENTS], the_version(shop.model_versions())
 
 
-def refuse_mixed(versions: Mapping[str, Iterable[int]]) -> None:
+def the_version(versions: Mapping[str, Iterable[int]]) -> int:
     """@param versions  of the rows of each sweep"""
     newest = max((version for of_sweep in versions.values() for version in of_sweep), default=0)
     older = sorted(name for name, of_sweep in versions.items() if set(of_sweep) - {newest})
     if older:
         raise UserError(f"sweeps are of several model versions; remove and rerun those older than {newest}: {', '.join(older)}")
+    return newest

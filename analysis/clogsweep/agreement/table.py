@@ -3,45 +3,40 @@
 import collections
 import csv
 import io
+import textwrap
 from collections.abc import Callable, Sequence
 
-from .statements import AGREES, DOES_NOT, FITTED, IN_KIND, NOT_KNOWN, NOT_RUN, Judged
+from .statements import AGREES, BY_MESH, DOES_NOT, FITTED, FORCED, IN_KIND, NOT_KNOWN, NOT_RUN, Judged
 
-COLUMNS = ["where", "statement", "walls", "here", "verdict", "reason"]
+COLUMNS = ["where", "statement", "here", "verdict", "reason", "variants"]
 
 
 def cells(one: Judged) -> list[str]:
-    return [one.statement.where, one.statement.text, one.statement.walls, one.finding.value, one.finding.verdict, one.reason]
+    return [one.statement.where, one.statement.text, one.finding.value, one.finding.verdict, one.reason, one.finding.variants]
 
 
 def counts(judged: Sequence[Judged]) -> str:
     """The verdicts counted, such as 31 agree, 12 agree qualitatively."""
     number = collections.Counter(one.finding.verdict for one in judged)
-    words = {AGREES: "agree", IN_KIND: "agree qualitatively", FITTED: "agree by construction",
-             DOES_NOT: "do not agree", NOT_KNOWN: "are not known", NOT_RUN: "have not been run"}
+    words = {AGREES: "agree", IN_KIND: "agree qualitatively", FORCED: "agree with an added force", BY_MESH: "are artefacts of the mesh",
+             FITTED: "agree by construction", DOES_NOT: "do not agree", NOT_KNOWN: "are not known", NOT_RUN: "have not been run"}
     return ", ".join(f"{number[verdict]} {word}" for verdict, word in words.items() if number[verdict])
 
 
-def markdown(judged: Sequence[Judged]) -> str:
-    """A table for each place of the article; a statement that is judged for several walls is written out once."""
-    lines = [f"Of {len(judged)} statements {counts(judged)}."]
+def markdown(judged: Sequence[Judged], version: int) -> str:
+    """A table for each place of the article."""
+    lines = [textwrap.fill(f"Of {len(judged)} statements {counts(judged)}. All rows have model version {version}.", 118)]
     for where in dict.fromkeys(one.statement.where for one in judged):
-        lines += ["", f"**{where[0].upper()}{where[1:]}**", "", "| statement | walls | here | verdict |", "|---|---|---|---|"]
-        before = ""
-        for one in judged:
-            if one.statement.where != where:
-                continue
-            text = "" if one.statement.text == before else one.statement.text
-            before = one.statement.text
-            verdict = f"**{one.finding.verdict}**" + (f": {one.reason}" if one.reason else "")
-            lines.append(f"| {text} | {one.statement.walls} | {one.finding.value} | {verdict} |")
+        lines += ["", f"**{where[0].upper()}{where[1:]}**", "", "| statement | here | verdict | variants |", "|---|---|---|---|"]
+        for _, text, here, verdict, reason, variants in (cells(one) for one in judged if one.statement.where == where):
+            lines.append(f"| {text} | {here} | **{verdict}**{': ' if reason else ''}{reason} | {variants} |")
     return "\n".join(lines) + "\n"
 
 
-def comma_separated(judged: Sequence[Judged]) -> str:
+def comma_separated(judged: Sequence[Judged], _: int) -> str:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows([COLUMNS, *map(cells, judged)])
     return text.getvalue()
 
 
-WRITERS: dict[str, Callable[[Sequence[Judged]], str]] = {"markdown": markdown, "csv": comma_separated}
+WRITERS: dict[str, Callable[[Sequence[Judged], int], str]] = {"markdown": markdown, "csv": comma_separated}

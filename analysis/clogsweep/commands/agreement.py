@@ -3,9 +3,10 @@
     python3 -m clogsweep agreement
     python3 -m clogsweep agreement --run --format csv
 
-Judges every statement from the sweeps of the figures, and prints the result with its interval, and the verdict: agrees,
-qualitatively, by construction (a parameter was fitted to the published number), does not agree, not known (too few clogs
-to tell), not run. All rows must be of one model version.
+Judges every statement from the sweeps of the figures, and prints the result with its interval, the results of other
+walls, and the verdict: agrees, qualitatively, agrees with an added force (wall friction), artefact of the mesh, by
+construction (a parameter was fitted to the published number), does not agree, not known, not run. All rows must be of
+one model version.
 """
 
 import argparse
@@ -32,5 +33,5 @@ def body() -> int:
     arguments = parse()
     shop = Workshop(size=arguments.size, ranks=arguments.ranks, folder=arguments.output / arguments.size,
                     programs=programs.programs_in(arguments.programs), overrides=[], draw_only=not arguments.run)
-    print(agreement.WRITERS[arguments.format](agreement.judge_all(shop)), end="")
+    print(agreement.WRITERS[arguments.format](*agreement.judge_all(shop)), end="")
     return 0

@@ -9,7 +9,8 @@ is anywhere between, where it is highest and where it crosses a given length, al
 Runs that travelled a distance S together and clogged d times are a Poisson count with exposure, so points without a clog
 inform the curve as bounds. log lambda is a Gaussian process over the logarithm of the key. The other physical keys tell
 curves apart. A curve needs four values of the key, three of them with clogs; points in no curve are listed with the reason.
-csv and json have the whole curve, at 97 places (25 x 25 with two keys), and those of each mechanism.
+csv and json have the whole curve, at 97 places (25 x 25 with two keys), and those of each mechanism; peaks is a CSV table
+of the peaks alone.
 
 Runs of the same seed met the same obstacles at every value of a key that does not change the array. Then the errors of
 the points are correlated, but the band takes them for independent. Seeds of their own at each value avoid this.
@@ -37,7 +38,7 @@ def body() -> int:
     parser.add_argument("file", type=pathlib.Path, nargs="*", help="sweep files, fitted as one sweep")
     parser.add_argument("--key", default="", help="that the curve is drawn over, or two with a comma between")
     parser.add_argument("--crossing", type=crossed_lengths, default=[], help="lengths that the curve may cross [sigma]")
-    parser.add_argument("--format", default="text", help="text, csv or json")
+    parser.add_argument("--format", default="text", help="text, csv, json or peaks")
     for name, meaning in (("confidence", "of the intervals (0.95)"), ("from-distance", "see clogfit --help [sigma]"), ("dwell", "see clogfit --help [t0]"),
                           ("lab", "file that describes the laboratory, see clogfit units; its units are printed below the curve")):
         parser.add_argument(f"--{name}", help=meaning)
@@ -45,8 +46,8 @@ def body() -> int:
     arguments = parser.parse_args()
     if not arguments.file:
         parser.error("missing sweep file; try clogfit curve sweep.h5")
-    if arguments.format not in ("text", "csv", "json"):
-        parser.error(f"invalid --format={arguments.format} (must be text, csv or json)")
+    if arguments.format not in ("text", "csv", "json", "peaks"):
+        parser.error(f"invalid --format={arguments.format} (must be text, csv, json or peaks)")
     options = [f"--{name}={value}" for name in ("confidence", "from-distance", "dwell", "lab")
                if (value := getattr(arguments, name.replace("-", "_"))) is not None]
     keys = [name for name in arguments.key.split(",") if name]
@@ -54,8 +55,8 @@ def body() -> int:
     found, lab = answer.of_sweep(clogfit, arguments.file, keys, *options, crossing=arguments.crossing)
     if arguments.format == "json":
         print(json.dumps(found, indent=2))
-    elif arguments.format == "csv":
-        print(table.comma_separated(found), end="")
+    elif arguments.format in ("csv", "peaks"):
+        print((table.comma_separated if arguments.format == "csv" else table.peaks)(found), end="")
     else:
         print(table.text(found, arguments.crossing), end="")
         if lab:

@@ -53,8 +53,8 @@ def band(curve: Curve, confidence: float) -> Numbers:
     return np.exp([curve.mean, curve.mean - half, curve.mean + half])
 
 
-def drawn_curves(curve: Curve, number: int = NUM_DRAWS) -> Numbers:
-    """Curves of log lambda drawn from the distribution, the same ones in every call: one in every row."""
+def drawn_curves(curve: Curve, number: int = NUM_DRAWS, seed: int = 1) -> Numbers:
+    """Curves of log lambda drawn from the distribution, the same ones in every call: one in every row. Those of another seed are independent."""
     variance = max(float(np.max(np.diagonal(curve.covariance))), float(np.finfo(float).tiny))
     jitter = FIRST_JITTER
     while True:
@@ -66,7 +66,7 @@ def drawn_curves(curve: Curve, number: int = NUM_DRAWS) -> Numbers:
             if jitter >= 1:
                 raise
     # RandomState is frozen: it gives the same numbers with every NumPy.
-    return curve.mean + np.random.RandomState(1).standard_normal((number, len(curve.mean))) @ factor.T
+    return curve.mean + np.random.RandomState(seed).standard_normal((number, len(curve.mean))) @ factor.T
 
 
 def tops_of_lines(heights: Numbers, x: Numbers) -> tuple[Numbers, Numbers]:

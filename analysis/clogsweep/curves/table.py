@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from ..tools import rounded
@@ -82,17 +82,26 @@ def _places(answer: dict[str, Any], curve: dict[str, Any]) -> list[str]:
     return lines
 
 
+def _comma_separated(rows: Iterable[Sequence[str]]) -> str:
+    output = io.StringIO()
+    csv.writer(output, lineterminator="\n").writerows(rows)
+    return output.getvalue()
+
+
 def comma_separated(answer: dict[str, Any]) -> str:
     """A line for every place of every curve."""
-    shared, keys = list(answer["curves"][0]["shared"]), answer["keys"]
-    lengths = [*ALL, *(name for names in CAUSES.values() for name in names)]
-    output = io.StringIO()
-    lines = csv.writer(output, lineterminator="\n")
-    lines.writerow([*shared, *keys, *lengths])
-    for curve in answer["curves"]:
-        for place in curve["curve"]:
-            lines.writerow([*(shortest(curve["shared"].get(name)) for name in shared), *(shortest(place.get(name)) for name in [*keys, *lengths])])
-    return output.getvalue()
+    shared, names = list(answer["curves"][0]["shared"]), [*answer["keys"], *ALL, *(name for names in CAUSES.values() for name in names)]
+    return _comma_separated([[*shared, *names], *([*(shortest(curve["shared"].get(name)) for name in shared), *(shortest(place.get(name)) for name in names)]
+                                                  for curve in answer["curves"] for place in curve["curve"])])
+
+
+def peaks(answer: dict[str, Any]) -> str:
+    """A line for every curve: its peak, or none if it may well be highest at a border."""
+    shared, names = list(answer["curves"][0]["shared"]), [f"{name}{end}" for name in [*answer["keys"], ALL[0]] for end in ("", "_lower", "_upper")]
+    found = [(curve["shared"], curve["peak"], curve["peak"]["probability_between_borders"]) for curve in answer["curves"]]
+    return _comma_separated([[*shared, *names, "probability_between_borders"], *(
+        [*(shortest(values.get(name)) for name in shared), *(f"{peak[name]:.3g}" if inside >= answer["confidence"] else "none" for name in names), shortest(inside)]
+        for values, peak, inside in found)])
 
 
 def lengths(words: str) -> list[float]:

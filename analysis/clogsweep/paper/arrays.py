@@ -275,13 +275,17 @@ def two_ways(shop: Workshop) -> Plate:
 
 # Single runs and P(r)
 
+def energies(shop: Workshop) -> dict[float, trajectory.Trajectory]:
+    """Ways of Fig. C1, by the gap: a droplet that clogs and one that flows."""
+    rows = shop.runs("energy", "trajectory", {"seeds": 1, "line-tension": 0.5, "obstacle-gap": [0.3, 1.1], "clog-detection": "threshold"})
+    return {row["obstacle_gap"]: way for row, way in zip(rows, shop.ways("energy", rows, 1))}
+
+
 @figure("C1", "kinetic energy of a droplet that clogs and of one that flows", ["trajectory"], "2 s")
 def kinetic_energy(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(7.2, 4.8))
     data = []
-    gaps = [0.3, 1.1]
-    rows = shop.runs("energy", "trajectory", {"seeds": 1, "line-tension": 0.5, "obstacle-gap": gaps, "clog-detection": "threshold"})
-    for index, (gap, run) in enumerate(zip(gaps, shop.ways("energy", rows, 1))):
+    for index, (gap, run) in enumerate(energies(shop).items()):
         energy = np.where(run.table["kinetic_energy_ratio"] > 0, run.table["kinetic_energy_ratio"], math.nan)
         label = rf"$w_\mathrm{{ob}} = {gap}\sigma$: {run.word('status')} at $r = {run.row['distance']:.2f}\sigma$"
         axes.plot(run.table["time"], energy, color=style.COLOURS[index], linewidth=0.9, label=label)
@@ -341,13 +345,17 @@ def survival(shop: Workshop) -> Plate:
                  + [{"clogging_length": length, "clogging_length_lower": lower, "clogging_length_upper": upper}])
 
 
+def displacements(shop: Workshop) -> dict[float, trajectory.Trajectory]:
+    """Ways of Fig. D, by the line tension."""
+    rows = shop.runs("displacement", "trajectory", {"seeds": 1, "line-tension": [0.04, 0.1, 0.2, 0.5, 1.0], "obstacle-gap": 1.1, "preset": "elastic"})
+    return {row["line_tension"]: way for row, way in zip(rows, shop.ways("displacement", rows, 2))}
+
+
 @figure("D", "displacement against time for five line tensions, minimum gap 1.1", ["trajectory"], "3 s")
 def displacement(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
-    line_tensions = [0.04, 0.1, 0.2, 0.5, 1.0]
-    rows = shop.runs("displacement", "trajectory", {"seeds": 1, "line-tension": line_tensions, "obstacle-gap": 1.1, "preset": "elastic"})
-    for index, (line_tension, run) in enumerate(zip(line_tensions, shop.ways("displacement", rows, 2))):
+    for index, (line_tension, run) in enumerate(displacements(shop).items()):
         speed = run.row["mean_speed"] / run.row["terminal_speed"]
         label = rf"$\Gamma = {line_tension:g}$" + (rf": $v_g = {speed:.2f}\,v_t$" if math.isfinite(speed) else "") + (
             ", clogged" if run.word("status") == "clogged" else "")

@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+"""The table of docs/gallery/index.md has every picture of the gallery with the model version of its rows. Another version than
+the program's needs a later note whose CSV file shows that a part of each of these pictures is the same with the program's."""
+
+import csv
+import re
+import sys
+
+import known
+
+GALLERY = known.ROOT / "docs/gallery"
+VERSION = re.search(r"int model_version = (\d+);", (known.ROOT / "include/clog/core/parameters/parameters.hpp").read_text())[1]
+ROW = re.compile(r"^\| ([^|]+) \| \w+ \| (\d+) \| ([\d-]+) \|(.*)\|$", re.MULTILINE)
+NOTE = re.compile(r"\]\(\.\./notes/(([\d-]{10})-[\w-]+)\.md\)")
+
+
+def same_now(link, date):
+    """The pictures of which a note after that date found the same."""
+    if not link or link[2] <= date:
+        return set()
+    with open(known.ROOT / f"docs/notes/{link[1]}.csv", newline="") as file:
+        lines = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return {line["picture"] for line in lines} - {line["picture"] for line in lines if line["then"] != line["now"] or line["version"] != VERSION}
+
+
+def faults():
+    listed = set()
+    for names, version, date, note in ROW.findall((GALLERY / "index.md").read_text()):
+        listed |= {*names.split(", ")}
+        aged = {*names.split(", ")} - same_now(NOTE.search(note), date) if version != VERSION else ()
+        yield from (f"{name} has rows of model version {version}, and no note found the same with {VERSION}; draw it anew, or recompute a part" for name in sorted(aged))
+    shown = {name for page in GALLERY.glob("*.md") for name in re.findall(r"pictures/(?:figure-)?([\w-]+)\.png", page.read_text())} | {"density"}
+    yield from (f"{name} is missing in the table of model versions, or in the gallery" for name in sorted(shown ^ listed))
+    if f"All rows have model version {VERSION}." not in " ".join((GALLERY / "tables/agreement.md").read_text().split()):
+        yield f"the table of agreement is of another model version than {VERSION}; make it anew"
+
+
+sys.exit("\n".join(f"docs/gallery: {fault}" for fault in faults()) or None)
