@@ -22,8 +22,8 @@ mapfile -t options <"$SWEEP"
 code=0
 run_sweep "$bin/clogsweep" "${options[@]}" --max-hours "${HOURS:-23.9}" || code=$?
 if ((code == 75 && !was_cancelled)); then
-  echo "not complete; it queues again"
-  export SWEEP HOURS="${HOURS:-23.9}" CLOG_BIN="$bin" JOB_SCRIPT="${JOB_SCRIPT:-jobs/pbs.sh}"
-  qsub -v SWEEP,HOURS,CLOG_BIN,JOB_SCRIPT "$JOB_SCRIPT"
+  count=${REQUEUES:-0}
+  export SWEEP HOURS="${HOURS:-23.9}" CLOG_BIN="$bin" JOB_SCRIPT="${JOB_SCRIPT:-jobs/pbs.sh}" REQUEUES=$((count + 1)) MAX_REQUEUES
+  requeue "$count" qsub -v SWEEP,HOURS,CLOG_BIN,JOB_SCRIPT,REQUEUES,MAX_REQUEUES "$JOB_SCRIPT"
 fi
 exit "$code"

@@ -25,8 +25,5 @@ fi
 . "$bin/../share/clogsweep/jobs/batch.sh"
 code=0
 run_sweep "$bin/clogsweep" "$@" || code=$?
-if ((code == 75 && !was_cancelled)); then
-  echo "not complete; job $SLURM_JOB_ID queues again"
-  scontrol requeue "$SLURM_JOB_ID"
-fi
+if ((code == 75 && !was_cancelled)); then requeue "${SLURM_RESTART_COUNT:-0}" scontrol requeue "$SLURM_JOB_ID"; fi
 exit "$code"

@@ -3,6 +3,7 @@
     tests/slurm.sh [slurm.Slurm.test_...]    # starts the Slurm that these tests need
 """
 
+import os
 import pathlib
 import re
 import subprocess
@@ -22,7 +23,7 @@ NODES = {"node1", "node2"}
 
 
 def slurm(*command):
-    done = subprocess.run([*map(str, command)], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([*map(str, command)], capture_output=True, text=True, timeout=300)
     if done.returncode:
         raise AssertionError(f"{command}: {done.stdout}{done.stderr}")
     return done.stdout
@@ -49,10 +50,10 @@ class Slurm(SweepTest):
         super().setUp()
         self.wait_for(lambda: all(described("node", node)["State"] == "IDLE" for node in NODES))
 
-    def submit(self, *options, keys=KEYS):
+    def submit(self, *options, script=ROOT / "jobs" / "slurm.sh", keys=KEYS):
         """A job of two ranks that sweeps to s.h5. @return its number"""
         words = slurm("sbatch", "--parsable", f"--chdir={self.folder}", "--output=job.log", "--ntasks=2", *options,
-                      ROOT / "jobs" / "slurm.sh", *keys, "--output", "s.h5")
+                      script, *keys, "--output", "s.h5")
         job = words.strip()
         self.addCleanup(slurm, "scancel", "--full", job)
         return job
@@ -104,7 +105,7 @@ class Slurm(SweepTest):
         self.wait_for_state(job, "COMPLETED")
         restarts = int(described("job", job)["Restarts"])
         self.assertEqual(self.log().count("stopping because of a signal"), restarts, self.log())
-        self.assertEqual(self.log().count(f"not complete; job {job} queues again"), restarts, self.log())
+        self.assertEqual(self.log().count("not complete; the job queues again"), restarts, self.log())
         self.check_equal("s.h5", self.sweep_without_slurm(LONG, self.folder / "whole.h5"))
 
     def test_a_job_that_is_queued_again_goes_on(self):
@@ -147,6 +148,52 @@ class Slurm(SweepTest):
         self.resume("node2")
         self.check_completed(job, restarts=1)
         self.check_went_on()
+
+    def test_a_script_that_wraps_ours_sets_its_options_and_limits_its_requeues(self):
+        wrapper = self.folder / "mine.sh"
+        wrapper.write_text("#!/bin/bash\n#SBATCH --nodes=1 --ntasks-per-node=2 --requeue --open-mode=append\n"
+                           f'export MAX_REQUEUES=1\nexec {ROOT}/jobs/slurm.sh "$@" --max-hours 1e-5\n')
+        job = self.submit(script=wrapper, keys=LONG)
+        self.wait_for_state(job, "FAILED")
+        self.assertEqual((described("job", job)["Restarts"], described("job", job)["ExitCode"]), ("1", "75:0"), self.log())
+        self.assertIn("not complete after 1 requeues, as many as MAX_REQUEUES allows", self.log())
+
+    def preempt(self, partition):
+        """@return the number of a job that an urgent one has preempted"""
+        job = self.submit("--nodes=2", "--ntasks-per-node=1", f"--partition={partition}")
+        self.wait_for_runs_with_snapshots()
+        urgent = slurm("sbatch", "--parsable", "--partition=urgent", "--nodes=2", "--exclusive", "--output=/dev/null", "--wrap=sleep 5").strip()
+        self.wait_for_state(urgent, "COMPLETED")
+        return job
+
+    def configure(self, old, new):
+        """Changes Slurm's configuration until the test ends."""
+        path = pathlib.Path(os.environ["SLURM_CONF"])
+
+        def put(text):
+            path.write_text(text)
+            slurm("scontrol", "reconfigure")
+        self.addCleanup(put, path.read_text())
+        put(path.read_text().replace(old, new))
+
+    def test_a_preempted_job_queues_again(self):
+        user_signal = "SlurmctldParameters=preempt_send_user_signal\n"
+        # Without that only the daemon on the other node is warned.
+        for partition, removed, warned in [("requeue", "", False), ("cancel", "", True), ("cancel", user_signal, False)]:
+            with self.subTest(partition=partition, removed=removed):
+                self.setUp()  # an empty folder
+                self.configure(removed, "")
+                self.check_completed(self.preempt(partition), restarts=1)
+                self.check_went_on()
+                if warned:
+                    self.assertIn("stopped by a signal; the same command resumes the sweep", self.log())
+
+    def test_a_suspended_job_goes_on(self):
+        self.configure("PreemptMode=REQUEUE", "PreemptMode=SUSPEND,GANG")
+        job = self.preempt("requeue")
+        self.assertNotEqual(described("job", job)["SuspendTime"], "None")
+        self.check_completed(job, restarts=0)
+        self.assertEqual(set(table(self.folder / "s.h5").attempt), {1})
 
     def test_srun_with_pmix_starts_the_ranks_without_mpirun(self):
         done = self.srun("--mpi=pmix")

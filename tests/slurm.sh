@@ -42,6 +42,8 @@ ClusterName=clogsweep
 SlurmctldHost=controller
 SlurmUser=root
 AuthType=auth/munge
+# On a busy machine.
+MessageTimeout=100
 # A job that queued again waits until the credentials of its last time have expired.
 AuthInfo=socket=$folder/munge/socket,cred_expire=5
 StateSaveLocation=$folder/state
@@ -58,7 +60,14 @@ SelectTypeParameters=CR_Core
 SlurmdParameters=config_overrides
 NodeName=node1 Port=6821 CPUs=2
 NodeName=node2 Port=6822 CPUs=2
-PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE
+# Jobs of the last partition preempt those of the second and third.
+PreemptType=preempt/partition_prio
+PreemptMode=REQUEUE
+SlurmctldParameters=preempt_send_user_signal
+PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE PreemptMode=OFF
+PartitionName=requeue Nodes=ALL
+PartitionName=cancel Nodes=ALL PreemptMode=CANCEL GraceTime=60
+PartitionName=urgent Nodes=ALL PriorityTier=2 PreemptMode=OFF
 CONF
 
 head --bytes 1024 /dev/urandom >$folder/munge/key

@@ -1,7 +1,5 @@
 #include "clog/console/signals.hpp"
 
-#include <csignal>
-
 namespace clog::console {
 namespace {
 
@@ -12,9 +10,8 @@ void raise_stop_flag(int) { stop_flag = 1; }
 }  // namespace
 
 void catch_stop_signals() {
-  std::signal(SIGINT, raise_stop_flag);
-  std::signal(SIGTERM, raise_stop_flag);
-  std::signal(SIGUSR1, raise_stop_flag);
+  for (const int signal : stop_signals)
+    if (signal != SIGHUP || std::signal(SIGHUP, SIG_IGN) != SIG_IGN) std::signal(signal, raise_stop_flag);
 }
 
 bool stop_signalled() { return stop_flag != 0; }

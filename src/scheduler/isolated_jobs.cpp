@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "bytes.hpp"
+#include "clog/console/signals.hpp"
 #include "clog/core/tools/descriptor.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/messages.hpp"
@@ -76,7 +77,7 @@ std::string describe(const Ending& ending) {
 void depend_on_parent(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);  // it was quicker
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, SIG_IGN);
+  for (const int signal : console::stop_signals) std::signal(signal, SIG_IGN);
 }
 
 /// Libraries of MPI, such as UCX, handle a crash as soon as they are loaded, and may wait for ever in their

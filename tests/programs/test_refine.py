@@ -346,10 +346,11 @@ class Refine(RefineTest):
         self.refuse("clogsweep", *SWEEP, "--refine", "line-tension", GOAL, "--output", "no.h5", words=["python3 -m clogsweep refine KEY"])
 
     def test_warnings_go_on_to_the_launcher_as_the_signal_that_mpirun_forwards(self):
-        for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
+        for number in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU, signal.SIGHUP, signal.SIGTERM, signal.SIGINT):
             with self.subTest(signal=number):
                 words = ["bash", "-c", "trap 'exit 75' USR1; echo ready >&2; sleep 60 & wait; exit 3"]
-                process = subprocess.Popen(self.command("line-tension", *SWEEP, GOAL, "--output", "s.h5", launcher=words), cwd=self.folder,
+                command = self.command("line-tension", *SWEEP, GOAL, "--output", "s.h5", launcher=words)
+                process = subprocess.Popen(["env", "--default-signal=HUP", *command], cwd=self.folder,
                                            stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
                 with process:
                     self.assertEqual(process.stderr.readline(), "ready\n")

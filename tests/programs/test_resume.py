@@ -12,7 +12,7 @@ import unittest
 import numpy as np
 import stored_rows
 from support import (BIN, BLOCKED, ENDLESS, FEW_LONG, LONGEST, MPI, QUICK, ROOT, SLOW, STEPS_PER_SNAPSHOT, SWEEP,
-                     ProgramTest, SweepTest, table, undisturbed)
+                     ProgramTest, SweepTest, children_of, table, undisturbed)
 
 
 class Resumed(SweepTest):
@@ -61,6 +61,25 @@ class Resumed(SweepTest):
         again = self.succeed("clogsweep", *SLOW, ranks=2)
         self.assertIn("there is nothing left to do", again.stderr)
         self.check_equal("s.h5", undisturbed(SLOW))
+
+    def test_a_rank_alone_stops_at_every_warning_and_its_processes_ignore_it(self):
+        for warned in (signal.SIGUSR2, signal.SIGXCPU, signal.SIGHUP):
+            with self.subTest(signal=warned):
+                process = self.start(*ENDLESS, launcher="env", ranks="--default-signal=HUP")  # without mpirun
+                self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any())
+                helper, = children_of(process.pid)
+                for pid in (*children_of(helper), helper, process.pid):
+                    os.kill(pid, warned)
+                _, error = process.communicate(timeout=LONGEST)
+                self.assertEqual((process.returncode, set(table(self.folder / "s.h5").status)), (75, {"interrupted"}), error)
+                self.assertNotIn("helper", error)
+
+    def test_under_nohup_it_survives_its_terminal(self):
+        process = self.start(*FEW_LONG, launcher="nohup", ranks="env")
+        self.wait_for(lambda: process.poll() is not None or (self.folder / "s.h5").exists())
+        process.send_signal(signal.SIGHUP)
+        _, error = process.communicate(timeout=LONGEST)
+        self.assertEqual(process.returncode, 0, error)
 
     def test_a_signal_while_it_starts_stops_it_too(self):
         os.mkfifo(self.folder / "s.cfg")  # rank 0 waits for its config
@@ -359,18 +378,20 @@ class Batch(ProgramTest):
     def sweep(self, *more):
         return ["vertices=64", "box=20", "obstacle-gap=1.2", "seeds=1..20", *more, "--output", str(self.folder / "s.h5")]
 
-    def warn(self, process):
-        """Slurm's warning interrupts its runs, and the job queues again."""
+    def warn(self, process, signal_number=signal.SIGUSR1):
+        """A warning interrupts its runs, and the job queues again."""
         self.wait_for(lambda: process.poll() is not None or (
             (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()))
-        process.send_signal(signal.SIGUSR1)
+        process.send_signal(signal_number)
         self.ended(process, 75)
         self.assertEqual(self.called(), "scontrol requeue 77\n")
         self.assertGreater((table(self.folder / "s.h5").status == "interrupted").sum(), 0)
 
-    def test_a_warning_of_slurm_ends_the_sweep_and_the_job_queues_again(self):
-        process = self.script("slurm.sh", *self.sweep("max-time=1e5"), SLURM_JOB_ID="77")
-        self.warn(process)
+    def test_a_warning_of_a_batch_system_ends_the_sweep_and_the_job_queues_again(self):
+        for warned in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU):
+            with self.subTest(signal=warned):
+                self.setUp()  # an empty folder
+                self.warn(self.script("slurm.sh", *self.sweep("max-time=1e5"), SLURM_JOB_ID="77"), warned)
 
     def test_a_warning_that_ends_mpirun_at_its_start_queues_again(self):
         for what, trap in {"it does not yet know what to do with the signal": "-",
@@ -415,8 +436,23 @@ class Batch(ProgramTest):
         options.write_text("\n".join(self.sweep("max-time=1e5", "line-tension=0.1,0.2")) + "\n")
         process = self.script("pbs.sh", SWEEP=str(options), HOURS="0.0004", PBS_O_WORKDIR=str(ROOT))
         self.ended(process, 75)
-        self.assertEqual(self.called(), "qsub -v SWEEP,HOURS,CLOG_BIN,JOB_SCRIPT jobs/pbs.sh\n")
+        self.assertEqual(self.called(), "qsub -v SWEEP,HOURS,CLOG_BIN,JOB_SCRIPT,REQUEUES,MAX_REQUEUES jobs/pbs.sh\n")
         self.assertEqual(json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)["runs"], 40)
+
+    def test_a_job_is_requeued_only_as_often_as_it_may_be(self):
+        options = self.folder / "sweep.options"
+        options.write_text("\n".join(self.sweep("max-time=1e5")) + "\n")
+        for name, count in [("slurm.sh", "SLURM_RESTART_COUNT"), ("pbs.sh", "REQUEUES")]:
+            with self.subTest(script=name):
+                process = self.script(name, *self.sweep("max-time=1e5", "--max-hours=1e-5"), SWEEP=str(options), HOURS="1e-5", SLURM_JOB_ID="77", MAX_REQUEUES="3",
+                                      **{count: "3"})
+                output, _ = process.communicate(timeout=LONGEST)
+                self.assertEqual(process.returncode, 75, output)
+                self.assertIn("not complete after 3 requeues, as many as MAX_REQUEUES allows; submit the job again", output)
+                self.assertEqual(self.called(), "")
+        process = self.script("slurm.sh", *self.sweep(), SLURM_JOB_ID="77", MAX_REQUEUES="many")
+        self.assertRegex(process.communicate(timeout=LONGEST)[0], "^MAX_REQUEUES=many is not a whole number; set .*\n$")
+        self.assertEqual(process.returncode, 2)
 
     def test_one_rank_of_many_tasks_is_refused(self):
         self.refuse("clogsweep", *self.sweep(), env={**os.environ, "SLURM_NTASKS": "8"}, words=["allocation of 8 tasks"])

@@ -13,6 +13,7 @@ from types import FrameType
 
 from ..reading import programs
 from ..tools.errors import ProgramFailed
+from ..tools.signals import stop_signals
 from .profiles import Channel, Profile, read_run
 
 Simulation = Callable[[float, float], Profile]  # of line tension and near-wall drag
@@ -61,13 +62,13 @@ class Clogrun:
 
     @contextlib.contextmanager
     def stoppable(self) -> Iterator[None]:
-        """In this block SIGINT, SIGTERM and SIGHUP end all runs, which raise Stopped."""
+        """In this block signals that stop end all runs, which raise Stopped."""
         def stop(_number: int, _frame: FrameType | None) -> None:
             self.stopping.set()
             for process in list(self.running):
                 process.terminate()
 
-        before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+        before = {number: signal.signal(number, stop) for number in stop_signals()}
         try:
             yield
         finally:

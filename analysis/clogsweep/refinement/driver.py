@@ -13,6 +13,7 @@ import pandas
 
 from ..reading import stored
 from ..tools.outputs import replaced
+from ..tools.signals import WARNINGS, stop_signals
 from .membership import Membership, Values
 
 HOUR = 3600.0
@@ -60,18 +61,18 @@ def store(path: pathlib.Path, text: str) -> None:
 
 
 class Launcher:
-    """Starts clogsweep by other words, such as mpirun -np 64. SIGUSR1, SIGTERM and SIGINT go on to them as SIGUSR1, which
-    mpirun and srun forward while they wait for the ranks; a second SIGTERM or SIGINT goes on as it is."""
+    """Starts clogsweep by other words, such as mpirun -np 64. Signals that stop go on to them as SIGUSR1, which mpirun and
+    srun forward while they wait for the ranks; the second one goes on as it is, unless it is a warning."""
 
     def __init__(self, words: Sequence[object]) -> None:
         self._words = list(map(str, words))
         self._process: subprocess.Popen[bytes] | None = None
         self._is_warned = False
-        for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
+        for number in stop_signals():
             signal.signal(number, self._warn)
 
     def _warn(self, number: int, _frame: object) -> None:
-        forced = self._is_warned and number != signal.SIGUSR1
+        forced = self._is_warned and number not in WARNINGS
         self._is_warned = True
         if self._process:
             self._process.send_signal(number if forced else signal.SIGUSR1)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <csignal>
 #include <stdexcept>
 
 namespace clog::console {
@@ -10,7 +12,10 @@ class Stopped : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Makes SIGINT, SIGTERM and SIGUSR1 raise a flag, and nothing else.
+/// Signals that stop a program. A closed terminal sends HUP; batch systems warn by USR1, USR2 and XCPU.
+inline constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
+
+/// Makes them raise a flag, and nothing else. SIGHUP stays ignored under nohup.
 void catch_stop_signals();
 bool stop_signalled();
 
