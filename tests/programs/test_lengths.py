@@ -15,7 +15,7 @@ from clogsweep.drawing import measured  # noqa: E402
 from clogsweep.results import fit  # noqa: E402
 from clogsweep.tools.errors import UserError  # noqa: E402
 
-# Survival after leukaemia, with and without maintenance chemotherapy: data set aml of R's package survival 3.5-3.
+# Survival after leukaemia, with and without maintenance chemotherapy: data set `aml` of R's package survival 3.5-3.
 AML = {"Maintained": "9 1, 13 1, 13 0, 18 1, 23 1, 28 0, 31 1, 34 1, 45 0, 48 1, 161 0",
        "Nonmaintained": "5 1, 5 1, 8 1, 8 1, 12 1, 16 0, 23 1, 27 1, 30 1, 33 1, 43 1, 45 1"}
 LAB = "diameter = 2 mm\nangle = 20 deg\nspeed = 7 mm/s\n"

@@ -21,7 +21,8 @@ struct ContactReach {
 };
 
 /// What a droplet is. There is one for each Model: a new one is a word of that, a folder beside `polygon` and
-/// `disk` with an object of its own, a line in model.cpp, and what docs/developer/add-a-model.md says besides.
+/// `disk` with an object of its own, a line in model.cpp, and what docs/developer/add-a-model.md says
+/// besides.
 struct DropletModel {
   /// Key of the parameter that says how stiff a droplet is.
   const char* stiffness_key;
