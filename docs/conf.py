@@ -33,7 +33,7 @@ myst_enable_extensions = ["dollarmath", "deflist", "colon_fence"]
 myst_heading_anchors = 4
 nitpicky = True
 # Names of other libraries, whose pages are not beside these.
-nitpick_ignore_regex = [("py:class", r"(os|pathlib|collections|numpy|pandas)\..*|Figure")]
+nitpick_ignore_regex = [("py:class", r"(os|pathlib|collections|numpy|pandas|matplotlib)\..*|Figure")]
 
 html_theme = "furo"
 html_title = f"clogsweep {release}"

@@ -276,8 +276,11 @@ class Picture:
         """Lays the picture out for a column of a journal: text of one size, the legend above the axes, no labels that overlap. To
         be called last, after changes of the figure. Conditions and notes leave the picture for `caption`.
 
-        @param width_cm, height_cm  of the picture; without a height it has one that suits its legend
-        @param font_size  of all text [pt]. @return the same picture. @throws UserError  if it has several panels
+        @param width_cm  of the picture
+        @param height_cm  likewise; without it the height suits the legend
+        @param font_size  of all text [pt]
+        @return  the same picture
+        @throws UserError  if it has several panels
         """
         with without_warnings():
             self.caption = journal.lay_out(self.figure, width_cm, height_cm, font_size) or self.caption
