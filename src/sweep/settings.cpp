@@ -84,11 +84,14 @@ void visit_points(const Settings& plain, const Points& points, const Settings::V
 
 void Settings::set(const std::string& name, const std::string& text) {
   given_[name] = {text, values_of(find_key(name), text)};
-  all_.clear();
+  is_resolved_ = false;
 }
 
 const Settings::Entry& Settings::entry(const std::string& name) const {
-  if (all_.empty()) all_ = resolved();
+  if (!is_resolved_)
+    for (auto& [key, now] : resolved())
+      if (Entry& known = all_[key]; known.values.empty() || known.text != now.text) known = std::move(now);
+  is_resolved_ = true;
   return all_.at(name);
 }
 

@@ -67,7 +67,7 @@ class Compared(Analysis):
         self.sweep("s.h5", "near-wall-drag=0,2", seeds="1..3")
         text = self.succeed("clogfit", "compare", "s.h5", "--by", "near-wall-drag").stdout
         self.assertRegex(text, r"lambda of each over that of near_wall_drag=0")
-        self.assertRegex(text, r"of +line_tension +clogs +lambda +lambda there +ratio +95 % +paired +gain +same place")
+        self.assertRegex(text, r"of +line_tension +clogs +lambda/sigma +lambda there +ratio +95 % +paired +gain +same place")
         self.succeed("clogfit", "compare", "s.h5", "--by", "near_wall_drag", "--format", "csv", "--confidence", "0.9")
         drawn = self.run_program("clogfit", "compare", "s.h5", "--by", "near-wall-drag", "--picture", "ratio.png")
         self.assertEqual(drawn.returncode, 0, drawn.stderr)

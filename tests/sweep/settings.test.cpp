@@ -40,6 +40,15 @@ TEST(Settings, ReadBackFromTheirOwnText) {
   }
 }
 
+TEST(Settings, ValuesStayWhereTheyAreWhileOtherKeysAreSet) {
+  Settings settings;
+  const std::vector<std::string>& models = settings.values("model");
+  const void* const place = models.data();
+  settings.set("line-tension", "0.1,0.2");
+  EXPECT_EQ(settings.values("line-tension").size(), 2);
+  EXPECT_EQ(settings.values("model").data(), place);
+}
+
 TEST(Settings, RefuseWhatTheyCannotRead) {
   EXPECT_NE(refusal("line-tenson", "1").find("did you mean line-tension"), std::string::npos);
   EXPECT_NE(refusal("temperature", "1").find("unknown key 'temperature'"), std::string::npos);

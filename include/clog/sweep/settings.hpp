@@ -39,8 +39,9 @@ class Settings {
   void set(const std::string& name, const std::string& text);
   /// Did set() give the key its text? Other keys have that of the preset, one that follows, or the default.
   bool is_given(const std::string& name) const { return given_.contains(name); }
+  /// The reference is valid until the key's text changes.
   const std::string& text(const std::string& name) const { return entry(name).text; }
-  /// The expanded values of a key.
+  /// The expanded values of a key; likewise.
   const std::vector<std::string>& values(const std::string& name) const { return entry(name).values; }
   /// The scene of all runs; nullptr if they have several.
   const Scene* scene() const;
@@ -85,7 +86,8 @@ class Settings {
   using Entries = std::map<std::string, Entry>;
 
   Entries given_;
-  mutable Entries all_;  // resolved() since the last set(); empty until somebody asks
+  mutable Entries all_;  // resolved(), if is_resolved_; references stay valid while the key keeps its text
+  mutable bool is_resolved_ = false;
   CircleFiles circle_files_;
   Points points_;
   Shard shard_;
