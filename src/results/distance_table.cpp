@@ -145,7 +145,8 @@ Match match_of(const DistanceTable& here, const DistanceTable& there) {
   return match;
 }
 
-DistanceTable grouped(DistanceTable table, std::map<std::vector<Value>, std::vector<fit::Observation>> runs) {
+DistanceTable grouped(DistanceTable table,
+                      std::map<std::vector<Value>, std::vector<fit::Observation>>&& runs) {
   for (auto& [labels, own] : runs) table.groups.push_back({labels, std::move(own)});
   return table;
 }
@@ -173,6 +174,7 @@ DistanceTable read_distances(const std::string& path) {
       throw Error(fmt::format("has {}, but the first line names {}",
                               sweep::counted(std::ssize(texts), "cell"), head->num_columns));
     std::vector<Value> labels;
+    labels.reserve(head->labels.size());
     for (const std::size_t label : head->labels) labels.push_back(cells.label(texts[label]));
     const double distance = cells.distance(texts[static_cast<std::size_t>(head->distance)], line.separator);
     runs[std::move(labels)].push_back(
@@ -200,6 +202,7 @@ DistanceTable distances_of(const Side& side) {
   std::map<std::vector<Value>, std::vector<fit::Observation>> runs;
   for (const sweep::RunRow* row : rows) {
     std::vector<Value> labels;
+    labels.reserve(varying.size());
     for (const sweep::Column* column : varying) labels.push_back(column->get(*row));
     runs[std::move(labels)].push_back({row->distance, row->status == RunStatus::clogged});
   }
