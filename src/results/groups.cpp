@@ -56,6 +56,7 @@ std::vector<Doubt> doubts_about(const Group& group) {
 
 void doubt_exponentiality(std::vector<Group>& groups) {
   std::vector<fit::WeibullTest> tests;
+  tests.reserve(groups.size());
   for (const Group& group : groups) tests.push_back(group.weibull);
   const std::vector<bool> are_not = fit::are_not_exponential(tests);
   for (std::size_t i = 0; i < groups.size(); ++i)
