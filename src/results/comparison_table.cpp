@@ -117,6 +117,7 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
 
 std::string to_csv(const Comparisons& comparisons) {
   std::vector<std::vector<Field>> rows;
+  rows.reserve(comparisons.all.size());
   for (const Comparison& one : comparisons.all) rows.push_back(fields_of(one, comparisons));
   return csv_table(rows);
 }

@@ -126,6 +126,7 @@ std::string lengths_csv(const DistanceTable& table, double confidence, std::opti
   const std::vector<Unit> units = units_of(table, sigma_mm);
   const std::vector<Lengths> lengths = lengths_of(table, confidence);
   std::vector<std::vector<Field>> rows;
+  rows.reserve(lengths.size());
   for (std::size_t i = 0; i < lengths.size(); ++i) rows.push_back(fields_of(table, i, lengths[i], units));
   return csv_table(rows);
 }

@@ -82,6 +82,7 @@ Json group_json(const Group& group, bool with_laboratory) {
 
 std::string to_csv(const std::vector<Group>& groups) {
   std::vector<std::vector<Field>> rows;
+  rows.reserve(groups.size());
   for (const Group& group : groups) rows.push_back(all_fields(group, have_laboratory(groups)));
   return csv_table(rows);
 }
