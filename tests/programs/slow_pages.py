@@ -58,6 +58,8 @@ class Commands(Analysis):
         self.write("sweep.cfg", "".join(word.replace("=", " = ") + "\n" for word in SWEEP))
         self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x in range(20) for y in range(20)))
         self.write("post.csv", "47,5.02\n")
+        self.write("distances.csv", "distance [mm],clogged\n4.1,1\n9.8,0\n")
+        self.write("lab.cfg", "diameter = 2 mm\nangle = 20 deg\n")
         self.write("points.csv", "line-tension,obstacle-density\n0.5,0.4\n1,0.5\n")
         for name, keys in {"robust": [*FEW, "preset=robust"], "elastic": [*FEW, "preset=elastic"], "monday": [*FEW, "inertia=1"],
                            "tuesday": [*FEW, "inertia=2"], "sweep": SWEEP, "frictions": [*SWEEP, "friction=0,0.1"],
@@ -126,6 +128,8 @@ class Commands(Analysis):
         else:
             sweep = {"device": "device.h5", "clogs": "wrapped.h5"}.get(command, "sweep.h5")
             stand_ins = {"/dev/stdin": "fit.json", "sweep.h5": sweep}
+            if command == "export":  # never replaces a file
+                (self.folder / rest[-1]).unlink(missing_ok=True)
             done = self.analyse(command, *(stand_ins.get(word, word) for word in rest))
             self.assertEqual(done.returncode, 0, done.stderr)
 
