@@ -113,8 +113,8 @@ void refuse_other_format(const cli::CommandLine& line) {
                       name, name.substr(0, name.size() - std::string(ending).size())));
 }
 
-/// --seeds-per-set: keeps the seeds of the keys and of the output's rows, and adds the smallest others. So the
-/// seeds are the same after each kill.
+/// --seeds-per-set: keeps the seeds of the keys and of the output's rows, and adds the smallest others. So
+/// the seeds are the same after each kill.
 void fill_seeds(cli::CommandLine& line) {
   if (!line.has("seeds-per-set")) return;
   for (const char* other : {"until-precision", "shard"})

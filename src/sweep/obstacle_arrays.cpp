@@ -130,7 +130,8 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
 std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const RunParameters& run) {
   const Scene& scene = scene_of(run);
   if (scene.walls_from == WallsFrom::droplet) return std::make_shared<ObstacleArray>(scene.walls(run));
-  // In a device with side walls the droplet's own reach limits where it may start, so it shifts the walls, too.
+  // In a device with side walls the droplet's own reach limits where it may start, so it shifts the walls,
+  // too.
   std::string key = array_key(run);
   if (scene.walls_from == WallsFrom::circles) key += shortest(model_of(run).reach(run));
   if (key != key_) {

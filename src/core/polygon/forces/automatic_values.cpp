@@ -95,9 +95,10 @@ void resolve_contact_angles(DpParameters& dp) {
   constexpr double smallest = 0.1;
   const double tension = wall_tension(dp), young = young_angle(dp);
   require(tension >= smallest, "receding-angle", dp.receding_angle.value_or(young), [&] {
-    return fmt::format("with this advancing-angle wall-tension, minus the mean of their cosines, is {:.3g}, "
-                       "and the interface on a wall would buckle) use angles for at least {}",
-                       tension, smallest);
+    return fmt::format(
+        "with this advancing-angle wall-tension, minus the mean of their cosines, is {:.3g}, "
+        "and the interface on a wall would buckle) use angles for at least {}",
+        tension, smallest);
   });
   const bool is_young = !dp.wall_tension && dp.receding_angle == dp.advancing_angle;  // apart from round-off
   if (is_young || !dp.receding_angle) dp.receding_angle = young;
