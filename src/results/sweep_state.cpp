@@ -88,9 +88,9 @@ bool SweepState::is_of_its_task(const sweep::RunRow& row) const {
          sweep::identity(row) == sweep::identity(sweep::describe(plan_->task(row.task)));
 }
 
-/// Rows of the table, and records of the journal in its order, become runs: in runs_ if all are of their tasks,
-/// otherwise in the list that it returns. Each goes from one place to the other, since a large sweep has memory
-/// for each row just once.
+/// Rows of the table, and records of the journal in its order, become runs: in runs_ if all are of their
+/// tasks, otherwise in the list that it returns. Each goes from one place to the other, since a large sweep
+/// has memory for each row just once.
 SweepState::Known SweepState::recognise(std::vector<sweep::RunRow> rows, std::vector<Entry> records,
                                         const sweep::Settings& settings) {
   Known known;
@@ -117,9 +117,9 @@ SweepState::Known SweepState::recognise(std::vector<sweep::RunRow> rows, std::ve
   const auto is_faulty = [](const std::unique_ptr<Entry>& run) {
     return run && !sweep::fault_of(run->row).empty();
   };
-  num_faulty_ = std::ranges::count_if(runs_, is_faulty) +
-                static_cast<std::int64_t>(
-                    std::erase_if(known, [&](const auto& one) { return is_faulty(one.second); }));
+  num_faulty_ =
+      std::ranges::count_if(runs_, is_faulty) +
+      static_cast<std::int64_t>(std::erase_if(known, [&](const auto& one) { return is_faulty(one.second); }));
   std::ranges::replace_if(runs_, is_faulty, nullptr);
   return known;
 }

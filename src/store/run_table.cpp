@@ -116,8 +116,8 @@ std::string library_version() {
   return fmt::format("{}.{}.{}", major, minor, release);
 }
 
-std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp,
-                                         const Rows& rows, const Provenance& provenance,
+std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp, const Rows& rows,
+                                         const Provenance& provenance,
                                          const std::vector<CircleFile>& circles) {
   require_memory_of_file("write " + place.path(), rows.number * RowLayout::present().size());
   return write_whole(place, stamp, [&](hid_t file) {
@@ -205,7 +205,8 @@ std::size_t num_columns_written(hid_t file) {
 CheckSums read_rows(hid_t file, Examination& found) {
   const Dataset dataset(H5Dopen2(file, runs_name, H5P_DEFAULT));
   if (!dataset.valid()) throw Damage("its table cannot be opened");
-  const std::optional<RowLayout> layout = RowLayout::of(Type(H5Dget_type(dataset)), num_columns_written(file));
+  const std::optional<RowLayout> layout =
+      RowLayout::of(Type(H5Dget_type(dataset)), num_columns_written(file));
   if (!layout) throw Damage("its columns are not those that were written");
   const std::size_t num_rows = num_rows_of(dataset, layout->size());
   const CheckSums sums = read_check_sums(file, num_rows);

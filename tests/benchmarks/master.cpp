@@ -2,7 +2,9 @@
 /// messages alone: a thousand rows a second, each answered with a task. Here a few workers send as many, with
 /// tasks that sleep; everything else is clogsweep's own: the scheduler, MPI, the table of runs on the disk.
 ///   tests/mpirun.sh 5 bench_master [tasks per second] [seconds]
-/// With 0 tasks per second every worker sleeps in one long task: what does waiting cost?
+/// With 0 tasks per second every worker sleeps in one long task: what does waiting cost? Then: how much
+/// memory does a row take, how long does the master answer nobody, how long do the end and a restart of the
+/// sweep take?
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -18,6 +20,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "../scheduler/order_of.hpp"
@@ -39,6 +42,13 @@ double cpu_seconds() {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// The largest so far [kB].
+double resident() {
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss);
 }
 
 double seconds_since(Clock::time_point begin) {
@@ -89,6 +99,7 @@ int main(int argc, char** argv) {
   const std::int64_t num_groups = std::min<std::int64_t>(num_tasks, 100);
   settings.set("line-tension", "lin(0.1,10," + std::to_string(num_groups) + ")");
   settings.set("seeds", "1.." + std::to_string(num_tasks / num_groups));
+  const double kilobytes_before = resident();
   const sweep::Plan plan(settings);
   std::optional<results::SweepState> state;
   std::ostringstream screen;  // progress goes nowhere, but is made
@@ -115,6 +126,12 @@ int main(int argc, char** argv) {
       screen.str("");
     };
   }
+  double silence = 0;
+  Clock::time_point last_look = Clock::now();
+  events.stop_requested = [&] {  // asked whenever the master has looked for messages
+    silence = std::max(silence, seconds_since(std::exchange(last_look, Clock::now())));
+    return false;
+  };
   const Clock::time_point begin = Clock::now();
   const double cpu_before = cpu_seconds();
   scheduler::Schedule schedule(scheduler::order_of(plan.size(), plan.num_groups()), ranks.size(), false);
@@ -125,7 +142,9 @@ int main(int argc, char** argv) {
       },
       events);
   if (ranks.rank() != 0) return 0;
+  const Clock::time_point stop = Clock::now();
   state->finish();
+  const double stop_seconds = seconds_since(stop);
   const double cpu = cpu_seconds() - cpu_before;
   const double wall = seconds_since(begin);
   if (rate > 0)
@@ -134,5 +153,14 @@ int main(int argc, char** argv) {
                 100 * cpu / wall);
   else
     std::printf("waiting master: busy %.2f %% of a core\n", 100 * cpu / wall);
+  const double kilobytes = resident() - kilobytes_before;
+  state.reset();
+  const Clock::time_point restart = Clock::now();
+  state.emplace(path, plan, settings, store::Provenance(), plan.size(), 1);
+  std::printf("%lld rows: %.2f kB each, silent for %.2f s, stop %.1f s, restart %.1f s and %.2f kB each\n",
+              static_cast<long long>(num_tasks), kilobytes / static_cast<double>(num_tasks), silence,
+              stop_seconds, seconds_since(restart),
+              (resident() - kilobytes_before) / static_cast<double>(num_tasks));
+  state.reset();
   std::filesystem::remove(path);
 }

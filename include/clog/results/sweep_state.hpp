@@ -22,8 +22,8 @@
 namespace clog::results {
 
 /// The state of a sweep's runs, on rank 0 and on disk: the table, which another thread publishes as a whole
-/// from time to time, and the journal beside it, which holds later results and the snapshots of running tasks. A stopped
-/// or killed sweep resumes from these files. A run is identified by its parameters and seed
+/// from time to time, and the journal beside it, which holds later results and the snapshots of running
+/// tasks. A stopped or killed sweep resumes from these files. A run is identified by its parameters and seed
 /// (sweep::identity), not by its task number.
 class SweepState {
  public:
@@ -69,7 +69,8 @@ class SweepState {
   /// Discards a failure: the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
-  /// Begins to publish the table if it is time to, or finds that this has ended: it does not wait for the disk.
+  /// Begins to publish the table if it is time to, or finds that this has ended: it does not wait for the
+  /// disk.
   void tick();
   bool is_publishing() const { return publication_.valid(); }
   /// Publishes the table, and removes the journal of a complete sweep. Returns a message if that fails.
@@ -111,7 +112,7 @@ class SweepState {
   bool is_published_ = false;
   std::unordered_set<std::int64_t> changed_;  // tasks, since the last publication began
   Clock::time_point publication_begin_, publication_end_;
-  std::mutex changing_;  // rows that a publication may read meanwhile
+  std::mutex changing_;                                  // rows that a publication may read meanwhile
   std::future<std::optional<std::string>> publication_;  // the stamp; the last member: it ends first
 
   Entry* entry(std::int64_t task) const {

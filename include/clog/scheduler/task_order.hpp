@@ -36,7 +36,8 @@ class TaskOrder {
   void begun_again(std::int64_t task, double now);
 
  private:
-  /// Less: it is handed out earlier. The expected run time with a minus, tasks handed out, number of the group.
+  /// Less: it is handed out earlier. The expected run time with a minus, tasks handed out, number of the
+  /// group.
   using Turn = std::tuple<double, std::int64_t, std::size_t>;
   struct Group {
     std::vector<std::int64_t> tasks;

@@ -63,8 +63,8 @@ struct Rows {
 /// moment the path names a complete table, the old or the new, so it can be read at any time. It is on the
 /// disk when this returns. Returns the stamp of the file that it wrote, even if somebody has replaced that
 /// since; nothing if a different file is there, which stays. @throws Error, and the old file stays
-std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp,
-                                         const Rows& rows, const Provenance& provenance,
+std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp, const Rows& rows,
+                                         const Provenance& provenance,
                                          const std::vector<CircleFile>& circles);
 inline std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp,
                                                 const SweepFile& content) {
