@@ -83,7 +83,7 @@ TEST_F(RunTableTest, KeepsCirclesOfAUsersOwn) {
 }
 
 TEST_F(RunTableTest, IsTheSameFromRowsThatAreGivenOneByOne) {
-  const std::vector<RunRow> rows = some_rows(2500);  // some blocks
+  const std::vector<sweep::RunRow> rows = some_rows(2500);  // some blocks
   publish(path("whole.h5"), rows, {{"config", "a = 1\n"}});
   std::size_t next = 0;
   const auto row = [&](std::size_t i) {
