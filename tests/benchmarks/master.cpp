@@ -2,9 +2,10 @@
 /// messages alone: a thousand rows a second, each answered with a task. Here a few workers send as many, with
 /// tasks that sleep; everything else is clogsweep's own: the scheduler, MPI, the table of runs on the disk.
 ///   tests/mpirun.sh 5 bench_master [tasks per second] [seconds]
-/// With 0 tasks per second every worker sleeps in one long task: what does waiting cost? Then: how much
-/// memory does a row take, how long does the master answer nobody, how long do the end and a restart of the
-/// sweep take?
+/// With 0 tasks per second every worker sleeps in one long task: what does waiting cost?
+///   bench_master rows 1000000
+/// How much memory does a row of soft disks take, how long is the master busy with the table and its journal
+/// and answers nobody, how long do the stop and a restart of the sweep take?
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -20,7 +21,6 @@
 #include <sstream>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "../scheduler/order_of.hpp"
@@ -44,8 +44,8 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// The largest so far [kB].
-double resident() {
+/// Of resident memory, so far.
+double peak_kilobytes() {
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss);
@@ -76,9 +76,55 @@ class SleepingJob final : public sweep::Job {
   sweep::RunRow row_;
 };
 
+/// Without workers: runs begin and end one after the other.
+int measure_rows(std::int64_t num_rows) {
+  const auto kilobytes = [num_rows, before = peak_kilobytes()] {
+    return (peak_kilobytes() - before) / static_cast<double>(num_rows);
+  };
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("bench_rows_" + std::to_string(getpid()) + ".h5")).string();
+  sweep::Settings settings;
+  settings.set("model", "sp");
+  settings.set("wall-stiffness", "lin(0.5,3,100)");
+  settings.set("seeds", "1.." + std::to_string(num_rows / 100));
+  const sweep::Plan plan(settings);
+  const auto open = [&] {
+    return std::make_unique<results::SweepState>(path, plan, settings, store::Provenance(), plan.size(), 1);
+  };
+  auto state = open();
+  double silence = 0;
+  const Clock::time_point begin = Clock::now();
+  for (std::int64_t task = 0; task < plan.size(); ++task) {
+    const Clock::time_point last = Clock::now();
+    state->start(task, 1);
+    sweep::Report report{state->row(task), {}};
+    report.row.status = RunStatus::flowing;
+    state->report(report);
+    state->tick();
+    silence = std::max(silence, seconds_since(last));
+  }
+  const double cost = seconds_since(begin) / static_cast<double>(num_rows);
+  const double memory = kilobytes();
+  const Clock::time_point stop = Clock::now();
+  state->finish();
+  const double stop_seconds = seconds_since(stop), memory_at_stop = kilobytes();
+  state.reset();
+  const Clock::time_point restart = Clock::now();
+  state = open();
+  std::printf(
+      "%lld rows: %.0f us each, silent for %.3f s, stop %.2f s, restart %.2f s; memory of a row: %.2f kB, "
+      "%.2f kB to the stop, %.2f kB with the restart; %.1f s of CPU in all\n",
+      static_cast<long long>(num_rows), 1e6 * cost, silence, stop_seconds, seconds_since(restart), memory,
+      memory_at_stop, kilobytes(), cpu_seconds());
+  state->finish();
+  std::filesystem::remove(path);
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 3 && argv[1] == std::string("rows")) return measure_rows(std::atoll(argv[2]));
   const scheduler::Communicator ranks(argc, argv);
   const double rate = argc > 1 ? std::atof(argv[1]) : 1000;
   const double duration = argc > 2 ? std::atof(argv[2]) : 10;
@@ -99,7 +145,6 @@ int main(int argc, char** argv) {
   const std::int64_t num_groups = std::min<std::int64_t>(num_tasks, 100);
   settings.set("line-tension", "lin(0.1,10," + std::to_string(num_groups) + ")");
   settings.set("seeds", "1.." + std::to_string(num_tasks / num_groups));
-  const double kilobytes_before = resident();
   const sweep::Plan plan(settings);
   std::optional<results::SweepState> state;
   std::ostringstream screen;  // progress goes nowhere, but is made
@@ -126,12 +171,6 @@ int main(int argc, char** argv) {
       screen.str("");
     };
   }
-  double silence = 0;
-  Clock::time_point last_look = Clock::now();
-  events.stop_requested = [&] {  // asked whenever the master has looked for messages
-    silence = std::max(silence, seconds_since(std::exchange(last_look, Clock::now())));
-    return false;
-  };
   const Clock::time_point begin = Clock::now();
   const double cpu_before = cpu_seconds();
   scheduler::Schedule schedule(scheduler::order_of(plan.size(), plan.num_groups()), ranks.size(), false);
@@ -142,9 +181,7 @@ int main(int argc, char** argv) {
       },
       events);
   if (ranks.rank() != 0) return 0;
-  const Clock::time_point stop = Clock::now();
   state->finish();
-  const double stop_seconds = seconds_since(stop);
   const double cpu = cpu_seconds() - cpu_before;
   const double wall = seconds_since(begin);
   if (rate > 0)
@@ -153,14 +190,5 @@ int main(int argc, char** argv) {
                 100 * cpu / wall);
   else
     std::printf("waiting master: busy %.2f %% of a core\n", 100 * cpu / wall);
-  const double kilobytes = resident() - kilobytes_before;
-  state.reset();
-  const Clock::time_point restart = Clock::now();
-  state.emplace(path, plan, settings, store::Provenance(), plan.size(), 1);
-  std::printf("%lld rows: %.2f kB each, silent for %.2f s, stop %.1f s, restart %.1f s and %.2f kB each\n",
-              static_cast<long long>(num_tasks), kilobytes / static_cast<double>(num_tasks), silence,
-              stop_seconds, seconds_since(restart),
-              (resident() - kilobytes_before) / static_cast<double>(num_tasks));
-  state.reset();
   std::filesystem::remove(path);
 }
