@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
@@ -72,8 +73,8 @@ store::Provenance provenance(const cli::CommandLine& line,
 }
 
 /// What rank 0 does before the sweep: everything a user can get wrong is found here, before any rank
-/// computes. Returns the exit code if there is nothing to run.
-std::optional<int> prepare(const cli::CommandLine& line, scheduler::IsolatedJobs& isolated) {
+/// computes. Returns the exit code if there is nothing to run, otherwise the plan.
+std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::IsolatedJobs& isolated) {
   if (line.has("schema")) {
     std::cout << console::json_text(sweep::schema_json());
     return console::exit_success;
@@ -82,7 +83,7 @@ std::optional<int> prepare(const cli::CommandLine& line, scheduler::IsolatedJobs
   attempts(line);
   assignment(line, line.settings());
   const std::optional<results::GrowingSweep> growing = growing_sweep(line);
-  const sweep::Plan plan(line.settings());
+  sweep::Plan plan(line.settings());
   if (line.has("print-config")) results::print_config(line.settings(), plan);
   if (line.has("dry-run")) {
     results::print_tasks(plan);
@@ -95,7 +96,7 @@ std::optional<int> prepare(const cli::CommandLine& line, scheduler::IsolatedJobs
   }
   if (line.has("print-config")) return console::exit_success;
   line.require("output");
-  return std::nullopt;
+  return plan;
 }
 
 /// Rank 0's state of a sweep.
@@ -104,9 +105,10 @@ struct Led {
   sweep::Plan plan;
   results::SweepState state;
 
-  Led(const cli::CommandLine& line, int num_ranks)
+  /// @param first  the plan of the command line, which may grow
+  Led(const cli::CommandLine& line, sweep::Plan first, int num_ranks)
       : growing(growing_sweep(line)),
-        plan(settings(line)),
+        plan(growing ? sweep::Plan(growing->settings) : std::move(first)),
         state(line.get("output"), plan, settings(line), provenance(line, growing, num_ranks),
               growing ? growing->num_first : plan.size(), attempts(line)) {}
 
@@ -128,9 +130,10 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
   if (ranks.rank() == 0) {
     exit_code = cli::run_program("clogsweep", [&] {
       if (!parse_sweep_options(line, argc, argv)) return console::exit_success;
-      if (const auto over = prepare(line, isolated)) return *over;
+      std::variant<int, sweep::Plan> prepared = prepare(line, isolated);
+      if (const int* const over = std::get_if<int>(&prepared)) return *over;
       diagnostics::refuse_to_be_alone(ranks.size());
-      led.emplace(line, ranks.size());
+      led.emplace(line, std::get<sweep::Plan>(std::move(prepared)), ranks.size());
       task = assignment(line, led->settings(line)).text();
       return console::exit_success;
     });

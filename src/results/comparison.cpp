@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -97,12 +98,11 @@ ByValues by_values(const std::vector<ParameterSet>& sets, const std::vector<std:
   return all;
 }
 
-fit::Observation observation(const RunRow& row) { return {row.distance, row.status == RunStatus::clogged}; }
-
 std::vector<fit::Observation> observations(const ParameterSet& set) {
   std::vector<fit::Observation> all;
   all.reserve(set.by_seed.size());
-  for (const auto& [seed, row] : set.by_seed) all.push_back(observation(*row));
+  for (const auto& [seed, row] : set.by_seed)
+    if (const std::optional<fit::Observation> one = observation_of(*row)) all.push_back(*one);
   return all;
 }
 
@@ -114,7 +114,9 @@ Comparison compare_sets(const ParameterSet& here, const ParameterSet& there, dou
     const auto found = there.by_seed.find(seed);
     if (found == there.by_seed.end()) continue;
     const RunRow& other = *found->second;
-    const fit::Pair pair{observation(*row), observation(other)};
+    const std::optional<fit::Observation> one = observation_of(*row), the_other = observation_of(other);
+    if (!one || !the_other) continue;
+    const fit::Pair pair{*one, *the_other};
     const bool have_both = pair.here.clogged && pair.there.clogged;
     const bool is_same_place = have_both && std::abs(row->distance - other.distance) <= within &&
                                std::abs(row->lateral_displacement - other.lateral_displacement) <= within;

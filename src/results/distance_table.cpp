@@ -201,10 +201,12 @@ DistanceTable distances_of(const Side& side) {
     }
   std::map<std::vector<Value>, std::vector<fit::Observation>> runs;
   for (const sweep::RunRow* row : rows) {
+    const std::optional<fit::Observation> run = observation_of(*row);
+    if (!run) continue;
     std::vector<Value> labels;
     labels.reserve(varying.size());
     for (const sweep::Column* column : varying) labels.push_back(column->get(*row));
-    runs[std::move(labels)].push_back({row->distance, row->status == RunStatus::clogged});
+    runs[std::move(labels)].push_back(*run);
   }
   return grouped(std::move(table), std::move(runs));
 }

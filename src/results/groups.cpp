@@ -116,10 +116,12 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
   return is_clogged || last.cause ? last : Ending{run.dwells.last_distance, false, {}};
 }
 
-/// The distance from the first obstacle on; below 0 if the droplet met none.
-double distance_from_contact(const sweep::RunRow& run, double distance) {
-  if (run.contacts == 0) return -1;
-  return run.contacts ? distance - run.first_contact_at : distance;
+/// See observation_of().
+std::optional<Ending> counted(const sweep::RunRow& run, Ending ending) {
+  if (!is_device(run.parameters)) return ending;
+  if (run.contacts == 0) return std::nullopt;
+  if (run.contacts) ending.distance -= run.first_contact_at;
+  return ending;
 }
 
 /// The later of two times; not known if one of them is not.
@@ -269,22 +271,19 @@ struct Tally {
 /// Includes a run in the clogging lengths, if it counts there.
 void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Tally& tally) {
   const Ending from_release = ending_of(run, group.dwell);
-  Ending ending = from_release;
-  group.num_interrupted += sweep::is_unfinished(run.status) && !ending.is_clog;
-  const bool is_of_device = is_device(run.parameters);
-  if (is_of_device) {
-    tally.arrivals.push_back({run.release_x + ending.distance, ending.is_clog || ending.cause.has_value()});
-    ending.distance = distance_from_contact(run, ending.distance);
-  }
-  const bool has_met_none = is_of_device && run.contacts == 0;
-  const bool is_too_short = !has_met_none && std::max(ending.distance, 0.0) < from_distance;
+  const std::optional<Ending> ending = counted(run, from_release);
+  group.num_interrupted += sweep::is_unfinished(run.status) && !from_release.is_clog;
+  if (is_device(run.parameters))
+    tally.arrivals.push_back(
+        {run.release_x + from_release.distance, from_release.is_clog || from_release.cause.has_value()});
+  const bool is_too_short = ending && std::max(ending->distance, 0.0) < from_distance;
   group.num_left_out += is_too_short;
   if (!is_too_short) tally.meetings.count(run, from_release, from_distance);
-  if (is_too_short || has_met_none) return;
-  tally.endings.push_back(ending);
+  if (is_too_short || !ending) return;
+  tally.endings.push_back(*ending);
   group.seeds.push_back(run.parameters.seed);
   group.num_on_mesh += sweep::may_hang_on_mesh(run);
-  if (ending.is_clog) return;
+  if (ending->is_clog) return;
   group.num_passed += run.status == RunStatus::passed;
   group.num_flowing += run.status == RunStatus::flowing;
   add_rest(run, group);
@@ -342,6 +341,11 @@ const DoubtText& text_of(Doubt doubt) {
 bool is_device(const RunParameters& run) {
   return scene_of(run).walls_from == WallsFrom::circles &&
          (run.obstacles.release == Release::entrance || run.obstacles.exit > 0);
+}
+
+std::optional<fit::Observation> observation_of(const sweep::RunRow& run) {
+  const std::optional<Ending> ending = counted(run, ending_of(run, std::numeric_limits<double>::infinity()));
+  return ending ? std::optional(fit::Observation{ending->distance, ending->is_clog}) : std::nullopt;
 }
 
 bool is_dwell_possible(const Group& group) { return group.dwell < group.first_row.parameters.max_time; }

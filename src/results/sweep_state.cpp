@@ -3,11 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <unordered_set>
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
-#include "clog/results/growth.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_row.hpp"
@@ -58,18 +56,14 @@ SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::S
     session += attribute(provenance_, name) + ' ';
   session.back() = '\n';
 
-  std::unordered_map<std::string, Entry> known;
-  std::unordered_set<std::string> with_results;
+  std::vector<sweep::RunRow> rows;
   const bool has_table = place_.exists();
   if (has_table) {
-    const store::SweepFile file = read_table();
+    store::SweepFile file = read_table();
     caution_ = store::caution(path_, file);
     adopt(file, settings);
     keep_circles(file);
-    for (const sweep::RunRow& row : file.rows) {
-      known[sweep::identity(row)] = {row, {}};
-      if (sweep::is_result(row.status)) with_results.insert(sweep::identity(row));
-    }
+    rows = std::move(file.rows);
   }
   std::vector<Entry> entries = journal_.take_entries();
   if (!has_table && !entries.empty())
@@ -77,16 +71,7 @@ SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::S
         "cannot resume " + path_ + " (its table is gone, but " + store::journal_path(path_) + " holds " +
         sweep::counted(static_cast<std::int64_t>(entries.size()), "record") +
         " of an earlier sweep, maybe of finished runs); put the table back, or give another --output");
-  if (!entries.empty()) refuse_foreign(entries, known, settings);
-  for (Entry& entry : entries) {
-    std::string run = sweep::identity(entry.row);
-    // If a run's last record was lost from the journal, the table has its result and the journal only an
-    // earlier state: keep the table's row.
-    if (sweep::is_result(entry.row.status) || !with_results.contains(run))
-      known[std::move(run)] = std::move(entry);
-  }
-  num_faulty_ = static_cast<std::int64_t>(
-      std::erase_if(known, [](const auto& run) { return !sweep::fault_of(run.second.row).empty(); }));
+  Known known = recognise(std::move(rows), std::move(entries), settings);
   set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
   find_tasks(std::move(known));
   publish();
@@ -94,7 +79,49 @@ SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::S
     caution_ += fmt::format(
         "{}the folder of {} cannot be synchronised ({}): after a power cut the newest rows may be lost",
         caution_.empty() ? "" : "\n", path_, fault);
-  last_publication_ = Clock::now();
+  publication_begin_ = publication_end_ = Clock::now();
+}
+
+/// Is it the run that the plan has by its number? Usually all are: the sweep is resumed as it was begun.
+bool SweepState::is_of_its_task(const sweep::RunRow& row) const {
+  return row.task >= 0 && row.task < plan_->size() &&
+         sweep::identity(row) == sweep::identity(sweep::describe(plan_->task(row.task)));
+}
+
+/// Rows of the table, and records of the journal in its order, become runs: in runs_ if all are of their
+/// tasks, otherwise in the list that it returns. Each goes from one place to the other, since a large sweep
+/// has memory for each row just once.
+SweepState::Known SweepState::recognise(std::vector<sweep::RunRow> rows, std::vector<Entry> records,
+                                        const sweep::Settings& settings) {
+  Known known;
+  const bool is_usual =
+      std::ranges::all_of(rows, [&](const auto& row) { return is_of_its_task(row); }) &&
+      std::ranges::all_of(records, [&](const auto& record) { return is_of_its_task(record.row); });
+  const auto place = [&](const sweep::RunRow& row) -> std::unique_ptr<Entry>& {
+    return is_usual ? place_of(row.task) : known[sweep::identity(row)];
+  };
+  for (sweep::RunRow& row : rows) {
+    std::unique_ptr<Entry>& run = place(row);
+    run = std::make_unique<Entry>(Entry{std::move(row), {}});
+  }
+  std::optional<FixedValues> fixed;
+  for (Entry& record : records) {
+    std::unique_ptr<Entry>& run = place(record.row);
+    if (!run && !fixed) fixed.emplace(*plan_, settings);
+    if (!run) refuse_foreign(record.row, *fixed);
+    // If a run's last record was lost from the journal, the table has its result and the journal only an
+    // earlier state: keep the table's row.
+    if (!run || sweep::is_result(record.row.status) || !sweep::is_result(run->row.status))
+      run = std::make_unique<Entry>(std::move(record));
+  }
+  const auto is_faulty = [](const std::unique_ptr<Entry>& run) {
+    return run && !sweep::fault_of(run->row).empty();
+  };
+  num_faulty_ =
+      std::ranges::count_if(runs_, is_faulty) +
+      static_cast<std::int64_t>(std::erase_if(known, [&](const auto& one) { return is_faulty(one.second); }));
+  std::ranges::replace_if(runs_, is_faulty, nullptr);
+  return known;
 }
 
 /// Reads the table, and checks that its path, which readers use, leads to the same file as the open folder,
@@ -139,19 +166,19 @@ void SweepState::adopt(const store::SweepFile& file, const sweep::Settings& sett
 }
 
 /// Another sweep may have left its journal here.
-void SweepState::refuse_foreign(const std::vector<Entry>& entries,
-                                const std::unordered_map<std::string, Entry>& known,
-                                const sweep::Settings& settings) const {
-  const FixedValues fixed(*plan_, settings);
-  for (const auto& [row, snapshot] : entries) {
-    if (row.model_version == model_version && known.contains(sweep::identity(row))) continue;
-    const std::string differing = fixed.differing_keys(row);
-    if (!differing.empty())
-      throw Error(
-          fmt::format("cannot resume {} (its journal {} is of another sweep: {}); move the journal to "
-                      "the table that it belongs to, or give another --output",
-                      path_, journal_.path(), differing));
-  }
+void SweepState::refuse_foreign(const sweep::RunRow& record, const FixedValues& fixed) const {
+  const std::string differing = fixed.differing_keys(record);
+  if (!differing.empty())
+    throw Error(
+        fmt::format("cannot resume {} (its journal {} is of another sweep: {}); move the journal to "
+                    "the table that it belongs to, or give another --output",
+                    path_, journal_.path(), differing));
+}
+
+std::unique_ptr<SweepState::Entry>& SweepState::place_of(std::int64_t task) {
+  const auto place = static_cast<std::size_t>(task);
+  if (place >= runs_.size()) runs_.resize(place + 1);
+  return runs_[place];
 }
 
 /// Runs that are not of this plan may be among other circles.
@@ -166,29 +193,30 @@ bool SweepState::is_over(const sweep::RunRow& row) const {
   return !sweep::is_unfinished(row.status);
 }
 
-/// @param known  runs by what they are
-void SweepState::find_tasks(std::unordered_map<std::string, Entry> known) {
+void SweepState::find_tasks(Known known) {
   std::int64_t last_seed = -1;
   for (const auto& [run, entry] : known)
-    last_seed = std::max(last_seed, std::int64_t{entry.row.parameters.seed});
+    last_seed = std::max(last_seed, std::int64_t{entry->row.parameters.seed});
   for (std::int64_t task = 0; task < plan_->size(); ++task) {
     // Seeds that may be added later follow in increasing order: none beyond has begun yet.
-    if (task >= num_wanted_ && (known.empty() || plan_->task(task).seed > last_seed)) break;
+    if (task >= std::max(num_wanted_, std::ssize(runs_)) &&
+        (known.empty() || plan_->task(task).seed > last_seed))
+      break;
     if (!known.empty())
-      if (auto found = known.extract(sweep::identity(sweep::describe(plan_->task(task)))); !found.empty()) {
-        Entry& entry = runs_[task] = std::move(found.mapped());
-        entry.row.task = task;
-        if (is_over(entry.row)) continue;
-        if (entry.row.status == RunStatus::running) entry.row.status = RunStatus::interrupted;
-        past_[task].take_costs(entry.row);
-      }
+      if (auto found = known.extract(sweep::identity(sweep::describe(plan_->task(task)))); !found.empty())
+        place_of(task) = std::move(found.mapped());
+    if (Entry* const run = entry(task)) {
+      run->row.task = task;
+      if (is_over(run->row)) continue;
+      if (run->row.status == RunStatus::running) run->row.status = RunStatus::interrupted;
+      past_[task].take_costs(run->row);
+    }
     if (task < num_wanted_) tasks_left_.push_back(task);
   }
   for (auto& [run, entry] : known) other_runs_.push_back(std::move(entry));
-  std::sort(other_runs_.begin(), other_runs_.end(),
-            [](const Entry& a, const Entry& b) { return a.row.task < b.row.task; });
+  std::ranges::sort(other_runs_, {}, [](const auto& run) { return run->row.task; });
   for (std::size_t i = 0; i < other_runs_.size(); ++i) {
-    sweep::RunRow& row = other_runs_[i].row;
+    sweep::RunRow& row = other_runs_[i]->row;
     row.task = plan_->size() + static_cast<std::int64_t>(i);
     if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
   }
@@ -199,22 +227,21 @@ void SweepState::want(const std::vector<std::int64_t>& tasks) {
   set_attribute(provenance_, "num_wanted", std::to_string(num_wanted_));
   tasks_left_.clear();
   for (const std::int64_t task : tasks)
-    if (const auto run = runs_.find(task); run == runs_.end() || !is_over(run->second.row))
-      tasks_left_.push_back(task);
+    if (const Entry* const run = entry(task); !run || !is_over(run->row)) tasks_left_.push_back(task);
   is_published_ = false;
 }
 
 std::vector<std::int64_t> SweepState::tasks_begun() const {
   std::vector<std::int64_t> tasks;
-  for (const auto& [task, entry] : runs_)
-    if (!is_over(entry.row)) tasks.push_back(task);
+  for (const auto& run : runs_)
+    if (run && !is_over(run->row)) tasks.push_back(run->row.task);
   return tasks;
 }
 
 std::int64_t SweepState::num_resumed() const {
   return std::count_if(tasks_left_.begin(), tasks_left_.end(), [this](std::int64_t task) {
-    const auto run = runs_.find(task);
-    return run != runs_.end() && !run->second.snapshot.empty();
+    const Entry* const run = entry(task);
+    return run && !run->snapshot.empty();
   });
 }
 
@@ -238,8 +265,11 @@ void SweepState::rank_is_free() {
 
 sweep::Start SweepState::start(std::int64_t task, int rank) {
   if (activity_) activity_->started(seconds_so_far());
-  const auto [run, is_new] = runs_.try_emplace(task);
-  Entry& entry = run->second;
+  std::unique_ptr<Entry>& run = place_of(task);
+  const bool is_new = !run;
+  if (is_new) run = std::make_unique<Entry>();
+  const std::lock_guard lock(changing_);
+  Entry& entry = *run;
   sweep::Start start{entry.snapshot, entry.row.attempt};
   const bool failed = !is_new && entry.row.status == RunStatus::failed;
   if (failed) start = {{}, entry.row.attempt + 1};
@@ -252,19 +282,21 @@ sweep::Start SweepState::start(std::int64_t task, int rank) {
   entry.row.attempt = start.attempt;
   entry.row.status = RunStatus::running;
   entry.row.rank = rank;
+  changed_.insert(task);
   is_published_ = false;
   return start;
 }
 
 void SweepState::report(const sweep::Report& report) {
-  const auto run = runs_.find(report.row.task);
-  if (run == runs_.end() || sweep::identity(report.row) != sweep::identity(run->second.row))
+  Entry* const run = entry(report.row.task);
+  if (!run || sweep::identity(report.row) != sweep::identity(run->row))
     throw Error(fmt::format(
         "cannot continue with {} (rank {} returned a run with other parameters than those of task {}); "
         "earlier results are in the file; please report this",
         path_, report.row.rank, report.row.task));
-  Entry& entry = run->second;
-  entry = {report.row, report.snapshot};
+  std::unique_lock lock(changing_);
+  Entry& entry = *run;
+  entry = report;
   if (const auto past = past_.find(report.row.task); past != past_.end()) {
     entry.row.wall_seconds += past->second.wall_seconds;
     entry.row.processor_seconds += past->second.processor_seconds;
@@ -273,52 +305,60 @@ void SweepState::report(const sweep::Report& report) {
       entry.row.instruction_set = sweep::mixed_instruction_sets;
   }
   if (entry.row.status == RunStatus::failed) past_[entry.row.task].take_costs(entry.row);
+  lock.unlock();
   write_down(entry);
-  is_published_ = false;
 }
 
 const sweep::RunRow* SweepState::first_if_all_failed() const {
-  const auto has_failed = [](const auto& run) { return run.second.row.status == RunStatus::failed; };
-  if (runs_.empty() || !std::all_of(runs_.begin(), runs_.end(), has_failed)) return nullptr;
-  return &runs_.begin()->second.row;
+  const sweep::RunRow* first = nullptr;
+  for (const auto& run : runs_) {
+    if (run && run->row.status != RunStatus::failed) return nullptr;
+    if (run && !first) first = &run->row;
+  }
+  return first;
 }
 
 std::vector<const SweepState::Entry*> SweepState::entries() const {
   std::vector<const Entry*> all;
   all.reserve(runs_.size() + other_runs_.size());
-  for (const auto& [task, entry] : runs_) all.push_back(&entry);
-  for (const Entry& entry : other_runs_) all.push_back(&entry);
+  for (const Entries* runs : {&runs_, &other_runs_})
+    for (const auto& run : *runs)
+      if (run) all.push_back(run.get());
   return all;
-}
-
-store::SweepFile SweepState::table() const {
-  store::SweepFile table{{}, provenance_, circles_};
-  for (const Entry* entry : entries()) table.rows.push_back(published(entry->row));
-  return table;
 }
 
 void SweepState::write_down(const Entry& entry) {
   if (!journal_.is_there()) publish();
   journal_.add(entry.row, entry.snapshot);
+  changed_.insert(entry.row.task);
+  is_published_ = false;
 }
 
 void SweepState::withdraw_failure(std::int64_t task) {
-  Entry& entry = runs_.at(task);
-  restart(entry.row);  // a broken rank's result does not count as progress
+  Entry& entry = *runs_.at(task);
+  {
+    const std::lock_guard lock(changing_);
+    restart(entry.row);  // a broken rank's result does not count as progress
+  }
   write_down(entry);
-  is_published_ = false;
 }
 
 void SweepState::tick() {
   // Writing the whole table takes longer the more runs there are, and the journal must be rewritten now and
   // then; they may take two percent of the time.
-  const Clock::time_point begin = Clock::now();
-  const Clock::duration pause = std::max<Clock::duration>(std::chrono::seconds(1), 50 * publication_time_);
-  if (is_published_ || begin - last_publication_ < pause) return;
-  publish();
-  if (journal_.is_to_be_rewritten()) rewrite_journal(Records::of_unfinished_runs);
-  last_publication_ = Clock::now();
-  publication_time_ = last_publication_ - begin;
+  const Clock::time_point now = Clock::now();
+  if (publication_.valid()) {
+    if (publication_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;
+    end_publication();
+    if (journal_.is_to_be_rewritten()) rewrite_journal(Records::of_unfinished_runs);
+    publication_end_ = Clock::now();
+    return;
+  }
+  const Clock::duration pause =
+      std::max<Clock::duration>(std::chrono::seconds(1), 50 * (publication_end_ - publication_begin_));
+  if (is_published_ || now - publication_end_ < pause) return;
+  publication_begin_ = now;
+  begin_publication();
 }
 
 /// The row that readers see: a run that will be tried again is not failed yet, and its failed attempt has no
@@ -331,9 +371,25 @@ sweep::RunRow SweepState::published(const sweep::RunRow& row) const {
   return next;
 }
 
+std::optional<std::string> SweepState::publish_to(const store::OutputPath& place, const std::string& stamp,
+                                                  const std::vector<const Entry*>& all,
+                                                  const store::Provenance& provenance) {
+  const auto row = [&](std::size_t i) {
+    const std::lock_guard lock(changing_);
+    return published(all[i]->row);
+  };
+  return store::publish_sweep(place, stamp, {all.size(), row}, provenance, circles_);
+}
+
+void SweepState::publish() {
+  end_publication();
+  begin_publication();
+  end_publication();
+}
+
 /// If the journal was removed or the table replaced, writes everything once more and ends the sweep. A
 /// removed table is written again.
-void SweepState::publish() {
+void SweepState::begin_publication() {
   const std::string there = place_.stamp();
   if (!there.empty() && there != stamp_) rescue();
   const bool has_journal = journal_.is_there();
@@ -341,18 +397,28 @@ void SweepState::publish() {
     if (!journal_.make_anew(place_)) rescue();
     rewrite_journal(Records::all);
   }
-  journal_.flush();
+  journal_.begin();
   if (activity_)
     set_attribute(provenance_, "activity",
                   with_session(earlier_activity_, activity_->line(session_time_, seconds_so_far())));
-  std::optional<std::string> published = store::publish_sweep(place_, stamp_, table());
+  is_published_ = true;
+  changed_.clear();
+  publication_ = std::async([this, all = entries(), provenance = provenance_] {
+    journal_.flush();
+    return publish_to(place_, stamp_, all, provenance);
+  });
+  if (has_journal) return;
+  end_publication();
+  throw Error(
+      "cannot continue with " + journal_.path() +
+      " (it was removed while the sweep was running); nothing is lost; the same command resumes the sweep");
+}
+
+void SweepState::end_publication() {
+  if (!publication_.valid()) return;
+  std::optional<std::string> published = publication_.get();
   if (!published) rescue();
   stamp_ = *std::move(published);
-  is_published_ = true;
-  if (!has_journal)
-    throw Error(
-        "cannot continue with " + journal_.path() +
-        " (it was removed while the sweep was running); nothing is lost; the same command resumes the sweep");
 }
 
 /// Writes the table under another name, to keep the file that somebody else has put in its place.
@@ -360,7 +426,7 @@ void SweepState::rescue() {
   if (journal_.is_there()) rewrite_journal(Records::all);
   int number = 1;
   const auto rescued = [&] { return place_.beside(fmt::format(".rescued{}", number)); };
-  while (!store::publish_sweep(rescued(), "", table())) ++number;
+  while (!publish_to(rescued(), "", entries(), provenance_)) ++number;
   throw Error(fmt::format(
       "cannot continue with {} (somebody has replaced it or its journal while the sweep was "
       "running); all runs are in {}: move it to where it belongs, then the same command resumes the sweep",
@@ -370,16 +436,19 @@ void SweepState::rescue() {
 void SweepState::rewrite_journal(Records records) {
   std::vector<const Entry*> needed = entries();
   if (records == Records::of_unfinished_runs)
-    std::erase_if(needed, [this](const Entry* entry) { return is_over(entry->row); });
+    std::erase_if(needed, [this](const Entry* entry) {
+      return is_over(entry->row) && !changed_.contains(entry->row.task);
+    });
   journal_.rewrite(needed);
 }
 
 std::string SweepState::finish() {
   publish();
   if (place_.stamp() != stamp_) publish();  // somebody has moved or removed it meanwhile
+  const std::vector<const Entry*> all = entries();
   const bool is_complete =
-      static_cast<std::int64_t>(runs_.size()) >= num_wanted_ &&
-      std::ranges::all_of(entries(), [this](const Entry* entry) { return is_over(entry->row); });
+      std::ssize(all) - std::ssize(other_runs_) >= num_wanted_ &&
+      std::ranges::all_of(all, [this](const Entry* entry) { return is_over(entry->row); });
   if (!is_complete) {
     rewrite_journal(Records::of_unfinished_runs);
     return "";

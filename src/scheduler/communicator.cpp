@@ -30,7 +30,8 @@ void stand_alone_without_launcher() {
 
 Communicator::Communicator(int& argc, char**& argv) {
   stand_alone_without_launcher();
-  MPI_Init(&argc, &argv);
+  int provided = 0;  // another thread publishes the table; this one alone calls MPI
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
 }

@@ -39,9 +39,10 @@ namespace {
 
 constexpr std::string_view hdf5_mark = "\x89HDF\r\n\x1a\n";
 
-/// The bytes of a file of the earliest format. It is filled in memory, so that the library never meets a disk
-/// that is full, which it does not always survive.
-std::vector<std::byte> file_image(const std::string& path, const std::function<void(hid_t file)>& fill) try {
+/// Passes on the bytes of a file of the earliest format. It is filled in memory, so that the library never
+/// meets a disk that is full, which it does not always survive.
+void with_file_image(const std::string& path, const std::function<void(hid_t file)>& fill,
+                     const std::function<void(std::span<const std::byte> image)>& use) try {
   prepare_library();
   constexpr std::size_t growth = std::size_t{1} << 20;
   const PropertyList access(H5Pcreate(H5P_FILE_ACCESS));
@@ -52,10 +53,9 @@ std::vector<std::byte> file_image(const std::string& path, const std::function<v
   fill(file);
   const ssize_t size =
       H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0 ? H5Fget_file_image(file, nullptr, 0) : ssize_t{0};
-  std::vector<std::byte> image(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-  if (size <= 0 || H5Fget_file_image(file, image.data(), image.size()) != size)
-    throw LibraryError("copy the file");
-  return image;
+  void* image = nullptr;  // where the library's driver keeps the address of the image, which is not copied
+  if (size <= 0 || H5Fget_vfd_handle(file, access, &image) < 0) throw LibraryError("pass on the file");
+  use({*static_cast<const std::byte* const*>(image), static_cast<std::size_t>(size)});
 } catch (const LibraryError& error) {
   throw Error("cannot write " + path + " (HDF5 cannot " + error.what() +
               " in memory); allow more memory (ulimit -v)");
@@ -79,10 +79,11 @@ void refuse_unwritable(const std::string& path) {
 std::optional<std::string> write_whole(const OutputPath& place, const std::string& stamp,
                                        const std::function<void(hid_t file)>& fill) {
   Draft draft(place, hdf5_mark);
-  const std::vector<std::byte> image = file_image(place.path(), fill);
-  const std::string seal = seal_of(image);
-  draft.write(image);
-  draft.write(std::as_bytes(std::span(seal)));
+  with_file_image(place.path(), fill, [&](std::span<const std::byte> image) {
+    const std::string seal = seal_of(image);
+    draft.write(image);
+    draft.write(std::as_bytes(std::span(seal)));
+  });
   draft.unlock();
   return draft.publish(stamp);
 }
@@ -92,8 +93,7 @@ std::vector<std::byte> read_file(const std::string& path) {
   if (!file.is_open() && errno == ENOENT)
     throw Error("cannot read " + path + " (no such file); check the name");
   if (!file.is_open()) throw FileError(FileAction::read, path, last_error());
-  // The image, two of the library, packed rows, and rows: 25 MB want 165 MB in all.
-  constexpr int copies = 6;
+  constexpr int copies = 2;  // the image, and the rows in it
   require_memory_of_file("read " + path, size_of(file, path), copies);
   return read_all(file, path);
 }
@@ -105,6 +105,16 @@ File open_image(std::vector<std::byte>& image, const std::string& path) {
     throw Error("cannot read " + path + " (not an HDF5 file); give a file written by clogsweep");
   const PropertyList access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_fapl_core(access, image.size(), false);
+  // The library would make two copies.
+  H5FD_file_image_callbacks_t no_copies = {
+      [](std::size_t, H5FD_file_image_op_t, void* bytes) { return bytes; },
+      [](void* bytes, const void*, std::size_t, H5FD_file_image_op_t, void*) { return bytes; },
+      nullptr,
+      [](void*, H5FD_file_image_op_t, void*) { return herr_t{0}; },
+      [](void* bytes) { return bytes; },
+      [](void*) { return herr_t{0}; },
+      image.data()};
+  H5Pset_file_image_callbacks(access, &no_copies);
   H5Pset_file_image(access, image.data(), image.size());
   constexpr const char* no_file = "/dev/null/image";  // the library wants a name that nothing has
   File file(H5Fopen(no_file, H5F_ACC_RDONLY, access));

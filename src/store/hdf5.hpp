@@ -50,13 +50,10 @@ using Group = Handle<H5Gclose>;
 /// has the file open must not make a row fail to be written; they also fail on many cluster file systems).
 void prepare_library();
 
-/// The library's image, which grows by copying, and ours.
-constexpr int copies_in_writing = 3;
-
-/// The library makes copies of what it reads and writes, and may crash where there is no memory for them.
+/// The library keeps what it reads and writes in memory, and may crash where there is none.
 /// @param purpose  as in "read sweep.h5"; @param size  of the file [bytes]
 /// @throws Error if there is not so much
-void require_memory_of_file(const std::string& purpose, std::size_t size, int copies = copies_in_writing);
+void require_memory_of_file(const std::string& purpose, std::size_t size, int copies = 2);
 
 /// The library could not do something in memory.
 class LibraryError : public std::runtime_error {
@@ -71,7 +68,7 @@ std::optional<std::string> write_whole(const OutputPath& place, const std::strin
 
 /// All that a regular file holds. @throws Error that says what is wrong with the path
 std::vector<std::byte> read_file(const std::string& path);
-/// Opens the bytes of a file for reading, so that what was checked is what is read. They are copied.
+/// Opens the bytes of a file for reading, so that what was checked is what is read. They must live as long.
 /// @throws Error naming the path if they are no HDF5 file
 File open_image(std::vector<std::byte>& image, const std::string& path);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 
 #include "clog/core/tools/error.hpp"
 #include "hdf5.hpp"
@@ -33,11 +32,7 @@ bool is_as_written(const std::string& name, const std::string& text) try {
 
 }  // namespace
 
-void write_laboratories(hid_t file, std::span<const sweep::RunRow> rows) {
-  std::set<std::string> check_sums;
-  for (const sweep::RunRow& row : rows)
-    if (const std::optional<LaboratoryText>& one = row.parameters.laboratory; one && !one->text().empty())
-      check_sums.insert(one->check_sum());
+void write_laboratories(hid_t file, const std::set<std::string>& check_sums) {
   if (check_sums.empty()) return;
   const Group group(H5Gcreate2(file, laboratories_name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   if (!group.valid()) throw LibraryError("create the laboratories");

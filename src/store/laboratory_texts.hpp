@@ -2,7 +2,7 @@
 
 #include <hdf5.h>
 
-#include <span>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace clog::store {
 /// Descriptions of laboratories in a file of runs: the group /laboratories has a text for each, by its
 /// checksum, which rows refer to.
 /// @throws LibraryError
-void write_laboratories(hid_t file, std::span<const sweep::RunRow> rows);
+void write_laboratories(hid_t file, const std::set<std::string>& check_sums);
 /// Makes the texts known; a sentence goes to the damage for one that is not as it was written.
 void read_laboratories(hid_t file, std::vector<std::string>& damage);
 /// Files before format 10 have one description for all rows, in an attribute.

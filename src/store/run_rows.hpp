@@ -2,11 +2,9 @@
 
 #include <hdf5.h>
 
-#include <span>
 #include <string>
 
 #include "clog/store/run_table.hpp"
-#include "clog/sweep/run_row.hpp"
 
 namespace clog::store {
 
@@ -14,7 +12,6 @@ inline constexpr const char* trajectory_kind = "clogsweep trajectory";
 
 /// Makes the dataset /runs with these rows in an open file, and the root attributes: kind, format version,
 /// provenance, and the checksums of all of them. @throws LibraryError
-void write_runs(hid_t file, const std::string& kind, std::span<const sweep::RunRow> rows,
-                const Provenance& provenance);
+void write_runs(hid_t file, const std::string& kind, const Rows& rows, const Provenance& provenance);
 
 }  // namespace clog::store

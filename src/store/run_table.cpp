@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string_view>
@@ -59,18 +60,23 @@ Space growing_space(std::size_t num_rows) {
   return Space(H5Screate_simple(1, &size, &unlimited));
 }
 
-CheckSums write_table(hid_t file, std::span<const RunRow> rows) {
+/// @param laboratories  gets the checksums of those that rows refer to
+CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& laboratories) {
   const RowLayout layout = RowLayout::present();
-  const Dataset table = write_dataset(file, runs_name, layout.type(), growing_space(rows.size()), nullptr,
+  const Dataset table = write_dataset(file, runs_name, layout.type(), growing_space(rows.number), nullptr,
                                       checked_chunks(rows_per_chunk));
   layout.describe(table);
   CheckSums sums;
-  std::vector<std::byte> packed(std::min(rows_per_block, rows.size()) * layout.size());
-  for_each_block(rows.size(), [&](std::size_t first, std::size_t number) {
+  sums.reserve(rows.number);
+  std::vector<std::byte> packed(std::min(rows_per_block, rows.number) * layout.size());
+  for_each_block(rows.number, [&](std::size_t first, std::size_t number) {
     for (std::size_t i = 0; i < number; ++i) {
-      const std::span row(packed.data() + i * layout.size(), layout.size());
-      sweep::pack(rows[first + i], row);
-      sums.push_back(check_sum(row));
+      const RunRow row = rows.row(first + i);
+      const std::span place(packed.data() + i * layout.size(), layout.size());
+      sweep::pack(row, place);
+      sums.push_back(check_sum(place));
+      if (const std::optional<LaboratoryText>& one = row.parameters.laboratory; one && !one->text().empty())
+        laboratories.insert(one->check_sum());
     }
     if (H5Dwrite(table, layout.type(), space_of({number}), select_rows(table, first, number), H5P_DEFAULT,
                  packed.data()) < 0)
@@ -89,9 +95,9 @@ NamedCheckSum joint_check_sum(const CheckSums& sums) {
 
 }  // namespace
 
-void write_runs(hid_t file, const std::string& kind, std::span<const RunRow> rows,
-                const Provenance& provenance) {
-  const CheckSums sums = write_table(file, rows);
+void write_runs(hid_t file, const std::string& kind, const Rows& rows, const Provenance& provenance) {
+  std::set<std::string> laboratories;
+  const CheckSums sums = write_table(file, rows, laboratories);
   const Dataset list = write_dataset(file, sums_name, H5T_NATIVE_UINT32, growing_space(sums.size()),
                                      sums.data(), checked_chunks(rows_per_chunk));
   write_attribute(list, "meaning", "CRC-32, as of zlib, of the bytes of each row of /runs");
@@ -100,7 +106,7 @@ void write_runs(hid_t file, const std::string& kind, std::span<const RunRow> row
                            {num_columns_name, std::to_string(sweep::columns().size())}};
   attributes.insert(attributes.end(), provenance.begin(), provenance.end());
   write_attributes(file, joint_check_sum(sums), attributes);
-  write_laboratories(file, rows);
+  write_laboratories(file, laboratories);
 }
 
 std::string library_version() {
@@ -110,12 +116,13 @@ std::string library_version() {
   return fmt::format("{}.{}.{}", major, minor, release);
 }
 
-std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp,
-                                         const SweepFile& content) {
-  require_memory_of_file("write " + place.path(), content.rows.size() * RowLayout::present().size());
+std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp, const Rows& rows,
+                                         const Provenance& provenance,
+                                         const std::vector<CircleFile>& circles) {
+  require_memory_of_file("write " + place.path(), rows.number * RowLayout::present().size());
   return write_whole(place, stamp, [&](hid_t file) {
-    write_runs(file, sweep_kind, content.rows, content.provenance);
-    write_circles(file, content.circles);
+    write_runs(file, sweep_kind, rows, provenance);
+    write_circles(file, circles);
   });
 }
 
@@ -186,17 +193,6 @@ CheckSums read_check_sums(hid_t file, std::size_t num_rows) {
   return sums;
 }
 
-/// Rows of an open file, as they lie there.
-struct PackedTable {
-  RowLayout layout;
-  std::vector<std::byte> bytes;
-  std::size_t num_rows;
-
-  std::span<const std::byte> row(std::size_t i) const {
-    return std::span(bytes).subspan(i * layout.size(), layout.size());
-  }
-};
-
 /// Zero if the attribute is missing, as in files of format 9, or damaged.
 std::size_t num_columns_written(hid_t file) {
   const std::string text = intact_text(file, num_columns_name);
@@ -205,53 +201,56 @@ std::size_t num_columns_written(hid_t file) {
   return number;
 }
 
-PackedTable read_table(hid_t file) {
+/// Separates intact rows from corrupted ones, and returns the checksums that were written.
+CheckSums read_rows(hid_t file, Examination& found) {
   const Dataset dataset(H5Dopen2(file, runs_name, H5P_DEFAULT));
   if (!dataset.valid()) throw Damage("its table cannot be opened");
-  std::optional<RowLayout> layout = RowLayout::of(Type(H5Dget_type(dataset)), num_columns_written(file));
+  const std::optional<RowLayout> layout =
+      RowLayout::of(Type(H5Dget_type(dataset)), num_columns_written(file));
   if (!layout) throw Damage("its columns are not those that were written");
   const std::size_t num_rows = num_rows_of(dataset, layout->size());
-  std::vector<std::byte> bytes(num_rows * layout->size());
+  const CheckSums sums = read_check_sums(file, num_rows);
+  found.whole.rows.reserve(num_rows);
+  std::vector<std::byte> block(std::min(rows_per_block, num_rows) * layout->size());
   const PropertyList unchecked = without_library_check();
   for_each_block(num_rows, [&](std::size_t first, std::size_t number) {
     if (H5Dread(dataset, layout->type(), space_of({number}), select_rows(dataset, first, number), unchecked,
-                bytes.data() + first * layout->size()) < 0)
+                block.data()) < 0)
       throw Damage(fmt::format("rows from {} on cannot be read", first));
+    for (std::size_t i = 0; i < number; ++i) {
+      const std::span packed(block.data() + i * layout->size(), layout->size());
+      auto [row, fault] = layout->unpack(packed.data());
+      const bool is_as_written = check_sum(packed) == sums[first + i];
+      if (is_as_written && fault.empty())
+        found.whole.rows.push_back(std::move(row));
+      else
+        found.damage.push_back(fmt::format("row {} (task {}){}", first + i, row.task,
+                                           is_as_written ? ": " + fault : " is not as it was written"));
+    }
   });
-  return {std::move(*layout), std::move(bytes), num_rows};
+  return sums;
 }
 
 /// Does the library refuse a dataset when it compares its own checksums, too?
 bool is_refused(hid_t file, const char* name) {
   const Dataset dataset(H5Dopen2(file, name, H5P_DEFAULT));
   const Type type(H5Dget_type(dataset));
-  std::vector<std::byte> bytes(
-      static_cast<std::size_t>(H5Sget_simple_extent_npoints(Space(H5Dget_space(dataset)))) *
-      H5Tget_size(type));
-  return !bytes.empty() && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0;
-}
-
-/// Separates intact rows from corrupted ones.
-void compare_rows(const PackedTable& table, const CheckSums& sums, Examination& found) {
-  for (std::size_t i = 0; i < table.num_rows; ++i) {
-    const auto [row, fault] = table.layout.unpack(table.row(i).data());
-    const bool is_as_written = check_sum(table.row(i)) == sums[i];
-    if (is_as_written && fault.empty())
-      found.whole.rows.push_back(row);
-    else
-      found.damage.push_back(fmt::format("row {} (task {}){}", i, row.task,
-                                         is_as_written ? ": " + fault : " is not as it was written"));
-  }
+  const std::size_t length = length_of(dataset).value_or(0);
+  std::vector<std::byte> block(std::min(rows_per_block, length) * H5Tget_size(type));
+  bool refused = false;
+  for_each_block(length, [&](std::size_t first, std::size_t number) {
+    refused = refused || H5Dread(dataset, type, space_of({number}), select_rows(dataset, first, number),
+                                 H5P_DEFAULT, block.data()) < 0;
+  });
+  return refused;
 }
 
 Examination examine(std::vector<std::byte>& image, Seal seal, const std::string& path) try {
   const File file = open_image(image, path);
   require_sweep(file, path);
-  const PackedTable table = read_table(file);
-  const CheckSums sums = read_check_sums(file, table.num_rows);
   Examination found;
   found.whole.checked = seal == Seal::missing ? Checked::rows_and_settings : Checked::everything;
-  compare_rows(table, sums, found);
+  const CheckSums sums = read_rows(file, found);
   compare_attributes(file, joint_check_sum(sums), found.whole.provenance, found.damage);
   read_circles(file, found.whole.circles, found.damage);
   read_laboratories(file, found.damage);

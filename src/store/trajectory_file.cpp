@@ -78,7 +78,7 @@ void write_trajectory(const std::string& path, const Trajectory& trajectory) {
     if (!trajectory.polygons.empty()) write_polygons(file, trajectory.polygons);
     if (!trajectory.obstacles.empty()) write_obstacles(file, trajectory.obstacles);
     if (!trajectory.wedges.empty()) write_wedges(file, trajectory.wedges);
-    write_runs(file, trajectory_kind, {&trajectory.row, 1}, trajectory.provenance);
+    write_runs(file, trajectory_kind, Rows::of({&trajectory.row, 1}), trajectory.provenance);
   });
   if (!written) refuse_to_overwrite(path);
 }

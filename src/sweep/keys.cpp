@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <unordered_map>
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
@@ -119,9 +120,15 @@ std::vector<std::string> meant_names(std::string_view word, const std::vector<st
   return all;
 }
 
-const Key& find_key(std::string_view name) {
-  const auto key = std::find_if(keys().begin(), keys().end(), [&](const Key& k) { return k.name == name; });
-  if (key != keys().end()) return *key;
+const Key& find_key(std::string_view name) { return keys()[place_of_key(name)]; }
+
+std::size_t place_of_key(std::string_view name) {
+  static const std::unordered_map<std::string_view, std::size_t> places = [] {
+    std::unordered_map<std::string_view, std::size_t> all;
+    for (const Key& key : keys()) all.emplace(key.name, all.size());
+    return all;
+  }();
+  if (const auto found = places.find(name); found != places.end()) return found->second;
   std::vector<std::string> names;
   names.reserve(keys().size());
   for (const Key& k : keys()) names.push_back(k.name);

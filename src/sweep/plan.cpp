@@ -99,7 +99,7 @@ class Plan::Builder {
     if (!last_seeds_ || *last_seeds_ != seeds)
       last_seeds_ = std::make_shared<const std::vector<std::uint32_t>>(std::move(seeds));
     const std::int64_t num_places = size_of_product(branch);
-    refuse_misfitting_angles(product, num_places, where);
+    if (branch.text("obstacle-layout") == "lattice") refuse_misfitting_angles(product, num_places, where);
     for (std::int64_t place = 0; place < num_places; ++place) {
       const RunRow run = checked(
           branch, where, [&] { return describe(plan_.parameters(product, place, last_seeds_->front())); });

@@ -17,6 +17,12 @@ bool is_of_channel(const Key& key) {
   return key.parameter && key.parameter->scope->word == std::string_view("channel");
 }
 
+/// May the texts of other keys follow from this one's? See Settings::resolved().
+bool leads(const Key& key) {
+  return key.name == "preset" || key.name == circles_key || key.name == layout_key || key.name == "release" ||
+         is_of_channel(key);
+}
+
 /// The scene of a layout; nullptr if the text is none, such as a list.
 const Scene* scene_in(const std::string& text) {
   const std::optional<ObstacleLayout> layout = meant_by<ObstacleLayout>(text);
@@ -58,8 +64,9 @@ std::vector<std::string> values_of(const Key& key, const std::string& text) {
 /// Calls for each combination of single words.
 void visit_words(const Settings& settings, const std::function<void(const Settings&)>& visit) {
   for (const Key& key : keys()) {
+    if (key.kind != ValueKind::word) continue;
     const std::vector<std::string>& words = settings.values(key.name);
-    if (key.kind != ValueKind::word || words.size() == 1) continue;
+    if (words.size() == 1) continue;
     for (const std::string& word : words) {
       Settings one = settings;
       one.set(key.name, word);
@@ -83,16 +90,27 @@ void visit_points(const Settings& plain, const Points& points, const Settings::V
 }  // namespace
 
 void Settings::set(const std::string& name, const std::string& text) {
-  given_[name] = {text, values_of(find_key(name), text)};
-  is_resolved_ = false;
+  const std::size_t place = place_of_key(name);
+  const Key& key = keys()[place];
+  given_[place] = std::make_shared<const Entry>(Entry{text, values_of(key, text)});
+  is_resolved_ = is_resolved_ && !leads(key);
+  if (is_resolved_) all_[place] = given_[place];
 }
 
+bool Settings::is_given(const std::string& name) const { return given_[place_of_key(name)] != nullptr; }
+
 const Settings::Entry& Settings::entry(const std::string& name) const {
-  if (!is_resolved_)
-    for (auto& [key, now] : resolved())
-      if (Entry& known = all_[key]; known.values.empty() || known.text != now.text) known = std::move(now);
+  return *entries()[place_of_key(name)];
+}
+
+const Settings::Entries& Settings::entries() const {
+  if (is_resolved_) return all_;
+  Entries now = resolved();
+  all_.resize(now.size());
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (!all_[i] || all_[i]->text != now[i]->text) all_[i] = std::move(now[i]);
   is_resolved_ = true;
-  return all_.at(name);
+  return all_;
 }
 
 /// What was given, what follows from it for other keys, and the defaults. The keys of a preset, the layout
@@ -101,23 +119,31 @@ const Settings::Entry& Settings::entry(const std::string& name) const {
 Settings::Entries Settings::resolved() const {
   static const Entries defaults = [] {
     Entries entries;
-    for (const Key& key : keys()) entries[key.name] = {key.default_text, values_of(key, key.default_text)};
+    for (const Key& key : keys())
+      entries.push_back(
+          std::make_shared<const Entry>(Entry{key.default_text, values_of(key, key.default_text)}));
     return entries;
   }();
   Entries all = given_;
-  all.insert(defaults.begin(), defaults.end());
+  bool has_channel = false;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    has_channel = has_channel || (all[i] && is_of_channel(keys()[i]));
+    if (!all[i]) all[i] = defaults[i];
+  }
+  const auto now = [&](const char* key) -> const std::string& { return all[place_of_key(key)]->text; };
   const auto follow = [&](const char* key, const char* text) {
-    if (!is_given(key)) all[key] = {text, values_of(find_key(key), text)};
+    if (!is_given(key))
+      all[place_of_key(key)] = std::make_shared<const Entry>(Entry{text, values_of(find_key(key), text)});
   };
-  for (const auto& [key, text] : preset_texts(all.at("preset").text)) follow(key, text);
-  const bool has_circles = all.at(circles_key).text != "none";
+  for (const auto& [key, text] : preset_texts(now("preset"))) follow(key, text);
+  const bool has_circles = now(circles_key) != "none";
   if (has_circles)
     follow(layout_key, "file");
-  else if (std::ranges::any_of(given_, [](const auto& one) { return is_of_channel(find_key(one.first)); }))
+  else if (has_channel)
     follow(layout_key, "channel");
-  const Scene* const scene = scene_in(all.at(layout_key).text);
+  const Scene* const scene = scene_in(now(layout_key));
   const bool is_wall = scene && scene->walls_from == WallsFrom::droplet;
-  if (is_wall || (has_circles && all.at("release").text == "centre")) follow("seeds", "1");
+  if (is_wall || (has_circles && now("release") == "centre")) follow("seeds", "1");
   return all;
 }
 
@@ -132,7 +158,8 @@ std::vector<std::string> Settings::missing_files() const {
         missing.push_back(file);
   };
   look(values(circles_key));
-  if (!points_.empty()) look(all_values().at(circles_key));
+  if (!points_.empty())
+    visit_branches([&](const Settings& branch, std::int64_t) { look(branch.values(circles_key)); });
   return missing;
 }
 
@@ -148,6 +175,7 @@ void Settings::visit_branches(const VisitBranch& visit) const {
   Settings plain = *this;
   plain.points_ = {};
   plain.shard_ = {};
+  plain.entries();
   if (points_.empty())
     visit_words(plain, [&](const Settings& branch) { visit(branch, -1); });
   else
@@ -157,10 +185,15 @@ void Settings::visit_branches(const VisitBranch& visit) const {
 std::map<std::string, std::vector<std::string>> Settings::all_values() const {
   std::map<std::string, std::vector<std::string>> all;
   std::map<std::string, std::set<std::string>> seen;
+  Entries last(keys().size());
   visit_branches([&](const Settings& branch, std::int64_t) {
-    for (const Key& key : keys())
-      for (const std::string& value : branch.values(key.name))
-        if (seen[key.name].insert(value).second) all[key.name].push_back(value);
+    const Entries& now = branch.entries();
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      if (std::exchange(last[i], now[i]) == now[i]) continue;
+      const std::string& key = keys()[i].name;
+      for (const std::string& value : now[i]->values)
+        if (seen[key].insert(value).second) all[key].push_back(value);
+    }
   });
   return all;
 }
@@ -170,9 +203,10 @@ std::map<std::string, std::vector<std::string>> Settings::all_values() const {
 std::set<std::string> Settings::keys_that_follow() const {
   std::set<std::string> following;
   visit_branches([&](const Settings& branch, std::int64_t) {
-    for (const Key& key : keys())
-      if (!branch.is_given(key.name) && !is_given(key.name) && branch.text(key.name) != text(key.name))
-        following.insert(key.name);
+    const Entries& now = branch.entries();
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (!branch.given_[i] && !given_[i] && now[i] != entries()[i] && now[i]->text != entries()[i]->text)
+        following.insert(keys()[i].name);
   });
   if (following.contains(layout_key))  // which a channel's keys would set
     for (const Key& key : keys())

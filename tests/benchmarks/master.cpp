@@ -3,6 +3,9 @@
 /// tasks that sleep; everything else is clogsweep's own: the scheduler, MPI, the table of runs on the disk.
 ///   tests/mpirun.sh 5 bench_master [tasks per second] [seconds]
 /// With 0 tasks per second every worker sleeps in one long task: what does waiting cost?
+///   bench_master rows 1000000
+/// How much memory does a row of soft disks take, how long is the master busy with the table and its journal
+/// and answers nobody, how long do the stop and a restart of the sweep take?
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -41,6 +44,13 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+/// Of resident memory, so far.
+double peak_kilobytes() {
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss);
+}
+
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
@@ -66,9 +76,55 @@ class SleepingJob final : public sweep::Job {
   sweep::RunRow row_;
 };
 
+/// Without workers: runs begin and end one after the other.
+int measure_rows(std::int64_t num_rows) {
+  const auto kilobytes = [num_rows, before = peak_kilobytes()] {
+    return (peak_kilobytes() - before) / static_cast<double>(num_rows);
+  };
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("bench_rows_" + std::to_string(getpid()) + ".h5")).string();
+  sweep::Settings settings;
+  settings.set("model", "sp");
+  settings.set("wall-stiffness", "lin(0.5,3,100)");
+  settings.set("seeds", "1.." + std::to_string(num_rows / 100));
+  const sweep::Plan plan(settings);
+  const auto open = [&] {
+    return std::make_unique<results::SweepState>(path, plan, settings, store::Provenance(), plan.size(), 1);
+  };
+  auto state = open();
+  double silence = 0;
+  const Clock::time_point begin = Clock::now();
+  for (std::int64_t task = 0; task < plan.size(); ++task) {
+    const Clock::time_point last = Clock::now();
+    state->start(task, 1);
+    sweep::Report report{state->row(task), {}};
+    report.row.status = RunStatus::flowing;
+    state->report(report);
+    state->tick();
+    silence = std::max(silence, seconds_since(last));
+  }
+  const double cost = seconds_since(begin) / static_cast<double>(num_rows);
+  const double memory = kilobytes();
+  const Clock::time_point stop = Clock::now();
+  state->finish();
+  const double stop_seconds = seconds_since(stop), memory_at_stop = kilobytes();
+  state.reset();
+  const Clock::time_point restart = Clock::now();
+  state = open();
+  std::printf(
+      "%lld rows: %.0f us each, silent for %.3f s, stop %.2f s, restart %.2f s; memory of a row: %.2f kB, "
+      "%.2f kB to the stop, %.2f kB with the restart; %.1f s of CPU in all\n",
+      static_cast<long long>(num_rows), 1e6 * cost, silence, stop_seconds, seconds_since(restart), memory,
+      memory_at_stop, kilobytes(), cpu_seconds());
+  state->finish();
+  std::filesystem::remove(path);
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 3 && argv[1] == std::string("rows")) return measure_rows(std::atoll(argv[2]));
   const scheduler::Communicator ranks(argc, argv);
   const double rate = argc > 1 ? std::atof(argv[1]) : 1000;
   const double duration = argc > 2 ? std::atof(argv[2]) : 10;

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "clog/core/run/resolve.hpp"
+#include "clog/results/comparison.hpp"
+#include "clog/results/distance_table.hpp"
 #include "clog/results/group_table.hpp"
 #include "clog/results/groups.hpp"
 #include "clog/sweep/row_check.hpp"
@@ -85,6 +87,21 @@ TEST(Passages, ArePrintedALineEach) {
   // 2 of 4: exact limits of Clopper and Pearson, as R's binom.test(2, 4) prints them.
   EXPECT_NE(text.find("        9          2   4   0.50  0.07 .. 0.93\n"), std::string::npos) << text;
   EXPECT_NE(text.find("       12          2   4   0.50  0.07 .. 0.93\n"), std::string::npos) << text;
+}
+
+TEST(Passages, LengthsOfADeviceAreTheSameWhereTheyAreCompared) {
+  const fit::CloggingLength length = group_runs(five_rows(), 0.95)[0].clogging;
+  const auto expect_same = [&](const fit::CloggingLength& other) {
+    EXPECT_EQ(other.num_runs, length.num_runs);
+    EXPECT_EQ(other.length, length.length);
+    EXPECT_EQ(other.interval.lower, length.interval.lower);
+  };
+  const Side side{"here", five_rows(), {}};
+  const Comparison same = compare({side, side}, 0.95, std::nullopt).all.at(0);
+  expect_same(same.length_here);
+  EXPECT_NEAR(same.ratio.ratio, 1, 1e-12);
+  const DistanceTable table = distances_of(side);
+  expect_same(compare_distances({table, table}, 0.95, std::nullopt).all.at(0).length_there);
 }
 
 TEST(Passages, LengthsOfADeviceCountFromTheFirstObstacle) {

@@ -2,7 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <random>
 #include <set>
+#include <tuple>
+#include <vector>
 
 #include "order_of.hpp"
 
@@ -60,6 +68,44 @@ TEST(TaskOrder, ExpectsAGroupWithoutResultsToBeLong) {
   EXPECT_EQ(tasks.take(6), 4);
   EXPECT_EQ(tasks.take(6), 5);
   EXPECT_EQ(tasks.take(6), 3);
+}
+
+TEST(TaskOrder, HandsOutTheLongestOfAllGroups) {
+  constexpr int num_groups = 13, num_tasks = 400;
+  struct Known {
+    int num_left = 0, num_ended = 0;
+    double time_ended = 0;
+    std::map<std::int64_t, double> starts;  // of those that run
+  };
+  std::vector<Known> known(num_groups);
+  for (int task = 0; task < num_tasks; ++task) ++known[task % num_groups].num_left;
+  TaskOrder tasks = order_of(num_tasks, num_groups);
+  std::mt19937 random(7);
+  double now = 0;
+  for (int i = 0; i < num_tasks; ++i, now += 0.125) {
+    // Most time for each task that ended first; then fewest tasks begun.
+    const auto turn = [&](const Known& group) {
+      double time = group.time_ended;
+      for (const auto& [task, start] : group.starts) time += now - start;
+      const double expected = group.num_ended == 0 ? std::numeric_limits<double>::infinity()
+                                                   : time / static_cast<double>(group.num_ended);
+      return std::make_tuple(group.num_left == 0, -expected, group.num_ended + std::ssize(group.starts));
+    };
+    const auto next = std::ranges::min_element(known, {}, turn);
+    const std::int64_t task = tasks.take(now);
+    ASSERT_EQ(task % num_groups, std::distance(known.begin(), next)) << i;
+    --next->num_left;
+    next->starts[task] = now;
+    while (random() % 5 < 2) {
+      Known& group = known[random() % num_groups];
+      if (group.starts.empty()) continue;
+      const auto [ended, start] = *group.starts.begin();
+      tasks.ended(ended, now);
+      group.time_ended += now - start;
+      ++group.num_ended;
+      group.starts.erase(ended);
+    }
+  }
 }
 
 TEST(TaskOrder, CountsTheTimeOfRunningTasks) {

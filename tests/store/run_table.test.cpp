@@ -82,6 +82,20 @@ TEST_F(RunTableTest, KeepsCirclesOfAUsersOwn) {
     })) << one.name;
 }
 
+TEST_F(RunTableTest, IsTheSameFromRowsThatAreGivenOneByOne) {
+  const std::vector<sweep::RunRow> rows = some_rows(2500);  // some blocks
+  publish(path("whole.h5"), rows, {{"config", "a = 1\n"}});
+  std::size_t next = 0;
+  const auto row = [&](std::size_t i) {
+    EXPECT_EQ(i, next++);
+    return rows[i];
+  };
+  EXPECT_TRUE(publish_sweep(OutputPath::resolve(path("parts.h5")), "", {rows.size(), row},
+                            {{"config", "a = 1\n"}}, {}));
+  EXPECT_EQ(next, rows.size());
+  EXPECT_EQ(text_of("parts.h5"), text_of("whole.h5"));
+}
+
 TEST_F(RunTableTest, KeepsTheProvenance) {
   publish(path(), {}, {{"version", "1.2.3"}, {"config", "a = 1\nb = 2\n"}});
   const SweepFile file = read_sweep(path());

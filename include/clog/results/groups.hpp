@@ -152,8 +152,11 @@ struct Group {
 /// Are there user-supplied circles that droplets enter on a line, or leave at an exit?
 bool is_device(const RunParameters& run);
 
-/// Groups rows by everything but the seed, in the order of their parameters. In a device distances count from
-/// the first obstacle that a droplet met; one that met none does not count.
+/// What a sound run says about the clogging length, from its release on; in a device from the first obstacle
+/// that its droplet met, and nothing if it met none.
+std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
+
+/// Groups rows by everything but the seed, in the order of their parameters. See observation_of().
 /// @param from_distance  distances are measured from here [sigma]: runs that ended earlier are excluded, the
 /// others count with the distance beyond it (left truncation)
 /// @param dwell  a droplet that has stood for longer than this counts as clogged where it did so first [t0].

@@ -2,13 +2,17 @@
 
 #include <chrono>
 #include <cstdint>
-#include <map>
+#include <future>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "clog/results/activity.hpp"
+#include "clog/results/growth.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/store/output_path.hpp"
 #include "clog/store/run_table.hpp"
@@ -17,9 +21,9 @@
 
 namespace clog::results {
 
-/// The state of a sweep's runs, on rank 0 and on disk: the table, which is published as a whole from time to
-/// time, and the journal beside it, which holds later results and the snapshots of running tasks. A stopped
-/// or killed sweep resumes from these files. A run is identified by its parameters and seed
+/// The state of a sweep's runs, on rank 0 and on disk: the table, which another thread publishes as a whole
+/// from time to time, and the journal beside it, which holds later results and the snapshots of running
+/// tasks. A stopped or killed sweep resumes from these files. A run is identified by its parameters and seed
 /// (sweep::identity), not by its task number.
 class SweepState {
  public:
@@ -59,14 +63,16 @@ class SweepState {
   sweep::Start start(std::int64_t task, int rank);
   void report(const sweep::Report& report);
   /// Row of a run that has begun.
-  const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task).row; }
+  const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task)->row; }
   /// The first run if all that have begun have failed, otherwise nullptr.
   const sweep::RunRow* first_if_all_failed() const;
   /// Discards a failure: the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
-  /// Publishes the table if it is time to.
+  /// Begins to publish the table if it is time to, or finds that this has ended: it does not wait for the
+  /// disk.
   void tick();
+  bool is_publishing() const { return publication_.valid(); }
   /// Publishes the table, and removes the journal of a complete sweep. Returns a message if that fails.
   std::string finish();
 
@@ -81,8 +87,9 @@ class SweepState {
   store::Provenance provenance_;
   std::int64_t attempts_;
   store::Journal journal_;
-  std::map<std::int64_t, Entry> runs_;      // by task; those that have begun
-  std::vector<Entry> other_runs_;           // in the file, but not of this plan
+  using Entries = std::vector<std::unique_ptr<Entry>>;
+  Entries runs_;                            // by task; nullptr: it has not begun
+  Entries other_runs_;                      // in the file, but not of this plan
   std::vector<store::CircleFile> circles_;  // that runs are among
   std::int64_t num_wanted_;
   std::int64_t num_faulty_ = 0;
@@ -103,9 +110,15 @@ class SweepState {
   std::string session_time_;
   Clock::time_point begin_ = Clock::now();
   bool is_published_ = false;
-  Clock::time_point last_publication_;
-  Clock::duration publication_time_{0};
+  std::unordered_set<std::int64_t> changed_;  // tasks, since the last publication began
+  Clock::time_point publication_begin_, publication_end_;
+  std::mutex changing_;                                  // rows that a publication may read meanwhile
+  std::future<std::optional<std::string>> publication_;  // the stamp; the last member: it ends first
 
+  Entry* entry(std::int64_t task) const {
+    return task < std::ssize(runs_) ? runs_[static_cast<std::size_t>(task)].get() : nullptr;
+  }
+  std::unique_ptr<Entry>& place_of(std::int64_t task);
   std::vector<const Entry*> entries() const;  // of all runs
   bool is_over(const sweep::RunRow& row) const;
   sweep::RunRow new_row(std::int64_t task) const;
@@ -113,15 +126,23 @@ class SweepState {
   store::SweepFile read_table();
   void adopt(const store::SweepFile& file, const sweep::Settings& settings);
   std::string settings_that_differ(const store::SweepFile& file, const sweep::Settings& settings) const;
-  void refuse_foreign(const std::vector<Entry>& entries, const std::unordered_map<std::string, Entry>& known,
-                      const sweep::Settings& settings) const;
-  void find_tasks(std::unordered_map<std::string, Entry> known);
+  /// Runs by what they are.
+  using Known = std::unordered_map<std::string, std::unique_ptr<Entry>>;
+  bool is_of_its_task(const sweep::RunRow& row) const;
+  Known recognise(std::vector<sweep::RunRow> rows, std::vector<Entry> records,
+                  const sweep::Settings& settings);
+  void refuse_foreign(const sweep::RunRow& record, const FixedValues& fixed) const;
+  void find_tasks(Known known);
   double seconds_so_far() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
   sweep::RunRow published(const sweep::RunRow& row) const;
   void write_down(const Entry& entry);
-  void publish();
   /// With the rows of all runs, including those outside this plan.
-  store::SweepFile table() const;
+  std::optional<std::string> publish_to(const store::OutputPath& place, const std::string& stamp,
+                                        const std::vector<const Entry*>& all,
+                                        const store::Provenance& provenance);
+  void publish();
+  void begin_publication();
+  void end_publication();
   [[noreturn]] void rescue();
   enum class Records { of_unfinished_runs, all };
   /// @param records  that the journal keeps: all, unless the table has every finished run

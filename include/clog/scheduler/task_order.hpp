@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <set>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -26,7 +28,7 @@ class TaskOrder {
   void add(const std::vector<std::int64_t>& tasks);
 
   bool empty() const { return num_left_ == 0; }
-  /// Hands out a task; there must be one. Costs a look at every group.
+  /// Hands out a task; there must be one. Costs a look at every group that runs.
   /// @param now  time [s], from any moment on, the same in all calls
   std::int64_t take(double now);
   void ended(std::int64_t task, double now);
@@ -34,21 +36,33 @@ class TaskOrder {
   void begun_again(std::int64_t task, double now);
 
  private:
+  /// Less: it is handed out earlier. The expected run time with a minus, tasks handed out, number of the
+  /// group.
+  using Turn = std::tuple<double, std::int64_t, std::size_t>;
   struct Group {
-    std::deque<std::int64_t> waiting;
+    std::vector<std::int64_t> tasks;
+    std::size_t next = 0;  // of the tasks
     std::int64_t num_taken = 0;
     std::int64_t num_ended = 0;
     double time_ended = 0;     // run times of the tasks that ended [s]
     double start_running = 0;  // sum of the starts of those that run
+    Turn turn;                 // while none runs it does not depend on the time
+
+    bool is_waiting() const { return next < tasks.size(); }
   };
   GroupOf number_of_group_;
   std::int64_t num_left_ = 0;
   std::vector<Group> groups_;
+  // Groups with tasks that wait: those of which none runs, and the numbers of the others.
+  std::set<Turn> resting_;
+  std::set<std::size_t> running_;
   std::unordered_map<std::int64_t, double> running_since_;  // by task
 
-  void begin(Group& group, std::int64_t task, double now);
-  Group& group_of(std::int64_t task);
-  double expected_time(const Group& group, double now) const;
+  std::size_t number_of(std::int64_t task);
+  void begin(std::size_t number, std::int64_t task, double now);
+  void leave(std::size_t number);
+  void enter(std::size_t number);
+  Turn turn_of(std::size_t number, double now) const;
 };
 
 }  // namespace clog::scheduler

@@ -60,7 +60,10 @@ class Journal {
   /// @throws Error if the disk is full, or the file is no longer the one at the path; so do flush() and
   /// rewrite()
   void add(const sweep::RunRow& row, std::span<const std::byte> snapshot);
+  /// Another thread may call this once begin() has returned, while this one adds records.
   void flush();
+  /// Writes the header of a new file, and removes an incomplete record at the end; so does the first add().
+  void begin();
   std::uint64_t num_bytes() const { return contents_.num_bytes; }
   /// Is it larger than 64 MB, and more than twice as large as after its last rewrite?
   bool is_to_be_rewritten() const;
@@ -78,7 +81,6 @@ class Journal {
   bool has_begun_ = false;
 
   void open_and_lock(const OutputPath* table);
-  void begin();
   void check_place() const;
   [[noreturn]] void refuse_replaced() const;
   void close() { file_ = Descriptor(); }

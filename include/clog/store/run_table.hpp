@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,12 +48,28 @@ struct SweepFile {
   Checked checked = Checked::everything;
 };
 
+/// The rows that a file is to get. Each is asked for once, in this order, so they need not be in one place.
+struct Rows {
+  std::size_t number;
+  std::function<sweep::RunRow(std::size_t i)> row;
+
+  /// These, which must live as long.
+  static Rows of(std::span<const sweep::RunRow> rows) {
+    return {rows.size(), [rows](std::size_t i) { return rows[i]; }};
+  }
+};
+
 /// Writes a sweep's file, in place of the one with this OutputPath::stamp(), if that is still there: at every
 /// moment the path names a complete table, the old or the new, so it can be read at any time. It is on the
 /// disk when this returns. Returns the stamp of the file that it wrote, even if somebody has replaced that
 /// since; nothing if a different file is there, which stays. @throws Error, and the old file stays
-std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp,
-                                         const SweepFile& content);
+std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp, const Rows& rows,
+                                         const Provenance& provenance,
+                                         const std::vector<CircleFile>& circles);
+inline std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp,
+                                                const SweepFile& content) {
+  return publish_sweep(place, stamp, Rows::of(content.rows), content.provenance, content.circles);
+}
 
 /// Files of format versions 9 and 10. Columns that a file does not have get Parameter::before, or are
 /// unknown.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,6 +32,8 @@ const std::vector<Key>& keys();
 std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names);
 /// @throws Error that names the nearest key
 const Key& find_key(std::string_view name);
+/// Its place in keys(). @throws Error likewise
+std::size_t place_of_key(std::string_view name);
 
 /// A parameter's value as a config file has it.
 std::string written(const ParameterValue& value, const Parameter& parameter);

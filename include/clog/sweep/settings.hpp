@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -38,7 +40,7 @@ class Settings {
   /// @throws Error if there is no such key or its list cannot be read
   void set(const std::string& name, const std::string& text);
   /// Did set() give the key its text? Other keys have that of the preset, one that follows, or the default.
-  bool is_given(const std::string& name) const { return given_.contains(name); }
+  bool is_given(const std::string& name) const;
   /// The reference is valid until the key's text changes.
   const std::string& text(const std::string& name) const { return entry(name).text; }
   /// The expanded values of a key; likewise.
@@ -83,9 +85,10 @@ class Settings {
     std::string text;
     std::vector<std::string> values;
   };
-  using Entries = std::map<std::string, Entry>;
+  /// By place in keys(). Branches of a sweep share those that they have in common: there may be many.
+  using Entries = std::vector<std::shared_ptr<const Entry>>;
 
-  Entries given_;
+  Entries given_ = Entries(keys().size());
   mutable Entries all_;  // resolved(), if is_resolved_; references stay valid while the key keeps its text
   mutable bool is_resolved_ = false;
   CircleFiles circle_files_;
@@ -93,6 +96,7 @@ class Settings {
   Shard shard_;
 
   const Entry& entry(const std::string& name) const;
+  const Entries& entries() const;
   Entries resolved() const;
   std::set<std::string> keys_that_follow() const;
 };
