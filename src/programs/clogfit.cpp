@@ -80,9 +80,10 @@ constexpr cli::Command clogfit_commands[] = {
 void set_row_angle(const std::string& text, std::vector<results::Group>& groups) {
   const double angle = sweep::to_number(text);
   if (angle == 0 || !(std::abs(angle) < 90))
-    throw Error(fmt::format("invalid --row-angle={} (rows along or across the flow displace no droplet) use "
-                            "an angle between 0 and 90 degrees, or between -90 and 0",
-                            text));
+    throw Error(
+        fmt::format("invalid --row-angle={} (rows along or across the flow displace no droplet) use "
+                    "an angle between 0 and 90 degrees, or between -90 and 0",
+                    text));
   for (results::Group& group : groups) group.row_angle = angle;
 }
 

@@ -153,8 +153,9 @@ Column filling_column() {
   return {.name = "obstacle_filling",
           .symbol = "",
           .unit = "",
-          .meaning = "saturated, or filled to a given density; lattice (square), triangular, rhombic; file "
-                     "(of a user); channel; wall",
+          .meaning =
+              "saturated, or filled to a given density; lattice (square), triangular, rhombic; file "
+              "(of a user); channel; wall",
           .role = ColumnRole::parameter,
           .kind = ValueKind::word,
           .size = 16,
@@ -172,10 +173,10 @@ Column filling_column() {
                 ObstacleParameters& obstacles = row.parameters.obstacles;
                 const std::string& word = std::get<std::string>(value);
                 const std::optional<LatticeKind> lattice = meant_by<LatticeKind>(word);
-                const std::optional<ObstacleLayout> layout =
-                    word == to_density || word == until_full ? ObstacleLayout::random
-                    : lattice                                ? ObstacleLayout::lattice
-                                                             : meant_by<ObstacleLayout>(word);
+                const std::optional<ObstacleLayout> layout = word == to_density || word == until_full
+                                                                 ? ObstacleLayout::random
+                                                             : lattice ? ObstacleLayout::lattice
+                                                                       : meant_by<ObstacleLayout>(word);
                 if (!layout || word == name(ObstacleLayout::random) || word == name(LatticeKind::square))
                   throw Error("is unknown");
                 obstacles.layout = *layout;

@@ -501,7 +501,7 @@ class Fit(ProgramTest):
 
     def test_own_circles_have_a_share_along_the_rows_that_are_stated(self):
         disks = ["model=sp", "wall-stiffness=10", "max-time=1500"]
-        # Of a rhombic lattice with a shift of a quarter: 2 x 4 columns of 8 posts.
+        # A rhombic lattice with a shift of a quarter has these posts: 2 x 4 columns of 8.
         posts = [(1.5 * i + 0.1, (1.5 * (j + i / 4)) % 12) for i in range(8) for j in range(8)]
         self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x, y in posts))
         self.succeed("clogsweep", *disks, "obstacles=posts.csv", "box=12", "seeds=1..3", "release=anywhere", "--output", "sweep.h5")

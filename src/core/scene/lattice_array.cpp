@@ -34,7 +34,7 @@ void find_period(RunParameters& run) {
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
           "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random");
   const double largest = largest_tilt(obstacles.lattice);
-  require(std::abs(angle) <= largest, "lattice-angle", angle, [&] {
+  require(std::abs(angle) <= largest + 1e-9, "lattice-angle", angle, [&] {
     return fmt::format("a {} lattice turned by {} degrees is the same) use -{}..{}", name(obstacles.lattice),
                        2 * largest, largest, largest);
   });

@@ -96,11 +96,11 @@ void for_each_near(const ObstacleParameters& obstacles, Visit visit) {
 }
 
 /// A lattice as integers, so that the points in its period are found exactly: point (i, j) lies at
-/// x = (xx i + xy j) length/end_x, y = (yx i + yy j) box/end_y.
+/// x = (x_of_i i + x_of_j j) length/end_x, y = (y_of_i i + y_of_j j) box/end_y.
 struct IntegerLattice {
   long long p, q;  ///< tangent of the tilt, in tangent_unit(), is q/p
-  long long xx, xy, yx, yy, end_x, end_y;
-  double cosine, sine;  ///< of the turn
+  long long x_of_i, x_of_j, y_of_i, y_of_j, end_x, end_y;
+  double cosine, sine;        ///< of the turn
   double i_x, i_y, j_x, j_y;  ///< both vectors before the turn, in spacings
 };
 
@@ -122,29 +122,45 @@ IntegerLattice integer_lattice(const ObstacleParameters& obstacles) {
       const long long q = std::llround(2 * along * portable::sin(angle) / sqrt3);
       const long long end = p * p + 3 * q * q;
       const double length = std::sqrt(static_cast<double>(end));
-      return {p, q, 2 * p, p - 3 * q, 2 * q, p + q, end, std::llround(2 * length * across / sqrt3),
-              static_cast<double>(p) / length, sqrt3 * static_cast<double>(q) / length, 1, 0, 0.5, sqrt3 / 2};
+      return {p,
+              q,
+              2 * p,
+              p - 3 * q,
+              2 * q,
+              p + q,
+              end,
+              std::llround(2 * length * across / sqrt3),
+              static_cast<double>(p) / length,
+              sqrt3 * static_cast<double>(q) / length,
+              1,
+              0,
+              0.5,
+              sqrt3 / 2};
     }
     case LatticeKind::rhombic:
       break;
   }
   const long long p = std::llround(along);
   const long long q = std::llround(along * portable::tan(angle));
-  return {p, q, 1, 0, q, p, p, p * std::llround(across), 1, 0, 1, static_cast<double>(q) / static_cast<double>(p),
-          0, 1};
+  return {
+      p, q, 1, 0, q, p, p, p * std::llround(across), 1, 0, 1, static_cast<double>(q) / static_cast<double>(p),
+      0, 1};
 }
 
 /// Calls visit(x, y) for the points in a period, in units of length/end_x and box/end_y.
 template <class Visit>
 void for_each_point(const IntegerLattice& integers, Visit visit) {
-  const auto& [p, q, xx, xy, yx, yy, end_x, end_y, cosine, sine, i_x, i_y, j_x, j_y] = integers;
-  const long long area = xx * yy - xy * yx;
+  const auto& [p, q, x_of_i, x_of_j, y_of_i, y_of_j, end_x, end_y, cosine, sine, i_x, i_y, j_x, j_y] =
+      integers;
+  const long long area = x_of_i * y_of_j - x_of_j * y_of_i;
   // The corners of the period, as multiples of both vectors.
-  const auto [first_i, last_i] = std::minmax({0LL, yy * end_x, -xy * end_y, yy * end_x - xy * end_y});
-  const auto [first_j, last_j] = std::minmax({0LL, -yx * end_x, xx * end_y, xx * end_y - yx * end_x});
+  const auto [first_i, last_i] =
+      std::minmax({0LL, y_of_j * end_x, -x_of_j * end_y, y_of_j * end_x - x_of_j * end_y});
+  const auto [first_j, last_j] =
+      std::minmax({0LL, -y_of_i * end_x, x_of_i * end_y, x_of_i * end_y - y_of_i * end_x});
   for (long long i = first_i / area - 1; i <= last_i / area + 1; ++i)
     for (long long j = first_j / area - 1; j <= last_j / area + 1; ++j) {
-      const long long x = xx * i + xy * j, y = yx * i + yy * j;
+      const long long x = x_of_i * i + x_of_j * j, y = y_of_i * i + y_of_j * j;
       if (x >= 0 && x < end_x && y >= 0 && y < end_y) visit(static_cast<double>(x), static_cast<double>(y));
     }
 }
@@ -154,7 +170,8 @@ void for_each_point(const IntegerLattice& integers, Visit visit) {
 struct CellPlace {
   double along, across;
 };
-CellPlace free_place(const ObstacleParameters& parameters, const IntegerLattice& lattice, std::uint32_t seed) {
+CellPlace free_place(const ObstacleParameters& parameters, const IntegerLattice& lattice,
+                     std::uint32_t seed) {
   std::seed_seq sequence{seed,
                          std::uint32_t{0x1a771ce5}};  // the constant keeps this stream apart from others
   std::mt19937_64 engine(sequence);
@@ -164,8 +181,7 @@ CellPlace free_place(const ObstacleParameters& parameters, const IntegerLattice&
   // Distance of the emptiest place from its three obstacles, of a square 0.707: corners too small to hit do
   // not count.
   const double third = std::min(std::hypot(i_x - j_x, i_y - j_y), std::hypot(i_x + j_x, i_y + j_y));
-  const double widest =
-      std::hypot(i_x, i_y) * std::hypot(j_x, j_y) * third / (2 * (i_x * j_y - i_y * j_x));
+  const double widest = std::hypot(i_x, i_y) * std::hypot(j_x, j_y) * third / (2 * (i_x * j_y - i_y * j_x));
   const bool has_free_places = taken < 0.69 * std::numbers::sqrt2 * widest;
   CellPlace place{};
   const auto is_free = [&] {
@@ -223,7 +239,7 @@ std::vector<CommensurateLattice> neighbouring_lattices(const ObstacleParameters&
   });
   std::vector<CommensurateLattice> both;
   for (const auto& one : {below, above})
-    if (one && std::abs(one->angle) <= largest_tilt(obstacles.lattice)) both.push_back(*one);
+    if (one && std::abs(one->angle) <= largest_tilt(obstacles.lattice) + same_angle) both.push_back(*one);
   return both;
 }
 
@@ -256,8 +272,8 @@ double row_spacing(const ObstacleParameters& obstacles) {
 std::string tilt_text(LatticeKind kind, const CommensurateLattice& lattice) {
   if (lattice.q == 0) return "0 degrees";
   const int divisor = std::gcd(lattice.p, lattice.q);
-  return fmt::format("{:.4g} degrees (tan = {}{}/{})", lattice.angle,
-                     kind == LatticeKind::triangular ? "sqrt(3)*" : "", lattice.q / divisor,
+  return fmt::format("{:.4g} degrees (tan = {}{}{}/{})", lattice.angle, lattice.q < 0 ? "-" : "",
+                     kind == LatticeKind::triangular ? "sqrt(3)*" : "", std::abs(lattice.q) / divisor,
                      lattice.p / divisor);
 }
 

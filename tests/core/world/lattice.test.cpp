@@ -34,7 +34,7 @@ RunParameters lattice_disk(double angle, std::uint32_t seed = 1, LatticeKind kin
   return resolve(run);
 }
 
-/// Of pitch 2, with periods of at most `box`.
+/// Its pitch is 2, its periods are at most `box`.
 ObstacleParameters small_lattice(LatticeKind kind, double angle, double box) {
   RunParameters run;
   run.obstacles.layout = ObstacleLayout::lattice;
@@ -114,14 +114,14 @@ TEST(Lattice, HasTheCellOfCrystallography) {
 
 TEST(Lattice, HasItsNearestNeighboursAtThePitchAcrossItsPeriod) {
   for (const double angle : {-29.0, -10.0, 0.0, 17.3, 30.0}) {
-    const ObstacleParameters triangular = small_lattice(LatticeKind::triangular, angle, 90);
+    const ObstacleParameters triangular = small_lattice(LatticeKind::triangular, angle, 130);
     EXPECT_NEAR(lattice_density(triangular), 2 / (std::sqrt(3) * 4), 1e-12);
     EXPECT_NEAR(row_spacing(triangular), std::sqrt(3), 1e-12);
     for (const auto& distances : distances_in(lattice_obstacles(triangular, 1))) {
       for (int i = 1; i <= 6; ++i) EXPECT_NEAR(distances.at(i), 2, 1e-9) << angle;
       EXPECT_TRUE(distances.size() == 7 || distances[7] > 2.9) << angle;
     }
-    const ObstacleParameters rhombic = small_lattice(LatticeKind::rhombic, angle, 90);
+    const ObstacleParameters rhombic = small_lattice(LatticeKind::rhombic, angle, 130);
     const double tilt = rhombic.lattice_angle * degree;
     EXPECT_NEAR(lattice_density(rhombic), 0.25, 1e-12);
     EXPECT_NEAR(row_spacing(rhombic), 2 * std::cos(tilt), 1e-12);
@@ -233,14 +233,15 @@ TEST(Lattice, LeadsADiskAlongItsRows) {
 TEST(Lattice, LeadsADiskAlongTheRowsOfEveryKind) {
   for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
     for (const double angle : {-12.0, 8.0})
-      EXPECT_NEAR(slope(lattice_result(DropletRun(lattice_disk(angle, 1, kind)))), std::tan(angle * degree), 0.02)
+      EXPECT_NEAR(slope(lattice_result(DropletRun(lattice_disk(angle, 1, kind)))), std::tan(angle * degree),
+                  0.02)
           << name(kind) << ' ' << angle;
 }
 
 TEST(Lattice, ReleasesDropletsWhereTheyTouchNothing) {
   for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
     for (std::uint32_t seed = 1; seed <= 100; ++seed) {
-      const ObstacleParameters used = small_lattice(kind, -20, 60);
+      const ObstacleParameters used = small_lattice(kind, -20, 80);
       const ObstacleArray array = lattice_obstacles(used, seed);
       std::vector<Obstacle> near;
       array.gather({used.period().along() / 2, used.box / 2, 0, 0, 0, 0, 3}, near);

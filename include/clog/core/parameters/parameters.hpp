@@ -197,7 +197,7 @@ struct ObstacleParameters {
   double lattice_angle = 0;            ///< of the lattice's rows from +x to +y [degrees]
   std::optional<OwnCircles> own = {};  ///< of layout file; gap and density are then theirs
   Release release = Release::centre;
-  double length = 0;                   ///< period along the flow; 0: boxes times box [sigma]
+  double length = 0;  ///< period along the flow; 0: boxes times box [sigma]
   // For user-supplied circles, in their coordinates:
   SideWalls side_walls = SideWalls::off;  ///< at y = 0 and y = box
   double entrance = 0;                    ///< x of the line on which droplets are released [sigma]
