@@ -56,7 +56,7 @@ def body() -> int:
                             key=lambda name: ("key" not in columns[name], "automatic_in" in columns[name]))
         table = critical_angle.table_of(stored.read_table(arguments.sweep, arguments.programs), parameters)
     if arguments.format == "csv":
-        print(table.to_csv(index=False), end="")
+        print(table.to_csv(index=False, float_format="%.6g"), end="")
         return 0
     figure = style.figure_of(critical_angles.draw_on, table, columns)
     return command_line.save(style.Picture(figure, source), arguments)

@@ -23,10 +23,10 @@ def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> 
     """@param table  brackets `lower` and `upper` [degrees], and the parameters that vary; @param columns  of clogsweep --schema"""
     abscissa = abscissa_of(table)
     others = [name for name in table if name not in (abscissa, *FOUND)]
-    curves = list(table.groupby(others)) if others else [((), table)]
-    for index, (values, points) in enumerate(curves):
+    curves = [points for _, points in table.groupby(others)] if others else [table]
+    for index, points in enumerate(curves):
         points = points.sort_values(abscissa)
-        label = ", ".join(said(columns[name], value) for name, value in zip(others, values))
+        label = ", ".join(said(columns[name], points[name].iloc[0]) for name in others)
         look = style.curve_style(index)
         places = points[abscissa] * style.side_by_side(index, len(curves), table[abscissa].tolist())
         middle = (points["lower"] + points["upper"]) / 2

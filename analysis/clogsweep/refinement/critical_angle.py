@@ -55,9 +55,9 @@ def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFr
         if name not in FOLLOWING and sets[name].nunique(dropna=False).max() > 1:
             varying.append(name)
     lines = []
-    for values, runs in lattices.groupby(varying, dropna=False) if varying else [((), lattices)]:
+    for _, runs in lattices.groupby(varying, dropna=False) if varying else [((), lattices)]:
         lower, upper = bracket(tried_angles(runs))
-        lines.append([*values, lower, upper, len(runs)])
+        lines.append([*(runs[name].iloc[0] for name in varying), lower, upper, len(runs)])
     return pandas.DataFrame(lines, columns=[*varying, "lower", "upper", "runs"])
 
 
