@@ -18,6 +18,7 @@ COMMANDS = {
     "curve": "a smooth curve through the clogging lengths, its peak and crossings, as clogfit curve",
     "poster": "one page of a sweep to be printed",
     "clogging-length": "the clogging length against what a sweep varies",
+    "critical-angle": "the angle up to which droplets follow the rows of lattices",
     "dwell": "the same over the time after which a droplet that stands counts as clogged",
     "compare": "ratios of the clogging lengths of two sweeps",
     "clogs": "the clogs of a sweep on one sheet",

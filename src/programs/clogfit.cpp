@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -19,6 +20,7 @@
 #include "clog/results/group_table.hpp"
 #include "clog/results/merger.hpp"
 #include "clog/results/stored_sweep.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "clogfit_compare.hpp"
 #include "clogfit_lengths.hpp"
 #include "clogfit_units.hpp"
@@ -50,7 +52,8 @@ confidence interval and the mean speed with its standard error.
 Runs that did not clog count as censored at the distance they reached. Where no run clogged, lambda is a lower
 bound. Letters in the last column name what may spoil a length. The mean speed is in units of the terminal speed, its
 error comes from the scatter between runs. For lattices, lateral/r is the lateral displacement per distance travelled, the
-tangent of the migration angle, positive towards +y. csv and json have more: intervals by profile likelihood, the
+tangent of the migration angle, positive towards +y; along rows is its ratio to the tangent of the rows: 1 for droplets
+that follow them (bump mode), 0 for those that go straight on (zigzag). --row-angle gives these columns to other arrays. csv and json have more: intervals by profile likelihood, the
 published least squares (biased), Weibull's shape with its p-value, capillary numbers; json also P(r).
 
 Runs of the same seed met the same obstacles in every row with the same array, so the errors of such rows are
@@ -74,6 +77,16 @@ constexpr cli::Command clogfit_commands[] = {
     {"calibrate", in_python}, {"compare", clogfit_compare}, {"curve", in_python},  {"deviation", in_python},
     {"drag", in_python},      {"lengths", clogfit_lengths}, {"report", in_python}, {"units", clogfit_units}};
 
+void set_row_angle(const std::string& text, std::vector<results::Group>& groups) {
+  const double angle = sweep::to_number(text);
+  if (angle == 0 || !(std::abs(angle) < 90))
+    throw Error(
+        fmt::format("invalid --row-angle={} (rows along or across the flow displace no droplet) use "
+                    "an angle between 0 and 90 degrees, or between -90 and 0",
+                    text));
+  for (results::Group& group : groups) group.row_angle = angle;
+}
+
 int clogfit(int argc, const char* const* argv) {
   cli::CommandLine line("clogfit", clogfit_usage);
   line.words("file", "sweep files")
@@ -91,6 +104,7 @@ int clogfit(int argc, const char* const* argv) {
       .option(
           "lines",
           "x1,x2,...: lines across a device that droplets pass, in place of the rows of its posts [sigma]")
+      .option("row-angle", "tilt of the rows of user-supplied circles from the flow towards +y [degrees]")
       .option("dwell", "droplets that have not moved for so long count as clogged [t0]");
   line.add_commands(cli::names_of(clogfit_commands));
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
@@ -114,6 +128,7 @@ int clogfit(int argc, const char* const* argv) {
   const std::vector<double> lines = line.get_positives("lines");
   std::vector<results::Group> groups =
       results::group_runs(sweep.rows, confidence, from_distance, dwell, pooled, lines);
+  if (line.has("row-angle")) set_row_angle(line.get("row-angle"), groups);
   set_scales(line, groups);
   const SharedParameters shared =
       line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;

@@ -7,6 +7,7 @@
 #include "clog/console/streams.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/world/lattice.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"
@@ -26,7 +27,9 @@ int follow_run(const cli::CommandLine& line, const RunParameters& parameters, co
   if (line.has("write-obstacles")) store::refuse_unwritable(line.get("write-obstacles"));
 
   single_run::RecordedRun watched(DropletRun(parameters), often);
-  if (line.has("dry-run")) return single_run::print_preview(config, watched.measure_cost());
+  const bool is_lattice = parameters.obstacles.layout == ObstacleLayout::lattice;
+  const std::string lattice = is_lattice ? "# " + lattice_text(parameters.obstacles) + '\n' : "";
+  if (line.has("dry-run")) return single_run::print_preview(config + lattice, watched.measure_cost());
   begin(watched.run());
   console::catch_stop_signals();
   watched.follow();

@@ -5,6 +5,7 @@
 
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/units.hpp"
+#include "clog/core/world/lattice.hpp"
 #include "clog/results/groups.hpp"
 
 namespace clog::results {
@@ -35,6 +36,9 @@ void append_causes(const Group& group, std::vector<Field>& fields) {
 
 constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
     {"dwell", "t0"},
+    {"row_angle", "degrees"},
+    {"pitch", "sigma"},
+    {"row_spacing", "sigma"},
     {"total_distance", "sigma"},
     {"contacts_per_length", "1/sigma"},
     {"relative_speed", "v_t"},
@@ -103,6 +107,7 @@ std::vector<Field> result_fields(const Group& group) {
     return fields;
   }
   const RunParameters& run = group.first_row.parameters;
+  const bool is_lattice = run.obstacles.layout == ObstacleLayout::lattice;
   const double line_tension = run.model == Model::dp ? run.dp.line_tension : sweep::RunRow::not_known;
   fields = {{"runs", value_of(group.clogging.num_runs)},
             {"clogs", value_of(group.clogging.num_clogs)},
@@ -141,6 +146,11 @@ std::vector<Field> result_fields(const Group& group) {
             {"capillary_number", value_of(group.relative_speed.mean * units::droplet_mass / line_tension)},
             {"lateral_slope", value_of(group.migration.slope)},
             {"lateral_slope_error", value_of(group.migration.standard_error)},
+            {"row_angle", value_of(group.row_angle)},
+            {"row_share", value_of(share_along_rows(group).slope)},
+            {"row_share_error", value_of(share_along_rows(group).standard_error)},
+            {"pitch", is_lattice ? value_of(run.obstacles.spacing()) : Value()},
+            {"row_spacing", is_lattice ? value_of(row_spacing(run.obstacles)) : Value()},
             {"doubts", doubts}};
   append_causes(group, fields);
   return fields;

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -17,6 +18,7 @@
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/split.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/row_check.hpp"
@@ -350,6 +352,13 @@ std::optional<fit::Observation> observation_of(const sweep::RunRow& run) {
 
 bool is_dwell_possible(const Group& group) { return group.dwell < group.first_row.parameters.max_time; }
 
+fit::Migration share_along_rows(const Group& group) {
+  const double slope = portable::tan(group.row_angle * std::numbers::pi / 180);
+  if (slope == 0) return {.slope = sweep::RunRow::not_known, .standard_error = sweep::RunRow::not_known};
+  return {.slope = group.migration.slope / slope,
+          .standard_error = group.migration.standard_error / std::abs(slope)};
+}
+
 std::vector<const sweep::Column*> pooled_columns(const std::string& keys) {
   std::vector<const sweep::Column*> columns;
   for (const std::string& key : split_at_commas(keys)) {
@@ -384,6 +393,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(tally.travels));
     group.relative_speed_all = mean_speed_of_all(tally.travels_until_arrest, run.drag.terminal_speed);
     group.migration = fit::fit_migration(tally.displacements);
+    if (run.obstacles.layout == ObstacleLayout::lattice) group.row_angle = run.obstacles.lattice_angle;
     group.doubts = doubts_about(group);
     groups.push_back(std::move(group));
   }

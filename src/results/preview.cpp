@@ -16,6 +16,7 @@
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/model/model.hpp"
+#include "clog/core/world/lattice.hpp"
 #include "clog/results/cost.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/columns.hpp"
@@ -278,6 +279,19 @@ void print_rounds(const SeedRule& rule, std::int64_t first_seeds, const SweepCos
       expected(rule.most_seeds()), hours(cost.bound, rule.most_seeds()));
 }
 
+void print_lattices(const sweep::Plan& plan) {
+  constexpr std::size_t most_lines = 10;
+  std::vector<std::string> lines;
+  for (std::int64_t group = 0; group < plan.num_groups() && lines.size() <= most_lines; ++group) {
+    const ObstacleParameters obstacles = plan.group(group).obstacles;
+    if (obstacles.layout != ObstacleLayout::lattice) continue;
+    if (std::string line = lattice_text(obstacles); std::ranges::find(lines, line) == lines.end())
+      lines.push_back(std::move(line));
+  }
+  if (lines.size() > most_lines) lines.back() = "more lattices: not listed";
+  for (const std::string& line : lines) std::cout << "# " << line << '\n';
+}
+
 std::string seeds_in_words(const sweep::Plan& plan) {
   std::int64_t fewest = plan.num_seeds(0), most = 0;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
@@ -307,6 +321,7 @@ void print_tasks(const sweep::Plan& plan) {
   if (console::stop_signalled()) return;
   fmt::print(std::cout, "# {}: {}, {} each\n", sweep::counted(plan.size(), "task"),
              sweep::counted(plan.num_groups(), "parameter set"), seeds_in_words(plan));
+  print_lattices(plan);
 }
 
 void print_limits(const sweep::Plan& plan) {

@@ -22,9 +22,7 @@ const fit::CloggingLength* break_ups(const Group& group) {
   return nullptr;
 }
 
-bool is_lattice(const Group& group) {
-  return group.first_row.parameters.obstacles.layout == ObstacleLayout::lattice;
-}
+bool has_rows(const Group& group) { return !std::isnan(group.row_angle); }
 
 }  // namespace
 
@@ -103,6 +101,10 @@ console::RoundedError speed_of_all(const Group& group) {
 console::RoundedError slope_of(const Group& group) {
   return console::with_error(group.migration.slope, group.migration.standard_error);
 }
+console::RoundedError share_of(const Group& group) {
+  const fit::Migration share = share_along_rows(group);
+  return console::with_error(share.slope, share.standard_error);
+}
 
 /// Are some runs too short to have a speed?
 bool lacks_speeds(const Group& group) {
@@ -141,7 +143,10 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
     append("all runs", speed_of_all, columns);
   }
   // A droplet in a random array goes straight on average.
-  if (std::ranges::any_of(groups, is_lattice)) append("lateral/r", slope_of, columns);
+  if (std::ranges::any_of(groups, has_rows)) {
+    append("lateral/r", slope_of, columns);
+    append("along rows", share_of, columns);
+  }
   return columns;
 }
 

@@ -153,7 +153,9 @@ Column filling_column() {
   return {.name = "obstacle_filling",
           .symbol = "",
           .unit = "",
-          .meaning = "saturated, or filled to a given density; lattice; file (of a user); channel; wall",
+          .meaning =
+              "saturated, or filled to a given density; lattice (square), triangular, rhombic; file "
+              "(of a user); channel; wall",
           .role = ColumnRole::parameter,
           .kind = ValueKind::word,
           .size = 16,
@@ -161,6 +163,8 @@ Column filling_column() {
           .shapes_array = true,
           .get = [=](const RunRow& row) -> Value {
             const ObstacleParameters& obstacles = row.parameters.obstacles;
+            if (obstacles.layout == ObstacleLayout::lattice && obstacles.lattice != LatticeKind::square)
+              return name(obstacles.lattice);
             if (obstacles.layout != ObstacleLayout::random) return name(obstacles.layout);
             return obstacles.density.is_saturated() ? until_full : to_density;
           },
@@ -168,11 +172,15 @@ Column filling_column() {
               [=](RunRow& row, const Value& value) {
                 ObstacleParameters& obstacles = row.parameters.obstacles;
                 const std::string& word = std::get<std::string>(value);
+                const std::optional<LatticeKind> lattice = meant_by<LatticeKind>(word);
                 const std::optional<ObstacleLayout> layout = word == to_density || word == until_full
                                                                  ? ObstacleLayout::random
-                                                                 : meant_by<ObstacleLayout>(word);
-                if (!layout || word == name(ObstacleLayout::random)) throw Error("is unknown");
+                                                             : lattice ? ObstacleLayout::lattice
+                                                                       : meant_by<ObstacleLayout>(word);
+                if (!layout || word == name(ObstacleLayout::random) || word == name(LatticeKind::square))
+                  throw Error("is unknown");
                 obstacles.layout = *layout;
+                obstacles.lattice = lattice.value_or(LatticeKind::square);
                 obstacles.density = ObstacleParameters().density;
                 if (word == until_full) obstacles.density = {};
                 if (word == to_density) obstacles.density = RunRow::not_known;  // its column has it

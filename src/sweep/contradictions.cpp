@@ -40,6 +40,9 @@ void refuse_contradictions(const Settings& settings) {
   refuse_interface_keys(settings);
   if (const std::vector<std::string> missing = settings.missing_files(); !missing.empty())
     throw Error("invalid obstacles=" + missing.front() + " (the file has not been read)");
+  if (is_changed(settings, "pitch") && is_changed(settings, "obstacle-gap"))
+    throw Error(fmt::format("invalid pitch={} (obstacle-gap={} is given as well) leave one of them out",
+                            settings.text("pitch"), settings.text("obstacle-gap")));
   const std::string& layout = settings.text("obstacle-layout");
   if (layout != "file" && settings.text(circles_key) != "none")
     throw Error("obstacles and obstacle-layout=" + layout + " contradict each other; leave one of them out");

@@ -125,8 +125,9 @@ class Plan::Builder {
     for (std::int64_t place = 0; place < num_places; ++place) {
       const RunParameters run = plan_.unresolved(product, place, last_seeds_->front());
       const ObstacleParameters& obstacles = run.obstacles;
-      if (!is_each_possible(run) || obstacles.layout != ObstacleLayout::lattice || fitting_lattice(obstacles))
-        continue;
+      const bool is_possible = is_each_possible(run) && obstacles.layout == ObstacleLayout::lattice &&
+                               obstacles.box <= 1e4 * obstacles.spacing();  // else refused, see check_spacing
+      if (!is_possible || fitting_lattice(obstacles)) continue;
       const std::string angle = shortest(obstacles.lattice_angle);
       if (std::ranges::find(angles, angle) != angles.end()) continue;
       angles.push_back(angle);

@@ -54,6 +54,7 @@ class Pages(ProgramTest):
 
     def test_a_lattice(self):
         self.follow("docs/how-to/lattice.md")
+        self.follow("docs/how-to/lateral-displacement.md")
 
     def test_two_sweeps_compared(self):
         self.follow("docs/how-to/compare-sweeps.md")

@@ -493,7 +493,30 @@ class Fit(ProgramTest):
             # A disk too large for the lattice follows its rows.
             self.assertAlmostEqual(slope, math.tan(math.radians(group["lattice_angle"])), delta=0.03)
             self.assertLess(group["lateral_slope_error"], 0.03)
-        self.assertIn("lateral/r", self.succeed("clogfit", "sweep.h5").stdout)
+            tangent = math.tan(math.radians(group["lattice_angle"]))
+            self.assertAlmostEqual(group["row_share"], slope / tangent, places=12)
+            self.assertAlmostEqual(group["row_share_error"], group["lateral_slope_error"] / abs(tangent), places=12)
+            self.assertEqual((group["pitch"], group["row_spacing"], group["row_angle"]), (1.5, 1.5, group["lattice_angle"]))
+        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, "lateral/r +[+]- +along rows +[+]-")
+
+    def test_own_circles_have_a_share_along_the_rows_that_are_stated(self):
+        disks = ["model=sp", "wall-stiffness=10", "max-time=1500"]
+        # A rhombic lattice with a shift of a quarter has these posts: 2 x 4 columns of 8.
+        posts = [(1.5 * i + 0.1, (1.5 * (j + i / 4)) % 12) for i in range(8) for j in range(8)]
+        self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x, y in posts))
+        self.succeed("clogsweep", *disks, "obstacles=posts.csv", "box=12", "seeds=1..3", "release=anywhere", "--output", "sweep.h5")
+        self.succeed("clogsweep", *disks, "obstacle-layout=lattice", "lattice=rhombic", "pitch=1.5", f"lattice-angle={math.degrees(math.atan(0.25))}",
+                     "box=12", "seeds=1..3", "--output", "lattice.h5")
+        self.assertEqual(self.fit()["groups"][0]["row_share"], None)
+        share = self.fit("--row-angle", str(math.degrees(math.atan(0.25))))["groups"][0]["row_share"]
+        self.assertAlmostEqual(share, 1, delta=0.1)
+        lattice = json.loads(self.succeed("clogfit", "lattice.h5", "--format", "json").stdout)["groups"][0]
+        self.assertAlmostEqual(lattice["row_share"], share, delta=0.1)
+        self.assertEqual((lattice["obstacle_filling"], lattice["length"], lattice["box"]), ("rhombic", 12, 12))
+        self.assertAlmostEqual(lattice["row_spacing"], 1.5 * 4 / math.sqrt(17))
+        self.assertIn("along rows", self.succeed("clogfit", "sweep.h5", "--row-angle=-10").stdout)
+        for angle in ("0", "90", "nan", "steep"):
+            self.assertEqual(self.run_program("clogfit", "sweep.h5", "--row-angle", angle).returncode, 2, angle)
 
     def test_random_arrays_have_no_column_for_migration(self):
         self.sweep("seeds=1..3", "max-time=1")

@@ -135,6 +135,21 @@ class Run(ProgramTest):
         for column in ("box", "lattice_angle", "distance", "lateral_displacement"):
             self.assertEqual(row[column], again[column], column)
 
+    def test_the_posts_of_a_triangular_lattice_are_its_pitch_apart(self):
+        keys = ["model=sp", "wall-stiffness=10", "obstacle-layout=lattice", "lattice=triangular", "pitch=2", "lattice-angle=19.1", "box=10", "max-time=1"]
+        told = self.succeed("clogrun", "array", *keys, "--output", "a.h5", "--dry-run").stdout
+        self.assertIn("# triangular lattice: pitch 2 sigma, rows 1.732 sigma apart, at 19.11 degrees (tan = sqrt(3)*1/5); period 5.292 sigma along "
+                      "the flow, 9.165 across, 14 posts\n", told)
+        self.succeed("clogrun", "array", *keys, "--write-obstacles", "posts.csv", "--output", "a.h5")
+        row = pandas.read_hdf(self.folder / "a.h5", "runs").iloc[0]
+        self.assertEqual(row.obstacle_filling, "triangular")
+        posts = pandas.read_csv(self.folder / "posts.csv", comment="#")
+        self.assertEqual(len(posts), 14)
+        for post in posts.itertuples():
+            x = (posts.x - post.x + row.length / 2) % row.length - row.length / 2
+            y = (posts.y - post.y + row.box / 2) % row.box - row.box / 2
+            self.assertEqual(((np.hypot(x, y) - 2).abs() < 1e-9).sum(), 6)
+
     def test_a_mixture_of_obstacles_is_written(self):
         self.succeed("clogrun", "array", *QUICK, "obstacle-diameter-spread=0.5", "--write-obstacles", "array.csv", "--output", "a.h5")
         diameters = pandas.read_csv(self.folder / "array.csv").diameter

@@ -94,7 +94,7 @@ class Module(Analysis):
         self.assertEqual(bars.lines[0].get_xdata().tolist(), fit.groups.lattice_angle.tolist())
 
     def test_options_of_a_fit_reach_clogfit(self):
-        options = {"dwell": 20.0, "from_distance": 0.5, "confidence": 0.5}
+        options = {"dwell": 20.0, "from_distance": 0.5, "confidence": 0.5, "row_angle": 10.0}
         words = [word for name, value in options.items() for word in (f"--{name.replace('_', '-')}", value)]
         self.assertEqual(self.sweep().fit(**options).told, json.loads(self.succeed("clogfit", "s.h5", "--format", "json", *words).stdout))
 

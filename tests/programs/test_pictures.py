@@ -26,7 +26,7 @@ ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", 
 
 
 class Calls(Analysis):
-    COMMANDS = ["clogging-length", "clogs", "droplet", "dwell", "export-vtk", "poster", "report"]
+    COMMANDS = ["clogging-length", "clogs", "critical-angle", "droplet", "dwell", "export-vtk", "poster", "report"]
 
     def needs(self, command):
         return [] if command in ("droplet", "export-vtk") else ["--programs", BIN]
@@ -45,6 +45,25 @@ class Calls(Analysis):
         for command in self.COMMANDS:
             with self.subTest(command=command):
                 self.refuse_analysis(command, "nope.h5", "--output", "x", *self.needs(command), words=["cannot read nope.h5 (no such file); check the name"])
+
+    def test_critical_angles_are_those_of_rigid_disks_and_drawn_from_the_table_too(self):
+        # A rigid disk follows the rows up to sin t = (sigma + sigma_ob)/(2 a) = 1/3 (Frechette and Drazer 2009).
+        self.succeed("clogsweep", "obstacle-layout=lattice", "lattice=square,triangular", "pitch=3", "obstacle-diameter=1", "line-tension=1,3",
+                     "terminal-speed=0.1", "vertices=64", "box=100", "max-time=1000", "seeds=1", "lattice-angle=15,18.5,20.7,25", "--output", "s.h5")
+        printed = self.draw("critical-angle", "s.h5", "--format", "csv", "--programs", BIN).stdout
+        lines = [line.split(",") for line in printed.splitlines()]
+        self.assertEqual(lines[0], ["line_tension", "obstacle_filling", "lower", "upper", "runs"])
+        self.assertEqual([line[:2] for line in lines[1:]], [[tension, kind] for tension in ("1.0", "3.0") for kind in ("lattice", "triangular")])
+        for line in lines[1:]:
+            self.assertTrue(18 < float(line[2]) < 19.47 < float(line[3]) < 21.1, line)
+        self.write("angles.csv", "# by hand\n" + printed)
+        for source, output in (("s.h5", "one"), ("angles.csv", "two")):
+            self.draw("critical-angle", source, "--output", output, "--programs", BIN)
+            self.assert_picture(output)
+        self.assertEqual(*(Image.open(self.folder / f"{name}.png").tobytes() for name in ("one", "two")))
+        for text in ("", "a,b\n1,2\n", "lower,upper,runs\nx,y,z\n", "lower,upper,runs,colour\n1,2,3,4\n", "\0\xff", "lower,upper,runs\n1,2,3\n"):
+            self.write("rubbish.csv", text)
+            self.refuse_analysis("critical-angle", "rubbish.csv", "--programs", BIN, words=["cannot"])
 
     def test_an_output_may_be_left_out_or_have_its_ending(self):
         self.copy_sweep("s.h5", *FEW)

@@ -20,7 +20,7 @@ from support import BIN, LONGEST, MPIRUN, QUICK, ROOT, TIMING, ProgramTest, chil
 sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.commands import refine  # noqa: E402
 from clogsweep.curves.model import Curve  # noqa: E402
-from clogsweep.refinement import choice, curve_search, driver, goals  # noqa: E402
+from clogsweep.refinement import choice, critical_angle, curve_search, driver, goals  # noqa: E402
 from clogsweep.refinement.curve_search import CurveSearch, Options, combinations  # noqa: E402
 from clogsweep.refinement.goals import Goal  # noqa: E402
 from clogsweep.refinement.membership import Membership, tasks_of  # noqa: E402
@@ -49,6 +49,8 @@ def settings_for(name):
     elastic = ["preset=elastic"] if name in ("perimeter-stiffness-ratio", "perimeter-stiffness", "friction", "yield-traction") else []
     if name == "advancing-angle":
         words.append("wall-tension=0.5")  # Young's angle is 120 degrees then
+    if name == "pitch":
+        return [*words, "obstacle-layout=lattice"]
     return [*words, *elastic, *(["obstacle-gap=0.6"] if name != "obstacle-gap" else [])]
 
 
@@ -58,8 +60,8 @@ def bounds_of(name):
         return {"exit": [45.0, 55.0], "entrance": [2.0, 8.0], "entrance-from": [2.0, 8.0], "entrance-to": [52.0, 58.0]}[name]
     if key["unit"] == "degrees":
         return [150.0, 170.0] if name == "advancing-angle" else [100.0, 120.0]
-    if name == "contact-range":
-        return [0.02, 0.08]
+    if name in ("contact-range", "pitch"):
+        return [0.02, 0.08] if name == "contact-range" else [0.8, 1.2]
     default = float(key["default"]) if re.fullmatch(r"[\d.e-]+", key["default"]) else 0.0
     return [0.5 * (default or 0.2), 0.9 * (default or 0.2)]
 
@@ -387,6 +389,14 @@ class CriticalAngle(RefineTest):
         finer = self.angle("10.01,40", "--until=critical-angle=0.5")
         self.assertIn("critical-angle=0.5 is reached", finer.stderr)
         self.assertGreater(len(table(self.folder / "s.h5")), len(rows))
+
+    def test_lattices_of_every_kind_are_those_that_clogsweep_takes(self):
+        for kind in ("square", "triangular", "rhombic"):
+            for wanted in (8, 13.3, 21):
+                told = self.succeed("clogsweep", *LATTICE[3:], "obstacle-layout=lattice", f"lattice={kind}", "pitch=3", "obstacle-diameter=1",
+                                    f"lattice-angle={wanted},{wanted + 5}", "max-time=1", "--dry-run").stdout
+                angle = critical_angle.nearest_lattice(3, wanted, 100, kind)
+                self.assertIn(f"at {angle:.4g} degrees (tan", told)
 
     def test_what_does_not_bracket_it_is_said(self):
         for angles, max_time, words in [("32.5,35,40", 1000, "at 32.47 degrees droplets leave the rows; try smaller angles"),

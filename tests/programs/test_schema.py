@@ -14,6 +14,7 @@ from clogsweep.labels.groups import Groups
 # Surroundings for keys that mean something in certain runs only, and for words, which take no list.
 SURROUNDINGS = {
     "lattice-angle": ["obstacle-layout=lattice", "box=60", "obstacle-gap=0.5"],
+    "pitch": ["obstacle-layout=lattice", "box=60"],
     "perimeter-stiffness-ratio": ["preset=elastic"],
     "box": ["obstacle-density=saturated", "vertices=64", "max-time=60"],
     "vertices": ["obstacle-density=saturated", "box=20", "max-time=60"],
@@ -29,7 +30,7 @@ SURROUNDINGS = {
 # These belong to channels, which have passages and no clogging lengths: test_scenes.
 OF_CHANNELS = {"orifice", "wedge-angle", "tip-radius", "start", "end"}
 VALUES = {"line-tension": "1,3", "wall-stiffness": "0.05,0.08", "obstacle-gap": "0.2,0.3", "obstacle-diameter": "0.3,0.4",
-          "obstacle-diameter-spread": "0,0.2", "obstacle-density": "1.5,2", "lattice-angle": "0,10", "seeds": "1..3", "box": "20,25",
+          "obstacle-diameter-spread": "0,0.2", "obstacle-density": "1.5,2", "lattice-angle": "0,10", "pitch": "0.8,0.9", "seeds": "1..3", "box": "20,25",
           "boxes": "1,2", "max-time": "50,60", "terminal-speed": "0.02,0.03", "near-wall-drag": "0,0.05",
           "near-wall-exponent": "1,1.5", "near-wall-cutoff": "0.006,0.01", "relative-drag": "0.5,1", "vertices": "64,96", "inertia": "1,4",
           "time-step": "1e-3,2e-3", "area-stiffness": "5000,6000", "perimeter-stiffness": "0.05,0.1",

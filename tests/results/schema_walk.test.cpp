@@ -54,7 +54,7 @@ sweep::Settings settings_for(const Parameter& parameter) {
     if (std::string(parameter.key).starts_with("entrance")) settings.set("release", "entrance");
     return settings;
   }
-  settings.set("obstacle-gap", "0.6");
+  if (parameter.key != std::string("pitch")) settings.set("obstacle-gap", "0.6");
   if (scope == "lattice") settings.set("obstacle-layout", "lattice");
   const std::string key = parameter.key;
   if (key == "perimeter-stiffness-ratio" || key == "friction" || key == "yield-traction")
@@ -80,6 +80,7 @@ std::string other_value(const Parameter& parameter, const sweep::Settings& setti
     });
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer + 1);
   if (parameter.key == std::string("advancing-angle")) return "150";
+  if (parameter.key == std::string("pitch")) return "0.8";
   if (parameter.key == std::string("exit")) return "40";  // downstream of the release at the centre
   if (parameter.key == std::string("length")) return "50";
   if (parameter.key == std::string("entrance-to")) return "10";

@@ -61,6 +61,15 @@ TEST(Plan, NamesAllAnglesThatFitNoBoxAtOnce) {
   EXPECT_NE(fault("80,81").find("45"), std::string::npos) << "is not looked for";
 }
 
+TEST(Plan, RefusesAPitchThatLeavesNoGapOrComesWithAnotherOne) {
+  const auto lattice = [](const char* pitch, const char* gap) {
+    return settings_of({{"obstacle-layout", "lattice"}, {"pitch", pitch}, {"obstacle-gap", gap}});
+  };
+  EXPECT_THROW(Plan(lattice("1e-9,0.2", "0.2")), Error);
+  EXPECT_THROW(Plan(lattice("1.5", "0.3")), Error);
+  EXPECT_EQ(Plan(lattice("1.5", "0.2")).task(0).obstacles.gap, 1.2);
+}
+
 TEST(Plan, ChecksEverySetBeforeAnythingRuns) {
   EXPECT_THROW(Plan(settings_of({{"obstacle-gap", "0.2,0.001"}})), Error);
   EXPECT_THROW(Plan(settings_of({{"time-step", "1e-3,0.02"}})), Error);

@@ -105,9 +105,8 @@ def search_of(arguments: argparse.Namespace, keys: list[str], config: dict[str, 
                             "is refined alone, for the critical angle) try --until critical-angle=0.5")
         if arguments.same_seeds or arguments.most_seeds:
             raise UserError("invalid --same-seeds or --most-seeds (each angle gets the seeds of `seeds`); leave them out")
-        critical_angle.require_angles(config[critical_angle.KEY], lists[0])
-        spacing = float(config["obstacle-gap"]) + float(config["obstacle-diameter"])
-        return critical_angle.AngleSearch(lists[0], spacing, float(config["box"]), len(seeds), goal.precision, budget)
+        critical_angle.require_angles(config[critical_angle.KEY], lists[0], config["lattice"])
+        return critical_angle.AngleSearch(lists[0], config, len(seeds), goal.precision, budget)
     if goal.kind == "critical-angle":
         raise UserError(f"invalid --until={arguments.until} (is found over the angle of a lattice) try refine lattice-angle")
     if goal.kind == "crossing" and len(keys) > 1:

@@ -14,6 +14,7 @@ from ..tools.texts import literal
 from . import AXES, is_number, runs_a_point, said, symbol
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
+LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # by obstacle_filling
 FINISHED = ("passed", "clogged", "broken", "flowing")
 
 
@@ -94,7 +95,7 @@ class Groups:
 
     @property
     def are_lattices(self) -> bool:
-        return {group["obstacle_filling"] for group in self.members} == {"lattice"}
+        return bool(self.members) and self.values("obstacle_filling") <= LATTICES.keys()
 
     def values(self, name: str) -> set[Any]:
         return {group[name] for group in self.members}
@@ -127,8 +128,8 @@ class Groups:
             return True  # it follows from the circles and the length of their array
         if name in self.lists or self._is_given_number(name):
             return False
-        of_filling = fillings <= {"saturated", "lattice"} or bool(self._share_of_saturated())
-        from_array = (name == "obstacle_density" and of_filling) or (name == "box" and fillings == {"lattice"})
+        of_filling = fillings <= {"saturated", *LATTICES} or bool(self._share_of_saturated())
+        from_array = (name == "obstacle_density" and of_filling) or (name in ("box", "length") and self.are_lattices)
         return from_array or all(name in group["automatic"] for group in self.members)
 
     def _share_of_saturated(self) -> str:
@@ -211,8 +212,8 @@ class Groups:
             words.append("saturated arrays")
         if share := self._share_of_saturated():
             words.append(f"{share[:-1]} % of the saturated density")
-        if first["obstacle_filling"] == "lattice":
-            words.append("square lattice")
+        if lattice := LATTICES.get(first["obstacle_filling"]):
+            words.append(f"{lattice} lattice")
         if first["obstacle_filling"] == "file":
             words.append(f"circles of {literal(self._circle_file())}")
         if not self.are_passages:

@@ -144,9 +144,9 @@ def in_laboratory(group: Group, name: str) -> str:
     return rounded.plain(group[name]) if bound is None else f"> {rounded.plain(bound)}"
 
 
-def slope(group: Group) -> str:
-    """Lateral displacement per distance."""
-    return "-" if group["lateral_slope"] is None else rounded.with_error(group["lateral_slope"], group["lateral_slope_error"])
+def migration(group: Group, name: str) -> str:
+    """Lateral displacement per distance, or the share along the rows."""
+    return "-" if group.get(name) is None else rounded.with_error(group[name], group[f"{name}_error"])
 
 
 def value(cell: float | str | None, digits: int = 6) -> str:
@@ -207,10 +207,10 @@ def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.Dat
     mechanisms = [name for name in style.MECHANISM_COLOURS if any(group[name] for group in groups.members)]
     passed = ["passed", "flowing"] if any(group["passed"] for group in groups.members) else []
     titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *mechanisms, *passed, f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
-              *(["lateral/r"] if groups.are_lattices else []), "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", *laboratory_columns(groups).values(), "Ca", "seeds"]
+              *(["lateral/r", "along rows"] if groups.are_lattices else []), "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", *laboratory_columns(groups).values(), "Ca", "seeds"]
     lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
               *(str(group[name]) for name in [*mechanisms, *passed]), length(group),
-              *([slope(group)] if groups.are_lattices else []), speed(group), *(in_laboratory(group, name) for name in laboratory_columns(groups)),
+              *([migration(group, "lateral_slope"), migration(group, "row_share")] if groups.are_lattices else []), speed(group), *(in_laboratory(group, name) for name in laboratory_columns(groups)),
               rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 

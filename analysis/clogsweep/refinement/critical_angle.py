@@ -1,5 +1,6 @@
 """The critical angle of a lattice: up to it droplets follow its rows, beyond it they leave them."""
 
+import functools
 import itertools
 import math
 from collections.abc import Sequence
@@ -12,6 +13,7 @@ from .driver import HOUR, UNFINISHED, Line, number_text
 from .membership import Membership, Values
 
 KEY = "lattice-angle"
+FOLLOWING = ("lattice_angle", "length", "box")  # the angle, and what follows from it
 SMALLEST_BOX = 5.0  # [sigma], and no less than two spacings
 ROUNDING = 1e-9
 DECIMALS = 6  # of an angle: far fewer than tell two lattices apart
@@ -22,7 +24,8 @@ FEWEST_ROWS = 2.0  # that a path along the flow must cross for the run to count
 def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
     """Whether droplets leave the rows, and whether they follow them, by angle in increasing order."""
     angle = np.radians(runs["lattice_angle"])
-    spacing = runs["obstacle_gap"] + runs["obstacle_diameter"]
+    of_pitch = np.select([runs["obstacle_filling"] == "triangular", runs["obstacle_filling"] == "rhombic"], [math.sqrt(3) / 2, np.cos(angle)], 1)
+    spacing = (runs["obstacle_gap"] + runs["obstacle_diameter"]) * of_pitch  # of the rows
     along, across = runs["distance"], runs["lateral_displacement"]
     counts = runs["status"] != "failed"
     leaves = counts & (abs(across * np.cos(angle) - along * np.sin(angle)) > MOST_ROWS_OFF * spacing)
@@ -40,15 +43,41 @@ def bracket(angles: pandas.DataFrame) -> tuple[float, float]:
     return below.index[below["follows"]].max(), upper
 
 
-def nearest_lattice(spacing: float, angle: float, box: float) -> float | None:
-    """Angle of the lattice nearest to `angle` that has a period of at most `box`: its edge joins two points of the
-    lattice, p and q spacings apart, and tan(angle) = q/p."""
-    p = np.arange(1, int(box * (1 + ROUNDING) / spacing) + 1)
-    q = np.floor(p * math.tan(math.radians(angle)))
+def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFrame:
+    """The bracket of every set of parameters, `lower` and `upper`, with those that vary and the number of `runs`.
+    @param parameters  names of columns; one that follows from those before it is left out. @throws UserError"""
+    lattices = rows[rows["lattice_angle"].notna()]
+    if lattices.empty:
+        raise UserError("cannot find critical angles (these are no lattices) try refine lattice-angle obstacle-layout=lattice")
+    varying: list[str] = []
+    for name in parameters:
+        sets = lattices.groupby(varying, dropna=False) if varying else lattices.assign(all=0).groupby("all")
+        if name not in FOLLOWING and sets[name].nunique(dropna=False).max() > 1:
+            varying.append(name)
+    lines = []
+    for _, runs in lattices.groupby(varying, dropna=False) if varying else [((), lattices)]:
+        lower, upper = bracket(tried_angles(runs))
+        lines.append([*(runs[name].iloc[0] for name in varying), lower, upper, len(runs)])
+    return pandas.DataFrame(lines, columns=[*varying, "lower", "upper", "runs"])
+
+
+def nearest_lattice(spacing: float, angle: float, box: float, kind: str = "square") -> float | None:
+    """Angle of the lattice nearest to `angle` that has periods of at most `box`: tan(angle) = q/p, of triangular ones
+    sqrt(3) q/p, with whole numbers p and q."""
+    unit = math.sqrt(3) if kind == "triangular" else 1
+    p = np.arange(1, int(box * (1 + ROUNDING) / spacing * (2 if kind == "triangular" else 1)) + 1)
+    q = np.floor(p * math.tan(math.radians(angle)) / unit).astype(int)
     p, q = np.concatenate([p, p]), np.concatenate([q, q + 1])
-    period = spacing * np.hypot(p, q)
-    fits = (period >= max(SMALLEST_BOX, 2 * spacing) * (1 - ROUNDING)) & (period <= box * (1 + ROUNDING))
-    angles = np.degrees(np.arctan2(q, p))[fits]
+    if kind == "square":
+        periods = [spacing * np.hypot(p, q)]
+    else:
+        p, q = p // np.gcd(p, q), q // np.gcd(p, q)
+        along = p if kind == "rhombic" else np.hypot(p, unit * q) * np.where((p - q) % 2, 1, 0.5)
+        across = np.ones_like(p) if kind == "rhombic" else unit * along / np.where(p % 3, 1, 3)
+        # The longest multiples that fit.
+        periods = [period * np.floor(box * (1 + ROUNDING) / period) for period in (spacing * along, spacing * across)]
+    fits = [(period >= max(SMALLEST_BOX, 2 * spacing) * (1 - ROUNDING)) & (period <= box * (1 + ROUNDING)) for period in periods]
+    angles = np.degrees(np.arctan2(unit * q, p))[np.all(fits, axis=0)]
     return float(angles[np.argmin(abs(angles - angle))]) if angles.size else None
 
 
@@ -57,11 +86,13 @@ class AngleSearch:
 
     keys: Sequence[str] = (KEY,)
 
-    def __init__(self, given: Sequence[float], spacing: float, box: float, num_seeds: int, width: float,
-                 budget: float) -> None:
-        """@param given  angles, increasing; @param width  of the bracket to be reached, 0 if only the budget ends it"""
+    def __init__(self, given: Sequence[float], config: dict[str, str], num_seeds: int, width: float, budget: float) -> None:
+        """@param given  angles, increasing; @param config  settings by key
+        @param width  of the bracket to be reached, 0 if only the budget ends it"""
         self.end = ""
-        self._width, self._budget, self._spacing, self._box, self._num_seeds = width, budget, spacing, box, num_seeds
+        spacing = float(config["pitch"]) or float(config["obstacle-gap"]) + float(config["obstacle-diameter"])
+        self._width, self._budget, self._box, self._num_seeds = width, budget, float(config["box"]), num_seeds
+        self._lattice = functools.partial(nearest_lattice, spacing, box=self._box, kind=config["lattice"])
         inner = self._within(given[0], given[-1], given) if len(given) == 2 else []
         self.candidates: list[Values] = [(angle,) for angle in sorted([*given, *inner])]
 
@@ -70,13 +101,13 @@ class AngleSearch:
 
     def _within(self, lower: float, upper: float, tried: Sequence[float]) -> list[float]:
         """Up to three lattices near the quarters of the bracket that have not been tried."""
-        nearest = [nearest_lattice(self._spacing, lower + part * (upper - lower) / 4, self._box) for part in (1, 2, 3)]
+        nearest = [self._lattice(lower + part * (upper - lower) / 4) for part in (1, 2, 3)]
         rounded = {round(angle, DECIMALS) for angle in nearest if angle is not None and lower < angle < upper}
         return sorted(rounded - {round(angle, DECIMALS) for angle in tried})
 
     def _look(self, rows: pandas.DataFrame, members: Membership) -> tuple[pandas.DataFrame, float]:
         # The box is a period of the lattice: it follows from the angle, and means nothing to the droplet.
-        runs = members.of_curve(rows, lambda name: name not in ("lattice_angle", "box"))
+        runs = members.of_curve(rows, lambda name: name not in FOLLOWING)
         runs = runs[~runs["status"].isin(UNFINISHED)]
         return tried_angles(runs), float(runs["processor_seconds"].sum()) / HOUR
 
@@ -130,14 +161,14 @@ class AngleSearch:
         return words
 
 
-def require_angles(text: str, given: Sequence[float]) -> None:
-    """@throws UserError  unless these are increasing angles between 0 and 45 degrees"""
+def require_angles(text: str, given: Sequence[float], kind: str) -> None:
+    """@throws UserError  unless these are increasing angles between 0 and 45 degrees, of triangular lattices 30"""
     why = ""
     if len(given) < 2 or not all(np.isfinite(given)):
         why = "refine lattice-angle needs its bounds"
     elif any(one >= other for one, other in itertools.pairwise(given)):
         why = "values must increase: the lower bound comes first"
-    elif not (given[0] > 0 and given[-1] <= 45):
-        why = "the critical angle lies above 0, where droplets follow the rows by symmetry, up to 45 degrees"
+    elif not (given[0] > 0 and given[-1] <= (most := 30 if kind == "triangular" else 45)):
+        why = f"the critical angle lies above 0, where droplets follow the rows by symmetry, up to {most} degrees"
     if why:
-        raise UserError(f"invalid {KEY}={text} ({why}) try {KEY}=5,40")
+        raise UserError(f"invalid {KEY}={text} ({why}) try {KEY}=5,{30 if kind == 'triangular' else 40}")

@@ -58,16 +58,17 @@ class Sweep:
         return programs.programs_in(self._programs) / name
 
     def fit(self, *, dwell: float | None = None, from_distance: float | None = None, confidence: float | None = None,
-            lab: str | os.PathLike[str] | None = None) -> Fit:
+            row_angle: float | None = None, lab: str | os.PathLike[str] | None = None) -> Fit:
         """Clogging lengths and mean speeds, from clogfit.
 
         @param dwell  a droplet that has not moved for so long counts as clogged [t0]
         @param from_distance  ways are counted from here on [sigma]
         @param confidence  of the intervals, between 0 and 1
+        @param row_angle  tilt of the rows of user-supplied circles, for the share displaced along them [degrees]
         @param lab  file that describes the laboratory, for its units, too
         @throws ProgramFailed  with the reason of clogfit
         """
-        given = {"--dwell": dwell, "--from-distance": from_distance, "--confidence": confidence}
+        given = {"--dwell": dwell, "--from-distance": from_distance, "--confidence": confidence, "--row-angle": row_angle}
         options = [word for name, value in given.items() if value is not None for word in (name, repr(float(value)))]
         of_lab = ["--lab", os.fspath(lab)] if lab is not None else []
         fit = Fit(*fits.fitted(self._program("clogfit"), self.path, *options, *of_lab))

@@ -129,6 +129,8 @@ struct Group {
   /// was. Where droplets clog, only the faster runs go far enough to have an individual mean speed.
   fit::MeanSpeed relative_speed_all;
   fit::Migration migration;
+  /// Tilt of the rows of posts from the flow towards +y, of lattices their own; NaN: not known [degrees].
+  double row_angle = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::uint32_t> seeds;  ///< of the runs behind the clogging length
   int num_passed = 0;                ///< came to the exit of their device
   int num_flowing = 0;               ///< ended by max-time
@@ -173,6 +175,9 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
                               std::span<const double> lines = {});
 /// The columns of keys such as `max-time,boxes`. @throws Error for any other key
 std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
+/// Lateral displacement over that of a droplet that follows the rows: 0 in the zigzag mode, 1 in the
+/// displacement (bump) mode of deterministic lateral displacement. NaN for rows along the flow.
+fit::Migration share_along_rows(const Group& group);
 /// Can a droplet of this group have stood for so long?
 bool is_dwell_possible(const Group& group);
 

@@ -25,6 +25,11 @@ constexpr ParameterScope arrays = {
 constexpr ParameterScope own_circles = {
     "file", "there are no user-supplied circles", "add obstacles=FILE.csv, or leave it out",
     [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::file; }};
+constexpr ParameterScope lengths = {
+    "file", own_circles.reason, own_circles.remedy, [](const RunParameters& run) {
+      return own_circles.holds(run) || (run.obstacles.layout == ObstacleLayout::lattice &&
+                                        run.obstacles.lattice != LatticeKind::square);
+    }};
 constexpr ParameterScope channels = {
     "channel", "there is no channel", "add obstacle-layout=channel, or leave it out",
     [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::channel; }};
@@ -280,9 +285,9 @@ std::vector<Parameter> array_entries() {
            .words = {"saturated"}}),
       entry("obstacle-layout", [](auto& run) -> auto& { return run.obstacles.layout; },
             {.column = "obstacle_filling",
-             .meaning = "random: random sequential addition, lattice: square, obstacle-gap + "
-                        "obstacle-diameter from centre to centre, file: user-supplied circles (obstacles), "
-                        "channel: two wedges, wall: a flat wall",
+             .meaning = "random: random sequential addition, lattice: as lattice, pitch and lattice-angle "
+                        "say, file: user-supplied circles (obstacles), channel: two wedges, wall: a flat "
+                        "wall",
              .has_own_column = false,
              .shapes_array = true}),
   };
@@ -304,16 +309,18 @@ std::vector<Parameter> own_circle_entries() {
                  "place that follows from the seed: anywhere, or on the line of the entrance",
              .scope = &own_circles,
              .shapes_array = true}),
-      entry("length", [](auto& run) -> auto& { return run.obstacles.length; },
-            {.column = "length",
-             .symbol = R"(L_x)",
-             .unit = "sigma",
-             .meaning = "length of your own circles along the flow, after which they repeat; 0: boxes*box",
-             .role = numerics,
-             .scope = &own_circles,
-             .range = {not_negative, to(1e7, "no droplet gets as far", "use at most 1e7")},
-             .shapes_array = true,
-             .before = 0.0}),
+      entry(
+          "length", [](auto& run) -> auto& { return run.obstacles.length; },
+          {.column = "length",
+           .symbol = R"(L_x)",
+           .unit = "sigma",
+           .meaning = "length of your own circles along the flow, after which they repeat; 0: boxes*box; of "
+                      "lattices that are not square the longest period along the flow, adjusted as box is",
+           .role = numerics,
+           .scope = &lengths,
+           .range = {not_negative, to(1e7, "no droplet gets as far", "use at most 1e7")},
+           .shapes_array = true,
+           .before = 0.0}),
       entry("side-walls", [](auto& run) -> auto& { return run.obstacles.side_walls; },
             {.column = "side_walls",
              .meaning = "on: straight walls along the flow at y=0 and y=box, between which your own circles "
@@ -410,6 +417,24 @@ std::vector<Parameter> channel_entries() {
 /// Lattices, and what repeats: seeds, boxes.
 std::vector<Parameter> period_entries() {
   return {
+      entry("lattice", [](auto& run) -> auto& { return run.obstacles.lattice; },
+            {.column = "obstacle_filling",
+             .meaning = "square or triangular, turned by lattice-angle; rhombic: sheared by it, as in "
+                        "deterministic lateral displacement: columns of posts across the flow, each "
+                        "shifted by pitch*tan(lattice-angle)",
+             .scope = &lattices,
+             .has_own_column = false,
+             .shapes_array = true}),
+      entry("pitch", [](auto& run) -> auto& { return run.obstacles.pitch; },
+            {.column = "obstacle_gap",
+             .symbol = "a",
+             .unit = "sigma",
+             .meaning = "distance between the centres of neighbours in a lattice; 0: obstacle-gap + "
+                        "obstacle-diameter",
+             .scope = &lattices,
+             .range = {not_negative, {}},
+             .has_own_column = false,
+             .shapes_array = true}),
       entry("lattice-angle", [](auto& run) -> auto& { return run.obstacles.lattice_angle; },
             {.column = "lattice_angle",
              .symbol = R"(\theta)",

@@ -7,6 +7,7 @@
 #include "clog/core/model/model.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/scene/scene.hpp"
+#include "clog/core/world/lattice.hpp"
 #include "core/parameters/refusal.hpp"
 
 namespace clog {
@@ -35,6 +36,7 @@ void check_break_up(const RunParameters& run) {
 
 RunParameters resolve(RunParameters run) {
   check_each(run);
+  use_pitch(run.obstacles);
   const Scene& scene = scene_of(run);
   const DropletModel& model = model_of(run);
   const double sharpest_bend = scene.sharpest_bend(run);

@@ -1,5 +1,8 @@
 #include <fmt/core.h>
 
+#include <cmath>
+#include <string>
+
 #include "clog/core/droplet/release.hpp"
 #include "clog/core/model/model.hpp"
 #include "clog/core/scene/scene.hpp"
@@ -11,32 +14,39 @@
 namespace clog {
 namespace {
 
-/// Replaces box and angle of a lattice by those of the nearest one that is periodic.
+std::string remedy(const ObstacleParameters& obstacles) {
+  std::string text = fmt::format("use box={} or more", box_that_fits(obstacles));
+  if (obstacles.length > 0) text += " without length";
+  for (const CommensurateLattice& lattice : neighbouring_lattices(obstacles))
+    text += fmt::format(", or {}", tilt_text(obstacles.lattice, lattice));
+  return text;
+}
+
+/// Replaces periods and angle of a lattice by those of the nearest one that is periodic.
 void find_period(RunParameters& run) {
   ObstacleParameters& obstacles = run.obstacles;
   const double angle = obstacles.lattice_angle;
   if (!obstacles.density.is_saturated() && obstacles.density != ObstacleParameters().density)
     refuse("obstacle-density", density_text(obstacles.density),
-           "a lattice has one obstacle per (obstacle-gap + obstacle-diameter)^2) leave it out, or use "
-           "obstacle-layout=random");
+           "a lattice has one that follows from its pitch) leave it out, or use obstacle-layout=random");
   require(obstacles.boxes == 1, "boxes", obstacles.boxes,
           "a lattice repeats in each of them) leave it out, or use obstacle-layout=random");
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
           "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random");
+  const double largest = largest_tilt(obstacles.lattice);
+  require(std::abs(angle) <= largest + 1e-9, "lattice-angle", angle, [&] {
+    return fmt::format("a {} lattice turned by {} degrees is the same) use -{}..{}", name(obstacles.lattice),
+                       2 * largest, largest, largest);
+  });
   const auto lattice = fitting_lattice(obstacles);
   if (!lattice)
     refuse("lattice-angle", angle,
-           fmt::format(
-               "no lattice of spacing {:.3g} within {:.3g} degrees of it has a period of box={:.3g} or less) "
-               "use box={} or more",
-               obstacles.diameter + obstacles.gap, largest_angle_error, obstacles.box,
-               box_that_fits(obstacles)));
+           fmt::format("no lattice of spacing {:.3g} within {:.3g} degrees of it has a period of box={:.3g} "
+                       "or less) {}",
+                       obstacles.spacing(), largest_angle_error, obstacles.box, remedy(obstacles)));
   obstacles.box = lattice->box;
+  obstacles.length = lattice->length;
   obstacles.lattice_angle = lattice->angle;
-}
-
-double lattice_density(const ObstacleParameters& obstacles) {
-  return 1 / ((obstacles.diameter + obstacles.gap) * (obstacles.diameter + obstacles.gap));
 }
 
 ObstacleArray lattice_walls(const RunParameters& run) { return lattice_obstacles(run.obstacles, run.seed); }
@@ -45,9 +55,9 @@ ObstacleArray lattice_walls(const RunParameters& run) { return lattice_obstacles
 /// if it touches nothing at the box's centre it starts right there, as if there were no obstacles.
 DropletState release_in_lattice(const RunParameters& run, const ObstacleArray& obstacles) {
   const DropletModel& model = model_of(run);
-  const double centre = obstacles.period().box / 2;
-  const bool starts_free =
-      clearance(obstacles, centre, centre, 2 * units::droplet_diameter) > model.reach(run);
+  const Period& period = obstacles.period();
+  const bool starts_free = clearance(obstacles, period.along() / 2, period.across() / 2,
+                                     2 * units::droplet_diameter) > model.reach(run);
   return starts_free ? model.release(run, ObstacleArray(obstacles.period(), {}))
                      : model.release(run, obstacles);
 }

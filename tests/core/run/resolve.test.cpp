@@ -121,6 +121,12 @@ INSTANTIATE_TEST_SUITE_P(
                 {{"lattice-angle", 5.0}}},
         Refusal{"lattice-angle=60 (a square lattice turned by 90 degrees is the same) use -45..45",
                 {{"obstacle-layout", "lattice"}, {"lattice-angle", 60.0}}},
+        Refusal{"lattice-angle=31 (a triangular lattice turned by 60 degrees is the same) use -30..30",
+                {{"obstacle-layout", "lattice"}, {"lattice", "triangular"}, {"lattice-angle", 31.0}}},
+        Refusal{"pitch=0.3 (posts of obstacle-diameter=0.3 would touch) use more",
+                {{"obstacle-layout", "lattice"}, {"pitch", 0.3}}},
+        Refusal{"lattice=rhombic (a random array has no rows)", {{"lattice", "rhombic"}}},
+        Refusal{"length=50 (there are no user", {{"obstacle-layout", "lattice"}, {"length", 50.0}}},
         Refusal{"obstacle-density=1 (a lattice has one",
                 {{"obstacle-layout", "lattice"}, {"obstacle-density", 1.0}}},
         Refusal{"obstacle-diameter-spread=0.2 (the obstacles of a lattice",
@@ -292,14 +298,41 @@ TEST(Resolve, GivesALatticeABoxThatIsItsPeriod) {
   EXPECT_EQ(resolve(lattice_run(0, 200)).obstacles.box, 200);
 }
 
-TEST(Resolve, TakesTheBoxThatItProposesForALattice) {
-  for (const double angle : {0.5, 3.0, -17.0, 44.0}) {
-    const std::string message = test::refusal_of(lattice_run(angle, 5.2));
-    ASSERT_NE(message.find("lattice-angle="), std::string::npos) << angle;
-    const double box = std::stod(message.substr(message.find("use box=") + 8));
-    EXPECT_EQ(test::refusal_of(lattice_run(angle, box)), "");
-    EXPECT_NE(test::refusal_of(lattice_run(angle, box - 1.5)), "") << "no larger than needed";
-  }
+TEST(Resolve, GivesTheSameLatticeAgain) {
+  for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
+    for (const double angle : {-30.0, -7.3, 0.0, 1.0, 26.56505})
+      for (const double length : {0.0, 57.0}) {
+        RunParameters run = lattice_run(angle, 80);
+        run.obstacles.lattice = kind;
+        run.obstacles.pitch = 0.7;
+        run.obstacles.length = length;
+        const ObstacleParameters used = resolve(run).obstacles;
+        EXPECT_EQ(used.gap, 0.7 - 0.3);
+        EXPECT_LE(used.length, length > 0 ? length : 80);
+        RunParameters again = run;
+        again.obstacles = used;
+        EXPECT_EQ(resolve(again).obstacles, used) << name(kind) << ' ' << angle;
+      }
+}
+
+TEST(Resolve, TakesTheBoxOrTheAngleThatItProposesForALattice) {
+  for (const LatticeKind kind : {LatticeKind::square, LatticeKind::triangular, LatticeKind::rhombic})
+    for (const double angle : {0.5, 3.0, -17.0, 27.8}) {
+      RunParameters run = lattice_run(angle, 5.2);
+      run.obstacles.lattice = kind;
+      const std::string message = test::refusal_of(run);
+      ASSERT_NE(message.find("lattice-angle="), std::string::npos) << angle;
+      const double box = std::stod(message.substr(message.find("use box=") + 8));
+      run.obstacles.box = box;
+      EXPECT_EQ(test::refusal_of(run), "");
+      run.obstacles.box = box - 1.5;
+      EXPECT_NE(test::refusal_of(run), "") << "no larger than needed";
+      run.obstacles.box = 5.2;
+      for (auto at = message.find(", or "); at != std::string::npos; at = message.find(", or ", at + 1)) {
+        run.obstacles.lattice_angle = std::stod(message.substr(at + 5));
+        EXPECT_EQ(test::refusal_of(run), "") << message;
+      }
+    }
 }
 
 TEST(Resolve, TakesTheSpreadThatItProposes) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <set>
 #include <vector>
 
@@ -18,7 +19,7 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 
 /// Soft disks, nearly rigid, among obstacles with room to pass: spacing 1.5 sigma, obstacles of 0.3 sigma.
-RunParameters lattice_disk(double angle, std::uint32_t seed = 1) {
+RunParameters lattice_disk(double angle, std::uint32_t seed = 1, LatticeKind kind = LatticeKind::square) {
   RunParameters run;
   run.model = Model::sp;
   run.wall_stiffness = 10;
@@ -27,9 +28,35 @@ RunParameters lattice_disk(double angle, std::uint32_t seed = 1) {
   run.obstacles.gap = 1.2;
   run.obstacles.box = 120;
   run.obstacles.layout = ObstacleLayout::lattice;
+  run.obstacles.lattice = kind;
   run.obstacles.lattice_angle = angle;
   run.seed = seed;
   return resolve(run);
+}
+
+/// Its pitch is 2, its periods are at most `box`.
+ObstacleParameters small_lattice(LatticeKind kind, double angle, double box) {
+  RunParameters run;
+  run.obstacles.layout = ObstacleLayout::lattice;
+  run.obstacles.lattice = kind;
+  run.obstacles.lattice_angle = angle;
+  run.obstacles.pitch = 2;
+  run.obstacles.box = box;
+  return resolve(run).obstacles;
+}
+
+/// Distances of the posts within 3 sigma of each post, images included, in increasing order.
+std::vector<std::vector<double>> distances_in(const ObstacleArray& array) {
+  std::vector<std::vector<double>> all;
+  for (const Obstacle& obstacle : array.obstacles()) {
+    std::vector<Obstacle> near;
+    array.gather({obstacle.x, obstacle.y, 0, 0, 0, 0, 3}, near);
+    std::vector<double>& distances = all.emplace_back();
+    distances.reserve(near.size());
+    for (const Obstacle& other : near) distances.push_back(std::hypot(other.x, other.y));
+    std::ranges::sort(distances);
+  }
+  return all;
 }
 
 RunResult lattice_result(DropletRun run) {
@@ -61,10 +88,81 @@ TEST(Lattice, HasFourNeighboursAtTheExactGapAcrossItsBox) {
   }
 }
 
+TEST(Lattice, HasTheCellOfCrystallography) {
+  // tan = 1/3: ten cells of the square lattice. The triangular one at 30, 0 and 19.1 degrees (tan =
+  // sqrt(3)/5, the cell sqrt(7) by sqrt(21) of graphene): 2, 2 and 14 posts. The rhombic one with a shift of
+  // a third: three columns. Multiples of small cells fill the box.
+  struct Cell {
+    LatticeKind kind;
+    double tangent, largest_box, length, box;
+    std::size_t num_posts;
+  };
+  for (const auto& [kind, tangent, largest_box, length, box, num_posts] :
+       {Cell{LatticeKind::square, 1.0 / 3, 7, std::sqrt(10), std::sqrt(10), 10},
+        Cell{LatticeKind::triangular, std::sqrt(3) / 5, 10, std::sqrt(7), std::sqrt(21), 14},
+        Cell{LatticeKind::triangular, 0, 7, 3, std::sqrt(3) * 2, 12},
+        Cell{LatticeKind::triangular, 1 / std::sqrt(3), 7, std::sqrt(3) * 2, 3, 12},
+        Cell{LatticeKind::rhombic, 1.0 / 3, 7, 3, 3, 9}, Cell{LatticeKind::rhombic, -0.25, 9, 4, 4, 16}}) {
+    const ObstacleParameters used = small_lattice(kind, std::atan(tangent) / degree, largest_box);
+    EXPECT_NEAR(used.period().along(), 2 * length, 1e-12);
+    EXPECT_NEAR(used.box, 2 * box, 1e-12);
+    EXPECT_NEAR(std::tan(used.lattice_angle * degree), tangent, 1e-12);
+    EXPECT_EQ(lattice_obstacles(used, 1).obstacles().size(), num_posts);
+    EXPECT_NEAR(lattice_density(used) * used.period().area(), static_cast<double>(num_posts), 1e-9);
+  }
+}
+
+TEST(Lattice, HasItsNearestNeighboursAtThePitchAcrossItsPeriod) {
+  for (const double angle : {-29.0, -10.0, 0.0, 17.3, 30.0}) {
+    const ObstacleParameters triangular = small_lattice(LatticeKind::triangular, angle, 130);
+    EXPECT_NEAR(lattice_density(triangular), 2 / (std::sqrt(3) * 4), 1e-12);
+    EXPECT_NEAR(row_spacing(triangular), std::sqrt(3), 1e-12);
+    for (const auto& distances : distances_in(lattice_obstacles(triangular, 1))) {
+      for (int i = 1; i <= 6; ++i) EXPECT_NEAR(distances.at(i), 2, 1e-9) << angle;
+      EXPECT_TRUE(distances.size() == 7 || distances[7] > 2.9) << angle;
+    }
+    const ObstacleParameters rhombic = small_lattice(LatticeKind::rhombic, angle, 130);
+    const double tilt = rhombic.lattice_angle * degree;
+    EXPECT_NEAR(lattice_density(rhombic), 0.25, 1e-12);
+    EXPECT_NEAR(row_spacing(rhombic), 2 * std::cos(tilt), 1e-12);
+    for (const auto& distances : distances_in(lattice_obstacles(rhombic, 1))) {
+      EXPECT_NEAR(distances.at(1), 2, 1e-9) << angle;
+      EXPECT_NEAR(distances.at(2), 2, 1e-9) << angle;
+      for (int i = 3; i <= 4; ++i)
+        EXPECT_NEAR(distances.at(i), 2 * std::hypot(1, std::remainder(std::tan(tilt), 1)), 1e-9) << angle;
+    }
+  }
+}
+
+TEST(Lattice, IsTheNearestThatIsPeriodicOfEveryKind) {
+  // The reference: vectors along and across the flow among all of the lattice, whose angle is the least off.
+  for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
+    for (const double angle : {0.0, 4.0, -20.0, 27.7}) {
+      const auto found = nearest_lattice({.box = 20, .lattice = kind, .pitch = 0.7, .lattice_angle = angle});
+      ASSERT_TRUE(found);
+      double least = 90;
+      const double period = 20 / 0.7;
+      for (int p = 1; p < 100; ++p)
+        for (int q = -100; q < 100; ++q) {
+          const bool is_rhombic = kind == LatticeKind::rhombic;
+          const double tilt = std::atan2(is_rhombic ? q : std::sqrt(3) * q, p);
+          const bool is_whole = std::gcd(p, q) == 1;
+          const double half = (p - q) % 2 == 0 ? 0.5 : 1;
+          const double along = is_rhombic ? p : half * std::sqrt(p * p + 3 * q * q);
+          const double across = is_rhombic ? 1 : along * std::sqrt(3) / (p % 3 == 0 ? 3 : 1);
+          if (is_whole && along <= period && across <= period)
+            least = std::min(least, std::abs(tilt / degree - angle));
+        }
+      EXPECT_NEAR(std::abs(found->angle - angle), least, 1e-9) << name(kind) << ' ' << angle;
+      EXPECT_LE(std::max(found->box, found->length), 20);
+      EXPECT_GT(std::min(found->box, found->length), 10) << "several periods where they fit";
+    }
+}
+
 TEST(Lattice, IsTheNearestThatIsPeriodic) {
   // The reference is an exhaustive search of all boxes.
   for (const double angle : {0.0, 4.0, -20.0, 33.3, 45.0}) {
-    const auto found = nearest_lattice(0.7, angle, 5, 40);
+    const auto found = nearest_lattice({.box = 40, .pitch = 0.7, .lattice_angle = angle});
     double least = 90;
     for (int p = 0; p < 80; ++p)
       for (int q = -80; q < 80; ++q)
@@ -73,8 +171,8 @@ TEST(Lattice, IsTheNearestThatIsPeriodic) {
     ASSERT_TRUE(found);
     EXPECT_NEAR(std::abs(found->angle - angle), least, 1e-9);
   }
-  EXPECT_EQ(nearest_lattice(0.7, 0, 5, 40)->p, 57) << "the largest box of the untilted ones";
-  EXPECT_FALSE(nearest_lattice(0.7, 0, 5, 5.2));
+  EXPECT_EQ(nearest_lattice({.box = 40, .pitch = 0.7})->p, 57) << "the largest box of the untilted ones";
+  EXPECT_FALSE(nearest_lattice({.box = 5.2, .pitch = 0.7}));
 }
 
 TEST(Lattice, LeavesTheReleaseToTheSeed) {
@@ -129,6 +227,27 @@ TEST(Lattice, LeadsADiskAlongItsRows) {
   for (const double angle : {35.0, 40.0})
     EXPECT_NEAR(slope(lattice_result(DropletRun(lattice_disk(angle)))), std::tan((angle - 45) * degree), 0.02)
         << angle;
+}
+
+// The rows of the triangular lattice are sqrt(3)/2 a apart; b = 0.65 needs a sin t < b. Those of the rhombic
+// one have obstacles a/cos t apart.
+TEST(Lattice, LeadsADiskAlongTheRowsOfEveryKind) {
+  for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
+    for (const double angle : {-12.0, 8.0})
+      EXPECT_NEAR(slope(lattice_result(DropletRun(lattice_disk(angle, 1, kind)))), std::tan(angle * degree),
+                  0.02)
+          << name(kind) << ' ' << angle;
+}
+
+TEST(Lattice, ReleasesDropletsWhereTheyTouchNothing) {
+  for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
+    for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+      const ObstacleParameters used = small_lattice(kind, -20, 80);
+      const ObstacleArray array = lattice_obstacles(used, seed);
+      std::vector<Obstacle> near;
+      array.gather({used.period().along() / 2, used.box / 2, 0, 0, 0, 0, 3}, near);
+      for (const Obstacle& post : near) EXPECT_GE(std::hypot(post.x, post.y), 0.7 - 1e-9) << seed;
+    }
 }
 
 TEST(Lattice, LeadsADiskStraightWhenItIsSymmetric) {

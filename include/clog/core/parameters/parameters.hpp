@@ -62,6 +62,17 @@ struct Words<ObstacleLayout> {
                                                    {ObstacleLayout::channel, "channel"},
                                                    {ObstacleLayout::wall, "wall"}};
 };
+/// Lattices by their vectors in units of the pitch, t being the tilt: square, turned by t: (1, 0) and (0, 1);
+/// triangular, turned by t: (1, 0) and (1/2, sqrt(3)/2); rhombic: (1, tan t) and (0, 1), not turned. The last
+/// is the sheared array of deterministic lateral displacement: posts stand one above the other across the
+/// flow, and each such column is shifted by tan t (McGrath et al., Lab Chip 14, 4139 (2014)).
+enum class LatticeKind { square, triangular, rhombic };
+template <>
+struct Words<LatticeKind> {
+  static constexpr Worded<LatticeKind> all[] = {{LatticeKind::square, "square"},
+                                                {LatticeKind::triangular, "triangular"},
+                                                {LatticeKind::rhombic, "rhombic"}};
+};
 /// Where a droplet starts among user-supplied circles: in the void nearest to the centre of the array, or to
 /// a place that is drawn from the seed, in the whole array or on a line across the flow.
 enum class Release { centre, anywhere, entrance };
@@ -182,11 +193,13 @@ struct ObstacleParameters {
   double box = 500;  ///< period L across the flow [sigma]
   int boxes = 1;     ///< period along the flow over that across it
   ObstacleLayout layout = ObstacleLayout::random;
+  LatticeKind lattice = LatticeKind::square;
+  double pitch = 0;                    ///< of a lattice, instead of its gap; 0: diameter + gap [sigma]
   double lattice_angle = 0;            ///< of the lattice's rows from +x to +y [degrees]
   std::optional<OwnCircles> own = {};  ///< of layout file; gap and density are then theirs
   Release release = Release::centre;
+  double length = 0;  ///< period along the flow; 0: boxes times box [sigma]
   // For user-supplied circles, in their coordinates:
-  double length = 0;                      ///< period along the flow; 0: boxes times box [sigma]
   SideWalls side_walls = SideWalls::off;  ///< at y = 0 and y = box
   double entrance = 0;                    ///< x of the line on which droplets are released [sigma]
   double entrance_from = 0;               ///< y at which the line begins [sigma]
@@ -194,6 +207,7 @@ struct ObstacleParameters {
   double exit = 0;                        ///< x at which a droplet has passed; 0: nowhere [sigma]
 
   double smallest_diameter() const { return diameter * (1 - diameter_spread); }
+  double spacing() const { return pitch > 0 ? pitch : diameter + gap; }
   double largest_diameter() const { return diameter * (1 + diameter_spread); }
   Period period() const {
     Period period(box, boxes);

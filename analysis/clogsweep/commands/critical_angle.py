@@ -1,0 +1,62 @@
+"""Draws the critical angle of lattices, up to which droplets follow the rows, against line tension or what else varies.
+
+    python3 -m clogsweep critical-angle lattice.h5                           # lattice-critical-angle.png, .pdf
+    python3 -m clogsweep critical-angle lattice.h5 --format csv > angles.csv # a table
+    python3 -m clogsweep critical-angle angles.csv                           # the same picture from the table
+
+The sweep has several angles for every set of parameters, as refine lattice-angle --until critical-angle=0.5 chooses them. The
+table has a line for each set: the parameters that vary, the largest angle at which droplets follow the rows, the smallest at
+which some leave them, and the number of runs.
+"""
+
+import argparse
+import json
+import pathlib
+from collections.abc import Container
+
+import pandas
+
+from .. import style
+from ..drawing import critical_angles
+from ..reading import programs, stored
+from ..refinement import critical_angle
+from ..tools.errors import UserError
+from . import command_line
+
+
+def add_format(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--format", choices=("picture", "csv"), default="picture", help="csv prints the table instead (%(default)s)")
+
+
+def read_angles(path: pathlib.Path, columns: Container[str]) -> pandas.DataFrame:
+    """@throws UserError"""
+    try:
+        table = pandas.read_csv(path, comment="#")
+        table = table.astype(dict.fromkeys(critical_angles.FOUND, float))
+    except (ValueError, KeyError):  # UnicodeDecodeError and pandas' own are ValueErrors
+        table = pandas.DataFrame()
+    if table.empty or not all(name in columns for name in table if name not in critical_angles.FOUND):
+        raise UserError(f"cannot read {path} (not a table of this command); give a sweep, or its table")
+    return table
+
+
+def body() -> int:
+    arguments = command_line.sweep_to_draw(__doc__, "critical-angle", "file of clogsweep --output, or the table of this command",
+                                           [command_line.add_width, add_format])
+    schema = json.loads(programs.run_program(programs.programs_in(arguments.programs) / "clogsweep", "--schema"))
+    columns = {column["name"]: column for column in schema["columns"]}
+    source = ""
+    if arguments.sweep.suffix == ".csv":
+        table = read_angles(arguments.sweep, columns)
+    else:
+        with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs) as file:
+            source = stored.source(stored.attributes(file))
+        # Values that may follow from others come last.
+        parameters = sorted((name for name, column in columns.items() if column["role"] == "parameter" and column.get("parameter_role") != "ensemble"),
+                            key=lambda name: ("key" not in columns[name], "automatic_in" in columns[name]))
+        table = critical_angle.table_of(stored.read_table(arguments.sweep, arguments.programs), parameters)
+    if arguments.format == "csv":
+        print(table.to_csv(index=False, float_format="%.6g"), end="")
+        return 0
+    figure = style.figure_of(critical_angles.draw_on, table, columns)
+    return command_line.save(style.Picture(figure, source), arguments)

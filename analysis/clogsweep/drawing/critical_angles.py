@@ -1,0 +1,40 @@
+"""Critical angles of lattices against line tension, or what else varies."""
+
+import pandas
+from matplotlib.axes import Axes
+
+from .. import style
+from ..labels import AXES, said, symbol
+from ..tools.errors import UserError
+from ..tools.hints import Column
+
+FOUND = ("lower", "upper", "runs")
+
+
+def abscissa_of(table: pandas.DataFrame) -> str:
+    """Line tension if it varies, otherwise the number with most values. @throws UserError  if there is none"""
+    numbers = [name for name in table.select_dtypes("number") if name not in FOUND]
+    if not numbers:
+        raise UserError("cannot draw critical angles (one set of parameters has one angle, and nothing varies); vary line-tension")
+    return max(numbers, key=lambda name: (name == "line_tension", table[name].nunique()))
+
+
+def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> None:
+    """@param table  brackets `lower` and `upper` [degrees], and the parameters that vary; @param columns  of clogsweep --schema"""
+    abscissa = abscissa_of(table)
+    others = [name for name in table if name not in (abscissa, *FOUND)]
+    curves = [points for _, points in table.groupby(others)] if others else [table]
+    for index, points in enumerate(curves):
+        points = points.sort_values(abscissa)
+        label = ", ".join(said(columns[name], points[name].iloc[0]) for name in others)
+        look = style.curve_style(index)
+        places = points[abscissa] * style.side_by_side(index, len(curves), table[abscissa].tolist())
+        middle = (points["lower"] + points["upper"]) / 2
+        with style.curve(axes, label):
+            axes.errorbar(places, middle, yerr=(points["upper"] - points["lower"]) / 2, label=label or None, capsize=2, **look)
+            for bound, marker in (("lower", "^"), ("upper", "v")):  # where the other end is not known
+                axes.plot(places[middle.isna()], points[bound][middle.isna()], marker, color=look["color"], fillstyle="none")
+    style.logarithmic_abscissa(axes, table[abscissa].tolist())
+    axes.set_xlabel(AXES.get(abscissa) or f"${symbol(columns[abscissa])}$")
+    style.finish(axes, "critical angle [degrees]", "", ["droplets follow the rows at the lower end of a bar and leave them at the upper end; "
+                                                         "a triangle is a bound"])
