@@ -24,10 +24,10 @@ class Groups:
         """@param fit  the JSON of clogfit; @param circle_files  see stored.circle_files()"""
         # Nothing is random in a channel or on a wall: a group is one run, which has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
+        self._fit = fit
         fit = fits.in_millimetres(fit)
         self.are_in_mm = "in_mm" in fit  # parameters, and lengths in pictures
         self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] + group["met_none"] > 0)]
-        self._fit = fit
         self._told: list[Group] = fit["groups"]
         self.confidence: float = fit["confidence"]
         self.laboratory: dict[str, float | None] = fit.get("laboratory", {})  # what the model's units are there, if all have one
@@ -186,6 +186,13 @@ class Groups:
         if not self.varies("model"):
             return names
         return ["model", *(name for name in names if len(self.values(name) - {None}) > 1)]
+
+    def row_values(self, member: Group) -> dict[str, Any]:
+        """What the rows of a group have, and no others. A value that clogfit does not know, such as the density of a saturated
+        array, follows from the others; so does one that the model of these runs lacks."""
+        values = member.get("in_table", member)
+        names = [name for name in self.distinguishing() if name not in fits.DROPLETS] + (["laboratory"] if self.are_in_mm else [])
+        return {name: values[name] for name in names if values[name] is not None}
 
     def label_of(self, member: Group) -> str:
         """The values that distinguish a group from the others."""

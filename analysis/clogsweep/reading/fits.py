@@ -28,14 +28,15 @@ def follows(groups: Collection[Group], name: str, others: Iterable[str]) -> bool
 
 def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
     """A fit of droplets in several laboratories with the diameter and the tilt as parameters, and parameters that are lengths
-    in mm: in droplet diameters one array would be another one for each droplet. Any other fit as it is."""
+    in mm: in droplet diameters one array would be another one for each droplet. Any other fit as it is. A group's "in_table" has
+    the values that rows have."""
     groups = fit["groups"]
     if "laboratory" in fit or "in_mm" in fit or not groups or not all(group.get("diameter_mm") for group in groups):
         return fit
     powers = {column["name"]: {"sigma": 1, "1/sigma^2": -2}.get(column["unit"], 0) for column in fit["columns"]}
 
     def scaled(group: Group) -> Group:
-        return group | {name: float(f"{group[name] * group['diameter_mm'] ** power:.10g}") for name, power in powers.items()
+        return group | {"in_table": group} | {name: float(f"{group[name] * group['diameter_mm'] ** power:.10g}") for name, power in powers.items()
                         if power and isinstance(group[name], int | float)}
 
     groups = [scaled(group) for group in groups]
