@@ -29,7 +29,7 @@ bool is_distance_table(const std::string& path);
 /// others separate groups.
 /// @throws Error that names file and line
 DistanceTable read_distances(const std::string& path);
-/// Of laboratories, by their checksums.
+/// What the model's units are in each laboratory, by its checksum.
 using Scales = std::map<std::string, LaboratoryScale>;
 /// The runs of a sweep; the parameters that vary separate groups. @throws Error as require_lengths()
 /// @param scales  of several laboratories: then distances are in mm, and the droplet's diameter [mm] and the
