@@ -139,7 +139,8 @@ void CommandLine::set_key(const std::string& name, const std::string& text) try 
 } catch (const sweep::NumberWithUnit& error) {
   if (own_.find_nothrow("lab", false) == nullptr) throw;
   if (!has("lab"))
-    throw Error(fmt::format("{}; --lab FILE with the droplet's diameter would give it a meaning", error.what()));
+    throw Error(
+        fmt::format("{}; --lab FILE with the droplet's diameter would give it a meaning", error.what()));
   texts_with_units_[name] = text;
 }
 

@@ -241,7 +241,8 @@ std::pair<std::string, std::optional<double>> parts_of(const std::string& name) 
   std::error_code none;
   if (at == std::string::npos || std::filesystem::exists(name, none)) return {name, {}};
   const auto unit = std::min(name.find_first_not_of("0123456789.eE+-", at + 1), name.size());
-  return {name.substr(0, at), sweep::to_number(name.substr(at + 1, unit - at - 1)) * metres_in(name.substr(unit))};
+  return {name.substr(0, at),
+          sweep::to_number(name.substr(at + 1, unit - at - 1)) * metres_in(name.substr(unit))};
 }
 
 }  // namespace
@@ -273,8 +274,9 @@ OwnCircles read_circles(const std::string& name) {
   numbers.check(path);
   if (circles.empty()) throw Error(path + " holds no obstacles; lines are x,y[,diameter]");
   if (droplet && scale.unit.empty())
-    throw Error(path + " is in droplet diameters and cannot be scaled to another droplet; put a line such as "
-                       "'# units=um droplet=200um' above its circles");
+    throw Error(path +
+                " is in droplet diameters and cannot be scaled to another droplet; put a line such as "
+                "'# units=um droplet=200um' above its circles");
   return OwnCircles(std::move(circles), name,
                     scale.unit.empty() ? std::nullopt : std::optional(scale.droplet_metres));
 }

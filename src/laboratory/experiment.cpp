@@ -36,8 +36,8 @@ std::string with_plain_micro(const std::string& unit) {
 
 const std::string& usual_unit(const std::string& quantity) {
   static const std::map<std::string, std::string> units = {
-      {"length", "mm"}, {"number per area", "/mm^2"}, {"time", "s"},   {"speed", "mm/s"},
-      {"tension", "mN/m"}, {"density", "g/ml"},       {"angle", "deg"}};
+      {"length", "mm"},    {"number per area", "/mm^2"}, {"time", "s"},   {"speed", "mm/s"},
+      {"tension", "mN/m"}, {"density", "g/ml"},          {"angle", "deg"}};
   return units.at(quantity);
 }
 

@@ -25,9 +25,10 @@ using Entries = std::map<std::string, std::string>;
 /// The quantity that each key gives; the ratio is a plain number.
 const std::map<std::string, std::string>& known_keys() {
   static const std::map<std::string, std::string> keys = {
-      {"diameter", "length"}, {"thickness", "length"}, {"density", "density"}, {"outer-density", "density"},
-      {"tension", "tension"}, {"angle", "angle"},      {"speed", "speed"},     {"tension-ratio", ""},
-      {"speed-diameter", "length"}, {"speed-angle", "angle"}, {"speed-exponent", ""}};
+      {"diameter", "length"},       {"thickness", "length"}, {"density", "density"},
+      {"outer-density", "density"}, {"tension", "tension"},  {"angle", "angle"},
+      {"speed", "speed"},           {"tension-ratio", ""},   {"speed-diameter", "length"},
+      {"speed-angle", "angle"},     {"speed-exponent", ""}};
   return keys;
 }
 
@@ -147,12 +148,14 @@ std::vector<Entries> sets_of(const Entries& entries) {
                                  angles = values_of(entries, "angle"), speeds = values_of(entries, "speed");
   const std::size_t num_sets = diameters.size() * angles.size();
   if (speeds.size() > 1 && speeds.size() != num_sets)
-    throw Error(fmt::format("has {} values of speed for {} (diameters times angles); give one for each, with "
-                            "the angles of the first diameter first, or one for all",
-                            speeds.size(), sweep::counted(std::ssize(diameters) * std::ssize(angles), "set")));
+    throw Error(
+        fmt::format("has {} values of speed for {} (diameters times angles); give one for each, with "
+                    "the angles of the first diameter first, or one for all",
+                    speeds.size(), sweep::counted(std::ssize(diameters) * std::ssize(angles), "set")));
   if (speeds.size() > 1 && scales_speed(entries))
-    throw Error("has a speed for each set, so speed-diameter, -angle and -exponent have no meaning; leave "
-                "them out");
+    throw Error(
+        "has a speed for each set, so speed-diameter, -angle and -exponent have no meaning; leave "
+        "them out");
   std::vector<Entries> sets;
   sets.reserve(num_sets);
   for (const std::string& diameter : diameters)
@@ -196,9 +199,10 @@ std::string law_of_speed(const Laboratory& lab) {
 Laboratory parse_laboratory(const std::string& text, const std::string& source) {
   std::vector<Laboratory> all = parse_laboratories(text, source);
   if (all.size() == 1) return std::move(all.front());
-  throw Error(fmt::format("{} describes {} droplets, but only one has a place here; give one diameter and "
-                          "one angle",
-                          source, all.size()));
+  throw Error(
+      fmt::format("{} describes {} droplets, but only one has a place here; give one diameter and "
+                  "one angle",
+                  source, all.size()));
 }
 
 std::vector<Laboratory> read_laboratories(const std::string& path) {

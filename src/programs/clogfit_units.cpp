@@ -170,9 +170,9 @@ Json json_of(const Laboratory& lab, const Scales& scales) {
 Line line_of(const Laboratory& lab) {
   const Scales scales = laboratory::scales_of(lab);
   Line line;
-  for (const double value : {scales.length / milli, lab.experiment.tilt / degree, scales.time, scales.speed / milli,
-                             scales.terminal_speed, scales.line_tension, scales.wall_stiffness,
-                             scales.capillary_number})
+  for (const double value :
+       {scales.length / milli, lab.experiment.tilt / degree, scales.time, scales.speed / milli,
+        scales.terminal_speed, scales.line_tension, scales.wall_stiffness, scales.capillary_number})
     line.push_back(with_unit(value, ""));
   return line;
 }
@@ -185,7 +185,8 @@ int show_droplets(const std::vector<Laboratory>& all, const std::string& format)
     std::cout << console::json_text(document);
     return console::exit_success;
   }
-  std::vector<Line> lines = {{"diameter/mm", "angle/deg", "t0/s", "speed/(mm/s)", "V_t", "Gamma", "E_w", "Ca"}};
+  std::vector<Line> lines = {
+      {"diameter/mm", "angle/deg", "t0/s", "speed/(mm/s)", "V_t", "Gamma", "E_w", "Ca"}};
   for (const Laboratory& lab : all) lines.push_back(line_of(lab));
   std::cout << lines_text(lines);
   if (const std::string law = laboratory::law_of_speed(all.front()); !law.empty()) std::cout << law << '\n';
@@ -212,8 +213,9 @@ int clogfit_units(int argc, const char* const* argv) {
   if (all.size() > 1) {
     for (const Conversion& conversion : known)
       if (line.has(conversion.option))
-        throw Error(fmt::format("cannot convert --{} for {} droplets; give a file with one diameter and one angle",
-                                conversion.option, all.size()));
+        throw Error(
+            fmt::format("cannot convert --{} for {} droplets; give a file with one diameter and one angle",
+                        conversion.option, all.size()));
     return show_droplets(all, format);
   }
   if (format == "json") {

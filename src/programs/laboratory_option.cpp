@@ -86,7 +86,8 @@ void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory:
       const std::string& text = given == texts.end() ? settings.text(parameter.key) : given->second;
       if (is_length_without_unit(parameter, *meant_by<ObstacleLayout>(layout), text))
         throw Error(fmt::format(
-            "invalid {0}={1} (a number without a unit is in droplet diameters, but {2} has several droplets, or "
+            "invalid {0}={1} (a number without a unit is in droplet diameters, but {2} has several droplets, "
+            "or "
             "another one than the circles are drawn for) write it as in {0}=0.5{3}, or with sigma if it is "
             "to grow with the droplet",
             parameter.key, text, line.get("lab"),
@@ -97,8 +98,8 @@ void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory:
 /// What the speed of each droplet is, where it was not measured.
 void say_law_of_speed(const cli::CommandLine& line, const Droplets& droplets) {
   const laboratory::Laboratory& first = droplets.all.front();
-  const bool is_given = line.settings().is_given("terminal-speed") ||
-                        line.texts_with_units().contains("terminal-speed");
+  const bool is_given =
+      line.settings().is_given("terminal-speed") || line.texts_with_units().contains("terminal-speed");
   std::string law = laboratory::law_of_speed(first);
   if (droplets.all.size() > 1 && first.experiment.terminal_speed == 0)
     law = fmt::format("no speed, so all droplets have terminal-speed={}",
@@ -135,8 +136,8 @@ std::set<std::string> cells_of(const sweep::Points& points, const std::string& k
 }
 
 /// A parameter set for each droplet and each point, of which there may be none.
-sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets, const laboratory::Texts& given,
-                        sweep::Points points) {
+sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
+                        const laboratory::Texts& given, sweep::Points points) {
   if (points.rows.empty()) points.rows.emplace_back();
   std::vector<laboratory::Texts> sets;
   std::set<std::string> keys;
@@ -183,7 +184,8 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
   if (!line.has("quiet")) say_law_of_speed(line, droplets);
   if (droplets.have_several_sizes && points.empty()) refuse_lengths_without_unit(line, given);
   const laboratory::Texts base = texts_of(droplets.all.front(), droplets, given, settings);
-  if (droplets.all.size() > 1 || !points.empty()) points = points_of(line, droplets, given, std::move(points));
+  if (droplets.all.size() > 1 || !points.empty())
+    points = points_of(line, droplets, given, std::move(points));
   for (const auto& [key, text] : base) settings.set(key, text);
   const sweep::CircleFiles before = settings.circle_files();
   for (const auto& [file, circles] : before) settings.detach(file);
@@ -203,7 +205,8 @@ results::Scales scales_of_rows(const cli::CommandLine& line, const std::vector<s
     const std::optional<LaboratoryText>& own = row.parameters.laboratory;
     if (!own || own->text().empty()) return {};
     if (!scales.contains(own->check_sum()))
-      scales[own->check_sum()] = scale_of(laboratory::parse_laboratory(own->text(), "the laboratory of some rows"));
+      scales[own->check_sum()] =
+          scale_of(laboratory::parse_laboratory(own->text(), "the laboratory of some rows"));
   }
   return scales;
 }

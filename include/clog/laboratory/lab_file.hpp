@@ -9,9 +9,9 @@
 
 namespace clog::laboratory {
 
-/// A terminal speed that was measured with another droplet or at another tilt. It is proportional to sin(tilt)
-/// and to diameter^exponent: the drag of the model is linear, and weight and drag of a flat droplet between two
-/// plates are both proportional to its area, so the exponent is 0 (Taylor and Saffman 1959).
+/// A terminal speed that was measured with another droplet or at another tilt. It is proportional to
+/// sin(tilt) and to diameter^exponent: the drag of the model is linear, and weight and drag of a flat droplet
+/// between two plates are both proportional to its area, so the exponent is 0 (Taylor and Saffman 1959).
 struct MeasuredSpeed {
   double speed = 0, diameter = 0, tilt = 0;  ///< [m/s], [m], [rad]
   double exponent = 0;

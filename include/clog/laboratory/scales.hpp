@@ -27,8 +27,8 @@ struct Scales {
 Scales scales_of(const Laboratory& lab);
 /// Texts of keys, by their names.
 using Texts = std::map<std::string, std::string>;
-/// The laboratory's description, and the terminal speed and line tension (of soft disks wall stiffness) of its
-/// droplet, unless the user has set them.
+/// The laboratory's description, and the terminal speed and line tension (of soft disks wall stiffness) of
+/// its droplet, unless the user has set them.
 Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings);
 /// A key's text with its numbers in the model's units: `0.2mm,0.3mm` is `0.1,0.15` with a droplet of 2 mm.
 /// @param text  numbers without a unit, and those in sigma, keep their values
