@@ -36,8 +36,9 @@ def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
     powers = {column["name"]: {"sigma": 1, "1/sigma^2": -2}.get(column["unit"], 0) for column in fit["columns"]}
 
     def scaled(group: Group) -> Group:
-        return group | {"in_table": group} | {name: float(f"{group[name] * group['diameter_mm'] ** power:.10g}") for name, power in powers.items()
-                        if power and isinstance(group[name], int | float)}
+        lengths = {name: float(f"{group[name] * group['diameter_mm'] ** power:.10g}") for name, power in powers.items()
+                   if power and isinstance(group[name], int | float)}
+        return group | {"in_table": group} | lengths
 
     groups = [scaled(group) for group in groups]
     own = [{"name": name, "kind": "number", "parameter_role": "physics", "shapes_array": False, **about} for name, about in DROPLETS.items()]
