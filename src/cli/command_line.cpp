@@ -129,8 +129,19 @@ void CommandLine::parse(int argc, const char* const* argv) {
   if (has("instruction-set")) use_instruction_set(get("instruction-set"));
   if (has("config")) read_config(get("config"));
   for (const auto& [name, value] : values_)
-    if (is_key(name)) settings_.set(name, value.as<std::string>());
+    if (is_key(name)) set_key(name, value.as<std::string>());
   for (const std::string& file : settings_.missing_files()) settings_.attach(file, read_circles(file));
+}
+
+void CommandLine::set_key(const std::string& name, const std::string& text) try {
+  settings_.set(name, text);
+  texts_with_units_.erase(name);
+} catch (const sweep::NumberWithUnit& error) {
+  if (own_.find_nothrow("lab", false) == nullptr) throw;
+  if (!has("lab"))
+    throw Error(
+        fmt::format("{}; --lab FILE with the droplet's diameter would give it a meaning", error.what()));
+  texts_with_units_[name] = text;
 }
 
 bool CommandLine::awaits_value(const std::string& word) const {
@@ -218,7 +229,7 @@ void CommandLine::read_config(const std::string& path) {
         throw Error("the key " + option.string_key + " is given twice");
       if (option.value.empty() || option.value.front().empty())
         throw Error("invalid " + option.string_key + "= (has no value)");
-      settings_.set(option.string_key, sweep::unescaped(option.value.front()));
+      set_key(option.string_key, sweep::unescaped(option.value.front()));
     }
   } catch (const po::error& error) {
     throw Error(path + ": " + error.what() + "; lines are `key = value`, comments start with #");

@@ -233,7 +233,22 @@ Obstacle parse_circle(console::TableLine line, const Columns& columns, const Sca
 
 }  // namespace
 
-OwnCircles read_circles(const std::string& path) {
+namespace {
+
+/// Parts of a name like posts.csv@0.8mm: a file, and the droplet to which its circles are to be scaled [m].
+std::pair<std::string, std::optional<double>> parts_of(const std::string& name) {
+  const auto at = name.rfind('@');
+  std::error_code none;
+  if (at == std::string::npos || std::filesystem::exists(name, none)) return {name, {}};
+  const auto unit = std::min(name.find_first_not_of("0123456789.eE+-", at + 1), name.size());
+  return {name.substr(0, at),
+          sweep::to_number(name.substr(at + 1, unit - at - 1)) * metres_in(name.substr(unit))};
+}
+
+}  // namespace
+
+OwnCircles read_circles(const std::string& name) {
+  const auto [path, droplet] = parts_of(name);
   static const std::set<std::string> drawings = {".dxf", ".gds",  ".gdsii", ".svg", ".png",
                                                  ".tif", ".tiff", ".bmp",   ".jpg", ".jpeg"};
   if (drawings.contains(console::in_lower_case(std::filesystem::path(path).extension())))
@@ -253,12 +268,17 @@ OwnCircles read_circles(const std::string& path) {
       },
       [&](const std::string& comment) {
         read_scale(comment, scale);
+        if (droplet) scale.droplet_metres = *droplet;
         if (is_first) columns = columns_in(comment).value_or(columns);
       });
   numbers.check(path);
   if (circles.empty()) throw Error(path + " holds no obstacles; lines are x,y[,diameter]");
-  const std::optional droplet = scale.unit.empty() ? std::nullopt : std::optional(scale.droplet_metres);
-  return OwnCircles(std::move(circles), path, droplet);
+  if (droplet && scale.unit.empty())
+    throw Error(path +
+                " is in droplet diameters and cannot be scaled to another droplet; put a line such as "
+                "'# units=um droplet=200um' above its circles");
+  return OwnCircles(std::move(circles), name,
+                    scale.unit.empty() ? std::nullopt : std::optional(scale.droplet_metres));
 }
 
 void write_obstacles(const std::string& path, std::span<const Obstacle> obstacles) {

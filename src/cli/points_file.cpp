@@ -53,7 +53,7 @@ std::string value_of(const sweep::Key& key, const std::string& cell, char separa
 /// @param num_columns  of the first line. @throws Error  if a value is invalid
 std::vector<std::string> values_of(const console::TableLine& line, const std::vector<std::string>& keys,
                                    const std::vector<std::size_t>& columns, std::size_t num_columns,
-                                   console::DecimalCommas& commas) {
+                                   console::DecimalCommas& commas, Units units) {
   std::vector<std::string> cells = line.cells;
   while (cells.size() > num_columns && cells.back().empty()) cells.pop_back();
   if (cells.size() != num_columns)
@@ -65,14 +65,18 @@ std::vector<std::string> values_of(const console::TableLine& line, const std::ve
   std::vector<std::string> values;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     values.push_back(value_of(sweep::find_key(keys[i]), cells[columns[i]], line.separator, commas));
-    if (!values.back().empty()) scratch.set(keys[i], values.back());
+    try {
+      if (!values.back().empty()) scratch.set(keys[i], values.back());
+    } catch (const sweep::NumberWithUnit&) {
+      if (units == Units::refused) throw;
+    }
   }
   return values;
 }
 
 }  // namespace
 
-sweep::Points read_points(const std::string& path) {
+sweep::Points read_points(const std::string& path, Units units) {
   sweep::Points points;
   std::vector<std::size_t> columns;
   std::size_t num_columns = 0;
@@ -84,7 +88,7 @@ sweep::Points read_points(const std::string& path) {
       num_columns = line.cells.size();
       while (num_columns > 0 && line.cells[num_columns - 1].empty()) --num_columns;
     } else {
-      points.rows.push_back(values_of(line, points.keys, columns, num_columns, commas));
+      points.rows.push_back(values_of(line, points.keys, columns, num_columns, commas, units));
     }
   });
   commas.check(path);

@@ -18,6 +18,8 @@ namespace {
 const std::map<std::string, double>& known_units(const std::string& quantity) {
   static const std::map<std::string, std::map<std::string, double>> units = {
       {"length", {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}},
+      {"number per area", {{"/m^2", 1}, {"/cm^2", 1e4}, {"/mm^2", 1e6}, {"/um^2", 1e12}}},
+      {"time", {{"s", 1}, {"min", 60}, {"h", 3600}}},
       {"speed", {{"m/s", 1}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {"um/s", 1e-6}}},
       {"tension", {{"N/m", 1}, {"mN/m", 1e-3}, {"J/m^2", 1}, {"mJ/m^2", 1e-3}}},
       {"density", {{"kg/m^3", 1}, {"g/cm^3", 1e3}, {"g/ml", 1e3}}},
@@ -34,7 +36,8 @@ std::string with_plain_micro(const std::string& unit) {
 
 const std::string& usual_unit(const std::string& quantity) {
   static const std::map<std::string, std::string> units = {
-      {"length", "mm"}, {"speed", "mm/s"}, {"tension", "mN/m"}, {"density", "g/ml"}, {"angle", "deg"}};
+      {"length", "mm"},    {"number per area", "/mm^2"}, {"time", "s"},   {"speed", "mm/s"},
+      {"tension", "mN/m"}, {"density", "g/ml"},          {"angle", "deg"}};
   return units.at(quantity);
 }
 

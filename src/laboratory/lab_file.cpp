@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -13,6 +14,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/split.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::laboratory {
@@ -23,8 +25,10 @@ using Entries = std::map<std::string, std::string>;
 /// The quantity that each key gives; the ratio is a plain number.
 const std::map<std::string, std::string>& known_keys() {
   static const std::map<std::string, std::string> keys = {
-      {"diameter", "length"}, {"thickness", "length"}, {"density", "density"}, {"outer-density", "density"},
-      {"tension", "tension"}, {"angle", "angle"},      {"speed", "speed"},     {"tension-ratio", ""}};
+      {"diameter", "length"},       {"thickness", "length"}, {"density", "density"},
+      {"outer-density", "density"}, {"tension", "tension"},  {"angle", "angle"},
+      {"speed", "speed"},           {"tension-ratio", ""},   {"speed-diameter", "length"},
+      {"speed-angle", "angle"},     {"speed-exponent", ""}};
   return keys;
 }
 
@@ -64,18 +68,39 @@ double value_of(const Entries& entries, const std::string& key, double otherwise
   if (found == entries.end()) return otherwise;
   try {
     const std::string& units = known_keys().at(key);
+    if (found->second.find(',') != std::string::npos)
+      throw Error("one value is needed; diameter, angle and speed may be lists");
     const double value = units.empty() ? sweep::to_number(found->second) : to_si(found->second, units);
-    if (value > 0) return value;
+    if (value > 0 || (value == 0 && key == "speed-exponent")) return value;
     throw Error("must be positive");
   } catch (const Error& error) {
     throw Error(fmt::format("invalid {}={} ({})", key, found->second, error.what()));
   }
 }
 
+constexpr const char* scaling_keys[] = {"speed-diameter", "speed-angle", "speed-exponent"};
+
+bool scales_speed(const Entries& entries) {
+  return std::ranges::any_of(scaling_keys, [&](const char* key) { return entries.contains(key); });
+}
+
+constexpr double right_angle = std::numbers::pi / 2 * (1 + 1e-12);
+
+/// Scales the terminal speed to this droplet and this tilt.
+void scale_speed(Laboratory& lab, const Entries& entries) {
+  Experiment& at = lab.experiment;
+  if (at.terminal_speed == 0) throw Error("has no speed, which speed-diameter, -angle and -exponent scale");
+  lab.measured = {.speed = at.terminal_speed,
+                  .diameter = value_of(entries, "speed-diameter", at.diameter),
+                  .tilt = value_of(entries, "speed-angle", at.tilt),
+                  .exponent = value_of(entries, "speed-exponent", 0)};
+  if (lab.measured->tilt > right_angle)
+    throw Error(fmt::format("invalid speed-angle={} (beyond 90 degrees)", entries.at("speed-angle")));
+  at.terminal_speed *= std::sin(at.tilt) / std::sin(lab.measured->tilt) *
+                       std::pow(at.diameter / lab.measured->diameter, lab.measured->exponent);
+}
+
 Laboratory laboratory_of(const Entries& entries) {
-  for (const auto& [key, example] : {std::pair{"diameter", "3.5 mm"}, {"angle", "28 deg"}})
-    if (!entries.contains(key))
-      throw Error(fmt::format("has no {0}; write for example {0} = {1}", key, example));
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   constexpr double octane = 703, water = 997;  // of the article [kg/m^3]
   Laboratory lab;
@@ -91,11 +116,11 @@ Laboratory laboratory_of(const Entries& entries) {
   if (lab.experiment.diameter > largest)
     throw Error(fmt::format("invalid diameter={} (a droplet wider than {} m; is the unit right?)",
                             entries.at("diameter"), largest));
-  constexpr double right_angle = std::numbers::pi / 2 * (1 + 1e-12);
   if (lab.experiment.tilt > right_angle)
     throw Error(fmt::format("invalid angle={} (beyond 90 degrees)", entries.at("angle")));
   if (lab.experiment.droplet_density == lab.experiment.outer_density)
     throw Error("density and outer-density are equal: nothing drives the droplet");
+  if (scales_speed(entries)) scale_speed(lab, entries);
   constexpr double fastest = 10;
   if (const double speed = lab.experiment.reduced_terminal_speed(); speed > fastest)
     throw Error(
@@ -106,14 +131,82 @@ Laboratory laboratory_of(const Entries& entries) {
   return lab;
 }
 
-}  // namespace
+/// The values of a list; none of a key that the file does not have.
+std::vector<std::string> values_of(const Entries& entries, const std::string& key) {
+  std::vector<std::string> values;
+  if (!entries.contains(key)) return values;
+  for (const std::string& value : split_at_commas(entries.at(key))) values.push_back(console::trimmed(value));
+  return values;
+}
 
-Laboratory parse_laboratory(const std::string& text, const std::string& source) {
+/// The entries of each droplet at each tilt.
+std::vector<Entries> sets_of(const Entries& entries) {
+  for (const auto& [key, example] : {std::pair{"diameter", "3.5 mm"}, {"angle", "28 deg"}})
+    if (!entries.contains(key))
+      throw Error(fmt::format("has no {0}; write for example {0} = {1}", key, example));
+  const std::vector<std::string> diameters = values_of(entries, "diameter"),
+                                 angles = values_of(entries, "angle"), speeds = values_of(entries, "speed");
+  const std::size_t num_sets = diameters.size() * angles.size();
+  if (speeds.size() > 1 && speeds.size() != num_sets)
+    throw Error(
+        fmt::format("has {} values of speed for {} (diameters times angles); give one for each, with "
+                    "the angles of the first diameter first, or one for all",
+                    speeds.size(), sweep::counted(std::ssize(diameters) * std::ssize(angles), "set")));
+  if (speeds.size() > 1 && scales_speed(entries))
+    throw Error(
+        "has a speed for each set, so speed-diameter, -angle and -exponent have no meaning; leave "
+        "them out");
+  std::vector<Entries> sets;
+  sets.reserve(num_sets);
+  for (const std::string& diameter : diameters)
+    for (const std::string& angle : angles) {
+      Entries one = entries;
+      if (speeds.size() > 1) one["speed"] = speeds[sets.size()];
+      one["diameter"] = diameter;
+      one["angle"] = angle;
+      if (num_sets > 1 && speeds.size() == 1) {
+        one.emplace("speed-diameter", diameters.front());
+        one.emplace("speed-angle", angles.front());
+        one.emplace("speed-exponent", "0");
+      }
+      sets.push_back(std::move(one));
+    }
+  return sets;
+}
+
+std::vector<Laboratory> parse_laboratories(const std::string& text, const std::string& source) {
   try {
-    return laboratory_of(entries_of(text));
+    std::vector<Laboratory> all;
+    for (const Entries& entries : sets_of(entries_of(text))) all.push_back(laboratory_of(entries));
+    return all;
   } catch (const Error& error) {
     throw Error(source + " " + error.what());
   }
+}
+
+}  // namespace
+
+std::string law_of_speed(const Laboratory& lab) {
+  if (!lab.measured) return "";
+  constexpr double milli = 1e-3, degree = std::numbers::pi / 180;
+  return fmt::format(
+      "the terminal speed, {:.4g} mm/s at {:.4g} mm and {:.4g} degrees, is scaled with sin(angle) and "
+      "diameter^{:.4g} (speed-exponent); a list of measured speeds replaces this law",
+      lab.measured->speed / milli, lab.measured->diameter / milli, lab.measured->tilt / degree,
+      lab.measured->exponent);
+}
+
+Laboratory parse_laboratory(const std::string& text, const std::string& source) {
+  std::vector<Laboratory> all = parse_laboratories(text, source);
+  if (all.size() == 1) return std::move(all.front());
+  throw Error(
+      fmt::format("{} describes {} droplets, but only one has a place here; give one diameter and "
+                  "one angle",
+                  source, all.size()));
+}
+
+std::vector<Laboratory> read_laboratories(const std::string& path) {
+  return parse_laboratories(console::read_text(path), path);
 }
 
 Laboratory read_laboratory(const std::string& path) {

@@ -9,10 +9,14 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
+#include "clog/sweep/keys.hpp"
 
 namespace clog::laboratory {
 namespace {
@@ -102,15 +106,48 @@ Scales scales_of(const Laboratory& lab) {
   return scales;
 }
 
-void set_droplet(const Laboratory& lab, sweep::Settings& settings) {
+Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings) {
   const Scales scales = scales_of(lab);
+  Texts texts = {{"laboratory", lab.text}};
   const auto set = [&](const char* key, double value) {
-    if (std::isfinite(value) && !settings.is_given(key)) settings.set(key, fmt::format("{:.4g}", value));
+    if (std::isfinite(value) && !settings.is_given(key)) texts[key] = fmt::format("{:.4g}", value);
   };
   set("terminal-speed", scales.terminal_speed);
   const std::vector<std::string>& models = settings.values("model");
   if (models == std::vector<std::string>{"dp"}) set("line-tension", scales.line_tension);
   if (models == std::vector<std::string>{"sp"}) set("wall-stiffness", scales.wall_stiffness);
+  return texts;
+}
+
+std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales) {
+  const sweep::Key& known = sweep::find_key(key);
+  const std::map<std::string, std::pair<std::string, double>> units = {
+      {"sigma", {"length", scales.length}},
+      {"1/sigma^2", {"number per area", 1 / (scales.length * scales.length)}},
+      {"t0", {"time", scales.time}},
+      {"sqrt(sigma g)", {"speed", scales.length / scales.time}},
+      {"g rho sigma^2", {"tension", scales.tension}}};
+  const auto unit = units.find(known.parameter ? known.parameter->unit : "");
+  static const std::regex number_with_unit(
+      "([0-9.]+(?:[eE][-+]?[0-9]+)?) *(/?[A-Za-z\xc2\xb5\xce\xbc][A-Za-z/^2]*)");
+  std::string converted;
+  auto rest = text.begin();
+  for (std::sregex_iterator found(text.begin(), text.end(), number_with_unit), end; found != end; ++found) {
+    const std::string number = (*found)[1], its_unit = (*found)[2];
+    converted.append(rest, (*found)[0].first);
+    rest = (*found)[0].second;
+    try {
+      if (unit == units.end()) throw Error("numbers have no unit here");
+      const auto& [quantity, size] = unit->second;
+      constexpr int digits = 13;  // as of circles in a file
+      converted += its_unit == "sigma" || its_unit == "/sigma^2"
+                       ? number
+                       : fmt::format("{:.{}g}", to_si(number + its_unit, quantity) / size, digits);
+    } catch (const Error& error) {
+      throw Error(fmt::format("invalid {}={} ({})", key, text, error.what()));
+    }
+  }
+  return converted.append(rest, text.end());
 }
 
 double line_tension_upright(const Laboratory& lab) {

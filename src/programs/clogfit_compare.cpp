@@ -59,9 +59,9 @@ results::Comparisons compare_measured(const cli::CommandLine& line, const std::v
       tables.push_back(results::read_distances(path));
       continue;
     }
-    const std::vector<results::Side> side = results::sides_of_files({path});
-    tables.push_back(results::distances_of(side.front()));
-    rows.insert(rows.end(), side.front().rows.begin(), side.front().rows.end());
+    const results::Side side = results::sides_of_files({path}).front();
+    tables.push_back(results::distances_of(side, scales_of_rows(line, side.rows)));
+    rows.insert(rows.end(), side.rows.begin(), side.rows.end());
   }
   return results::compare_distances(tables, confidence, sigma_in_mm(line, rows));
 }

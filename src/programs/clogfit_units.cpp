@@ -18,6 +18,7 @@
 #include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/core/polygon/forces/automatic_values.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/laboratory/scales.hpp"
 
 namespace clog::programs {
@@ -47,7 +48,9 @@ lab.cfg has lines key = value:
   thickness = 0.4 mm          of the cell
   tension-ratio = 0.3         Gamma of the model over Gamma_exp (likewise)
 
-diameter and angle are needed. Gamma_exp = gamma/(g_exp rho sigma^2) is of an interface in three dimensions; the model has
+diameter and angle are needed, and may be lists: 0.8 mm, 1.2 mm. speed is then one value for each droplet, or that of
+speed-diameter and speed-angle (the first of each list), scaled with sin(angle) and diameter to the power of
+speed-exponent (0). Gamma_exp = gamma/(g_exp rho sigma^2) is of an interface in three dimensions; the model has
 two, in which the droplets of the article move like the measured ones with 0.3 of it. Run clogfit calibrate to
 find the ratio of your droplet.
 )";
@@ -147,6 +150,7 @@ Json json_of(const Laboratory& lab, const Scales& scales) {
   return {{"version", build.version},
           {"git_describe", build.git_describe},
           {"diameter_mm", scales.length / milli},
+          {"angle_degrees", lab.experiment.tilt / degree},
           {"gravity_m_per_s2", scales.gravity},
           {"time_s", scales.time},
           {"speed_mm_per_s", scales.speed / milli},
@@ -162,6 +166,33 @@ Json json_of(const Laboratory& lab, const Scales& scales) {
           {"line_tension_of_cell_uN", scales.line_tension_of_cell / (milli * milli)}};
 }
 
+/// A line of the table of several droplets.
+Line line_of(const Laboratory& lab) {
+  const Scales scales = laboratory::scales_of(lab);
+  Line line;
+  for (const double value :
+       {scales.length / milli, lab.experiment.tilt / degree, scales.time, scales.speed / milli,
+        scales.terminal_speed, scales.line_tension, scales.wall_stiffness, scales.capillary_number})
+    line.push_back(with_unit(value, ""));
+  return line;
+}
+
+/// A file of several droplets: a line for each.
+int show_droplets(const std::vector<Laboratory>& all, const std::string& format) {
+  if (format == "json") {
+    Json document = Json::array();
+    for (const Laboratory& lab : all) document.push_back(json_of(lab, laboratory::scales_of(lab)));
+    std::cout << console::json_text(document);
+    return console::exit_success;
+  }
+  std::vector<Line> lines = {
+      {"diameter/mm", "angle/deg", "t0/s", "speed/(mm/s)", "V_t", "Gamma", "E_w", "Ca"}};
+  for (const Laboratory& lab : all) lines.push_back(line_of(lab));
+  std::cout << lines_text(lines);
+  if (const std::string law = laboratory::law_of_speed(all.front()); !law.empty()) std::cout << law << '\n';
+  return console::exit_success;
+}
+
 }  // namespace
 
 int clogfit_units(int argc, const char* const* argv) {
@@ -175,9 +206,18 @@ int clogfit_units(int argc, const char* const* argv) {
       .option("format", "text or json", "text");
   if (!cli::parse_command(line, argc, argv)) return console::exit_success;
   const std::string format = line.get_word("format", {"text", "json"});
-  const Laboratory lab = laboratory::read_laboratory(line.require("file"));
+  const std::vector<Laboratory> all = laboratory::read_laboratories(line.require("file"));
+  const Laboratory& lab = all.front();
   const Scales scales = laboratory::scales_of(lab);
   const std::vector<Conversion> known = conversions(lab, scales);
+  if (all.size() > 1) {
+    for (const Conversion& conversion : known)
+      if (line.has(conversion.option))
+        throw Error(
+            fmt::format("cannot convert --{} for {} droplets; give a file with one diameter and one angle",
+                        conversion.option, all.size()));
+    return show_droplets(all, format);
+  }
   if (format == "json") {
     Json document = json_of(lab, scales);
     for (const Conversion& conversion : known) {

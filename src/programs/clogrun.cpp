@@ -69,7 +69,6 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
     throw Error("--seed and --seeds contradict each other; give one of them");
   if (line.has("seed")) line.settings().set("seeds", line.get("seed"));
   use_laboratory(line);
-  refuse_other_droplets(line);
   return true;
 }
 

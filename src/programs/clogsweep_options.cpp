@@ -76,16 +76,21 @@ bool is_full(const sweep::Points& points, std::size_t place) {
   return std::ranges::none_of(points.rows, [&](const auto& row) { return row[place].empty(); });
 }
 
-/// Adds --points and --shard to the settings.
+/// Adds --lab, --points and --shard to the settings.
 void add_plan_options(cli::CommandLine& line) {
   sweep::Settings& settings = line.settings();
+  sweep::Points points = settings.points();
+  std::string path = line.has("lab") ? line.get("lab") : "";
   if (line.has("points")) {
-    const std::string path = line.get("points");
-    const sweep::Points points = cli::read_points(path);
+    path = line.get("points");
+    points = cli::read_points(path, line.has("lab") ? cli::Units::kept : cli::Units::refused);
     for (std::size_t i = 0; i < points.keys.size(); ++i)
       if (const std::string& key = points.keys[i]; line.has(key) && is_full(points, i))
         throw Error(fmt::format(
             "{0} names the key {1}, and so does the command line; give {1} in one of them only", path, key));
+  }
+  use_laboratories(line, points);
+  if (!path.empty() && !points.empty()) {
     try {
       settings.set_points(points);
     } catch (const Error& error) {
@@ -179,9 +184,7 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
           {{"MPI", scheduler::Communicator::library_version()}, {"HDF5", store::library_version()}}))
     return false;
   refuse_other_format(line);
-  use_laboratory(line);
   add_plan_options(line);
-  refuse_other_droplets(line);
   fill_seeds(line);
   return true;
 }

@@ -4,10 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
+#include <set>
+#include <utility>
 
+#include "clog/cli/obstacle_file.hpp"
+#include "clog/console/csv.hpp"
 #include "clog/console/streams.hpp"
+#include "clog/core/parameters/schema.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/split.hpp"
 #include "clog/laboratory/lab_file.hpp"
 #include "clog/laboratory/scales.hpp"
 
@@ -20,16 +28,187 @@ results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
   return {.length = scales.length / milli,
           .time = scales.time,
           .speed = scales.speed / milli,
-          .tension = scales.tension / milli};
+          .tension = scales.tension / milli,
+          .tilt = results::short_number(lab.experiment.tilt / (std::numbers::pi / 180))};
+}
+
+/// Several droplets of one sweep, or one.
+struct Droplets {
+  std::vector<laboratory::Laboratory> all;
+  /// Are there several sizes, or circles that are drawn for another one?
+  bool have_several_sizes = false;
+
+  void note_size(double diameter) {
+    constexpr double rounding = 0.005;
+    have_several_sizes |= std::abs(diameter / all.front().experiment.diameter - 1) > rounding;
+  }
+};
+
+std::vector<std::string> circle_files(const std::string& list) {
+  std::vector<std::string> names = split_at_commas(list);
+  for (std::string& name : names) name = console::trimmed(name);
+  return names;
+}
+
+/// The names of these files, each with the droplet's diameter behind it if its circles are to be scaled.
+std::string scaled_circles(const std::string& list, const laboratory::Laboratory& lab,
+                           const Droplets& droplets) {
+  constexpr double milli = 1e-3;
+  std::vector<std::string> names = circle_files(list);
+  for (std::string& name : names)
+    if (droplets.have_several_sizes && name != "none")
+      name += fmt::format("@{:.12g}mm", lab.experiment.diameter / milli);
+  return joined(names, ",");
+}
+
+/// Does the array's geometry depend on this key, whose text is a plain number other than 0?
+bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, const std::string& text) {
+  RunParameters run;
+  run.obstacles.layout = layout;
+  const std::string unit = parameter.unit, scope = parameter.scope->word;
+  const bool is_of_file = scope == "file" || parameter.key == std::string_view("box");
+  const bool counts = layout == ObstacleLayout::file
+                          ? is_of_file
+                          : parameter.shapes_array && parameter.role == ParameterRole::physics;
+  return counts && parameter.applies_to(run) && (unit == "sigma" || unit == "1/sigma^2") && text != "0" &&
+         text.find_first_not_of("0123456789.,eE+-") == std::string::npos;
+}
+
+/// In millimetres an array stays the same for all droplets; in sigma it would grow with them, which the user
+/// has to say. @param texts  as given. @throws Error
+void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory::Texts& texts) {
+  sweep::Settings settings = line.settings();
+  if (const auto own = texts.find(sweep::circles_key); own != texts.end())
+    settings.set(sweep::circles_key, own->second);
+  for (const std::string& layout : settings.values("obstacle-layout"))
+    for (const Parameter& parameter : parameter_schema()) {
+      const auto given = texts.find(parameter.key);
+      const std::string& text = given == texts.end() ? settings.text(parameter.key) : given->second;
+      if (is_length_without_unit(parameter, *meant_by<ObstacleLayout>(layout), text))
+        throw Error(fmt::format(
+            "invalid {0}={1} (a number without a unit is in droplet diameters, but {2} has several droplets, "
+            "or "
+            "another one than the circles are drawn for) write it as in {0}=0.5{3}, or with sigma if it is "
+            "to grow with the droplet",
+            parameter.key, text, line.get("lab"),
+            parameter.unit == std::string_view("sigma") ? "mm" : "/mm^2"));
+    }
+}
+
+/// What the speed of each droplet is, where it was not measured.
+void say_law_of_speed(const cli::CommandLine& line, const Droplets& droplets) {
+  const laboratory::Laboratory& first = droplets.all.front();
+  const bool is_given =
+      line.settings().is_given("terminal-speed") || line.texts_with_units().contains("terminal-speed");
+  std::string law = laboratory::law_of_speed(first);
+  if (droplets.all.size() > 1 && first.experiment.terminal_speed == 0)
+    law = fmt::format("no speed, so all droplets have terminal-speed={}",
+                      line.settings().text("terminal-speed"));
+  if (!law.empty() && !is_given)
+    console::say(fmt::format("{}: {}: {}", line.program(), line.get("lab"), law));
+}
+
+/// A droplet's texts of keys whose numbers may have units, and of circles.
+laboratory::Texts converted(const laboratory::Texts& given, const laboratory::Laboratory& lab,
+                            const laboratory::Scales& scales, const Droplets& droplets) {
+  laboratory::Texts texts;
+  for (const auto& [key, text] : given)
+    texts[key] = key == sweep::circles_key ? scaled_circles(text, lab, droplets)
+                                           : laboratory::in_model_units(key, text, scales);
+  return texts;
+}
+
+/// What no point says otherwise.
+laboratory::Texts texts_of(const laboratory::Laboratory& lab, const Droplets& droplets,
+                           const laboratory::Texts& given, const sweep::Settings& settings) {
+  laboratory::Texts texts = converted(given, lab, laboratory::scales_of(lab), droplets);
+  texts.merge(laboratory::droplet_texts(lab, settings));
+  return texts;
+}
+
+/// What the points have for a key.
+std::set<std::string> cells_of(const sweep::Points& points, const std::string& key) {
+  std::set<std::string> cells;
+  for (std::size_t i = 0; i < points.keys.size(); ++i)
+    for (const std::vector<std::string>& row : points.rows)
+      if (points.keys[i] == key && !row[i].empty()) cells.insert(row[i]);
+  return cells;
+}
+
+/// A parameter set for each droplet and each point, of which there may be none.
+sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
+                        const laboratory::Texts& given, sweep::Points points) {
+  if (points.rows.empty()) points.rows.emplace_back();
+  std::vector<laboratory::Texts> sets;
+  std::set<std::string> keys;
+  for (const laboratory::Laboratory& lab : droplets.all) {
+    const laboratory::Scales scales = laboratory::scales_of(lab);
+    const laboratory::Texts of_all = texts_of(lab, droplets, given, line.settings());
+    for (const std::vector<std::string>& row : points.rows) {
+      laboratory::Texts own;
+      for (std::size_t i = 0; i < row.size(); ++i)
+        if (!row[i].empty()) own[points.keys[i]] = row[i];
+      laboratory::Texts set = converted(own, lab, scales, droplets);
+      set.insert(of_all.begin(), of_all.end());
+      own.insert(given.begin(), given.end());
+      if (droplets.have_several_sizes) refuse_lengths_without_unit(line, own);
+      for (const auto& [key, text] : set) keys.insert(key);
+      sets.push_back(std::move(set));
+    }
+  }
+  sweep::Points expanded{.keys = {keys.begin(), keys.end()}, .rows = {}};
+  for (const laboratory::Texts& set : sets) {
+    std::vector<std::string>& row = expanded.rows.emplace_back();
+    for (const std::string& key : keys) row.push_back(set.contains(key) ? set.at(key) : "");
+  }
+  return expanded;
 }
 
 }  // namespace
 
-void use_laboratory(cli::CommandLine& line) {
+void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
   if (!line.has("lab")) return;
-  const laboratory::Laboratory lab = laboratory::read_laboratory(line.get("lab"));
-  line.settings().set("laboratory", lab.text);
-  laboratory::set_droplet(lab, line.settings());
+  sweep::Settings& settings = line.settings();
+  Droplets droplets{.all = laboratory::read_laboratories(line.get("lab"))};
+  for (const laboratory::Laboratory& lab : droplets.all) droplets.note_size(lab.experiment.diameter);
+  laboratory::Texts given = line.texts_with_units();
+  std::set<std::string> circle_lists = cells_of(points, sweep::circles_key);
+  if (const std::string circles = settings.text(sweep::circles_key); circles != "none") {
+    given[sweep::circles_key] = circles;
+    circle_lists.insert(circles);
+  }
+  for (const std::string& list : circle_lists)
+    for (const std::string& name : circle_files(list))
+      if (name != "none")
+        if (const auto drawn_for = cli::read_circles(name).droplet()) droplets.note_size(*drawn_for);
+  if (!line.has("quiet")) say_law_of_speed(line, droplets);
+  if (droplets.have_several_sizes && points.empty()) refuse_lengths_without_unit(line, given);
+  const laboratory::Texts base = texts_of(droplets.all.front(), droplets, given, settings);
+  if (droplets.all.size() > 1 || !points.empty())
+    points = points_of(line, droplets, given, std::move(points));
+  for (const auto& [key, text] : base) settings.set(key, text);
+  const sweep::CircleFiles before = settings.circle_files();
+  for (const auto& [file, circles] : before) settings.detach(file);
+  for (const std::string& file : settings.missing_files()) settings.attach(file, cli::read_circles(file));
+}
+
+void use_laboratory(cli::CommandLine& line) {
+  if (line.has("lab")) laboratory::read_laboratory(line.get("lab"));
+  sweep::Points none;
+  use_laboratories(line, none);
+}
+
+results::Scales scales_of_rows(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows) {
+  results::Scales scales;
+  if (line.has("lab")) return scales;
+  for (const sweep::RunRow& row : rows) {
+    const std::optional<LaboratoryText>& own = row.parameters.laboratory;
+    if (!own || own->text().empty()) return {};
+    if (!scales.contains(own->check_sum()))
+      scales[own->check_sum()] =
+          scale_of(laboratory::parse_laboratory(own->text(), "the laboratory of some rows"));
+  }
+  return scales;
 }
 
 std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows) {
@@ -41,16 +220,6 @@ std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vecto
   });
   if (!is_shared || first.text().empty()) return std::nullopt;
   return scale_of(laboratory::parse_laboratory(first.text(), "the laboratory of some rows")).length;
-}
-
-void refuse_other_droplets(const cli::CommandLine& line) {
-  if (!line.has("lab")) return;
-  constexpr double rounding = 0.005, micro = 1e-6;
-  const double diameter = laboratory::read_laboratory(line.get("lab")).experiment.diameter;
-  for (const auto& [file, circles] : line.settings().circle_files())
-    if (circles.droplet() && std::abs(*circles.droplet() / diameter - 1) > rounding)
-      throw Error(fmt::format("{} has a droplet of {:.4g} um, {} one of {:.4g} um; correct one of them",
-                              line.get("lab"), diameter / micro, file, *circles.droplet() / micro));
 }
 
 void set_scales(const cli::CommandLine& line, std::vector<results::Group>& groups) {

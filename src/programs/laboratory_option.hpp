@@ -4,18 +4,26 @@
 #include <vector>
 
 #include "clog/cli/command_line.hpp"
+#include "clog/results/distance_table.hpp"
 #include "clog/results/groups.hpp"
 
 namespace clog::programs {
 
-/// Sets the keys that the file of --lab determines, if there is one. @throws Error
+/// Sets the keys that the file of --lab determines, if there is one, converts those that were given with
+/// units, and scales user-supplied circles to the droplet. @throws Error, also if the file has several
+/// droplets
 void use_laboratory(cli::CommandLine& line);
 
-/// @throws Error  if there is a file of --lab, and circles are drawn for a droplet of another diameter
-void refuse_other_droplets(const cli::CommandLine& line);
+/// The same for the droplets of a file. Several become points, each with the texts of one droplet.
+/// @param points  of the sweep, none or some; each is combined with each droplet
+void use_laboratories(cli::CommandLine& line, sweep::Points& points);
 
 /// Gives each group the scale of --lab, or else of its own laboratory. @throws Error
 void set_scales(const cli::CommandLine& line, std::vector<results::Group>& groups);
+
+/// The scale of each laboratory of these rows; none if some row has none, or --lab counts for all. @throws
+/// Error
+results::Scales scales_of_rows(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
 
 /// The droplet's diameter in mm: that of --lab, or else of the laboratory that all rows have; nothing if
 /// neither is there. @throws Error

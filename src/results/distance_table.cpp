@@ -185,9 +185,10 @@ DistanceTable read_distances(const std::string& path) {
   return grouped(std::move(table), std::move(runs));
 }
 
-DistanceTable distances_of(const Side& side) {
+DistanceTable distances_of(const Side& side, const Scales& scales) {
   require_lengths(side);
-  DistanceTable table{.source = side.name, .unit = "sigma", .labels = {}, .groups = {}};
+  const bool is_in_mm = scales.size() > 1;
+  DistanceTable table{.source = side.name, .unit = is_in_mm ? "mm" : "sigma", .labels = {}, .groups = {}};
   std::vector<const sweep::RunRow*> rows;
   for (const sweep::RunRow& row : side.rows)
     if (row.status != RunStatus::failed && sweep::fault_of(row).empty()) rows.push_back(&row);
@@ -199,13 +200,19 @@ DistanceTable distances_of(const Side& side) {
       varying.push_back(column);
       table.labels.push_back(column->name);
     }
+  if (is_in_mm) table.labels.insert(table.labels.end(), {"diameter", "angle"});
   std::map<std::vector<Value>, std::vector<fit::Observation>> runs;
   for (const sweep::RunRow* row : rows) {
-    const std::optional<fit::Observation> run = observation_of(*row);
+    std::optional<fit::Observation> run = observation_of(*row);
     if (!run) continue;
     std::vector<Value> labels;
     labels.reserve(varying.size());
     for (const sweep::Column* column : varying) labels.push_back(column->get(*row));
+    if (is_in_mm) {
+      const LaboratoryScale& scale = scales.at(row->parameters.laboratory->check_sum());
+      labels.insert(labels.end(), {short_number(scale.length), scale.tilt});
+      run->distance *= scale.length;
+    }
     runs[std::move(labels)].push_back(*run);
   }
   return grouped(std::move(table), std::move(runs));

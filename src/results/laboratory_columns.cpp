@@ -1,6 +1,9 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "clog/console/rounded.hpp"
 #include "result_columns.hpp"
@@ -28,6 +31,10 @@ double tension_of(const Group& group) {
 
 }  // namespace
 
+double short_number(double value) {
+  return std::isfinite(value) ? std::stod(fmt::format("{:.12g}", value)) : value;
+}
+
 bool have_laboratory(const std::vector<Group>& groups) {
   return has_clogging_length(groups.front().first_row) &&
          std::ranges::any_of(groups, [](const Group& group) { return group.laboratory.has_value(); });
@@ -36,7 +43,9 @@ bool have_laboratory(const std::vector<Group>& groups) {
 std::vector<Field> laboratory_fields(const Group& group) {
   const LaboratoryScale scale = scale_of(group);
   const fit::CloggingLength& clogging = group.clogging;
-  return {{"tension_mN_per_m", finite_value(tension_of(group))},
+  return {{"diameter_mm", finite_value(short_number(scale.length))},
+          {"angle_degrees", finite_value(scale.tilt)},
+          {"tension_mN_per_m", finite_value(tension_of(group))},
           {"clogging_length_mm", finite_value(clogging.length * scale.length)},
           {"clogging_length_lower_mm", finite_value(clogging.interval.lower * scale.length)},
           {"clogging_length_upper_mm", finite_value(clogging.interval.upper * scale.length)},

@@ -29,10 +29,10 @@ const Scene* scene_in(const std::string& text) {
   return layout ? &scene_of(*layout) : nullptr;
 }
 
-[[noreturn]] void refuse_value(const std::string& name, const std::string& text, const std::string& why) {
+std::string refused_value(const std::string& name, const std::string& text, const std::string& why) {
   constexpr std::size_t longest_shown = 60;
   const std::string shown = text.size() > longest_shown ? text.substr(0, longest_shown) + "..." : text;
-  throw Error(fmt::format("invalid {}={} ({})", name, shown, why));
+  return fmt::format("invalid {}={} ({})", name, shown, why);
 }
 
 std::string unit_in_words(const Key& key) {
@@ -53,11 +53,11 @@ std::vector<std::string> values_of(const Key& key, const std::string& text) {
     }
     return values;
   } catch (const NumberWithUnit& error) {
-    refuse_value(
+    throw NumberWithUnit(refused_value(
         key.name, text,
-        fmt::format("{}; numbers have no unit here: this one is {}", error.what(), unit_in_words(key)));
+        fmt::format("{}; numbers have no unit here: this one is {}", error.what(), unit_in_words(key))));
   } catch (const Error& error) {
-    refuse_value(key.name, text, error.what());
+    throw Error(refused_value(key.name, text, error.what()));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "clog/core/tools/error.hpp"
 
@@ -43,6 +44,19 @@ TEST(TiltOf, IsThatOfTheLaboratoryForItsOwnGamma) {
   EXPECT_NEAR(tilt_of(scales.line_tension, lab), std::numbers::pi / 6, 1e-12);
   EXPECT_TRUE(std::isnan(tilt_of(0.1 * scales.line_tension, lab))) << "not even upright";
   EXPECT_TRUE(std::isnan(scales.terminal_speed)) << "no speed is given";
+}
+
+TEST(InModelUnits, ConvertsEachNumberThatHasAUnit) {
+  const Scales scales{.length = 2e-3, .time = 0.5, .tension = 4e-3};
+  EXPECT_EQ(in_model_units("obstacle-gap", "0.5mm, 600 um,0.3sigma,0.4", scales), "0.25, 0.3,0.3,0.4");
+  EXPECT_EQ(in_model_units("obstacle-gap", "log(0.2mm,2e0mm,3)", scales), "log(0.1,1,3)");
+  EXPECT_EQ(in_model_units("obstacle-density", "0.5/mm^2,saturated,12%", scales), "2,saturated,12%");
+  EXPECT_EQ(in_model_units("max-time", "2min", scales), "240");
+  EXPECT_EQ(in_model_units("terminal-speed", "1 mm/s", scales), "0.25");
+  EXPECT_EQ(in_model_units("line-tension", "2mN/m", scales), "0.5");
+  for (const auto& [key, text] :
+       {std::pair{"obstacle-gap", "3s"}, {"vertices", "64mm"}, {"obstacle-gap", "1foot"}})
+    EXPECT_THROW(in_model_units(key, text, scales), Error) << key;
 }
 
 TEST(Laboratory, KeepsItsLinesWithoutComments) {

@@ -129,22 +129,14 @@ class Devices(Walls):
                 self.write("bad.csv", text)
                 self.refuse("clogsweep", "obstacles=bad.csv", "box=6", "--output", "x.h5", words=["bad.csv", *words])
 
-    def test_a_drawing_in_place_of_circles_and_another_droplet_than_the_laboratory_s_are_refused(self):
+    def test_a_drawing_in_place_of_circles_is_refused(self):
         self.write("posts.svg", SVG.format(""))
         self.refuse("clogsweep", "obstacles=posts.svg", "box=6", "--output", "x.h5", words=["posts.svg is a drawing", "circles"])
+
+    def test_a_device_is_swept_in_laboratory_units(self):
         self.write("posts.csv", "# units=um droplet=200um\nx,y,diameter\n" + csv(200))
-        for diameter, is_refused in (("300 um", True), ("0.2 mm", False)):
-            self.write("lab.cfg", f"diameter = {diameter}\nangle = 90 deg\ntension = 0.1 mN/m\nspeed = 1 mm/s\n")
-            arguments = ("--lab", "lab.cfg", "obstacles=posts.csv", "box=6", "length=18", "max-time=20", "seeds=1")
-            if is_refused:
-                self.refuse("clogsweep", *arguments, "--output", "x.h5", words=["lab.cfg has a droplet of 300 um", "posts.csv one of 200 um"])
-                self.refuse("clogrun", "array", *arguments, "--output", "x.h5", words=["lab.cfg has a droplet of 300 um"])
-            else:
-                self.succeed("clogsweep", *arguments, "--output", "s.h5")
-        self.write("lab.cfg", "diameter = 300 um\nangle = 90 deg\n")
-        self.write("points.csv", "obstacles,box\nposts.csv,6\n")
-        self.refuse("clogsweep", "--lab", "lab.cfg", "--points", "points.csv", "length=18", "max-time=20", "seeds=1", "--output", "x.h5",
-                    words=["lab.cfg has a droplet of 300 um"])
+        self.write("lab.cfg", "diameter = 0.2 mm\nangle = 90 deg\ntension = 0.1 mN/m\nspeed = 1 mm/s\n")
+        self.succeed("clogsweep", "--lab", "lab.cfg", "obstacles=posts.csv", "box=6", "length=18", "max-time=20", "seeds=1", "--output", "s.h5")
         told = self.succeed("clogfit", "s.h5")
         self.assertIn("tension/(mN/m)", told.stdout)
         self.assertEqual(told.stderr, "")

@@ -72,7 +72,9 @@ class EveryKey(Sweeps):
                 self.sweep(key["key"])
                 groups = self.fit()
                 if key["role"] != "ensemble":
-                    if key["kind"] in ("file", "text"):  # no axis: a curve each
+                    if key["key"] == "laboratory":  # of droplets of two sizes
+                        self.assertEqual((groups.abscissa, groups.values("diameter_mm")), ("diameter_mm", {1, 2}))
+                    elif key["kind"] == "file":  # no axis: a curve each
                         self.assertEqual([len(members) for _, members in groups.curves()], [1, 1])
                     else:
                         self.assertEqual(groups.abscissa, key["column"])

@@ -36,6 +36,11 @@ def of_fit(fit: points.Fit, seeds: Sequence[set[int]], names: Sequence[str] = ()
     """@param fit  the JSON of clogfit; @param seeds  of the runs of each of its groups. @throws UserError  if there is no curve"""
     if any("status" in group for group in fit["groups"]):
         raise UserError("cannot fit a curve (droplets in a channel or on a wall have no clogging length)")
+    fit = fits.in_millimetres(fit)
+    unit = "mm" if "in_mm" in fit else "sigma"
+    if unit == "mm":
+        lengths = ("total_distance", *ALL, *(name for names in CAUSES.values() for name in names))
+        fit = fit | {"groups": [group | {name: group[name] * group["diameter_mm"] for name in lengths if group.get(name) is not None} for group in fit["groups"]]}
     keys = points.find_keys(fit, names)
     if len(keys) > 1 and crossing:
         raise UserError("no place for --crossing (a surface over two keys crosses a length along lines); give one --key")
@@ -48,7 +53,7 @@ def of_fit(fit: points.Fit, seeds: Sequence[set[int]], names: Sequence[str] = ()
         "git_describe": fit["git_describe"],
         "confidence": fit["confidence"],
         "keys": [key["name"] for key in keys],
-        "units": {"clogging_length": "sigma", "total_distance": "sigma"} | {key["name"]: key["unit"] for key in keys if key["unit"]},
+        "units": {"clogging_length": unit, "total_distance": unit} | {key["name"]: key["unit"] for key in keys if key["unit"]},
         "curves": [_curve(fit, members, keys, crossing) | {
             "common_obstacles": points.have_common_obstacles(members, keys, seeds)} for members in curves],
         "excluded": [{"group": one.group} | {key["name"]: fit["groups"][one.group][key["name"]] for key in keys} | {"reason": one.reason}

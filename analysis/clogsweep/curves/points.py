@@ -61,7 +61,7 @@ def find_keys(fit: Fit, names: Sequence[str] = ()) -> list[Column]:
     """The columns of these keys; without any, of the one physical parameter that varies.
     @throws UserError  if a name is no such key, does not vary or has values without a logarithm; or if none is given and several vary"""
     groups: list[Group] = fit["groups"]
-    possible = {column["name"]: column for column in fit["columns"] if may_be_key(fit, column)}
+    possible = {column["key"].replace("-", "_"): column for column in fit["columns"] if may_be_key(fit, column)}
     if names:
         keys = [possible.get(name.replace("-", "_")) or refuse_key(name, fit) for name in names]
         if len(keys) > MOST_KEYS or (len(keys) == MOST_KEYS and keys[0] is keys[1]):

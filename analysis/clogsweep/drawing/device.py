@@ -52,9 +52,8 @@ class Place:
         found = []
         for member in groups.members:
             is_of_group = np.ones(len(self.rows), dtype=bool)
-            for name in groups.distinguishing():
-                if member[name] is not None:  # which the model of these runs lacks
-                    is_of_group &= self.rows[name] == (member[name].encode() if isinstance(member[name], str) else member[name])
+            for name, value in groups.row_values(member).items():
+                is_of_group &= self.rows[name] == (value.encode() if isinstance(value, str) else value)
             if is_of_group.any():
                 found.append(Part(panel_label(groups, member), dataclasses.replace(self, rows=self.rows[is_of_group])))
         return found

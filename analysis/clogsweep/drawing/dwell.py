@@ -35,7 +35,7 @@ def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
         places = [time * style.side_by_side(index, len(curves), times) for time in times]
         label = fits[-1].label_of(members[-1])
         with style.curve(axes, label):
-            draw_lengths(axes, places, members, index, label)
+            draw_lengths(axes, places, members, index, label, unit="_mm" if fits[-1].are_in_mm else "")
     style.logarithmic_abscissa(axes, times)
     axes.xaxis.set_major_formatter(lambda time, _: f"{time:.3g}" if time < 1000 else f"{time:.0f}")
     lengths = fits[-1].values("dwell_length")

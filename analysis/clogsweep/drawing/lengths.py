@@ -66,19 +66,19 @@ def excluded_notes(groups: Groups) -> list[str]:
 def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
     """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given"""
     style.logarithmic_ordinate(axes)
-    style.finish(axes, AXES["length"], groups.caption(), [*length_notes(drawn, groups.confidence, [axes]), *excluded_notes(groups)], drawn, other)
+    style.finish(axes, (LABORATORY if groups.are_in_mm else AXES)["length"], groups.caption(), [*length_notes(drawn, groups.confidence, [axes]), *excluded_notes(groups)], drawn, other)
 
 
 def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
-                 size: float = 5.5) -> None:
-    """Clogging lengths with clogfit's intervals, `linestyle` where it is not that of the index, markers of `size` points. The marker is that of what holds most of the clogs; a hollow one is a
+                 size: float = 5.5, unit: str = "") -> None:
+    """Clogging lengths with clogfit's intervals, `linestyle` where it is not that of the index, markers of `size` points, in the `unit` that names of columns end with ("_mm"; sigma). The marker is that of what holds most of the clogs; a hollow one is a
     length in doubt (HOLLOW_MARKERS), a triangle a lower bound, where no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
     # NaN where no run clogged: the line breaks there and continues dotted.
-    lengths = [math.nan if group["clogs"] == 0 else group["clogging_length"] for group in groups]
-    bars = [[math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
-            for end in ("clogging_length_lower", "clogging_length_upper")]
+    middle, lower, upper = (f"clogging_length{end}{unit}" for end in ("", "_lower", "_upper"))
+    lengths = [math.nan if group["clogs"] == 0 else group[middle] for group in groups]
+    bars = [[math.nan if group["clogs"] == 0 else abs(group[middle] - group[end]) for group in groups] for end in (lower, upper)]
     colour, line = (style.curve_style(index)[name] for name in ("color", "linestyle"))
     has_bars = any(group["clogs"] > 0 for group in groups)
     axes.errorbar(places, lengths, yerr=bars if has_bars else None, color=colour, linestyle=linestyle or line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
@@ -88,10 +88,10 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
         axes.plot(x, y, color=colour, marker=style.MECHANISM_MARKERS[style.main_mechanism(group)], markerfacecolor=face, markersize=size, zorder=3,
                   gid=style.mark("point", [group]) if group["clogs"] > 0 else None)
     if linestyle != "none" and len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
-        through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]
+        through = [group[lower if group["clogs"] == 0 else middle] for group in groups]
         axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1, label=THROUGH_BOUNDS)
     bounds = [(x, group) for x, group in zip(places, groups) if group["clogs"] == 0]
-    axes.plot([x for x, _ in bounds], [group["clogging_length_lower"] for _, group in bounds], color=colour, marker="^", markerfacecolor="white",
+    axes.plot([x for x, _ in bounds], [group[lower] for _, group in bounds], color=colour, marker="^", markerfacecolor="white",
               markersize=size + 2.5, linestyle="none", gid=style.mark("point", [group for _, group in bounds]))
 
 
@@ -186,7 +186,7 @@ def draw_on(axes: Axes, groups: Groups) -> None:
     """Points with their bars; through them fitted curves, or straight lines where there are none."""
     def draw_curve(axes: Axes, places: Sequence[float], members: Sequence[Group], index: int, label: str) -> None:
         is_fitted = draw_fitted(axes, groups, members, index)
-        draw_lengths(axes, places, members, index, label, linestyle="none" if is_fitted else None)
+        draw_lengths(axes, places, members, index, label, linestyle="none" if is_fitted else None, unit="_mm" if groups.are_in_mm else "")
 
     draw_curves(axes, groups, draw_curve)
     finish_lengths(axes, groups, groups.members)

@@ -12,20 +12,20 @@ from ..reading import programs
 from ..tools.errors import UserError
 
 COLOUR = "#444444"
+LENGTHS = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 
 
 def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None, *options: object) -> list[dict[str, Any]]:
-    """The groups of a table of distances, by clogfit lengths, in droplet diameters.
+    """The groups of a table of distances, by clogfit lengths, in the unit of the picture.
     @param groups  of the sweep, whose laboratory gives the diameter. @throws UserError  if the table is in mm and no diameter is known"""
     told = json.loads(programs.run_program(programs.programs_in(folder) / "clogfit", "lengths", table, "--format", "json", *options))
     members: list[dict[str, Any]] = told["groups"]
-    if told["unit"] == "sigma":
-        return members
+    if told["unit"] == ("mm" if groups.are_in_mm else "sigma"):
+        return members if told["unit"] == "sigma" else [group | {name: group[f"{name}_mm"] for name in LENGTHS} for group in members]
     diameter = groups.laboratory.get("length_mm")
     if not diameter:
         raise UserError(f"{table} is in mm and the sweep in droplet diameters; give the droplet's diameter by --lab lab.cfg")
-    names = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
-    return [group | {name: None if group[f"{name}_mm"] is None else group[f"{name}_mm"] / diameter for name in names} for group in members]
+    return [group | {name: None if group[f"{name}_mm"] is None else group[f"{name}_mm"] / diameter for name in LENGTHS} for group in members]
 
 
 def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: str) -> None:
@@ -33,7 +33,7 @@ def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: s
     arrow points up from a lower bound, where no droplet clogged."""
     drawn = False
     for group in measured:
-        place = next((value for name, value in group.items() if name.replace("-", "_") == groups.abscissa), None)
+        place = next((value for name, value in group.items() if name.replace("-", "_") == groups.abscissa_key()), None)
         length, lower, upper = (group[f"clogging_length{end}"] for end in ("", "_lower", "_upper"))
         name = "_" if drawn else label
         if not isinstance(place, int | float):

@@ -7,7 +7,7 @@ import pathlib
 from collections.abc import Callable, Collection, Iterable
 from typing import Any
 
-from ..reading import stored
+from ..reading import fits, stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
 from ..tools.texts import literal
@@ -25,8 +25,10 @@ class Groups:
         """@param fit  the JSON of clogfit; @param circle_files  see stored.circle_files()"""
         # Nothing is random in a channel or on a wall: a group is one run, which has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
-        self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] + group["met_none"] > 0)]
         self._fit = fit
+        fit = fits.in_millimetres(fit)
+        self.are_in_mm = "in_mm" in fit  # parameters, and lengths in pictures
+        self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] + group["met_none"] > 0)]
         self._told: list[Group] = fit["groups"]
         self.confidence: float = fit["confidence"]
         self.laboratory: dict[str, float | None] = fit.get("laboratory", {})  # what the model's units are there, if all have one
@@ -105,12 +107,13 @@ class Groups:
 
     def follows(self, name: str, others: Iterable[str]) -> bool:
         """Is this parameter's value known once the others' are?"""
-        known: dict[tuple[Any, ...], Any] = {}
-        return all(known.setdefault(tuple(group[o] for o in others), group[name]) == group[name] for group in self.members)
+        return fits.follows(self.members, name, others)
 
     def _choose_abscissa(self) -> str:
         """The usual abscissa if it varies, otherwise the numeric parameter with most values."""
         usual = "line_tension" if self.are_polygons else "wall_stiffness"
+        if self.are_in_mm and self.follows(usual, fits.DROPLETS):
+            return max(fits.DROPLETS, key=lambda name: len(self.values(name)))
         if self.are_lattices and self.varies("lattice_angle"):
             return "lattice_angle"
         if self.varies(usual) and not self._is_automatic(usual):
@@ -145,8 +148,12 @@ class Groups:
         """Names of what tells the curves apart."""
         # A laboratory and circles say more than what follows from them, such as the place of an exit.
         told = [name for name in ("laboratory", "obstacles") if self.varies(name)]
-        told += [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
-                 and not self._is_automatic(name) and not (told and self.follows(name, told))]
+        if self.are_in_mm:
+            droplet = [name for name in fits.DROPLETS if self.varies(name) and name != self.abscissa]
+            told = droplet + [name for name in told if not self.follows(name, fits.DROPLETS)]
+        else:
+            told += [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
+                     and not self._is_automatic(name) and not (told and self.follows(name, told))]
         # Words and automatic values that follow from what is told say nothing new. A preset says more than its parts.
         rest = [name for name in self.columns if name not in told and name != self.abscissa]
         for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):
@@ -160,6 +167,8 @@ class Groups:
     def said(self, name: str, value: float | str | None) -> str:
         if name == "laboratory" and value in self.laboratories:
             return literal(self.laboratory_label(str(value)))
+        if name in fits.DROPLETS:
+            return fits.DROPLETS[name]["label"].format(value)
         return said(self.columns[name], self.named(name, value))
 
     def named(self, name: str, value: Any) -> Any:
@@ -179,12 +188,25 @@ class Groups:
             return names
         return ["model", *(name for name in names if len(self.values(name) - {None}) > 1)]
 
+    def row_values(self, member: Group) -> dict[str, Any]:
+        """What the rows of a group have, and no others. A value that clogfit does not know, such as the density of a saturated
+        array, follows from the others; so does one that the model of these runs lacks."""
+        values = member.get("in_table", member)
+        names = [name for name in self.distinguishing() if name not in fits.DROPLETS] + (["laboratory"] if self.are_in_mm else [])
+        return {name: values[name] for name in names if values[name] is not None}
+
     def label_of(self, member: Group) -> str:
         """The values that distinguish a group from the others."""
         is_lacking = {name for name in self.distinguishing() if member[name] is None and self.varies("model")}
         return ", ".join(self.said(name, member[name]) for name in self.distinguishing() if name not in is_lacking)
 
+    def abscissa_key(self) -> str:
+        """What a column of the user's own calls the abscissa."""
+        return fits.DROPLETS[self.abscissa]["key"] if self.abscissa in fits.DROPLETS else self.abscissa
+
     def axis_label(self) -> str:
+        if self.abscissa in fits.DROPLETS:
+            return f"{fits.DROPLETS[self.abscissa]['meaning']} [{fits.DROPLETS[self.abscissa]['unit']}]"
         if self.abscissa in AXES:
             return AXES[self.abscissa]
         return f"{self.abscissa.replace('_', ' ')} ${self.symbol(self.abscissa)}$"

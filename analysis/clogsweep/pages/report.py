@@ -164,13 +164,11 @@ def parameters(groups: Groups) -> list[str]:
     return [*groups.curve_parameters(), groups.abscissa]
 
 
-def seeds_of(group: Group, names: Sequence[str], rows: pandas.DataFrame) -> str:
-    """@param names  of the parameters that tell groups apart; one that clogfit knows no value of, such as the density of a
-    saturated array, follows from the others"""
+def seeds_of(values: dict[str, Any], rows: pandas.DataFrame) -> str:
+    """@param values  that tell the rows of a group from others"""
     of_group = rows
-    for name in names:
-        if group[name] is not None:
-            of_group = of_group[of_group[name] == group[name]]
+    for name, value in values.items():
+        of_group = of_group[of_group[name] == value]
     seeds = sorted(set(of_group.seed))
     if len(seeds) < 3:
         return ", ".join(map(str, seeds))
@@ -211,7 +209,7 @@ def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.Dat
     lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
               *(str(group[name]) for name in [*mechanisms, *passed]), length(group),
               *([migration(group, "lateral_slope"), migration(group, "row_share")] if groups.are_lattices else []), speed(group), *(in_laboratory(group, name) for name in laboratory_columns(groups)),
-              rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
+              rounded.plain(group["capillary_number"]), seeds_of(groups.row_values(group), rows)] for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
 

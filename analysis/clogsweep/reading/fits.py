@@ -2,15 +2,50 @@
 
 import json
 import pathlib
+from collections.abc import Collection, Iterable
 from typing import Any
 
-from ..tools.hints import AnyPath
+from ..tools.hints import AnyPath, Group
 from . import programs, stored
 
 
 def told(clogfit: pathlib.Path, *words: object) -> dict[str, Any]:
     """clogfit's answer for these sweeps and options. @throws ProgramFailed  with its reason"""
     return json.loads(programs.run_program(clogfit, *words, "--format", "json"))
+
+
+# What tells droplets of one sweep apart in a laboratory.
+DROPLETS: dict[str, dict[str, Any]] = {
+    "diameter_mm": {"key": "diameter", "symbol": r"\sigma", "unit": "mm", "meaning": "diameter of the droplet", "label": "diameter {:.4g} mm"},
+    "angle_degrees": {"key": "angle", "symbol": r"\theta", "unit": "degrees", "meaning": "tilt of the plates", "label": "tilt {:.4g}°"}}
+
+
+def follows(groups: Collection[Group], name: str, others: Iterable[str]) -> bool:
+    """Is this parameter's value known once the others' are?"""
+    known: dict[tuple[Any, ...], Any] = {}
+    return all(known.setdefault(tuple(group[o] for o in others), group[name]) == group[name] for group in groups)
+
+
+def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
+    """A fit of droplets in several laboratories with the diameter and the tilt as parameters, and parameters that are lengths
+    in mm: in droplet diameters one array would be another one for each droplet. Any other fit as it is. A group's "in_table" has
+    the values that rows have."""
+    groups = fit["groups"]
+    if "laboratory" in fit or "in_mm" in fit or not groups or not all(group.get("diameter_mm") for group in groups):
+        return fit
+    powers = {column["name"]: {"sigma": 1, "1/sigma^2": -2}.get(column["unit"], 0) for column in fit["columns"]}
+
+    def scaled(group: Group) -> Group:
+        lengths = {name: float(f"{group[name] * group['diameter_mm'] ** power:.10g}") for name, power in powers.items()
+                   if power and isinstance(group[name], int | float)}
+        return group | {"in_table": group} | lengths
+
+    groups = [scaled(group) for group in groups]
+    own = [{"name": name, "kind": "number", "parameter_role": "physics", "shapes_array": False, **about} for name, about in DROPLETS.items()]
+    columns = [column | ({"unit": column["unit"].replace("sigma", "mm")} if powers[column["name"]] else {}) |
+               ({"automatic_in": "all"} if follows(groups, column["name"], DROPLETS) else {}) for column in fit["columns"]]
+    names = [column["name"] for column in columns if column.get("automatic_in") != "all"]
+    return fit | {"groups": groups, "columns": own + columns, "lists": [*DROPLETS, *(name for name in fit["lists"] if name in names)], "in_mm": True}
 
 
 def fitted(clogfit: pathlib.Path, sweep: AnyPath, *options: object) -> tuple[dict[str, Any], dict[str, str]]:

@@ -91,7 +91,7 @@ class Fit:
     @property
     def summary(self) -> pandas.DataFrame:
         """The columns of `groups` that vary, lengths and speeds, or the results of a channel or a wall, and doubts."""
-        known, columns = self.groups, [column["name"] for column in self.told["columns"]]
+        known, columns = self.groups, list(self.known.columns)
         chosen = {self.known.abscissa, *self.known.curve_parameters()}  # what is automatic follows from these
         varies = [name for name in columns if name in chosen and known[name].nunique(dropna=False) > 1]
         told = [name for name in (PASSAGE if self.known.are_passages else LENGTHS) if name in known and not known[name].isna().all()]

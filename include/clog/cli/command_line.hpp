@@ -3,6 +3,7 @@
 #include <boost/program_options.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -62,6 +63,8 @@ class CommandLine {
   const std::string& program() const { return program_; }
   const sweep::Settings& settings() const { return settings_; }
   sweep::Settings& settings() { return settings_; }
+  /// Texts of keys whose numbers have units, which only --lab gives a meaning; the settings lack them.
+  const std::map<std::string, std::string>& texts_with_units() const { return texts_with_units_; }
   /// The command as it was given, in one line.
   const std::string& text() const { return text_; }
   std::string help() const;
@@ -81,6 +84,7 @@ class CommandLine {
   std::string surplus_remedy_ = "options start with --, settings are key=value";
   boost::program_options::variables_map values_;
   sweep::Settings settings_;
+  std::map<std::string, std::string> texts_with_units_;
   std::string text_;
 
   double number(const std::string& option) const;
@@ -91,6 +95,7 @@ class CommandLine {
   [[noreturn]] void refuse_surplus_words() const;
   [[noreturn]] void refuse_unknown(const std::string& word, std::span<const char* const> typed) const;
   void read_config(const std::string& path);
+  void set_key(const std::string& name, const std::string& text);
 };
 
 }  // namespace clog::cli

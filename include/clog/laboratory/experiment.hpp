@@ -5,7 +5,8 @@
 namespace clog::laboratory {
 
 /// A number with its unit, e.g. "3.5 mm" or "7mm/s", in SI units.
-/// @param units  what is measured: "length", "speed", "tension", "density" or "angle" (in radians)
+/// @param units  what is measured: "length", "number per area", "time", "speed", "tension", "density" or
+/// "angle" (in radians)
 /// @throws Error naming the units that are understood
 double to_si(const std::string& text, const std::string& units);
 

@@ -1,11 +1,21 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "clog/laboratory/experiment.hpp"
 
 namespace clog::laboratory {
+
+/// A terminal speed that was measured with another droplet or at another tilt. It is proportional to
+/// sin(tilt) and to diameter^exponent: the drag of the model is linear, and weight and drag of a flat droplet
+/// between two plates are both proportional to its area, so the exponent is 0 (Taylor and Saffman 1959).
+struct MeasuredSpeed {
+  double speed = 0, diameter = 0, tilt = 0;  ///< [m/s], [m], [rad]
+  double exponent = 0;
+};
 
 /// An experiment as a lab.cfg describes it.
 struct Laboratory {
@@ -15,11 +25,17 @@ struct Laboratory {
   /// fact that we compare values of the dimensionless line tension in 2D to values of the dimensionless
   /// surface tension in 3D".
   double tension_ratio = 0.3;
-  std::string text;  ///< `key = value; key = value`
+  std::optional<MeasuredSpeed> measured = {};  ///< from which the terminal speed follows, if it was scaled
+  std::string text;                            ///< `key = value; key = value`
 };
 
 /// Lines, or parts between semicolons, `key = value`; `#` begins a comment. @throws Error naming file and key
+/// One for each combination of the diameters and the angles that the file lists, angles fastest.
+std::vector<Laboratory> read_laboratories(const std::string& path);
+/// The only one. @throws Error if there are several, too
 Laboratory read_laboratory(const std::string& path);
+/// How the terminal speed was scaled, a line; empty if it was measured.
+std::string law_of_speed(const Laboratory& lab);
 /// @param source  what the text is called in messages
 Laboratory parse_laboratory(const std::string& text, const std::string& source);
 

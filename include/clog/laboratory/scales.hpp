@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "clog/laboratory/lab_file.hpp"
 #include "clog/sweep/settings.hpp"
 
@@ -22,9 +25,15 @@ struct Scales {
   double line_tension_of_cell = 0;     ///< interfacial tension times thickness [N]
 };
 Scales scales_of(const Laboratory& lab);
-/// Gives terminal speed and line tension (of soft disks wall stiffness) the values of the laboratory's
-/// droplet, unless the user has set them.
-void set_droplet(const Laboratory& lab, sweep::Settings& settings);
+/// Texts of keys, by their names.
+using Texts = std::map<std::string, std::string>;
+/// The laboratory's description, and the terminal speed and line tension (of soft disks wall stiffness) of
+/// its droplet, unless the user has set them.
+Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings);
+/// A key's text with its numbers in the model's units: `0.2mm,0.3mm` is `0.1,0.15` with a droplet of 2 mm.
+/// @param text  numbers without a unit, and those in sigma, keep their values
+/// @throws Error that names the key, if one of its numbers has another unit than the key can have
+std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales);
 
 /// How far the centroid of a droplet sinks that its weight presses on a flat wall, which it does not wet: the
 /// two-dimensional equation of Young and Laplace [sigma]. NaN for Gamma below 1e-3 and above 1e4.

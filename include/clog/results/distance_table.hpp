@@ -29,8 +29,12 @@ bool is_distance_table(const std::string& path);
 /// others separate groups.
 /// @throws Error that names file and line
 DistanceTable read_distances(const std::string& path);
+/// What the model's units are in each laboratory, by its checksum.
+using Scales = std::map<std::string, LaboratoryScale>;
 /// The runs of a sweep; the parameters that vary separate groups. @throws Error as require_lengths()
-DistanceTable distances_of(const Side& side);
+/// @param scales  of several laboratories: then distances are in mm, and the droplet's diameter [mm] and the
+/// tilt [degrees] separate groups, too
+DistanceTable distances_of(const Side& side, const Scales& scales = {});
 
 /// Lengths, intervals, doubts and survival of each group, estimated as those of a sweep.
 /// @param sigma_mm  the droplet's diameter in mm, if it is known: then lengths are given in both units

@@ -92,7 +92,11 @@ struct LaboratoryScale {
   double time = std::numeric_limits<double>::quiet_NaN();     ///< of t0 [s]
   double speed = std::numeric_limits<double>::quiet_NaN();    ///< of v_t [mm/s]
   double tension = std::numeric_limits<double>::quiet_NaN();  ///< of a droplet with Gamma = 1 [mN/m]
+  double tilt = std::numeric_limits<double>::quiet_NaN();     ///< [degrees]
 };
+
+/// Twelve digits, without the round-off of conversions between units.
+double short_number(double value);
 
 /// Droplets of a device and a line across the flow.
 struct Passage {

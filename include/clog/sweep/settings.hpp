@@ -70,6 +70,7 @@ class Settings {
   /// The circles in the files that the key obstacles names. The caller that sets the key reads them.
   const CircleFiles& circle_files() const { return circle_files_; }
   void attach(const std::string& file, OwnCircles circles) { circle_files_.insert_or_assign(file, circles); }
+  void detach(const std::string& file) { circle_files_.erase(file); }
   /// Files that are named and not attached.
   std::vector<std::string> missing_files() const;
 

@@ -1,0 +1,234 @@
+"""Sweeps over the droplets and tilts that a laboratory file lists."""
+
+import json
+import math
+import sys
+import unittest
+
+import h5py
+import numpy as np
+from support import BIN, ROOT, ProgramTest, table
+
+sys.path.insert(0, str(ROOT / "analysis"))
+import clogsweep  # noqa: E402
+from clogsweep import style  # noqa: E402
+from clogsweep.drawing import lengths  # noqa: E402
+
+GRAVITY = 9.81 * (0.997 - 0.703) / 0.703  # [m/s^2], of octane in water between upright plates
+LAB = {"diameter": "0.8 mm, 1.6 mm", "angle": "20 deg, 45 deg", "speed": "1 mm/s", "tension": "2 mN/m"}
+SETS = [(diameter, angle) for diameter in (0.8, 1.6) for angle in (20, 45)]
+ARRAY = ["obstacle-gap=0.4mm", "obstacle-diameter=0.24mm", "obstacle-density=0.8/mm^2", "vertices=64", "box=12", "max-time=40", "seeds=1..2"]
+POSTS = "# units=mm droplet=1mm\nx,y,diameter\n" + "".join(f"{1.7 * i},{1.7 * j},0.3\n" for i in range(6) for j in range(6))
+
+
+def sine(degrees):
+    return math.sin(math.radians(degrees))
+
+
+class Sizes(ProgramTest):
+    def lab(self, name="lab.cfg", **changed):
+        lines = {key: text for key, text in (LAB | {key.replace("_", "-"): text for key, text in changed.items()}).items() if text}
+        return self.write(name, "".join(f"{key} = {text}\n" for key, text in lines.items()))
+
+    def droplets(self, **changed):
+        return json.loads(self.succeed("clogfit", "units", self.lab(**changed), "--format", "json").stdout)
+
+    def sweep(self, *arguments, output="s.h5", **changed):
+        return self.succeed("clogsweep", "--lab", self.lab(**changed), *(arguments or ARRAY), "--output", output)
+
+    def fit(self, *arguments):
+        return json.loads(self.succeed("clogfit", *arguments, "--format", "json").stdout)
+
+    def test_gamma_falls_with_area_and_tilt(self):
+        found = self.droplets()
+        self.assertEqual([(one["diameter_mm"], round(one["angle_degrees"], 9)) for one in found], SETS)
+        for one, (diameter, angle) in zip(found, SETS):
+            # 0.3 gamma/(rho sigma^2 g sin(angle)), Eq. 7 of Cheng et al.
+            gamma = 0.3 * 2e-3 / (703 * (1e-3 * diameter)**2 * GRAVITY * sine(angle))
+            self.assertAlmostEqual(one["line_tension"] / gamma, 1, places=9)
+
+    def check_speeds(self, speeds, **changed):
+        for one, (diameter, angle), speed in zip(self.droplets(**changed), SETS, speeds):
+            self.assertAlmostEqual(one["speed_mm_per_s"] / speed, 1, places=9)
+            reduced = 1e-3 * speed / math.sqrt(1e-3 * diameter * GRAVITY * sine(angle))
+            self.assertAlmostEqual(one["terminal_speed"] / reduced, 1, places=9)
+
+    def test_a_measured_speed_is_scaled_by_a_law_that_is_printed(self):
+        self.check_speeds([sine(angle) / sine(20) for _, angle in SETS])
+        law = {"speed_diameter": "1.6 mm", "speed_angle": "45 deg", "speed_exponent": "2"}
+        self.check_speeds([(diameter / 1.6)**2 * sine(angle) / sine(45) for diameter, angle in SETS], **law)
+        words = "1 mm/s at 1.6 mm and 45 degrees, is scaled with sin(angle) and diameter^2"
+        self.assertIn(words, self.succeed("clogfit", "units", self.lab(**law)).stdout)
+        self.assertIn(words, self.sweep("--dry-run", *ARRAY, **law).stderr)
+        self.assertNotIn(words, self.sweep("--dry-run", "terminal-speed=0.03", *ARRAY, **law).stderr)
+        self.assertIn("no speed, so all droplets have terminal-speed=0.03", self.sweep("--dry-run", *ARRAY, speed="").stderr)
+
+    def test_a_list_of_speeds_has_one_for_each_droplet_and_tilt(self):
+        self.check_speeds([1, 2, 3, 4], speed="1 mm/s, 2 mm/s, 3 mm/s, 4 mm/s")
+        self.assertNotIn("scaled", self.succeed("clogfit", "units", "lab.cfg").stdout)
+
+    def test_a_single_droplet_may_be_another_than_that_of_the_speed(self):
+        one = json.loads(self.succeed("clogfit", "units", self.lab(diameter="2 mm", angle="30 deg", speed_diameter="1 mm", speed_angle="90 deg", speed_exponent="1"),
+                                      "--format", "json").stdout)
+        self.assertAlmostEqual(one["speed_mm_per_s"], 1)  # 2 sin(30)
+
+    def test_a_random_array_keeps_its_millimetres(self):
+        self.sweep()
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(len(rows), 8)
+        texts = self.fit("s.h5")["laboratories"]
+        for row in rows.itertuples():
+            diameter = float(texts[row.laboratory].split("diameter = ")[1].split(" mm")[0])
+            self.assertAlmostEqual(row.obstacle_gap * diameter, 0.4)
+            self.assertAlmostEqual(row.obstacle_diameter * diameter, 0.24)
+            self.assertAlmostEqual(row.obstacle_density / diameter**2, 0.8)
+            self.assertEqual(row.box, 12)
+        self.assertEqual(rows.laboratory.nunique(), 4)
+
+    def test_keys_in_laboratory_units_are_converted_for_one_droplet_too(self):
+        told = self.sweep("line-tension=lin(2mN/m,4mN/m,3)", "obstacle-gap=320 um, 0.45sigma,0.6", "box=0.96cm", "max-time=4s", "--print-config", diameter="0.8 mm", angle="20 deg").stdout
+        config = dict(line.split(" = ") for line in told.splitlines() if " = " in line and not line.startswith(("#", "laboratory")))
+        gamma = 0.3 * 2e-3 / (703 * 0.8e-3**2 * GRAVITY * sine(20))
+        first, last, count = config["line-tension"].removeprefix("lin(").removesuffix(")").split(",")
+        np.testing.assert_allclose([float(first), float(last), float(count)], [gamma, 2 * gamma, 3], rtol=1e-9)
+        self.assertEqual((config["obstacle-gap"], config["box"]), ("0.4, 0.45,0.6", "12"))
+        self.assertAlmostEqual(float(config["max-time"]) * math.sqrt(0.8e-3 / (GRAVITY * sine(20))), 4)
+
+    def test_own_circles_keep_their_millimetres(self):
+        self.write("posts.csv", POSTS)
+        keys = ["obstacles=posts.csv", "box=10.2mm", "release=anywhere", "vertices=64", "max-time=20", "seeds=1"]
+        self.sweep(*keys, diameter="0.8 mm, 1 mm, 1.25 mm", angle="20 deg")
+        texts = self.fit("s.h5")["laboratories"]
+        with h5py.File(self.folder / "s.h5") as file:
+            self.assertEqual(len(file["obstacles"]), 3)
+            for row in file["runs"][:]:
+                diameter = float(texts[row["laboratory"].decode()].split("diameter = ")[1].split(" mm")[0])
+                circles = file["obstacles"][row["obstacles"].decode()][:]
+                np.testing.assert_allclose(np.stack([circles["x"], circles["y"], 2 * circles["radius"]], axis=1) * diameter,
+                                           np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=2), rtol=1e-12, atol=1e-12)
+                self.assertAlmostEqual(row["box"] * diameter, 10.2)
+        # The circles of one size are those of a file that was drawn for it.
+        self.write("small.csv", POSTS.replace("droplet=1mm", "droplet=0.8mm"))
+        self.succeed("clogsweep", "--lab", self.lab(diameter="0.8 mm", angle="20 deg"), *keys[1:], "obstacles=small.csv", "--output", "one.h5")
+        rows, one = table(self.folder / "s.h5"), table(self.folder / "one.h5")
+        self.assertIn(one.obstacles[0], set(rows.obstacles))
+        self.assertEqual(rows.distance[rows.obstacles == one.obstacles[0]].tolist(), one.distance.tolist())
+        self.succeed("clogsweep", "verify", "s.h5")
+
+    def test_circles_of_another_droplet_are_scaled_for_one_droplet_too(self):
+        self.write("posts.csv", POSTS)
+        lab = self.lab(diameter="0.5 mm", angle="20 deg")
+        self.succeed("clogrun", "array", "--lab", lab, "obstacles=posts.csv", "box=10.2mm", "vertices=64", "max-time=5", "--output", "r.h5")
+        with h5py.File(self.folder / "r.h5") as file:
+            self.assertAlmostEqual(file["runs"]["box"][0], 20.4)
+            self.assertAlmostEqual(file["runs"]["obstacle_gap"][0], 2 * (1.7 - 0.3))
+
+    def test_what_would_be_meant_in_droplet_diameters_is_refused(self):
+        self.write("posts.csv", POSTS)
+        lab = self.lab()
+        for keys, words in [(["obstacle-gap=0.4"], "obstacle-gap=0.4"), (["obstacle-gap=0.4mm"], "obstacle-diameter=0.3"), (["obstacles=posts.csv", "box=10"], "box=10"),
+                            (ARRAY[:2] + ["obstacle-density=0.4"], "obstacle-density=0.4"), (["obstacles=posts.csv", "box=10mm", "length=10"], "length=10")]:
+            with self.subTest(keys):
+                self.refuse("clogsweep", "--quiet", "--lab", lab, *keys, "--output", "x.h5", words=[words, "without a unit", "sigma"])
+        self.succeed("clogsweep", "--lab", lab, "obstacle-gap=0.4sigma", "obstacle-diameter=0.3sigma", "obstacle-density=saturated", "--dry-run")
+        self.refuse("clogsweep", "--quiet", "--lab", self.lab("one.cfg", diameter="0.5 mm", angle="20 deg"), "obstacles=posts.csv", "box=10", "--output", "x.h5", words=["box=10"])
+        self.refuse("clogsweep", "obstacle-gap=0.4mm", "--output", "x.h5", words=["obstacle-gap=0.4mm", "--lab"])
+        self.write("plain.csv", "1,1,0.3\n")
+        self.refuse("clogsweep", "--quiet", "--lab", lab, "obstacles=plain.csv", "box=10mm", "--output", "x.h5", words=["plain.csv", "in droplet diameters", "# units"])
+        for key in ("box=5mN/m", "line-tension=5mm", "vertices=3mm", "box=5furlong"):
+            with self.subTest(key):
+                self.refuse("clogsweep", "--quiet", "--lab", lab, key, *ARRAY[:3], "--output", "x.h5", words=[f"invalid {key}"])
+
+    def test_mistakes_in_lists_get_one_line(self):
+        for changed, words in [({"speed": "1 mm/s, 2 mm/s"}, ["2 values of speed for 4 sets"]), ({"tension": "1 mN/m, 2 mN/m"}, ["tension=1 mN/m, 2 mN/m", "one value"]),
+                               ({"diameter": "0.8, 1.6 mm"}, ["'0.8' has no unit"]), ({"speed_angle": "120 deg"}, ["speed-angle=120 deg", "beyond 90"]),
+                               ({"speed": "", "speed_angle": "20 deg"}, ["has no speed"]), ({"speed": "1 mm/s, 2 mm/s, 3 mm/s, 4 mm/s", "speed_exponent": "1"}, ["leave them out"]),
+                               ({"speed_exponent": "-1"}, ["speed-exponent=-1"]), ({"diameter": "0.8 mm,"}, ["diameter="])]:
+            with self.subTest(changed):
+                self.refuse("clogfit", "units", self.lab(**changed), words=["lab.cfg", *words])
+        self.lab()
+        self.refuse("clogrun", "array", "--lab", "lab.cfg", "--output", "r.h5", words=["lab.cfg describes 4 droplets"])
+        self.refuse("clogfit", "units", "lab.cfg", "--length", "2", words=["--length", "4 droplets"])
+        self.sweep()
+        self.refuse("clogfit", "s.h5", "--lab", "lab.cfg", words=["lab.cfg describes 4 droplets"])
+        self.refuse("clogsweep", "--quiet", "--lab", self.lab(diameter="0.8 mm, 0.8 mm"), *ARRAY, "--output", "x.h5", words=["mean the same run"])
+
+    def test_such_a_sweep_resumes_and_grows_and_is_one_of_its_config(self):
+        self.sweep()
+        before = table(self.folder / "s.h5")
+        self.assertIn("nothing left to do", self.sweep().stderr)
+        config = self.write("printed.cfg", self.sweep("--print-config", *ARRAY).stdout)
+        self.assertIn("nothing left to do", self.succeed("clogsweep", "--config", config, "--output", "s.h5").stderr)
+        self.sweep(*ARRAY, diameter="0.8 mm, 1.6 mm, 2 mm", speed_diameter="0.8 mm")
+        rows = table(self.folder / "s.h5")
+        self.assertEqual((len(rows), rows.laboratory.nunique()), (12, 6))
+        self.assertEqual(set(before.laboratory) - set(rows.laboratory), set())
+
+    def test_points_and_shards_and_more_seeds_meet_droplets(self):
+        self.write("points.csv", "obstacle-gap,max-time\n0.4mm,40\n0.5mm,\n")
+        keys = [word for word in ARRAY if not word.startswith(("obstacle-gap", "max-time"))]
+        for part in (1, 2):
+            self.sweep("--points", "points.csv", "--shard", f"{part}/2", "max-time=20", *keys, output=f"{part}.h5")
+        self.succeed("clogsweep", "merge", "1.h5", "2.h5", "--output", "all.h5")
+        rows = table(self.folder / "all.h5")
+        self.assertEqual(len(rows), 4 * 2 * 2)
+        self.assertEqual(sorted(set(rows.obstacle_gap.round(9))), [0.25, 0.3125, 0.5, 0.625])
+        self.assertEqual(set(rows.max_time[rows.obstacle_gap.isin([0.25, 0.5])]), {40})
+        self.assertEqual(set(rows.max_time[rows.obstacle_gap.isin([0.3125, 0.625])]), {20})
+        self.sweep(*ARRAY, "--until-precision", "50%", "--most-seeds", "3", output="more.h5")
+        self.assertEqual(len(table(self.folder / "more.h5")), 4 * 3)
+
+    def test_rows_of_one_droplet_can_be_selected_and_exported(self):
+        self.sweep()
+        groups = self.fit("s.h5")["groups"]
+        for group in groups:
+            self.assertIn((group["diameter_mm"], group["angle_degrees"]), SETS)
+            self.assertAlmostEqual(group["clogging_length_lower_mm"], group["diameter_mm"] * group["clogging_length_lower"])
+        self.succeed("clogsweep", "select", "s.h5", f"laboratory={groups[0]['laboratory']}", "--output", "one.h5")
+        one, = self.fit("one.h5")["groups"]
+        self.assertEqual((one["diameter_mm"], one["angle_degrees"]), (groups[0]["diameter_mm"], groups[0]["angle_degrees"]))
+        self.assertIn("diameter_mm,angle_degrees,", self.succeed("clogfit", "s.h5", "--format", "csv").stdout)
+        self.assertIn("diameter = 1.6 mm", self.succeed("clogfit", "s.h5").stdout)
+        summary = clogsweep.open(self.folder / "s.h5", BIN).fit().summary
+        self.assertEqual({"diameter_mm", "angle_degrees"} & set(summary.columns), {"diameter_mm", "angle_degrees"})
+
+    def test_measured_distances_are_compared_in_millimetres_with_the_same_droplet(self):
+        self.sweep()
+        self.write("own.csv", "distance [mm],clogged,diameter,angle\n3,1,1.6,20\n5,1,1.6,20\n4,0,0.8,45\n")
+        found = json.loads(self.succeed("clogfit", "compare", "own.csv", "s.h5", "--format", "json").stdout)
+        self.assertEqual({(one["diameter"], one["angle"]) for one in found["comparisons"]}, {(1.6, 20.0), (0.8, 45.0)})
+
+    def test_figures_show_millimetres_over_the_diameter_and_a_curve_for_each_tilt(self):
+        self.sweep()
+        groups = clogsweep.open(self.folder / "s.h5", BIN).fit().known
+        self.assertEqual([label for label, _ in groups.curves()], ["tilt 20°", "tilt 45°"])
+        self.assertEqual(groups.axis_label(), "diameter of the droplet [mm]")
+        self.assertEqual(groups.values("obstacle_gap"), {0.4})
+        self.assertEqual(groups.values("obstacle_density"), {0.8})
+        axes = style.figure_of(lengths.draw_on, groups).axes[0]
+        self.assertEqual(axes.get_ylabel(), r"$\lambda$ [mm]")
+        bound = max(group["clogging_length_lower_mm"] for group in groups.members if group["clogs"] == 0)
+        drawn = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.lines if line.get_marker() == "^"])
+        self.assertAlmostEqual(np.nanmax(drawn), bound)
+
+    def test_a_curve_runs_over_the_diameter_in_millimetres(self):
+        self.sweep("obstacle-gap=0.24mm", "obstacle-diameter=0.24mm", "obstacle-density=1.6/mm^2", "vertices=64", "box=12", "max-time=400", "seeds=1..4",
+                   diameter="0.8 mm, 1 mm, 1.2 mm, 1.6 mm", angle="20 deg")
+        found = json.loads(self.succeed("clogfit", "curve", "s.h5", "--format", "json").stdout)
+        self.assertEqual((found["keys"], found["units"]["clogging_length"]), (["diameter_mm"], "mm"))
+        groups = {group["diameter_mm"]: group for group in self.fit("s.h5")["groups"]}
+        for point in found["curves"][0]["points"]:
+            self.assertAlmostEqual(point["total_distance"], point["diameter_mm"] * groups[point["diameter_mm"]]["total_distance"])
+        self.assertEqual(json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)["keys"], found["keys"])
+
+    def test_a_report_shows_each_droplet(self):
+        self.write("posts.csv", POSTS)
+        self.sweep("obstacles=posts.csv", "box=10.2mm", "release=anywhere", "vertices=64", "max-time=20", "seeds=1..3")
+        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        page = (self.folder / "r.html").read_text()
+        self.assertIn("diameter mm", page)
+        self.assertIn("1 to 3", page)
+
+
+if __name__ == "__main__":
+    unittest.main()
