@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""sample.py SEED: prints 100 sentences of README, handbook, help texts, messages and comments, for a reader who counts those
+"""sample.py SEED: prints 100 sentences of README, handbook, help texts and comments, for a reader who counts those
 that need a second reading. The same seed and sources give the same sentences.
 """
 
@@ -15,9 +15,10 @@ import width
 KINDS = {"README": (6, ["README.md"]), "tutorial": (10, ["docs/tutorial/*.md"]), "how-to": (12, ["docs/how-to/*.md", "docs/faq.md"]),
          "explanation": (16, ["docs/explanation/*.md"]), "reference": (14, ["docs/reference/*.md", "docs/glossary.md"]),
          "gallery": (8, ["docs/gallery/*.md"]), "notes": (6, ["docs/notes/*.md", "CHANGELOG.md", "docs/paper/*.md"]),
-         "developer": (6, ["docs/developer/*.md"]), "message": (8, ["src/*.cpp", "analysis/*.py"]),
+         "developer": (6, ["docs/developer/*.md"]), "help": (8, ["src/programs/*.cpp", "src/core/parameters/schema.cpp", "analysis/clogsweep/commands/*.py"]),
          "comment": (14, ["src/*.?pp", "include/*.?pp", "analysis/*.py", "tests/*.?pp", "tests/*.py"])}
 FEWEST_WORDS = 5
+NO_PROSE = re.compile(r"\$\$|--&?>|^\W*\w+=|\{\w*[}:]|[rf]\"")
 END = re.compile(r"(?<=[.!?:])\s+(?=[A-Z`*$(\"\[])")
 PAGE_MARKS, CODE_MARKS = re.compile(r"^\s*(?:[-*>] )?"), re.compile(r"^[\s/*<!#>\"'|-]+")
 
@@ -40,7 +41,7 @@ def sentences(name, kind):
         is_new = number != before + 1 or not line.strip() or re.match(r"\s*[-*] ", line)
         if is_new and paragraph:
             whole = " ".join(" ".join(paragraph).split())
-            yield from (f"{name}:{first}: {one}" for one in END.split(whole) if len(one.split()) >= FEWEST_WORDS)
+            yield from (f"{name}:{first}: {one}" for one in END.split(whole) if len(one.split()) >= FEWEST_WORDS and not NO_PROSE.search(one))
             paragraph = []
         if number is not None and marks.sub("", line).strip():
             first = first if paragraph else number
