@@ -15,17 +15,17 @@ draw() { /usr/bin/python3 -m clogsweep "$@" --programs "$bin"; }
 
 for name in "$@"; do
   case $name in
-    clogging-length) # 5 to 10 minutes on two idle cores; docs/pictures/clogging-length.png
+    clogging-length) # three minutes on two idle cores; docs/pictures/clogging-length.png
       sweep=(mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$folder/sweep.h5")
       "${sweep[@]}"
-      "${sweep[@]}" friction=0 line-tension=0.35,0.4,0.6
+      "${sweep[@]}" friction=0 line-tension=0.35,0.4,0.5,0.6
       draw clogging-length "$folder/sweep.h5" --output "$folder/clogging-length"
       ;;
-    clogs) # a minute; docs/pictures/figure-5.png
-      draw figures 5 --output "$folder/clogs" --set clogging-friction:line-tension=0.05,0.5 \
-        --set clogging-friction:obstacle-gap=0.2 --set clogging-friction:seeds=1..2
+    clogs) # docs/pictures/figure-5.png
+      draw figures 5 --output "$folder/clogs" --set clogging-friction:line-tension=0.05,3 \
+        --set clogging-friction:obstacle-gap=0.2 --set clogging-friction:friction=0.05 --set clogging-friction:seeds=1..3
       ;;
-    mesh) draw figures W1 --output "$folder/mesh" ;; # 11 core-minutes; docs/pictures/figure-W1.png
+    mesh) draw figures W1 --output "$folder/mesh" ;; # docs/pictures/figure-W1.png
     *) echo "no figure is called $name; there are: clogging-length clogs mesh" >&2; exit 2 ;;
   esac
 done

@@ -45,8 +45,8 @@ int report(const cli::CommandLine& line, const single_run::RecordedRun& watched)
   return exit_code;
 }
 
-void say_what_is_unproven(const sweep::Plan& plan) {
-  if (const std::string words = sweep::unproven_parameters(plan); !words.empty()) console::say(words);
+void warn_of_untested_parameters(const sweep::Plan& plan) {
+  if (const std::string words = sweep::untested_parameters(plan); !words.empty()) console::say(words);
 }
 
 void choose_layout(cli::CommandLine& line, const std::string& layout) {

@@ -27,7 +27,7 @@ void refuse_options(const cli::CommandLine& line, const std::string& system,
 single_run::RecordedRun::Intervals intervals(const cli::CommandLine& line, double time_step);
 /// Prints what a run came to, with --lab in mm and s, too. Returns the exit code.
 int report(const cli::CommandLine& line, const single_run::RecordedRun& watched);
-/// On the standard error, what of the runs was not proved sound; nothing if all of it was.
-void say_what_is_unproven(const sweep::Plan& plan);
+/// Prints on the standard error which parameters are outside the range tested for soundness.
+void warn_of_untested_parameters(const sweep::Plan& plan);
 
 }  // namespace clog::programs

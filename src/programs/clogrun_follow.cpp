@@ -64,7 +64,7 @@ int clogrun_array(cli::CommandLine& line) {
   return follow_run(line, parameters, line.settings().to_config(), [&](const DropletRun& run) {
     if (line.has("write-obstacles"))
       cli::write_obstacles(line.get("write-obstacles"), run.obstacles().obstacles());
-    say_what_is_unproven(sweep::Plan(line.settings()));
+    warn_of_untested_parameters(sweep::Plan(line.settings()));
   });
 }
 
@@ -72,7 +72,7 @@ int clogrun_channel(cli::CommandLine& line) {
   refuse_options(line, "channel", {"write-obstacles"});
   const RunParameters parameters = sweep::single_run(line.settings());
   return follow_run(line, parameters, line.settings().to_config(), [&](const DropletRun&) {
-    say_what_is_unproven(sweep::Plan(line.settings()));
+    warn_of_untested_parameters(sweep::Plan(line.settings()));
     say_what_is_coarse(parameters);
   });
 }

@@ -32,7 +32,7 @@ int clogrun_sag(cli::CommandLine& line) {
   if (line.has("output")) store::refuse_unwritable(line.get("output"));
   if (line.has("dry-run")) return preview(line, plan, often);
 
-  say_what_is_unproven(plan);
+  warn_of_untested_parameters(plan);
   console::catch_stop_signals();
   std::cout << "model,line_tension,wall_stiffness,sag,top_sag,shape_parameter,time,status\n";
   bool all_at_rest = true;

@@ -56,7 +56,7 @@ std::vector<Doubt> doubts_about(const Group& group) {
       {Doubt::array_repeats, has_length && group.num_repeating > 0},
       {Doubt::met_none, has_length && group.num_free > 0 && !is_device(group.first_row.parameters)},
       {Doubt::below_spacing, has_length && is_below_spacing},
-      {Doubt::not_proved_sound, !sweep::unproven_parameters(group.first_row).empty()}};
+      {Doubt::untested, !sweep::untested_parameters(group.first_row).empty()}};
   std::vector<Doubt> doubts;
   for (const auto& [doubt, holds] : all)
     if (holds) doubts.push_back(doubt);

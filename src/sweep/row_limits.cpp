@@ -35,7 +35,7 @@ struct SoundPreset {
 };
 constexpr SoundPreset sound_presets[] = {{"robust", 0.02}, {"heavy-interface", 0.07}, {"elastic", 0.04}};
 
-std::string unproven_tension(const std::string& preset_name, const DpParameters& dp) {
+std::string untested_tension(const std::string& preset_name, const DpParameters& dp) {
   const auto* preset = std::find_if(std::begin(sound_presets), std::end(sound_presets),
                                     [&](const SoundPreset& one) { return one.name == preset_name; });
   if (preset == std::end(sound_presets))
@@ -43,22 +43,22 @@ std::string unproven_tension(const std::string& preset_name, const DpParameters&
            (preset_name == "custom" ? " (this interface was not tested)"
                                     : " (droplets cross themselves and obstacles)");
   if (dp.line_tension >= preset->smallest_tension && dp.line_tension <= largest_tension) return "";
-  return fmt::format("line-tension={} ({} is sound from {} to {})", shortest(dp.line_tension), preset->name,
+  return fmt::format("line-tension={} ({} is tested from {} to {})", shortest(dp.line_tension), preset->name,
                      shortest(preset->smallest_tension), shortest(largest_tension));
 }
 
-std::string unproven_vertices(const DpParameters& dp) {
+std::string untested_vertices(const DpParameters& dp) {
   if (*dp.vertices >= fewest_vertices && *dp.vertices <= most_vertices) return "";
   return fmt::format("vertices={} (tested from {} to {})", *dp.vertices, fewest_vertices, most_vertices);
 }
 
 /// @param hold  of walls, by friction or a yield traction
-std::string unproven_hold(const char* key, double hold, double most, const char* unit) {
+std::string untested_hold(const char* key, double hold, double most, const char* unit) {
   if (hold <= most) return "";
   return fmt::format("{}={} (tested up to {}{})", key, shortest(hold), shortest(most), unit);
 }
 
-std::string unproven_angle(const DpParameters& dp) {
+std::string untested_angle(const DpParameters& dp) {
   if (!dp.receding_angle || *dp.receding_angle >= smallest_receding_angle) return "";
   return fmt::format("receding-angle={} (tested from {} on)", shortest(*dp.receding_angle),
                      shortest(smallest_receding_angle));
@@ -66,7 +66,7 @@ std::string unproven_angle(const DpParameters& dp) {
 
 /// Needles slip through the interface: then the droplet encloses them, at its release or on its way. Seen
 /// with obstacles as thick as an edge is long and thinner ones, the more often the more of them there are.
-std::string unproven_diameter(const RunParameters& run) {
+std::string untested_diameter(const RunParameters& run) {
   constexpr double thinnest = 2;                                  // over the length of an edge, with a margin
   if (scene_of(run).walls_from == WallsFrom::droplet) return "";  // there are no obstacles
   const double edge = units::regular_edge_length(*run.dp.vertices);
@@ -79,22 +79,22 @@ std::string unproven_diameter(const RunParameters& run) {
 
 }  // namespace
 
-std::vector<std::string> unproven_parameters(const RunRow& row) {
+std::vector<std::string> untested_parameters(const RunRow& row) {
   std::vector<std::string> all;
   if (row.parameters.model != Model::dp) return all;
   const DpParameters& dp = row.parameters.dp;
   for (const std::string& one :
-       {unproven_tension(row.preset, dp), unproven_vertices(dp), unproven_diameter(row.parameters),
-        unproven_angle(dp), unproven_hold("friction", dp.friction, most_friction, ""),
-        unproven_hold("yield-traction", dp.yield_traction, most_traction, " g rho sigma")})
+       {untested_tension(row.preset, dp), untested_vertices(dp), untested_diameter(row.parameters),
+        untested_angle(dp), untested_hold("friction", dp.friction, most_friction, ""),
+        untested_hold("yield-traction", dp.yield_traction, most_traction, " g rho sigma")})
     if (!one.empty()) all.push_back(one);
   return all;
 }
 
-std::string unproven_parameters(const Plan& plan) {
+std::string untested_parameters(const Plan& plan) {
   std::vector<std::string> all;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group)
-    for (const std::string& one : unproven_parameters(describe(plan.group(group))))
+    for (const std::string& one : untested_parameters(describe(plan.group(group))))
       if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
   if (all.empty()) return "";
   constexpr std::size_t most_named = 4;
@@ -103,7 +103,7 @@ std::string unproven_parameters(const Plan& plan) {
     all.resize(most_named);
     all.push_back(others);
   }
-  return "not proved sound (handbook, Which droplets are sound): " + joined(all);
+  return "outside the range tested for soundness (handbook, Which droplets are sound): " + joined(all);
 }
 
 double repetition_length(const RunRow& row) {
@@ -230,7 +230,7 @@ double weight_borne_by_friction(const DpParameters& dp) {
 std::vector<std::string> limits_of_results(const Plan& plan) {
   std::vector<std::string> all = plan.possible_decimals();
   all.push_back(possible_repetition(plan));
-  all.push_back(unproven_parameters(plan));
+  all.push_back(untested_parameters(plan));
   for (const std::string& words : limits_of_circles(plan)) all.push_back(words);
   std::erase(all, "");
   return all;

@@ -6,8 +6,10 @@
 
 import json
 import pathlib
+import re
 import subprocess
 import sys
+import textwrap
 
 BEGIN, END = "<!-- {} of clogsweep --schema, by tests/lint/schema_tables.py -->", "<!-- end of {} -->"
 
@@ -41,13 +43,24 @@ def type_of(column):
 
 
 def columns(schema):
+    """Columns with the name and value of a key in one paragraph; columns whose meanings differ only in numbers in one row."""
+    key_of = {(key.get("column"), key.get("meaning")): key["key"] for key in schema["keys"]}
+    named, rows = [], {}
+    for column in schema["columns"]:
+        name = f"`{column['name']}`{type_of(column)}"
+        key = key_of.get((column["name"], column["meaning"]))
+        if key and key.replace("-", "_") == column["name"]:
+            named.append(name)
+            continue
+        meaning = f"key `{key}`" if key else cell(column["meaning"])
+        names, _, _ = rows.setdefault((column["unit"], re.sub(r"\d+", "", meaning)), ([], column["unit"], meaning))
+        names.append(name)
+    yield from textwrap.wrap("Columns with the value of the [key](keys.md) of the same name, with `_` for `-`, in its unit: " + ", ".join(named) + ".", 120)
+    yield ""
     yield "| column | unit | meaning |"
     yield "|---|---|---|"
-    key_of = {(key.get("column"), key.get("meaning")): key["key"] for key in schema["keys"]}
-    for column in schema["columns"]:
-        key = key_of.get((column["name"], column["meaning"]))
-        meaning = f"key `{key}`" if key else cell(column["meaning"])
-        yield f"| `{column['name']}`{type_of(column)} | {column['unit']} | {meaning} |"
+    for names, unit, meaning in rows.values():
+        yield f"| {', '.join(names)} | {unit} | {meaning}{'; and so on' if len(names) > 1 and re.search('[0-9]', meaning) else ''} |"
 
 
 TABLES = [("docs/reference/keys.md", "keys", keys), ("docs/reference/columns.md", "columns", columns)]

@@ -270,12 +270,12 @@ class Fit(ProgramTest):
         self.assertEqual(fit["groups"][0]["doubts"], "below_spacing")
         self.assertIn("v: " + fit["doubts"]["below_spacing"], self.succeed("clogfit", "sweep.h5").stdout)
 
-    def test_what_was_not_proved_sound_is_doubted(self):
+    def test_what_was_not_tested_is_doubted(self):
         self.sweep("seeds=1..5", *FAR, "line-tension=1,30")
         self.change(distance=[1, 2, 3, 4, 5] * 2, status=[b"clogged"] * 10, contacts=1, first_contact_at=0.1)
         fit = self.fit()
-        self.assertEqual([group["doubts"] for group in fit["groups"]], [None, "not_proved_sound"])
-        self.assertIn("u: " + fit["doubts"]["not_proved_sound"], self.succeed("clogfit", "sweep.h5").stdout)
+        self.assertEqual([group["doubts"] for group in fit["groups"]], [None, "untested"])
+        self.assertIn("u: " + fit["doubts"]["untested"], self.succeed("clogfit", "sweep.h5").stdout)
 
     def test_lengths_can_count_from_a_distance_on(self):
         self.sweep("seeds=1..8", *FAR)

@@ -73,13 +73,13 @@ class Run(ProgramTest):
         self.assertAlmostEqual(own.distance, again.distance, places=9)
         self.assertAlmostEqual(again.obstacle_density, len(places) / (24 * 8), places=12)
 
-    def test_what_was_not_proved_sound_is_said_on_the_standard_error(self):
+    def test_what_was_not_tested_is_said_on_the_standard_error(self):
         for system in (["array", *SMALL, "--output", "run.h5"], ["channel", "vertices=64", "--start=-1", "--output", "channel.h5"], ["sag", "vertices=64"]):
             with self.subTest(system=system[0]):
                 keys = ["line-tension=0", "max-time=1"]
                 done = self.run_program("clogrun", *system, *keys)
-                self.assertEqual(done.stderr.splitlines()[0], "not proved sound (handbook, Which droplets are sound): line-tension=0 "
-                                 "(robust is sound from 0.02 to 10)")
+                self.assertEqual(done.stderr.splitlines()[0], "outside the range tested for soundness (handbook, Which droplets are sound): line-tension=0 "
+                                 "(robust is tested from 0.02 to 10)")
         self.assertEqual(self.succeed("clogrun", "array", *SMALL, "max-time=1", "--output", "sound.h5").stderr, "")
 
     def test_a_coarse_polygon_in_a_channel_is_cautioned_against(self):

@@ -235,20 +235,20 @@ class Sweep(ProgramTest):
                     self.assertEqual(tasks, [*range(20), *range(num_tasks - 20, num_tasks)])
                     self.assertIn(f"# ... {num_tasks - 40} more ...", told)
 
-    def test_a_dry_run_within_the_box_and_what_was_proved_has_nothing_to_add(self):
+    def test_a_dry_run_within_the_box_and_the_tested_range_has_nothing_to_add(self):
         told = self.succeed("clogsweep", *QUICK, "--dry-run").stdout
         self.assertNotIn("box", told)
-        self.assertNotIn("proved", told)
+        self.assertNotIn("soundness", told)
         told = self.succeed("clogsweep", *SMALL, "max-time=2000", "--dry-run").stdout
         self.assertIn("# droplets of 1 of 1 parameter set may travel farther than the length of their array ", told)
-        self.assertIn("# not proved sound (handbook, Which droplets are sound): line-tension=30 ", self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
+        self.assertIn("# outside the range tested for soundness (handbook, Which droplets are sound): line-tension=30 ", self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
 
-    def test_what_was_not_proved_sound_is_said_once_when_the_sweep_starts(self):
+    def test_what_was_not_tested_is_said_once_when_the_sweep_starts(self):
         sweep = [*SMALL, "max-time=1", "line-tension=0.05,30", "seeds=1..3", "--output", "s.h5"]
         lines = self.succeed("clogsweep", *sweep, ranks=2).stderr.splitlines()
-        self.assertEqual(sum("not proved sound" in line and "line-tension=30 " in line for line in lines), 1, lines)
+        self.assertEqual(sum("outside the range tested for soundness" in line and "line-tension=30 " in line for line in lines), 1, lines)
         self.assertFalse(any("line-tension=0.05" in line for line in lines), lines)
-        self.assertNotIn("proved", self.succeed("clogsweep", *sweep).stderr, "nothing is left to do")
+        self.assertNotIn("soundness", self.succeed("clogsweep", *sweep).stderr, "nothing is left to do")
         self.assertEqual(self.succeed("clogsweep", *sweep[:-1], "quiet.h5", "--quiet").stderr, "")
 
     def test_one_of_a_kind_is_told_in_the_singular(self):

@@ -346,7 +346,7 @@ class Pictures(Analysis):
     def test_a_doubtful_length_has_a_hollow_marker_and_the_reason_below_it(self):
         self.copy_sweep("s.h5", *QUICK, "line-tension=2,30", "seeds=1..5")
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
-        for group, doubts in zip(groups.members, (["below_spacing"], ["below_spacing", "not_proved_sound"])):
+        for group, doubts in zip(groups.members, (["below_spacing"], ["below_spacing", "untested"])):
             self.assertEqual(lengths.reasons_for_hollow_marker(group), doubts)
 
         def hollow_places():

@@ -22,7 +22,7 @@ Plan limits_plan(const Keys& keys) {
 
 RunRow limits_row(const Keys& keys) { return describe(limits_plan(keys).task(0)); }
 
-TEST(UnprovenParameters, AreNoneWithinWhatWasFoundSound) {
+TEST(UntestedParameters, AreNoneWithinWhatWasFoundSound) {
   const Keys sound[] = {{},
                         {{"line-tension", "0.02"}},
                         {{"line-tension", "10"}, {"vertices", "256"}},
@@ -32,18 +32,18 @@ TEST(UnprovenParameters, AreNoneWithinWhatWasFoundSound) {
                         {{"receding-angle", "120"}},
                         {{"preset", "elastic"}, {"friction", "0.5"}},
                         {{"model", "sp"}, {"wall-stiffness", "1"}}};
-  for (const Keys& keys : sound) EXPECT_TRUE(unproven_parameters(limits_row(keys)).empty());
+  for (const Keys& keys : sound) EXPECT_TRUE(untested_parameters(limits_row(keys)).empty());
 }
 
-TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
-  const std::pair<Keys, const char*> unproven[] = {
-      {{{"line-tension", "0"}}, "line-tension=0 (robust is sound from 0.02 to 10)"},
-      {{{"line-tension", "30"}}, "line-tension=30 (robust is sound from 0.02 to 10)"},
-      {{{"line-tension", "0.01"}}, "line-tension=0.01 (robust is sound from 0.02 to 10)"},
+TEST(UntestedParameters, AreNamedWithTheirValueBeyondIt) {
+  const std::pair<Keys, const char*> untested[] = {
+      {{{"line-tension", "0"}}, "line-tension=0 (robust is tested from 0.02 to 10)"},
+      {{{"line-tension", "30"}}, "line-tension=30 (robust is tested from 0.02 to 10)"},
+      {{{"line-tension", "0.01"}}, "line-tension=0.01 (robust is tested from 0.02 to 10)"},
       {{{"preset", "elastic"}, {"line-tension", "0.03"}},
-       "line-tension=0.03 (elastic is sound from 0.04 to 10)"},
+       "line-tension=0.03 (elastic is tested from 0.04 to 10)"},
       {{{"preset", "heavy-interface"}, {"line-tension", "0.06"}},
-       "line-tension=0.06 (heavy-interface is sound from 0.07 to 10)"},
+       "line-tension=0.06 (heavy-interface is tested from 0.07 to 10)"},
       {{{"preset", "literal"}}, "preset=literal (droplets cross themselves and obstacles)"},
       {{{"self-contact", "off"}}, "preset=custom (this interface was not tested)"},
       {{{"receding-angle", "50"}}, "receding-angle=50 (tested from 60 on)"},
@@ -55,18 +55,19 @@ TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
       {{{"obstacle-diameter", "0.04"}, {"vertices", "128"}},
        "obstacle-diameter=0.04 (obstacles thinner than two edges, 0.04909, slip into the droplet; use more "
        "vertices)"}};
-  for (const auto& [keys, words] : unproven)
-    EXPECT_EQ(unproven_parameters(limits_row(keys)), std::vector<std::string>{words});
+  for (const auto& [keys, words] : untested)
+    EXPECT_EQ(untested_parameters(limits_row(keys)), std::vector<std::string>{words});
 }
 
-TEST(UnprovenParameters, OfAPlanAreNamedOnceEach) {
-  EXPECT_EQ(unproven_parameters(limits_plan({{"line-tension", "0.1,1"}})), "");
-  EXPECT_EQ(unproven_parameters(limits_plan({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
-            "not proved sound (handbook, Which droplets are sound): line-tension=0 (robust is sound from "
+TEST(UntestedParameters, OfAPlanAreNamedOnceEach) {
+  EXPECT_EQ(untested_parameters(limits_plan({{"line-tension", "0.1,1"}})), "");
+  EXPECT_EQ(untested_parameters(limits_plan({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
+            "outside the range tested for soundness (handbook, Which droplets are sound): line-tension=0 "
+            "(robust is tested from "
             "0.02 to 10), "
-            "line-tension=30 (robust is sound from 0.02 to 10)");
+            "line-tension=30 (robust is tested from 0.02 to 10)");
   EXPECT_TRUE(
-      unproven_parameters(limits_plan({{"line-tension", "11,12,13,14,15,16"}})).ends_with(", and 2 more"));
+      untested_parameters(limits_plan({{"line-tension", "11,12,13,14,15,16"}})).ends_with(", and 2 more"));
 }
 
 TEST(Repetition, BeginsWhereADropletHasComeFartherThanTheBox) {
@@ -177,7 +178,7 @@ TEST(LimitsOfResults, AreTheLinesThatSaySomething) {
   EXPECT_TRUE(limits_of_results(limits_plan({{"box", "20"}, {"max-time", "600"}})).empty());
   const Plan plan = limits_plan({{"box", "20"}, {"max-time", "1e3"}, {"line-tension", "30"}});
   EXPECT_EQ(limits_of_results(plan),
-            (std::vector<std::string>{possible_repetition(plan), unproven_parameters(plan)}));
+            (std::vector<std::string>{possible_repetition(plan), untested_parameters(plan)}));
 }
 
 TEST(ObstacleSpacing, IsFromCentreToCentre) {

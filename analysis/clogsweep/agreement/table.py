@@ -27,9 +27,12 @@ def markdown(judged: Sequence[Judged], version: int) -> str:
     """A table for each place of the article."""
     lines = [textwrap.fill(f"Of {len(judged)} statements {counts(judged)}. All rows have model version {version}.", 118)]
     for where in dict.fromkeys(one.statement.where for one in judged):
-        lines += ["", f"**{where[0].upper()}{where[1:]}**", "", "| statement | here | verdict | variants |", "|---|---|---|---|"]
-        for _, text, here, verdict, reason, variants in (cells(one) for one in judged if one.statement.where == where):
-            lines.append(f"| {text} | {here} | **{verdict}**{': ' if reason else ''}{reason} | {variants} |")
+        rows = [cells(one)[1:] for one in judged if one.statement.where == where]
+        has_variants = any(row[-1] for row in rows)
+        lines += ["", f"**{where[0].upper()}{where[1:]}**", "", "| statement | here | verdict |" + " variants |" * has_variants,
+                  "|---|---|---|" + "---|" * has_variants]
+        for text, here, verdict, reason, variants in rows:
+            lines.append(f"| {text} | {here} | **{verdict}**{': ' if reason else ''}{reason} |" + f" {variants} |" * has_variants)
     return "\n".join(lines) + "\n"
 
 

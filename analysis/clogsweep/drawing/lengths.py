@@ -20,7 +20,7 @@ HOLLOW_MARKERS = {
     "wetted_mesh": "wetted walls, where the mesh matters",
     "array_repeats": "longer paths than the period of the array",
     "below_spacing": "lengths below one obstacle spacing (they reflect the release void, not clogging)",
-    "not_proved_sound": "outside the range that was tested for soundness",
+    "untested": "outside the range that was tested for soundness",
 }
 
 

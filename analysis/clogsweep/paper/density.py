@@ -64,7 +64,7 @@ def fitted(groups: Sequence[Group]) -> DensityFit:
     return fit_density(*([group[name] for group in closed] for name in ("obstacle_density", "clogging_length", "clogs")))
 
 
-@figure("density", "clogging length of stiff droplets against the density of obstacles, and the density of the published arrays", CONFIGS, "6 min")
+@figure("density", "clogging length of stiff droplets against the density of obstacles, and the density of the published arrays", CONFIGS, "5 min")
 def density_of_the_published_arrays(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     families = {label: shop.sweep(config) for config, label in CONFIGS.items()}

@@ -117,7 +117,7 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
 
 
 @figure("6c", "clogging length against line tension for four values of the minimum gap, dilute arrays: what holds droplets, on two meshes",
-        ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "60 min")
+        ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "25 min")
 def lengths_of_polygons(shop: Workshop) -> Plate:
     return families(shop, FAMILIES, True)
 
@@ -176,7 +176,7 @@ def draw_cell(axes: Axes, x: int, y: int, group: Group, norm: LogNorm) -> None:
     axes.text(x, y, ("> " if group["clogs"] == 0 else "") + text, ha="center", va="center", fontsize=7.5, color=ink)
 
 
-@figure("map", "clogging length against line tension, obstacle density and gap, walls without and with friction", ["map-robust", "map-friction"], "10 min")
+@figure("map", "clogging length against line tension, obstacle density and gap, walls without and with friction", ["map-robust", "map-friction"], "5 min")
 def lengths_on_a_map(shop: Workshop) -> Plate:
     kinds = [(family, shop.sweep(family.config)) for family in MAPS]
     every = [group for _, groups in kinds for group in groups]

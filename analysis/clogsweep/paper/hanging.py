@@ -40,7 +40,7 @@ def finish(axes: Axes, places: Sequence[float], groups: Sequence[Group], text: s
     style.legend(axes, groups)
 
 
-@figure("W1", "how the clogging length depends on the mesh: line tension, numbers of vertices, interfaces", ["hanging-robust", "hanging-elastic"], "32 min")
+@figure("W1", "how the clogging length depends on the mesh: line tension, numbers of vertices, interfaces", ["hanging-robust", "hanging-elastic"], "5 min")
 def lengths_by_mesh(shop: Workshop) -> Plate:
     configs = ["hanging-robust", "hanging-elastic"]
     presets = [(config, shop.sweep(config)) for config in configs]
@@ -66,7 +66,7 @@ def lengths_by_mesh(shop: Workshop) -> Plate:
     return Plate(drawing, data)
 
 
-@figure("W2", "the clogging length with friction of walls: line tension, coefficients of friction, numbers of vertices", ["hanging-friction"], "60 min")
+@figure("W2", "the clogging length with friction of walls: line tension, coefficients of friction, numbers of vertices", ["hanging-friction"], "5 min")
 def lengths_by_friction(shop: Workshop) -> Plate:
     config = "hanging-friction"
     groups = shop.sweep(config)

@@ -32,7 +32,7 @@ enum class Doubt {
   array_repeats,
   met_none,
   below_spacing,
-  not_proved_sound
+  untested
 };
 /// One letter each for tables, a word for files, a sentence for readers.
 struct DoubtText {
@@ -66,7 +66,7 @@ inline constexpr DoubtText doubt_texts[] = {
     {Doubt::below_spacing, 'v', "below_spacing",
      "lambda is below one obstacle spacing (diameter + gap): it reflects the release void, not how often "
      "gaps clog droplets (for user-supplied circles the spacing is 1/sqrt(circles per area))"},
-    {Doubt::not_proved_sound, 'u', "not_proved_sound",
+    {Doubt::untested, 'u', "untested",
      "line tension, preset, vertices or obstacles are outside the range tested for soundness: droplets may "
      "cross themselves or obstacles (handbook, Which droplets are sound)"}};
 const DoubtText& text_of(Doubt doubt);

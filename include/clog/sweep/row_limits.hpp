@@ -9,10 +9,10 @@
 namespace clog::sweep {
 
 /// The parameters of a run outside the range that tests/soundness found sound, each with its value and that
-/// range: "line-tension=30 (robust is sound from 0.02 to 10)".
-std::vector<std::string> unproven_parameters(const RunRow& row);
+/// range: "line-tension=30 (robust is tested from 0.02 to 10)".
+std::vector<std::string> untested_parameters(const RunRow& row);
 /// One line about all runs of a plan; empty if all are within.
-std::string unproven_parameters(const Plan& plan);
+std::string untested_parameters(const Plan& plan);
 
 /// The way after which a droplet may meet the same obstacles again [sigma]: the length of an array that
 /// stands for a random one. Periodicity across the flow does not shorten it. Infinite for lattices, which

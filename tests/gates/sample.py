@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""sample.py SEED: prints 100 sentences of README, handbook, help texts and comments, for a reader who counts those
+that need a second reading. The same seed and sources give the same sentences.
+"""
+
+import random
+import re
+import sys
+
+import known
+import spelling
+import width
+
+# How many sentences of each kind, and the files that have them.
+KINDS = {"README": (6, ["README.md"]), "tutorial": (10, ["docs/tutorial/*.md"]), "how-to": (12, ["docs/how-to/*.md", "docs/faq.md"]),
+         "explanation": (16, ["docs/explanation/*.md"]), "reference": (14, ["docs/reference/*.md", "docs/glossary.md"]),
+         "gallery": (8, ["docs/gallery/*.md"]), "notes": (6, ["docs/notes/*.md", "CHANGELOG.md", "docs/paper/*.md"]),
+         "developer": (6, ["docs/developer/*.md"]), "help": (8, ["src/programs/*.cpp", "src/core/parameters/schema.cpp", "analysis/clogsweep/commands/*.py"]),
+         "comment": (14, ["src/*.?pp", "include/*.?pp", "analysis/*.py", "tests/*.?pp", "tests/*.py"])}
+FEWEST_WORDS = 5
+NO_PROSE = re.compile(r"\$\$|--&?>|^\W*\w+=|\{\w*[}:]|[rf]\"")
+END = re.compile(r"(?<=[.!?:])\s+(?=[A-Z`*$(\"\[])")
+PAGE_MARKS, CODE_MARKS = re.compile(r"^\s*(?:[-*>] )?"), re.compile(r"^[\s/*<!#>\"'|-]+")
+
+
+def lines(name, kind):
+    """Numbers and texts of the lines of a file that belong to the kind."""
+    text = (known.ROOT / name).read_text()
+    if name.endswith(".md"):
+        return [(number, line) for number, line in width.prose(text) if not line.startswith(("#", "!", ":", "---"))]
+    of = spelling.of_python if name.endswith(".py") else spelling.of_cpp
+    comments = list(of(text, False))
+    return comments if kind == "comment" else [line for line in of(text, True) if line not in comments]
+
+
+def sentences(name, kind):
+    """Places and sentences. A blank line, a list or a gap between comments ends a sentence, too."""
+    first, paragraph, before = 0, [], 0
+    marks = PAGE_MARKS if name.endswith(".md") else CODE_MARKS
+    for number, line in [*lines(name, kind), (None, "")]:
+        is_new = number != before + 1 or not line.strip() or re.match(r"\s*[-*] ", line)
+        if is_new and paragraph:
+            whole = " ".join(" ".join(paragraph).split())
+            yield from (f"{name}:{first}: {one}" for one in END.split(whole) if len(one.split()) >= FEWEST_WORDS and not NO_PROSE.search(one))
+            paragraph = []
+        if number is not None and marks.sub("", line).strip():
+            first = first if paragraph else number
+            paragraph.append(marks.sub("", line))
+        before = number if number is not None else before
+
+
+def main():
+    chosen = random.Random(int(sys.argv[1]))
+    for kind, (count, patterns) in KINDS.items():
+        found = [sentence for name in known.files(*patterns) for sentence in sentences(name, kind)]
+        for sentence in sorted(chosen.sample(found, min(count, len(found)))):
+            print(sentence)
+
+
+if __name__ == "__main__":
+    main()
