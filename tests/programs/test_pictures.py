@@ -53,7 +53,7 @@ class Calls(Analysis):
         printed = self.draw("critical-angle", "s.h5", "--format", "csv", "--programs", BIN).stdout
         lines = [line.split(",") for line in printed.splitlines()]
         self.assertEqual(lines[0], ["line_tension", "obstacle_filling", "lower", "upper", "runs"])
-        self.assertEqual([line[:2] for line in lines[1:]], [[tension, kind] for tension in ("1.0", "3.0") for kind in ("lattice", "triangular")])
+        self.assertEqual([line[:2] for line in lines[1:]], [[tension, kind] for tension in "13" for kind in ("lattice", "triangular")])
         for line in lines[1:]:
             self.assertTrue(18 < float(line[2]) < 19.47 < float(line[3]) < 21.1, line)
         self.write("angles.csv", "# by hand\n" + printed)
