@@ -393,9 +393,9 @@ class CriticalAngle(RefineTest):
     def test_lattices_of_every_kind_are_those_that_clogsweep_takes(self):
         for kind in ("square", "triangular", "rhombic"):
             for wanted in (8, 13.3, 21):
-                told = self.succeed("clogsweep", *LATTICE[3:], "obstacle-layout=lattice", f"lattice={kind}", "pitch=3", "obstacle-diameter=1",
-                                    f"lattice-angle={wanted},{wanted + 5}", "max-time=1", "--dry-run").stdout
-                angle = critical_angle.nearest_lattice(3, wanted, 100, kind)
+                told = self.succeed("clogsweep", "obstacle-layout=lattice", f"lattice={kind}", "pitch=3", "obstacle-diameter=1", "box=200",
+                                    "seeds=1", f"lattice-angle={wanted}", "max-time=1", "--dry-run").stdout
+                angle = critical_angle.nearest_lattice(3, wanted, 200, kind)
                 self.assertIn(f"at {angle:.4g} degrees (tan", told)
 
     def test_what_does_not_bracket_it_is_said(self):

@@ -163,12 +163,12 @@ class AngleSearch:
 
 def require_angles(text: str, given: Sequence[float], kind: str) -> None:
     """@throws UserError  unless these are increasing angles between 0 and 45 degrees, of triangular lattices 30"""
-    why = ""
+    most, why = 30 if kind == "triangular" else 45, ""
     if len(given) < 2 or not all(np.isfinite(given)):
         why = "refine lattice-angle needs its bounds"
     elif any(one >= other for one, other in itertools.pairwise(given)):
         why = "values must increase: the lower bound comes first"
-    elif not (given[0] > 0 and given[-1] <= (most := 30 if kind == "triangular" else 45)):
+    elif not (given[0] > 0 and given[-1] <= most):
         why = f"the critical angle lies above 0, where droplets follow the rows by symmetry, up to {most} degrees"
     if why:
-        raise UserError(f"invalid {KEY}={text} ({why}) try {KEY}=5,{30 if kind == 'triangular' else 40}")
+        raise UserError(f"invalid {KEY}={text} ({why}) try {KEY}=5,{most - 5}")
