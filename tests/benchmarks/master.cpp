@@ -23,6 +23,7 @@
 #include <thread>
 #include <vector>
 
+#include "../results/ended_row.hpp"
 #include "../scheduler/order_of.hpp"
 #include "clog/results/progress.hpp"
 #include "clog/results/sweep_state.hpp"
@@ -44,7 +45,7 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Of resident memory, so far.
+/// Returns the largest resident memory so far.
 double peak_kilobytes() {
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
@@ -98,7 +99,7 @@ int measure_rows(std::int64_t num_rows) {
     const Clock::time_point last = Clock::now();
     state->start(task, 1);
     sweep::Report report{state->row(task), {}};
-    report.row.status = RunStatus::flowing;
+    results::end_run(report.row, RunStatus::flowing, 1);
     state->report(report);
     state->tick();
     silence = std::max(silence, seconds_since(last));
@@ -111,6 +112,7 @@ int measure_rows(std::int64_t num_rows) {
   state.reset();
   const Clock::time_point restart = Clock::now();
   state = open();
+  if (state->num_faulty() > 0) return 1;
   std::printf(
       "%lld rows: %.0f us each, silent for %.3f s, stop %.2f s, restart %.2f s; memory of a row: %.2f kB, "
       "%.2f kB to the stop, %.2f kB with the restart; %.1f s of CPU in all\n",
