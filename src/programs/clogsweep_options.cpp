@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -16,7 +17,10 @@
 #include "clog/cli/points_file.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/results/run_list.hpp"
+#include "clog/results/stored_sweep.hpp"
 #include "clog/store/run_table.hpp"
+#include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
 #include "laboratory_option.hpp"
@@ -109,6 +113,25 @@ void refuse_other_format(const cli::CommandLine& line) {
                       name, name.substr(0, name.size() - std::string(ending).size())));
 }
 
+/// --seeds-per-set: keeps the seeds of the keys and of the output's rows, and adds the smallest others. So
+/// the seeds are the same after each kill.
+void fill_seeds(cli::CommandLine& line) {
+  if (!line.has("seeds-per-set")) return;
+  for (const char* other : {"until-precision", "shard"})
+    if (line.has(other))
+      throw Error(fmt::format("--seeds-per-set and --{} both choose seeds; give one of them", other));
+  constexpr long long most = 100'000;
+  const std::int64_t number = line.get_whole("seeds-per-set", 1, 1, most);
+  const sweep::Settings& settings = line.settings();
+  results::RunList runs;
+  runs.add(sweep::Plan(settings));
+  if (const std::string path = line.has("output") ? line.get("output") : ""; std::filesystem::exists(path))
+    for (const sweep::RunRow& row : results::read_with_caution(path).rows)
+      if (sweep::fault_of(row).empty()) runs.add_seed(row);
+  runs.fill_seeds(static_cast<std::size_t>(number));
+  line.settings() = runs.settings();
+}
+
 }  // namespace
 
 bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv) {
@@ -135,6 +158,8 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
               "add seeds until half of lambda's 95 % interval is within this fraction of lambda, e.g. 10%")
       .option("most-seeds",
               "largest number of seeds of a parameter set with --until-precision (20 times `seeds`)")
+      .option("seeds-per-set",
+              "add seeds to every parameter set until it has so many, those of the output's rows included")
       .option("attempts", "number of attempts for a run that fails", "2")
       .option("report-seconds",
               "interval at which a running task reports its progress; a kill loses at most this time", "10")
@@ -157,6 +182,7 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
   use_laboratory(line);
   add_plan_options(line);
   refuse_other_droplets(line);
+  fill_seeds(line);
   return true;
 }
 

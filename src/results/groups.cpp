@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "clog/core/parameters/contact_angle.hpp"
+#include "clog/core/polygon/wetting/contact_line.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/number_text.hpp"
@@ -31,6 +33,10 @@ bool hangs_on_mesh(const Group& group) {
   return group.num_on_mesh > 0 && group.num_on_mesh >= tolerated * group.clogging.num_clogs;
 }
 
+bool wets_walls(const RunParameters& run) {
+  return run.model == Model::dp && (wall_tension(run.dp) < 1 || has_hysteresis(run.dp));
+}
+
 std::vector<Doubt> doubts_about(const Group& group) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool has_length = has_clogging_length(group.first_row);
@@ -44,6 +50,7 @@ std::vector<Doubt> doubts_about(const Group& group) {
       {Doubt::incomplete, group.num_interrupted > 0 || group.num_failed > 0},
       {Doubt::damaged, group.num_damaged > 0},
       {Doubt::held_by_mesh, has_length && hangs_on_mesh(group)},
+      {Doubt::wetted_mesh, has_length && clogging.num_clogs > 0 && wets_walls(group.first_row.parameters)},
       {Doubt::array_repeats, has_length && group.num_repeating > 0},
       {Doubt::met_none, has_length && group.num_free > 0 && !is_device(group.first_row.parameters)},
       {Doubt::below_spacing, has_length && is_below_spacing},

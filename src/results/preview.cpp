@@ -343,7 +343,7 @@ void print_config(const sweep::Settings& settings, const sweep::Plan& plan) {
   const RunParameters first = plan.task(0);
   std::cout << settings.to_config(sweep::Comments::help) << "\n# Values behind `auto` in the first task:\n";
   for (const Parameter& parameter : parameter_schema())
-    if (parameter.may_be_automatic(first))
+    if (parameter.may_be_automatic(first) || parameter.key == std::string_view("wall-tension"))
       if (const ParameterValue value = parameter.get(first); value != ParameterValue())
         fmt::print(std::cout, "# {} = {}\n", parameter.key, sweep::text_of(value));
 }

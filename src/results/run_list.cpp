@@ -103,12 +103,20 @@ RunList::ParameterSet& RunList::set_of(const sweep::Plan& plan, const sweep::Run
   return sets_[place->second];
 }
 
-bool RunList::add(const sweep::Plan& plan, const sweep::RunRow& row) try {
+bool RunList::add_seed(const sweep::RunRow& row) {
   const auto known = places_.find(identity_without_seed(row));
-  if (known != places_.end()) {
-    sets_[known->second].seeds.insert(row.parameters.seed);
-    return true;
-  }
+  if (known == places_.end()) return false;
+  sets_[known->second].seeds.insert(row.parameters.seed);
+  return true;
+}
+
+void RunList::fill_seeds(std::size_t number) {
+  for (ParameterSet& set : sets_)
+    for (std::uint32_t seed = 1; set.seeds.size() < number; ++seed) set.seeds.insert(seed);
+}
+
+bool RunList::add(const sweep::Plan& plan, const sweep::RunRow& row) try {
+  if (add_seed(row)) return true;
   const bool is_of_plan = row.task >= 0 && row.task < plan.size() &&
                           sweep::identity(sweep::describe(plan.task(row.task))) == sweep::identity(row);
   if (is_of_plan) {

@@ -12,8 +12,10 @@
 #include <string>
 #include <thread>
 
+#include "clog/core/model/model.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/scene/scene.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/sweep/columns.hpp"
 #include "shared_memory.hpp"
 
@@ -128,7 +130,10 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
 std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const RunParameters& run) {
   const Scene& scene = scene_of(run);
   if (scene.walls_from == WallsFrom::droplet) return std::make_shared<ObstacleArray>(scene.walls(run));
-  const std::string key = array_key(run);
+  // In a device with side walls the droplet's own reach limits where it may start, so it shifts the walls,
+  // too.
+  std::string key = array_key(run);
+  if (scene.walls_from == WallsFrom::circles) key += shortest(model_of(run).reach(run));
   if (key != key_) {
     array_.reset();  // the memory may be needed for the next
     key_.clear();

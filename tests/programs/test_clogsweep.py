@@ -141,7 +141,7 @@ class Sweep(ProgramTest):
         done = self.succeed("clogsweep", "--config", "sweep.cfg", "--print-config", "seeds=7", "--box", "40")
         for line in ("line-tension = 1,2", "seeds = 7", "box = 40", "vertices = 128"):
             self.assertIn(line + "\n", done.stdout)
-        self.assertRegex(done.stdout, r"\n# wall-stiffness = 0\.0\d+\n# obstacle-density = 0\.348\d*\n# vertices = 128\n# time-step = 0\.00\d+\n# area-stiffness = \d+\n# perimeter-stiffness = 0\.1\n# receding-angle = 180\n# advancing-angle = 180\n# film-friction = off\n$")
+        self.assertRegex(done.stdout, r"\n# wall-stiffness = 0\.0\d+\n# obstacle-density = 0\.348\d*\n# vertices = 128\n# time-step = 0\.00\d+\n# area-stiffness = \d+\n# perimeter-stiffness = 0\.1\n# wall-tension = 1\n# receding-angle = 180\n# advancing-angle = 180\n# film-friction = off\n$")
         self.write("printed.cfg", done.stdout)
         self.assertEqual(self.succeed("clogsweep", "--config", "printed.cfg", "--print-config").stdout, done.stdout)
 

@@ -93,7 +93,7 @@ class Resumed(SweepTest):
 
     def hold_while_it_runs(self, ranks):
         """@return its process and those of its ranks, which are stopped; nothing if it was over before that"""
-        process = self.start(*FEW_LONG, ranks=ranks)
+        process = self.start(*SLOW, ranks=ranks)
 
         def runs():
             return (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()
@@ -110,12 +110,12 @@ class Resumed(SweepTest):
         for ranks in (1, 2):
             first, stopped = self.until_in_time(lambda: self.hold_while_it_runs(ranks))
             (self.folder / "s.h5.journal").unlink()
-            self.succeed("clogsweep", *FEW_LONG)
+            self.succeed("clogsweep", *SLOW)
             for rank in stopped:
                 os.kill(rank, signal.SIGCONT)
             error = self.ended(first, 2)
             self.assertIn("s.h5 (somebody has replaced it or its journal while the sweep was running); all runs are in s.h5.rescued1", error)
-            self.check_equal("s.h5", undisturbed(FEW_LONG))
+            self.check_equal("s.h5", undisturbed(SLOW))
             self.assertFalse((self.folder / "s.h5.journal").exists())
             for name in ("s.h5", "s.h5.rescued1"):
                 (self.folder / name).unlink()
@@ -344,6 +344,26 @@ class Resumed(SweepTest):
         self.succeed("clogsweep", *keys, "wall-tension=0.5,1", "terminal-speed=0.03,0.04")
         rows = table(self.folder / "s.h5")
         self.assertEqual(sorted(zip(rows.wall_tension, rows.terminal_speed)), [(0.5, 0.03), (0.5, 0.04), (1, 0.03), (1, 0.04)])
+
+    def test_every_set_gets_seeds_until_it_has_enough(self):
+        keys = [*QUICK, "line-tension=0.5,1,2"]
+        self.succeed("clogsweep", *keys, "seeds=2,7", "--output", "mine.h5")
+        self.succeed("clogsweep", *QUICK, "line-tension=1", "seeds=9..13", "--output", "theirs.h5")
+        self.succeed("clogsweep", "merge", "mine.h5", "theirs.h5", "--output", "s.h5")
+        runs = lambda: set(table(self.folder / "s.h5")[["line_tension", "seed", "distance", "steps"]].itertuples(index=False))  # noqa: E731
+        before = runs()
+        fill = [*keys, "seeds=2", "--output", "s.h5", "--seeds-per-set", 6]
+        self.assertIn("# 19 tasks", self.succeed("clogsweep", *fill, "--dry-run").stdout)
+        self.run_program("clogsweep", *fill, "--max-hours=1e-9")  # stopped at once
+        self.succeed("clogsweep", *fill, ranks=2)
+        rows = table(self.folder / "s.h5")
+        seeds = {tension: sorted(group.seed) for tension, group in rows.groupby("line_tension")}
+        self.assertEqual(seeds, {0.5: [1, 2, 3, 4, 5, 7], 1: [2, 7, *range(9, 14)], 2: [1, 2, 3, 4, 5, 7]})
+        self.assertLessEqual(before, runs())
+        again = self.succeed("clogsweep", *fill)
+        self.assertIn("there is nothing left to do", again.stderr)
+        for other in (["--shard=1/2"], ["--until-precision=20%"]):
+            self.refuse("clogsweep", *fill, *other, words=["both choose seeds", "give one of them"])
 
     def test_a_failed_run_is_tried_again_up_to_a_limit(self):
         blocked = [*BLOCKED, "seeds=63..65", "--output", "s.h5"]

@@ -5,14 +5,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <ostream>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clog/core/parameters/schema.hpp"
+#include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/results/comparison.hpp"
 #include "clog/results/groups.hpp"
@@ -142,6 +145,34 @@ TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
 TEST_P(EveryKey, MakesTwoArraysIfItShapesThem) {
   const auto runs = both_runs(GetParam());
   EXPECT_EQ(sweep::array_key(runs[0]) != sweep::array_key(runs[1]), GetParam().shapes_array);
+}
+
+/// Where droplets may start in a device depends on their reach: no run may get the walls of the one before.
+TEST_P(EveryKey, LeavesTheNextRunOfADeviceItsOwnWalls) {
+  sweep::Settings settings;
+  settings.attach("one.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.3}}));
+  settings.attach("other.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.4}}));
+  for (const auto& [key, value] : {std::pair("obstacles", "one.csv"), std::pair("box", "60"),
+                                   std::pair("side-walls", "on"), std::pair("release", "entrance")})
+    settings.set(key, value);
+  std::vector<RunParameters> runs;
+  try {
+    const std::string text = other_value(GetParam(), settings);
+    for (const bool is_other : {false, true}) {
+      if (is_other) settings.set(GetParam().key, text);
+      runs.push_back(sweep::Plan(settings).task(0));
+    }
+  } catch (const Error&) {
+    return;  // the key means nothing in a device
+  }
+  sweep::ObstacleArrays arrays;
+  arrays.get(runs[0]);
+  const auto walls = arrays.get(runs[1]);
+  const ObstacleArray own = scene_of(runs[1]).walls(runs[1]);
+  const auto place = [](const Obstacle& circle) { return std::array{circle.x, circle.y, circle.radius}; };
+  EXPECT_TRUE(std::ranges::equal(walls->obstacles(), own.obstacles(), {}, place, place));
+  const auto tip = [](const Wedge& wedge) { return std::array{wedge.tip[0], wedge.tip[1]}; };
+  EXPECT_TRUE(std::ranges::equal(walls->wedges(), own.wedges(), {}, tip, tip));
 }
 
 TEST_P(EveryKey, MakesTwoLinesOfADryRun) {

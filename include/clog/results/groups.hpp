@@ -28,6 +28,7 @@ enum class Doubt {
   incomplete,
   damaged,
   held_by_mesh,
+  wetted_mesh,
   array_repeats,
   met_none,
   below_spacing,
@@ -53,6 +54,9 @@ inline constexpr DoubtText doubt_texts[] = {
     {Doubt::held_by_mesh, 'm', "held_by_mesh",
      "in a tenth of the clogs or more, the polygon's edges are so long that its corners may hold the droplet "
      "(corner pinning, column mesh_hold): use more vertices"},
+    {Doubt::wetted_mesh, 'w', "wetted_mesh",
+     "the droplet wets walls (contact angle below 180 degrees): the mesh decides where some droplets clog; "
+     "compare with twice the vertices"},
     {Doubt::array_repeats, 'r', "array_repeats",
      "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
      "again"},

@@ -23,6 +23,11 @@ class RunList {
   /// whether these texts describe this run.
   bool add(const sweep::Plan& plan, const sweep::RunRow& row);
 
+  /// Adds the seed of a run whose parameter set is known. Returns whether it is.
+  bool add_seed(const sweep::RunRow& row);
+  /// Gives every parameter set the smallest unused seeds until it has so many.
+  void fill_seeds(std::size_t number);
+
   bool empty() const { return sets_.empty(); }
   /// Lists, if the runs are their product, otherwise points; values increase.
   sweep::Settings settings() const;

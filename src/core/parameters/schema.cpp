@@ -607,13 +607,15 @@ std::vector<Parameter> wall_entries() {
           {.column = "wall_tension",
            .symbol = R"(\Gamma_\mathrm{w}/\Gamma)",
            .meaning = "tension of the interface where it touches a wall, divided by Gamma: minus the cosine "
-                      "of the contact angle",
+                      "of Young's contact angle; auto: minus the mean cosine of receding-angle and "
+                      "advancing-angle if both are given, else 1",
            .scope = &polygons,
            .range =
                {from(0.1,
                      "minus the cosine of the contact angle; with less the interface on a wall would buckle",
                      "use 0.1..1"),
-                to(1, "minus the cosine of the contact angle", "use 0.1..1")}}),
+                to(1, "minus the cosine of the contact angle", "use 0.1..1")},
+           .words = {"auto"}}),
       entry("receding-angle", [](auto& run) -> auto& { return run.dp.receding_angle; },
             {.column = "receding_angle",
              .symbol = R"(\theta_\mathrm{R})",

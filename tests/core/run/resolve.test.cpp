@@ -12,6 +12,7 @@
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/polygon/forces/automatic_values.hpp"
 #include "clog/core/polygon/forces/stability.hpp"
+#include "clog/core/polygon/wetting/contact_line.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/units.hpp"
@@ -85,7 +86,13 @@ INSTANTIATE_TEST_SUITE_P(
                 {{"wall-tension", 0.5}, {"receding-angle", 130.0}}},
         Refusal{
             "advancing-angle=150 (below Young's angle, which wall-tension sets) use at least 180, or young",
-            {{"advancing-angle", 150.0}}},
+            {{"advancing-angle", 150.0}, {"wall-tension", 1.0}}},
+        Refusal{"advancing-angle=150 (Young's angle does not follow from it alone) give receding-angle, too, "
+                "or wall-tension",
+                {{"advancing-angle", 150.0}}},
+        Refusal{"receding-angle=60 (with this advancing-angle wall-tension, minus the mean of their cosines, "
+                "is -0.163, and the interface on a wall would buckle) use angles for at least 0.1",
+                {{"receding-angle", 60.0}, {"advancing-angle", 100.0}}},
         Refusal{"receding-angle contradicts perimeter-spring=mean (on such an interface walls act by "
                 "friction, not by hysteresis) use friction, or preset=robust",
                 {{"receding-angle", 120.0}, {"perimeter-spring", "mean"}}},
@@ -141,6 +148,22 @@ INSTANTIATE_TEST_SUITE_P(
                 {{"model", "sp"}, {"wall-stiffness", 1.0}, {"near-wall-drag", 0.1}}},
         Refusal{"time-step=0.02 (contact has",
                 {{"model", "sp"}, {"wall-stiffness", 1e4}, {"time-step", 0.02}}}));
+
+TEST(Resolve, TakesYoungsAngleFromTheMeanCosineOfMeasuredAngles) {
+  RunParameters run;
+  run.dp.receding_angle = 140;
+  run.dp.advancing_angle = 155;
+  EXPECT_NEAR(resolve(run).dp.wall_tension.value(), 0.8361761, 1e-7);  // (cos 25 + cos 40)/2
+  for (const double angle : {97.0, 123.0, 155.0, 180.0}) {
+    run.dp.receding_angle = run.dp.advancing_angle = angle;
+    const RunParameters resolved = resolve(run);
+    EXPECT_NEAR(*resolved.dp.wall_tension, -std::cos(angle * std::numbers::pi / 180), 1e-12) << angle;
+    EXPECT_FALSE(has_hysteresis(resolved.dp)) << angle;
+  }
+  run.dp.receding_angle = 140;
+  run.dp.advancing_angle.reset();
+  EXPECT_EQ(*resolve(run).dp.wall_tension, 1) << "a film of water, which recedes at 140 degrees";
+}
 
 TEST(Resolve, FillsInTheStiffestStableContact) {
   RunParameters run;

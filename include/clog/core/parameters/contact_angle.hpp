@@ -8,10 +8,19 @@
 
 namespace clog {
 
+/// Gamma_w/Gamma. If it is not given: minus the mean cosine of the receding and the advancing angle, as if
+/// the wall resisted both motions alike; 1 without angles.
+inline double wall_tension(const DpParameters& dp) {
+  if (dp.wall_tension) return *dp.wall_tension;
+  if (!dp.receding_angle || !dp.advancing_angle) return 1;
+  const auto cosine = [](double degrees) { return portable::cos(degrees * std::numbers::pi / 180); };
+  return -(cosine(*dp.receding_angle) + cosine(*dp.advancing_angle)) / 2;
+}
+
 /// Young's contact angle of the droplet's fluid, of which wall-tension is minus the cosine [degrees].
 inline double young_angle(const DpParameters& dp) {
-  const double sine = std::sqrt(1 - dp.wall_tension * dp.wall_tension);
-  return portable::atan2(sine, -dp.wall_tension) * 180 / std::numbers::pi;
+  const double tension = wall_tension(dp);
+  return portable::atan2(std::sqrt(1 - tension * tension), -tension) * 180 / std::numbers::pi;
 }
 
 }  // namespace clog

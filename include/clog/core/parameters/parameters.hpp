@@ -107,8 +107,9 @@ struct DpParameters {
   /// published, which makes every gap narrower by a vertex diameter.
   std::optional<double> contact_range = 0;
   /// Tension of the interface where it touches a wall, over Gamma: (gamma_so - gamma_sw)/gamma_ow, which is
-  /// -cos of the contact angle (Young). 1: a film of water everywhere, as in the paper's figures.
-  double wall_tension = 1;
+  /// -cos of the contact angle (Young). 1: a film of water everywhere, as in the paper's figures. Empty: from
+  /// the measured angles, see wall_tension().
+  std::optional<double> wall_tension;
   /// Contact angles, of the droplet's fluid, beyond which the end of a wetted arc recedes and advances
   /// [degrees]; empty: Young's, it is not held. For springs `along` the interface.
   std::optional<double> receding_angle, advancing_angle;

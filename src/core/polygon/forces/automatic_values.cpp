@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clog/core/droplet/time_step.hpp"
+#include "clog/core/parameters/contact_angle.hpp"
 #include "clog/core/polygon/forces/stability.hpp"
 #include "clog/core/polygon/wetting/contact_line.hpp"
 #include "clog/core/tools/error.hpp"
@@ -88,9 +89,21 @@ double length_over_obstacles(const RunParameters& run) {
 }
 
 void resolve_contact_angles(DpParameters& dp) {
-  const double young = young_angle(dp);
-  if (!dp.receding_angle) dp.receding_angle = young;
-  if (!dp.advancing_angle) dp.advancing_angle = young;
+  if (!dp.wall_tension && !dp.receding_angle && dp.advancing_angle)
+    refuse("advancing-angle", *dp.advancing_angle,
+           "Young's angle does not follow from it alone) give receding-angle, too, or wall-tension");
+  constexpr double smallest = 0.1;
+  const double tension = wall_tension(dp), young = young_angle(dp);
+  require(tension >= smallest, "receding-angle", dp.receding_angle.value_or(young), [&] {
+    return fmt::format(
+        "with this advancing-angle wall-tension, minus the mean of their cosines, is {:.3g}, "
+        "and the interface on a wall would buckle) use angles for at least {}",
+        tension, smallest);
+  });
+  const bool is_young = !dp.wall_tension && dp.receding_angle == dp.advancing_angle;  // apart from round-off
+  if (is_young || !dp.receding_angle) dp.receding_angle = young;
+  if (is_young || !dp.advancing_angle) dp.advancing_angle = young;
+  dp.wall_tension = tension;
   require(*dp.receding_angle <= young, "receding-angle", *dp.receding_angle, [&] {
     return fmt::format("above Young's angle, which wall-tension sets) use at most {:.6g}, or young", young);
   });

@@ -41,7 +41,7 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
       .area = dp.area_stiffness.value() * perimeter * perimeter / mass,
       .tension = 4 * dp.line_tension / (edge * vertex_mass),
       .spring = 4 * dp.perimeter_stiffness.value() * num_vertices / vertex_mass,
-      .wetting = 6 * dp.line_tension * std::abs(dp.wall_tension - 1) * mean_edge /
+      .wetting = 6 * dp.line_tension * std::abs(wall_tension(dp) - 1) * mean_edge /
                  (wetting_width * wetting_width * vertex_diameter * vertex_diameter * vertex_mass),
       .pinning = has_hysteresis(dp) ? pinning_gradient2 * pinning_stiffness * dp.line_tension /
                                           (vertex_diameter * vertex_mass)

@@ -21,7 +21,7 @@ Eigen::Array2d edge_of(const VertexPlaces& vertices, int i) {
 }  // namespace
 
 WettedWalls::WettedWalls(const RunParameters& run, const ObstacleArray& obstacles)
-    : extra_tension_((run.dp.wall_tension - 1) * run.dp.line_tension),
+    : extra_tension_((wall_tension(run.dp) - 1) * run.dp.line_tension),
       spreads_(run.dp.perimeter_spring == PerimeterSpring::along),
       contact_range_(run.dp.contact_range.value()),
       width_(wetting_width * units::regular_edge_length(*run.dp.vertices)),
