@@ -34,8 +34,8 @@ pid_t fork(void) {
   note("forks");
   return ((pid_t(*)(void))dlsym(RTLD_NEXT, "fork"))();
 }
-int MPI_Init(int *argc, char ***argv) {
-  int code = ((int (*)(int *, char ***))dlsym(RTLD_NEXT, "MPI_Init"))(argc, argv);
+int MPI_Init_thread(int *argc, char ***argv, int wanted, int *provided) {
+  int code = ((int (*)(int *, char ***, int, int *))dlsym(RTLD_NEXT, "MPI_Init_thread"))(argc, argv, wanted, provided);
   note("has begun MPI");
   return code;
 }
