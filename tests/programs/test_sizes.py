@@ -2,6 +2,7 @@
 
 import json
 import math
+import subprocess
 import sys
 import unittest
 
@@ -149,6 +150,10 @@ class Sizes(ProgramTest):
         self.lab()
         self.refuse("clogrun", "array", "--lab", "lab.cfg", "--output", "r.h5", words=["lab.cfg describes 4 droplets"])
         self.refuse("clogfit", "units", "lab.cfg", "--length", "2", words=["--length", "4 droplets"])
+        done = subprocess.run([sys.executable, "-m", "clogsweep", "refine", "terminal-speed", "terminal-speed=0.02,0.06", "--lab", "lab.cfg", *ARRAY, "--until", "curve=90%", "--output", "r.h5"],
+                              cwd=self.folder, capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "analysis"), "PATH": str(BIN)})
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--lab several droplets", done.stderr)
         self.sweep()
         self.refuse("clogfit", "s.h5", "--lab", "lab.cfg", words=["lab.cfg describes 4 droplets"])
         self.refuse("clogsweep", "--quiet", "--lab", self.lab(diameter="0.8 mm, 0.8 mm"), *ARRAY, "--output", "x.h5", words=["mean the same run"])

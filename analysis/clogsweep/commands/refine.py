@@ -162,7 +162,7 @@ def body() -> int:
     printed = programs.run_program(clogsweep, *given, "--print-config")
     config = "".join(f"{line}\n" for line in printed.splitlines() if " = " in line and line[0] != "#")
     if "\npoint-keys = " in config:
-        raise UserError("the config has points, which refine chooses itself; leave them out")
+        raise UserError("the config has points, or --lab several droplets, and refine chooses its own points; leave the points out, and give one diameter and one angle")
     schema = json.loads(programs.run_program(clogsweep, "--schema"))
     values = stored.settings(config)
     require_keys(keys, values, schema)

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "clog/fit/clogging_length.hpp"
 #include "clog/results/comparison.hpp"
+#include "clog/results/groups.hpp"
 #include "clog/sweep/columns.hpp"
 
 namespace clog::results {
