@@ -76,6 +76,11 @@ std::string attribute(const store::Provenance& provenance, const std::string& na
   return found == provenance.end() ? "" : found->second;
 }
 
+void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text) {
+  std::erase_if(provenance, [&](const auto& attribute) { return attribute.first == name; });
+  if (!text.empty()) provenance.emplace_back(name, text);
+}
+
 sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance) {
   return read_attribute(path, provenance, "config", settings_from);
 }

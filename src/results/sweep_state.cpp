@@ -7,19 +7,12 @@
 
 #include "clog/core/tools/error.hpp"
 #include "clog/results/stored_sweep.hpp"
-#include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::results {
 namespace {
-
-/// An empty text removes the attribute.
-void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text) {
-  std::erase_if(provenance, [&](const auto& attribute) { return attribute.first == name; });
-  if (!text.empty()) provenance.emplace_back(name, text);
-}
 
 /// Keeps `sessions` short, however often a sweep is resumed: the oldest lines go, and a long last one is cut.
 std::string latest_lines(std::string text) {
@@ -82,144 +75,15 @@ SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::S
   publication_begin_ = publication_end_ = Clock::now();
 }
 
-/// Is it the run that the plan has by its number? Usually all are: the sweep is resumed as it was begun.
-bool SweepState::is_of_its_task(const sweep::RunRow& row) const {
-  return row.task >= 0 && row.task < plan_->size() &&
-         sweep::identity(row) == sweep::identity(sweep::describe(plan_->task(row.task)));
-}
-
-/// Rows of the table, and records of the journal in its order, become runs: in runs_ if all are of their
-/// tasks, otherwise in the list that it returns. Each goes from one place to the other, since a large sweep
-/// has memory for each row just once.
-SweepState::Known SweepState::recognise(std::vector<sweep::RunRow> rows, std::vector<Entry> records,
-                                        const sweep::Settings& settings) {
-  Known known;
-  const bool is_usual =
-      std::ranges::all_of(rows, [&](const auto& row) { return is_of_its_task(row); }) &&
-      std::ranges::all_of(records, [&](const auto& record) { return is_of_its_task(record.row); });
-  const auto place = [&](const sweep::RunRow& row) -> std::unique_ptr<Entry>& {
-    return is_usual ? place_of(row.task) : known[sweep::identity(row)];
-  };
-  for (sweep::RunRow& row : rows) {
-    std::unique_ptr<Entry>& run = place(row);
-    run = std::make_unique<Entry>(Entry{std::move(row), {}});
-  }
-  std::optional<FixedValues> fixed;
-  for (Entry& record : records) {
-    std::unique_ptr<Entry>& run = place(record.row);
-    if (!run && !fixed) fixed.emplace(*plan_, settings);
-    if (!run) refuse_foreign(record.row, *fixed);
-    // If a run's last record was lost from the journal, the table has its result and the journal only an
-    // earlier state: keep the table's row.
-    if (!run || sweep::is_result(record.row.status) || !sweep::is_result(run->row.status))
-      run = std::make_unique<Entry>(std::move(record));
-  }
-  const auto is_faulty = [](const std::unique_ptr<Entry>& run) {
-    return run && !sweep::fault_of(run->row).empty();
-  };
-  num_faulty_ =
-      std::ranges::count_if(runs_, is_faulty) +
-      static_cast<std::int64_t>(std::erase_if(known, [&](const auto& one) { return is_faulty(one.second); }));
-  std::ranges::replace_if(runs_, is_faulty, nullptr);
-  return known;
-}
-
-/// Reads the table, and checks that its path, which readers use, leads to the same file as the open folder,
-/// which the sweep uses.
-store::SweepFile SweepState::read_table() {
-  stamp_ = place_.stamp();
-  store::SweepFile file = store::read_sweep(path_);
-  if (place_.stamp() != stamp_ || store::OutputPath::resolve(path_).stamp() != stamp_)
-    throw Error("cannot resume " + path_ +
-                " (it was replaced or moved while it was read); try again when it stays in place");
-  return file;
-}
-
-/// A salvaged file may lack its config: then compare its rows.
-std::string SweepState::settings_that_differ(const store::SweepFile& file,
-                                             const sweep::Settings& settings) const {
-  if (!attribute(file.provenance, "config").empty())
-    return differing_keys(stored_settings(path_, file.provenance), settings);
-  const FixedValues fixed(*plan_, settings);
-  for (const sweep::RunRow& row : file.rows)
-    if (std::string differing = fixed.differing_keys(row); !differing.empty()) return differing;
-  return "";
-}
-
-/// Adopts an existing file if its runs belong to this sweep, and keeps the file's provenance.
-void SweepState::adopt(const store::SweepFile& file, const sweep::Settings& settings) {
-  const std::string remedy = "; give another --output";
-  for (const sweep::RunRow& row : file.rows)
-    if (row.model_version != model_version)
-      throw Error(
-          fmt::format("cannot resume {} (its runs are of model version {}, this program's is {}: the "
-                      "same parameters would give other results){}",
-                      path_, row.model_version, model_version, remedy));
-  const std::string differing = settings_that_differ(file, settings);
-  if (!differing.empty())
-    throw Error(
-        fmt::format("cannot resume {} (it holds runs with other settings: {}){}", path_, differing, remedy));
-  store::Provenance all = file.provenance;
-  for (const char* name : {"config", "stopping_rule", "num_wanted"})
-    set_attribute(all, name, attribute(provenance_, name));
-  provenance_ = std::move(all);
-}
-
-/// Another sweep may have left its journal here.
-void SweepState::refuse_foreign(const sweep::RunRow& record, const FixedValues& fixed) const {
-  const std::string differing = fixed.differing_keys(record);
-  if (!differing.empty())
-    throw Error(
-        fmt::format("cannot resume {} (its journal {} is of another sweep: {}); move the journal to "
-                    "the table that it belongs to, or give another --output",
-                    path_, journal_.path(), differing));
-}
-
 std::unique_ptr<SweepState::Entry>& SweepState::place_of(std::int64_t task) {
   const auto place = static_cast<std::size_t>(task);
   if (place >= runs_.size()) runs_.resize(place + 1);
   return runs_[place];
 }
 
-/// Runs that are not of this plan may be among other circles.
-void SweepState::keep_circles(const store::SweepFile& file) {
-  for (const store::CircleFile& one : file.circles)
-    if (std::ranges::none_of(circles_, [&](const auto& known) { return known.circles == one.circles; }))
-      circles_.push_back({"", one.circles});
-}
-
 bool SweepState::is_over(const sweep::RunRow& row) const {
   if (row.status == RunStatus::failed) return row.attempt >= attempts_;
   return !sweep::is_unfinished(row.status);
-}
-
-void SweepState::find_tasks(Known known) {
-  std::int64_t last_seed = -1;
-  for (const auto& [run, entry] : known)
-    last_seed = std::max(last_seed, std::int64_t{entry->row.parameters.seed});
-  for (std::int64_t task = 0; task < plan_->size(); ++task) {
-    // Seeds that may be added later follow in increasing order: none beyond has begun yet.
-    if (task >= std::max(num_wanted_, std::ssize(runs_)) &&
-        (known.empty() || plan_->task(task).seed > last_seed))
-      break;
-    if (!known.empty())
-      if (auto found = known.extract(sweep::identity(sweep::describe(plan_->task(task)))); !found.empty())
-        place_of(task) = std::move(found.mapped());
-    if (Entry* const run = entry(task)) {
-      run->row.task = task;
-      if (is_over(run->row)) continue;
-      if (run->row.status == RunStatus::running) run->row.status = RunStatus::interrupted;
-      past_[task].take_costs(run->row);
-    }
-    if (task < num_wanted_) tasks_left_.push_back(task);
-  }
-  for (auto& [run, entry] : known) other_runs_.push_back(std::move(entry));
-  std::ranges::sort(other_runs_, {}, [](const auto& run) { return run->row.task; });
-  for (std::size_t i = 0; i < other_runs_.size(); ++i) {
-    sweep::RunRow& row = other_runs_[i]->row;
-    row.task = plan_->size() + static_cast<std::int64_t>(i);
-    if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
-  }
 }
 
 void SweepState::want(const std::vector<std::int64_t>& tasks) {
@@ -350,7 +214,11 @@ void SweepState::tick() {
   if (publication_.valid()) {
     if (publication_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;
     end_publication();
-    if (journal_.is_to_be_rewritten()) rewrite_journal(Records::of_unfinished_runs);
+    // Rows that came meanwhile stay in the journal. With many of them a new one would save little and take
+    // long.
+    constexpr std::size_t most_kept = 10'000;
+    if (changed_.size() < most_kept && journal_.is_to_be_rewritten())
+      rewrite_journal(Records::of_unfinished_runs);
     publication_end_ = Clock::now();
     return;
   }

@@ -18,6 +18,8 @@ store::SweepFile read_with_caution(const std::string& path);
 
 /// Text of an attribute; empty if there is none.
 std::string attribute(const store::Provenance& provenance, const std::string& name);
+/// An empty text removes the attribute.
+void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text);
 /// @throws Error, which names the file, if the attribute is missing or cannot be parsed; so does
 /// stored_plan()
 sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance);
