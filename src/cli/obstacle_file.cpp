@@ -248,7 +248,9 @@ std::pair<std::string, std::optional<double>> parts_of(const std::string& name) 
 }  // namespace
 
 OwnCircles read_circles(const std::string& name) {
-  const auto [path, droplet] = parts_of(name);
+  const std::pair<std::string, std::optional<double>> parts = parts_of(name);
+  const auto& path = parts.first;
+  const auto& droplet = parts.second;  // clang captures no structured bindings
   static const std::set<std::string> drawings = {".dxf", ".gds",  ".gdsii", ".svg", ".png",
                                                  ".tif", ".tiff", ".bmp",   ".jpg", ".jpeg"};
   if (drawings.contains(console::in_lower_case(std::filesystem::path(path).extension())))
