@@ -61,6 +61,8 @@ class Calls(Analysis):
             self.draw("critical-angle", source, "--output", output, "--programs", BIN)
             self.assert_picture(output)
         self.assertEqual(*(Image.open(self.folder / f"{name}.png").tobytes() for name in ("one", "two")))
+        self.write("bounds.csv", "line_tension,lower,upper,runs\n1,20,,3\n2,21,,3\n")
+        self.draw("critical-angle", "bounds.csv", "--programs", BIN)
         for text in ("", "a,b\n1,2\n", "lower,upper,runs\nx,y,z\n", "lower,upper,runs,colour\n1,2,3,4\n", "\0\xff", "lower,upper,runs\n1,2,3\n"):
             self.write("rubbish.csv", text)
             self.refuse_analysis("critical-angle", "rubbish.csv", "--programs", BIN, words=["cannot"])

@@ -11,7 +11,7 @@ from drawing import Analysis
 
 # What takes long to compute, and what replaces it.
 SHORTER = [(r"\bmpirun -np \d+ ", ""), (r"\bseeds( *)=( *)1\.\.\d+", r"seeds\1=\g<2>1..2"), (r"\bmax-time( *)=( *)\d{3,}", r"max-time\1=\g<2>300"),
-           (r"\bstart=-2 end=\d\b", "start=-1 end=-0.9"), (r"\bvertices=128\b", "vertices=64")]
+           (r"\bstart=-2 end=\d\b", "start=-1 end=-0.9"), (r"\bfor tension in [\d. ]+", "for tension in 1"), (r"\bvertices=128\b", "vertices=64")]
 # These only write down what they are called with: the test calls it without starting Python anew.
 LATER = "later() { echo \"$@\" >> later.txt; }\n"
 

@@ -30,11 +30,12 @@ def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> 
         look = style.curve_style(index)
         places = points[abscissa] * style.side_by_side(index, len(curves), table[abscissa].tolist())
         middle = (points["lower"] + points["upper"]) / 2
+        half = (points["upper"] - points["lower"]).fillna(0) / 2  # matplotlib takes no list of NaN alone
         with style.curve(axes, label):
-            axes.errorbar(places, middle, yerr=(points["upper"] - points["lower"]) / 2, label=label or None, capsize=2, **look)
+            axes.errorbar(places, middle, yerr=half, label=label or None, capsize=2, **look)
             for bound, marker in (("lower", "^"), ("upper", "v")):  # where the other end is not known
                 axes.plot(places[middle.isna()], points[bound][middle.isna()], marker, color=look["color"], fillstyle="none")
     style.logarithmic_abscissa(axes, table[abscissa].tolist())
     axes.set_xlabel(AXES.get(abscissa) or f"${symbol(columns[abscissa])}$")
-    style.finish(axes, "critical angle [degrees]", "", ["droplets follow the rows at the lower end of a bar and leave them at the upper end; "
-                                                         "a triangle is a bound"])
+    note = "droplets follow the rows at the lower end of a bar and leave them at the upper end; a triangle is a bound"
+    style.finish(axes, "critical angle [degrees]", "", [note])
