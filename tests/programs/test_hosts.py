@@ -6,14 +6,14 @@ import signal
 import subprocess
 import unittest
 
-from support import FEW_LONG, LONGEST, ROOT, SweepTest, table, undisturbed
+from support import LONGEST, ROOT, SLOW, SweepTest, table, undisturbed
 
 TWO_HOSTS = ROOT / "tests" / "two_hosts.sh"
 
 
 class TwoHosts(SweepTest):
     def start_on_both(self):
-        process = self.start(*FEW_LONG, ranks=1, launcher=TWO_HOSTS)
+        process = self.start(*SLOW, ranks=1, launcher=TWO_HOSTS)
         self.addCleanup(lambda: [os.kill(pid, signal.SIGKILL) for pid in self.members(process)])
         return process
 
@@ -46,7 +46,7 @@ class TwoHosts(SweepTest):
     def test_the_rows_do_not_depend_on_hosts(self):
         process = self.start_on_both()
         error = self.ended(process)
-        self.check_equal("s.h5", undisturbed(FEW_LONG))
+        self.check_equal("s.h5", undisturbed(SLOW))
         rows = table(self.folder / "s.h5")
         self.assertEqual(set(rows["rank"]), {0, 1})
         if "namespaces" in error:
@@ -59,7 +59,7 @@ class TwoHosts(SweepTest):
         self.assertFalse(rows[rows.task.isin(over)].status.isin(["running", "interrupted"]).any(), "a finished row was lost")
         process = self.start_on_both()
         self.ended(process)
-        self.check_equal("s.h5", undisturbed(FEW_LONG))
+        self.check_equal("s.h5", undisturbed(SLOW))
 
 
 if __name__ == "__main__":
