@@ -244,6 +244,7 @@ class Looks(Analysis):
             caption = self.fit("box=20", "max-time=20", "line-tension=0.5,1", "seeds=1", *given).caption()
             for word in ("$N_v = 64$", density):
                 self.assertEqual(word in caption, word in words, caption)
+            self.assertNotIn(r"\Gamma_\mathrm{w}", caption)  # a film, as by default
 
     def test_a_passage_is_drawn_over_h_with_a_colour_bar_as_high_as_the_axes(self):
         self.succeed("clogrun", "channel", "vertices=64", "orifice=0.8", "start=-1", "end=1", "--polygon-interval", 10, "--output", "run.h5")

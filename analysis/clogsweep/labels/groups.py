@@ -265,6 +265,6 @@ class Groups:
         if name == "obstacle_density":
             return self.values("obstacle_filling") == {"density"}  # has no role: it is a result of the other arrays
         is_array = column["shapes_array"] and column.get("parameter_role") == "physics" and value != 0
-        is_default = str(value) == column.get("default") or f"{value:g}" == column.get("default")
+        is_default = column.get("default") in (str(value), f"{value:g}") or (name, value) == ("wall_tension", 1)  # of auto without angles
         is_special = column.get("parameter_role") == "physics" and not is_default
         return is_array or is_special or (name == "vertices" and self.are_polygons)
