@@ -60,10 +60,13 @@ class Commands(Analysis):
         self.write("post.csv", "47,5.02\n")
         self.write("distances.csv", "distance [mm],clogged\n4.1,1\n9.8,0\n")
         self.write("lab.cfg", "diameter = 2 mm\nangle = 20 deg\n")
+        self.write("angles.csv", "line_tension,lower,upper,runs\n1,18,20,3\n2,18,20,3\n")
         self.write("points.csv", "line-tension,obstacle-density\n0.5,0.4\n1,0.5\n")
         for name, keys in {"robust": [*FEW, "preset=robust"], "elastic": [*FEW, "preset=elastic"], "monday": [*FEW, "inertia=1"],
                            "tuesday": [*FEW, "inertia=2"], "sweep": SWEEP, "frictions": [*SWEEP, "friction=0,0.1"],
                            "here": [*SWEEP, "--shard", "1/2"], "there": [*SWEEP, "--shard", "2/2"],
+                           "lattice": ["obstacle-layout=lattice", "pitch=3", "obstacle-diameter=1", "vertices=64", "box=200", "max-time=600",
+                                       "terminal-speed=0.1", "line-tension=1,2", "lattice-angle=15,25", "seeds=1"],
                            "wrapped": [*SMALL, "preset=elastic", "friction=0.2", "line-tension=0.05", "obstacle-gap=0.3", "max-time=3000", "seeds=1..2"]}.items():
             self.copy_sweep(f"{name}.h5", *keys)
         self.write("fit.json", self.succeed("clogfit", "sweep.h5", "--format", "json").stdout)

@@ -56,6 +56,12 @@ class Pages(ProgramTest):
         self.follow("docs/how-to/lattice.md")
         self.follow("docs/how-to/lateral-displacement.md")
 
+    def test_contact_angles(self):
+        self.follow("docs/how-to/contact-angles.md")
+
+    def test_droplets_of_several_sizes(self):
+        self.follow("docs/how-to/sizes-and-tilts.md")
+
     def test_two_sweeps_compared(self):
         self.follow("docs/how-to/compare-sweeps.md")
 
