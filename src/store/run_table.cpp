@@ -209,7 +209,7 @@ CheckSums read_rows(hid_t file, Examination& found) {
       RowLayout::of(Type(H5Dget_type(dataset)), num_columns_written(file));
   if (!layout) throw Damage("its columns are not those that were written");
   const std::size_t num_rows = num_rows_of(dataset, layout->size());
-  const CheckSums sums = read_check_sums(file, num_rows);
+  CheckSums sums = read_check_sums(file, num_rows);
   found.whole.rows.reserve(num_rows);
   std::vector<std::byte> block(std::min(rows_per_block, num_rows) * layout->size());
   const PropertyList unchecked = without_library_check();
