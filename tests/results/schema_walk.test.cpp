@@ -121,7 +121,7 @@ TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
   const Parameter& parameter = GetParam();
   if (parameter.role != ParameterRole::physics || parameter.key == std::string("line-tension")) return;
   std::vector<std::vector<sweep::RunRow>> sides;
-  for (RunParameters run : both_runs(parameter)) {
+  for (const RunParameters& run : both_runs(parameter)) {
     if (run.model != Model::dp || !has_clogging_length(sweep::describe(run))) return;
     auto& rows = sides.emplace_back();
     for (const double factor : {1.0, 1.1, 1.2, 1.3}) {
