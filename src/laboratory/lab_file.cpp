@@ -41,23 +41,23 @@ std::string names_of_keys() {
 
 Entries entries_of(const std::string& text) {
   Entries entries;
-  std::string in_lines = text;
-  std::ranges::replace(in_lines, ';', '\n');
-  std::istringstream lines(in_lines);
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    const std::string words = console::trimmed(line.substr(0, line.find('#')));
-    if (words.empty()) continue;
-    const auto equals = words.find('=');
-    if (equals == std::string::npos)
-      throw Error(fmt::format("line {}: '{}' is not key = value", number, excerpt(words)));
-    const std::string key = console::trimmed(words.substr(0, equals));
-    if (!known_keys().contains(key))
-      throw Error(
-          fmt::format("line {}: unknown key '{}' (known: {})", number, excerpt(key), names_of_keys()));
-    if (!entries.emplace(key, console::trimmed(words.substr(equals + 1))).second)
-      throw Error(fmt::format("line {}: {} stands there twice", number, key));
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    std::istringstream parts(line.substr(0, line.find('#')));
+    for (std::string part; std::getline(parts, part, ';');) {
+      const std::string words = console::trimmed(part);
+      if (words.empty()) continue;
+      const auto equals = words.find('=');
+      if (equals == std::string::npos)
+        throw Error(fmt::format("line {}: '{}' is not key = value", number, excerpt(words)));
+      const std::string key = console::trimmed(words.substr(0, equals));
+      if (!known_keys().contains(key))
+        throw Error(
+            fmt::format("line {}: unknown key '{}' (known: {})", number, excerpt(key), names_of_keys()));
+      if (!entries.emplace(key, console::trimmed(words.substr(equals + 1))).second)
+        throw Error(fmt::format("line {}: {} stands there twice", number, key));
+    }
   }
   return entries;
 }

@@ -80,11 +80,16 @@ void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory:
   sweep::Settings settings = line.settings();
   if (const auto own = texts.find(sweep::circles_key); own != texts.end())
     settings.set(sweep::circles_key, own->second);
+  const auto text_of = [&](const char* key) {
+    const auto given = texts.find(key);
+    return given == texts.end() ? settings.text(key) : given->second;
+  };
   for (const std::string& layout : settings.values("obstacle-layout"))
     for (const Parameter& parameter : parameter_schema()) {
-      const auto given = texts.find(parameter.key);
-      const std::string& text = given == texts.end() ? settings.text(parameter.key) : given->second;
-      if (is_length_without_unit(parameter, *meant_by<ObstacleLayout>(layout), text))
+      const std::string text = text_of(parameter.key);
+      const bool replaced_by_pitch =
+          layout == "lattice" && text_of("pitch") != "0" && parameter.key == std::string_view("obstacle-gap");
+      if (!replaced_by_pitch && is_length_without_unit(parameter, *meant_by<ObstacleLayout>(layout), text))
         throw Error(fmt::format(
             "invalid {0}={1} (a number without a unit is in droplet diameters, but {2} has several droplets, "
             "or another one than the circles are drawn for) write it as in {0}=0.5{3}, or with sigma if it "

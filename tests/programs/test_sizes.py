@@ -226,6 +226,28 @@ class Sizes(ProgramTest):
             self.assertAlmostEqual(point["total_distance"], point["diameter_mm"] * groups[point["diameter_mm"]]["total_distance"])
         self.assertEqual(json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)["keys"], found["keys"])
 
+        text = self.succeed("clogfit", "curve", "s.h5", "--crossing", "3").stdout
+        for pattern in (r"highest at diameter_mm .* mm\n", r"cross(es)? 3 mm", "lambda/mm"):
+            self.assertRegex(text, pattern)
+        self.assertNotIn("sigma", text)
+
+    def test_a_lattice_keeps_its_pitch_in_millimetres(self):
+        keys = ["obstacle-layout=lattice", "lattice-angle=15", "obstacle-diameter=0.3mm", "vertices=64", "max-time=20", "seeds=1"]
+        self.sweep("pitch=1.8mm", *keys, diameter="0.8 mm, 1 mm, 1.2 mm", angle="20 deg")
+        spacing = [group["pitch"] * group["diameter_mm"] for group in self.fit("s.h5")["groups"]]
+        np.testing.assert_allclose(spacing, 1.8, rtol=1e-9)
+        for key in ([], ["--key", "diameter"]):
+            self.refuse("clogfit", "curve", "s.h5", *key, words=["only 3 values of diameter", "a curve needs 4"])
+        for key in (["pitch=1.8"], ["pitch=0"], ["pitch=1.8mm", "obstacle-diameter=0.3"]):
+            self.refuse("clogsweep", "--quiet", "--lab", "lab.cfg", *keys, *key, "--output", "x.h5", words=["without a unit"])
+
+    def test_a_comment_of_the_laboratory_may_have_any_character(self):
+        plain = self.droplets()
+        lines = [f"{key} = {text}" for key, text in LAB.items()]
+        lab = self.write("lab.cfg", "; ".join(lines[:2]) + "   # terminal; measured = with ; this\n" + "\n".join(lines[2:]) + "\n")
+        self.assertEqual(json.loads(self.succeed("clogfit", "units", lab, "--format", "json").stdout), plain)
+        self.refuse("clogfit", "units", self.write("lab.cfg", "diameter = 1 mm; angle = 20 deg # a; b\nspeed\n"), words=["line 2: 'speed' is not"])
+
     def test_a_report_shows_each_droplet(self):
         self.write("posts.csv", POSTS)
         self.sweep("obstacles=posts.csv", "box=10.2mm", "release=anywhere", "vertices=64", "max-time=20", "seeds=1..3")

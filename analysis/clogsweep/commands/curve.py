@@ -37,7 +37,7 @@ def body() -> int:
     parser = command_line.Parser(__doc__)
     parser.add_argument("file", type=pathlib.Path, nargs="*", help="sweep files, fitted as one sweep")
     parser.add_argument("--key", default="", help="that the curve is drawn over, or two with a comma between")
-    parser.add_argument("--crossing", type=crossed_lengths, default=[], help="lengths that the curve may cross [sigma]")
+    parser.add_argument("--crossing", type=crossed_lengths, default=[], help="lengths that the curve may cross [sigma; mm for droplets of several sizes]")
     parser.add_argument("--format", default="text", help="text, csv, json or peaks")
     for name, meaning in (("confidence", "of the intervals (0.95)"), ("from-distance", "see clogfit --help [sigma]"), ("dwell", "see clogfit --help [t0]"),
                           ("lab", "file that describes the laboratory, see clogfit units; its units are printed below the curve")):

@@ -98,7 +98,7 @@ def physics_of(fit: Fit, group: Group, keys: Collection[Column]) -> dict[str, An
               if column not in keys and column["name"] != "preset" and column.get("parameter_role", "physics") == "physics"
               and not is_automatic(fit, column, group)}
     if group["obstacle_filling"] != "density":
-        del values["obstacle_density"]  # follows from gap and diameter
+        values.pop("obstacle_density", None)  # follows from gap and diameter
     elif stored.settings(fit.get("sweep", {}).get("config", "")).get("obstacle-density", "").endswith("%"):
         spacing = group["obstacle_gap"] + group["obstacle_diameter"]
         values["obstacle_density"] = float(f"{group['obstacle_density'] * spacing**2:.{SAME_SHARE}g}")

@@ -28,6 +28,11 @@ def with_interval(values: Mapping[str, Any], name: str) -> str:
     return f"{value:.3g}" if lower is None or upper is None else rounded.with_interval(value, lower, upper)
 
 
+def unit_of(answer: dict[str, Any]) -> str:
+    """The unit of lengths: mm for droplets of several sizes."""
+    return str(answer["units"]["clogging_length"])
+
+
 def text(answer: dict[str, Any], crossing: list[float]) -> str:
     """Peak, crossings and some places of every curve, and what is in none."""
     keys = answer["keys"]
@@ -48,7 +53,7 @@ def text(answer: dict[str, Any], crossing: list[float]) -> str:
 def _peak(answer: dict[str, Any], curve: dict[str, Any]) -> list[str]:
     peak = curve["peak"]
     at = ", ".join(f"{key} {with_interval(peak, key)}" for key in answer["keys"])
-    lines = [f"highest at {at}, with lambda {with_interval(peak, ALL[0])} sigma"]
+    lines = [f"highest at {at}, with lambda {with_interval(peak, ALL[0])} {unit_of(answer)}"]
     at_border = 1 - peak["probability_between_borders"]
     if at_border > 1 - answer["confidence"]:
         lines.append(f"  (with a probability of {100 * at_border:.0f} % it is higher at a border than anywhere between)")
@@ -61,10 +66,10 @@ def _crossings(answer: dict[str, Any], curve: dict[str, Any], crossing: list[flo
     for length in crossing:
         found = [one for one in curve["crossings"] if one["clogging_length"] == length]
         if not found:
-            lines.append(f"does not cross {length:g} sigma between these values")
+            lines.append(f"does not cross {length:g} {unit_of(answer)} between these values")
         for one in found:
             beyond = ", or beyond the outermost values" if one[f"{key}_lower"] == 0 or one[f"{key}_upper"] is None else ""
-            lines.append(f"crosses {length:g} sigma {one['direction']} at {key} {with_interval(one, key)}{beyond}")
+            lines.append(f"crosses {length:g} {unit_of(answer)} {one['direction']} at {key} {with_interval(one, key)}{beyond}")
     return lines
 
 
@@ -75,7 +80,7 @@ def _places(answer: dict[str, Any], curve: dict[str, Any]) -> list[str]:
     else:
         shown = [place for i, place in enumerate(curve["curve"]) if i % ON_SIDE % EVERY_ON_SIDE == 0 and i // ON_SIDE % EVERY_ON_SIDE == 0]
     widths = [max(len(key), 10) for key in keys]
-    lines = ["  ".join([*(f"{key:>{width}}" for key, width in zip(keys, widths)), f"{'lambda/sigma':>12}", f"{'lower':>10}", f"{'upper':>10}"])]
+    lines = ["  ".join([*(f"{key:>{width}}" for key, width in zip(keys, widths)), f"{f'lambda/{unit_of(answer)}':>12}", f"{'lower':>10}", f"{'upper':>10}"])]
     for place in shown:
         numbers = [*(f"{place[key]:>{width}.4g}" for key, width in zip(keys, widths)), *(f"{place[name]:>{w}.3g}" for name, w in zip(ALL, (12, 10, 10)))]
         lines.append("  ".join(numbers))

@@ -90,6 +90,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"advancing-angle=150 (Young's angle does not follow from it alone) give receding-angle, too, "
                 "or wall-tension",
                 {{"advancing-angle", 150.0}}},
+        Refusal{"receding-angle=155 (larger than advancing-angle=140) exchange them",
+                {{"receding-angle", 155.0}, {"advancing-angle", 140.0}}},
         Refusal{"receding-angle=60 (with this advancing-angle wall-tension, minus the mean of their cosines, "
                 "is -0.163, and the interface on a wall would buckle) use angles for at least 0.1",
                 {{"receding-angle", 60.0}, {"advancing-angle", 100.0}}},

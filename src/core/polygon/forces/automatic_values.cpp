@@ -92,6 +92,9 @@ void resolve_contact_angles(DpParameters& dp) {
   if (!dp.wall_tension && !dp.receding_angle && dp.advancing_angle)
     refuse("advancing-angle", *dp.advancing_angle,
            "Young's angle does not follow from it alone) give receding-angle, too, or wall-tension");
+  if (dp.receding_angle && dp.advancing_angle && *dp.receding_angle > *dp.advancing_angle)
+    refuse("receding-angle", *dp.receding_angle,
+           fmt::format("larger than advancing-angle={:.6g}) exchange them", *dp.advancing_angle));
   constexpr double smallest = 0.1;
   const double tension = wall_tension(dp), young = young_angle(dp);
   require(tension >= smallest, "receding-angle", dp.receding_angle.value_or(young), [&] {
