@@ -238,7 +238,7 @@ class Sizes(ProgramTest):
                 dashed = [line.get_ydata()[0] for line in axes.lines if line.get_linestyle() == "--"]
                 self.assertEqual(np.round(dashed, 9).tolist(), tangents)
                 texts = [text.get_text() for text in figure.findobj(Text)]
-                self.assertIn("Lateral displacement per distance vs diameter", texts)
+                self.assertIn("Lateral displacement vs diameter", texts)
                 self.assertEqual(any("dashed: along the rows" in text for text in texts), bool(tangents))
 
     def test_a_report_shows_each_droplet(self):

@@ -140,7 +140,7 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path, *options: object) -> Figure:
         title, words = f"{kind.heading} vs {abscissa}", kind.outcomes
         rows = of_passages(groups, sweep, folder / "clogrun")
     else:
-        title, words = f"{curve.heading(groups).capitalize()} vs {abscissa}", {"flowing": "still going"}
+        title, words = f"{curve.heading(groups).capitalize().removesuffix(' per distance')} vs {abscissa}", {"flowing": "still going"}
         rows = of_lengths(groups.with_lengths(sweep), sweep, folder / "clogrun")
     head = f"{groups.caption()}\n{of_laboratory(groups)}{counted(stored.read_table(sweep, folder), words)}"
     groups.tells_what_all_share = False  # the head does, panels need not
