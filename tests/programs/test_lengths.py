@@ -133,7 +133,9 @@ class Beside(ProgramTest):
         figure = style.figure_of(lambda axes, these: measured.draw_on(axes, own, these, "own.csv"), groups)
         stars = [line for line in figure.axes[0].lines if line.get_marker() == "*"]
         self.assertEqual([(line.get_xdata()[0], line.get_ydata()[0]) for line in stars], [(1, 4), (3, 6)])
-        self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()][0], "own.csv")
+        self.assertLess(max(line.get_zorder() for line in figure.axes[0].lines if line not in stars), min(star.get_zorder() for star in stars))
+        entries = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+        self.assertEqual((entries[0], len(entries)), ("own.csv", len(set(entries))))
         with self.assertRaisesRegex(UserError, "--lab"):
             measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None).known, None)
 

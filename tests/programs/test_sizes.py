@@ -8,12 +8,14 @@ import unittest
 
 import h5py
 import numpy as np
+from matplotlib.text import Text
 from support import BIN, ROOT, ProgramTest, table
 
 sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
 from clogsweep import style  # noqa: E402
 from clogsweep.drawing import lengths  # noqa: E402
+from clogsweep.pages import poster  # noqa: E402
 
 GRAVITY = 9.81 * (0.997 - 0.703) / 0.703  # [m/s^2], of octane in water between upright plates
 LAB = {"diameter": "0.8 mm, 1.6 mm", "angle": "20 deg, 45 deg", "speed": "1 mm/s", "tension": "2 mN/m"}
@@ -247,6 +249,19 @@ class Sizes(ProgramTest):
         lab = self.write("lab.cfg", "; ".join(lines[:2]) + "   # terminal; measured = with ; this\n" + "\n".join(lines[2:]) + "\n")
         self.assertEqual(json.loads(self.succeed("clogfit", "units", lab, "--format", "json").stdout), plain)
         self.refuse("clogfit", "units", self.write("lab.cfg", "diameter = 1 mm; angle = 20 deg # a; b\nspeed\n"), words=["line 2: 'speed' is not"])
+
+    def test_a_lattice_is_drawn_over_the_diameter_with_the_tangent_of_its_rows(self):
+        lattice = ["obstacle-layout=lattice", *ARRAY[:2], "vertices=64", "box=25", "max-time=40", "seeds=1"]
+        for name, angles, tangents in [("tilted", "14", [0.25]), ("both", "0,14", [0.25]), ("straight", "0", [])]:
+            with self.subTest(name):
+                self.sweep(*lattice, f"lattice-angle={angles}", output=f"{name}.h5", angle="20 deg")
+                figure = poster.draw(self.folder / f"{name}.h5", BIN)
+                axes = next(axes for axes in figure.axes if axes.get_ylabel() == "lateral displacement per distance")
+                dashed = [line.get_ydata()[0] for line in axes.lines if line.get_linestyle() == "--"]
+                self.assertEqual(np.round(dashed, 9).tolist(), tangents)
+                texts = [text.get_text() for text in figure.findobj(Text)]
+                self.assertIn("Lateral displacement vs diameter", texts)
+                self.assertEqual(any("dashed: along the rows" in text for text in texts), bool(tangents))
 
     def test_a_report_shows_each_droplet(self):
         self.write("posts.csv", POSTS)

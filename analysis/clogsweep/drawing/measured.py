@@ -12,6 +12,7 @@ from ..reading import programs
 from ..tools.errors import UserError
 
 COLOUR = "#444444"
+ABOVE = 4  # in front of simulated markers, which have 3
 LENGTHS = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 
 
@@ -43,8 +44,8 @@ def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: s
             axes.axhspan(lower, upper, color=COLOUR, alpha=0.15, linewidth=0, zorder=0)
             axes.axhline(length, color=COLOUR, linestyle="--", linewidth=1, label=name)
         elif length is None:
-            axes.plot(place, lower, "^", color=COLOUR, markerfacecolor="white", markersize=8, label=name)
+            axes.plot(place, lower, "^", color=COLOUR, markerfacecolor="white", markersize=8, label=name, zorder=ABOVE)
         else:
-            axes.errorbar(place, length, yerr=[[length - lower], [upper - length]], fmt="*", color=COLOUR, markersize=9, capsize=2.5, label=name)
+            axes.errorbar(place, length, yerr=[[length - lower], [upper - length]], fmt="*", color=COLOUR, markersize=9, capsize=2.5, label=name, zorder=ABOVE)
         drawn = True
-    style.legend(axes, groups.members)
+    style.legend(axes)  # the markers of the sweep are in it already

@@ -2,6 +2,7 @@
 
 import functools
 import math
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,23 +13,30 @@ from ..labels.groups import Groups
 from . import lengths
 
 
-def draw_rows(axes: Axes, groups: Groups) -> None:
-    """Lines for a droplet that follows the rows, and for one that goes straight on."""
+def draw_rows(axes: Axes, groups: Groups) -> bool:
+    """Lines for a droplet that follows the rows, and for one that goes straight on. @return whether the first is drawn"""
     angles = [group["lattice_angle"] for group in groups.members]
     axes.axhline(0, color="0.6", linewidth=0.8, linestyle=":", zorder=1)
-    if groups.abscissa == "lattice_angle" and min(angles) < max(angles):
+    dashed: dict[str, Any] = {"color": "0.6", "linewidth": 0.8, "linestyle": "--", "zorder": 1}
+    if groups.abscissa == "lattice_angle":
         along = np.linspace(min(angles), max(angles), 100)
-        axes.plot(along, [math.tan(math.radians(angle)) for angle in along], color="0.6", linewidth=0.8, linestyle="--", zorder=1)
+        axes.plot(along, np.tan(np.radians(along)), **dashed)
+        return True
+    if any(len({group["lattice_angle"] for group in members}) > 1 for _, members in groups.curves()):
+        return False
+    tilts = set(angles) - {0}
+    for angle in tilts:
+        axes.axhline(math.tan(math.radians(angle)), **dashed)
+    return bool(tilts)
 
 
-def notes(groups: Groups) -> list[str]:
+def notes(groups: Groups, has_rows: bool) -> list[str]:
     """Says what is drawn, and for how many droplets it is not known."""
-    lines = ["dashed: along the rows; dotted: straight on; bars: standard errors"]
+    lines = ["dashed: along the rows; " * has_rows + "dotted: straight on; bars: standard errors"]
     unknown = sum(group["lateral_slope"] is None for group in groups.members)
     return lines + ([f"{unknown} of {len(groups.members)} points: no droplet went half a diameter"] if unknown else [])
 
 
 def draw_on(axes: Axes, groups: Groups) -> None:
     lengths.draw_curves(axes, groups, functools.partial(lengths.draw_speeds, column="lateral_slope"))
-    draw_rows(axes, groups)
-    style.finish(axes, AXES["slope"], groups.caption(), notes(groups))
+    style.finish(axes, AXES["slope"], groups.caption(), notes(groups, draw_rows(axes, groups)))

@@ -134,13 +134,13 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path, *options: object) -> Figure:
     groups = Groups(*fits.fitted(folder / "clogfit", sweep, *options)).finished(sweep).fit_curves(sweep, folder)
     with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)
-    abscissa = groups.abscissa.replace("_", " ")
+    abscissa = groups.abscissa_key().replace("_", " ")
     if groups.are_passages:
         kind = passages.kind_of(groups)
         title, words = f"{kind.heading} vs {abscissa}", kind.outcomes
         rows = of_passages(groups, sweep, folder / "clogrun")
     else:
-        title, words = f"Clogging length vs {abscissa}", {"flowing": "still going"}
+        title, words = f"{curve.heading(groups).capitalize().removesuffix(' per distance')} vs {abscissa}", {"flowing": "still going"}
         rows = of_lengths(groups.with_lengths(sweep), sweep, folder / "clogrun")
     head = f"{groups.caption()}\n{of_laboratory(groups)}{counted(stored.read_table(sweep, folder), words)}"
     groups.tells_what_all_share = False  # the head does, panels need not
