@@ -13,8 +13,8 @@ BLOCK = re.compile(r"^```(bash|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTA
 TOCTREE = re.compile(r"^```{toctree}\n(?::.*\n)*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 # Settings from the page before the tutorials; `set` ends a block at the first command that fails.
 BEFORE = f"set -euo pipefail; . {ROOT}/jobs/mpi-settings.sh\n"
-PAGES = ["README.md", *(f"docs/how-to/{name}.md" for name in ("other-arrays", "own-obstacles", "lattice", "lateral-displacement", "compare-sweeps", "python",
-                                                           "contact-angles", "sizes-and-tilts"))]
+HOW_TO = ("other-arrays", "own-obstacles", "lattice", "lateral-displacement", "compare-sweeps", "python", "contact-angles", "sizes-and-tilts")
+PAGES = ["README.md", *(f"docs/how-to/{name}.md" for name in HOW_TO)]
 
 
 def tutorial():
