@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -35,10 +36,6 @@ bool hangs_on_mesh(const Group& group) {
   return group.num_on_mesh > 0 && group.num_on_mesh >= tolerated * group.clogging.num_clogs;
 }
 
-bool wets_walls(const RunParameters& run) {
-  return run.model == Model::dp && (wall_tension(run.dp) < 1 || has_hysteresis(run.dp));
-}
-
 std::vector<Doubt> doubts_about(const Group& group) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool has_length = has_clogging_length(group.first_row);
@@ -46,13 +43,15 @@ std::vector<Doubt> doubts_about(const Group& group) {
   const bool lacks_clogs =
       clogging.num_runs > 0 && group.num_passed != clogging.num_runs && clogging.num_clogs < enough_clogs;
   const bool is_below_spacing = clogging.length < sweep::obstacle_spacing(group.first_row);
+  const RunParameters& run = group.first_row.parameters;
+  const bool wets_walls = run.model == Model::dp && (wall_tension(run.dp) < 1 || has_hysteresis(run.dp));
   const std::pair<Doubt, bool> all[] = {
       {Doubt::few_clogs, has_length && lacks_clogs},
       {Doubt::censored_by_time, has_length && group.num_flowing > 0},
       {Doubt::incomplete, group.num_interrupted > 0 || group.num_failed > 0},
       {Doubt::damaged, group.num_damaged > 0},
       {Doubt::held_by_mesh, has_length && hangs_on_mesh(group)},
-      {Doubt::wetted_mesh, has_length && clogging.num_clogs > 0 && wets_walls(group.first_row.parameters)},
+      {Doubt::wetted_mesh, has_length && clogging.num_clogs > 0 && wets_walls},
       {Doubt::array_repeats, has_length && group.num_repeating > 0},
       {Doubt::met_none, has_length && group.num_free > 0 && !is_device(group.first_row.parameters)},
       {Doubt::below_spacing, has_length && is_below_spacing},
@@ -246,13 +245,10 @@ fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double te
   return of_enough_runs(is_far ? fit::fit_pooled_speed(travels) : fit::fit_pooled_speed({}));
 }
 
-/// Keeps the run with the largest max-time of each droplet (one seed in one array), sorted by max-time, the
-/// largest first.
+/// Keeps of each droplet (one seed in one array) the run with the largest max-time; the longest come first.
 void keep_longest(std::vector<const sweep::RunRow*>& runs) {
-  const auto longer = [](const sweep::RunRow* a, const sweep::RunRow* b) {
-    return a->parameters.max_time > b->parameters.max_time;
-  };
-  std::stable_sort(runs.begin(), runs.end(), longer);
+  std::ranges::stable_sort(runs, std::ranges::greater(),
+                           [](const sweep::RunRow* run) { return run->parameters.max_time; });
   std::set<std::pair<std::uint32_t, std::string>> known;
   std::erase_if(runs, [&](const sweep::RunRow* run) {
     if (run->status == RunStatus::failed || !sweep::fault_of(*run).empty()) return false;
