@@ -40,6 +40,7 @@ CASES = {
     "vertices": "clogsweep box=20 max-time=10 vertices=256 seeds=1 obstacle-density=saturated",
     "soft-disk": "clogsweep model=sp wall-stiffness=0.5,5 dwell-length=0.05,0.5 box=20 max-time=1000 seeds=1..3 obstacle-density=0.5",
     "lattice": "clogsweep obstacle-layout=lattice lattice-angle=10 obstacle-gap=0.8 box=60 max-time=40 vertices=64 seeds=3..4",
+    "lattices": "clogsweep obstacle-layout=lattice lattice=triangular,rhombic pitch=1.2 lattice-angle=0 box=30 max-time=40 vertices=64 seeds=3",
     "dilute": "clogsweep box=20 max-time=40 vertices=64 seeds=3..4 obstacle-density=0.5 boxes=3 obstacle-gap=0.3",
     "mixture": f"{SWEEP} obstacle-diameter=0.4 obstacle-diameter-spread=0.3 obstacle-gap=0.4 dwell-length=0.1",
     "large-array": "clogsweep box=200 max-time=5 vertices=64 seeds=1 obstacle-density=saturated",
