@@ -18,24 +18,21 @@ def cell(text):
     return text.replace("|", r"\|")
 
 
-def range_of(key):
-    if key["kind"] == "word":
-        return ", ".join(f"`{word}`" for word in key["words"])
-    words = "".join(f"`{word}` or " for word in key["words"])
-    if key["kind"] == "text":
-        return words + "a description, as of `--lab`"
-    if key["kind"] == "file":
-        return words + "a file's name"
-    share = ", or a share such as `50%`" if key["kind"] == "number or share" else ""
-    return words + (key.get("range") or "any number") + share
+def values_of(key):
+    """Its default; then other values."""
+    words = [f"`{word}`" for word in key["words"] if word != key["default"]]
+    if key["kind"] != "word":
+        numbers = {"text": "a description, as of `--lab`", "file": "a file's name"}.get(key["kind"], key.get("range") or "any number")
+        words = [*words, numbers + (", or a share such as `50%`" if key["kind"] == "number or share" else "")]
+    return f"`{key['default']}`; {', '.join(words)}"
 
 
 def keys(schema):
-    yield "| key | default | values | meaning |"
-    yield "|---|---|---|---|"
+    yield "| key | default; others | meaning |"
+    yield "|---|---|---|"
     for key in schema["keys"]:
         scope = "" if key["scope"] == "all" else f" ({key['scope']})"
-        yield f"| `{key['key']}` | `{key['default']}` | {cell(range_of(key))} | {cell(key['help'])}{scope} |"
+        yield f"| `{key['key']}` | {cell(values_of(key))} | {cell(key['help'])}{scope} |"
 
 
 def type_of(column):
@@ -53,14 +50,15 @@ def columns(schema):
             named.append(name)
             continue
         meaning = f"key `{key}`" if key else cell(column["meaning"])
-        names, _, _ = rows.setdefault((column["unit"], re.sub(r"\d+", "", meaning)), ([], column["unit"], meaning))
+        meaning += f" [{column['unit']}]" if column["unit"] else ""
+        names, _ = rows.setdefault(re.sub(r"\d+", "", meaning), ([], meaning))
         names.append(name)
     yield from textwrap.wrap("Columns with the value of the [key](keys.md) of the same name, with `_` for `-`, in its unit: " + ", ".join(named) + ".", 120)
     yield ""
-    yield "| column | unit | meaning |"
-    yield "|---|---|---|"
-    for names, unit, meaning in rows.values():
-        yield f"| {', '.join(names)} | {unit} | {meaning}{'; and so on' if len(names) > 1 and re.search('[0-9]', meaning) else ''} |"
+    yield "| column | meaning |"
+    yield "|---|---|"
+    for names, meaning in rows.values():
+        yield f"| {', '.join(names)} | {meaning}{', and so on' if len(names) > 1 and re.search('_[0-9]', meaning) else ''} |"
 
 
 TABLES = [("docs/reference/keys.md", "keys", keys), ("docs/reference/columns.md", "columns", columns)]
