@@ -154,8 +154,8 @@ Column filling_column() {
           .symbol = "",
           .unit = "",
           .meaning =
-              "saturated, or filled to a given density; lattice (square), triangular, rhombic; file "
-              "(of a user); channel; wall",
+              "random arrays: saturated or density; lattices: lattice (square), triangular or rhombic; file, "
+              "channel, wall",
           .role = ColumnRole::parameter,
           .kind = ValueKind::word,
           .size = 16,
@@ -189,9 +189,9 @@ Column filling_column() {
 }
 
 Column density_column() {
-  Column column = member("obstacle_density", &RunRow::obstacle_density, ColumnRole::parameter, "1/sigma^2",
-                         "obstacles per area; for a saturated array the jamming limit "
-                         "0.6966/(w_ob+sigma_ob)^2, NaN for a saturated mixture");
+  Column column = member(
+      "obstacle_density", &RunRow::obstacle_density, ColumnRole::parameter, "1/sigma^2",
+      "obstacles per area; in saturated arrays the jamming limit 0.6966/(w_ob+sigma_ob)^2, NaN for mixtures");
   column.symbol = parameter("obstacle-density").symbol;
   column.shapes_array = true;
   column.set = [](RunRow& row, const Value& value) {
@@ -206,10 +206,9 @@ std::vector<Column> columns_of_dwells() {
   for (std::size_t i = 0; i < Dwells::most; ++i) {
     const std::string name = dwell_column(i);
     const std::string meaning =
-        i == 0 ? "longest time in which the droplet came no farther than dwell_length; a dwell that lasts "
-                 "until the run's end counts with its length so far, that of a clog does not count; NaN: "
-                 "none above ten times dwell_length/V_t"
-               : "the longest before " + dwell_column(i - 1) + " began; NaN likewise";
+        i == 0 ? "longest time in which the droplet advanced by at most dwell_length; includes a dwell cut "
+                 "by the end of the run, excludes the clog; NaN: none above ten times dwell_length/V_t"
+               : "longest dwell before " + dwell_column(i - 1) + "; NaN: none";
     all.push_back(number_in(
         name, [i](auto& row) -> auto& { return row.dwells.longest[i].length; }, "t0", meaning));
     all.push_back(number_in(
@@ -221,10 +220,10 @@ std::vector<Column> columns_of_dwells() {
   }
   all.push_back(number_in(
       "dwells_known_from", [](auto& row) -> auto& { return row.dwells.known_from; }, "t0",
-      "for every duration above this one, the columns contain the first dwell that was longer"));
+      "for every longer duration, the columns contain the first dwell that exceeded it"));
   all.push_back(number_in(
       "last_dwell_at", [](auto& row) -> auto& { return row.dwells.last_distance; }, "sigma",
-      "distance at which the last dwell began, however short: the one in which the run ended, or the clog"));
+      "distance at which the last dwell began, of any length: that of the clog or of the end of the run"));
   all.push_back(number_in(
       "last_dwell_from", [](auto& row) -> auto& { return row.dwells.last_begin; }, "t0",
       "time at which it began"));
@@ -244,20 +243,18 @@ std::vector<Column> make_columns() {
   const std::vector<Column> others = {
       // Any word: presets of another version may have other names.
       member("preset", &RunRow::preset, parameter, "",
-             "name of the set of interface keys that was used; custom: the interface agrees with none; none "
-             "for sp",
-             16),
+             "preset with these keys of the interface; custom: no preset has them; none: soft disk", 16),
       member("model_version", &RunRow::model_version, parameter, "",
-             "runs of different versions differ though their parameters agree (parameters.hpp)"),
+             "version of the model; runs of different versions differ even if their parameters agree"),
       member("status", &RunRow::status, result, "",
              "clogged; broken: its neck got thinner than break_up_neck; flowing: max_time reached; passed: "
-             "the end of its way; failed: see message; running, "
-             "interrupted: not over, the other columns say how far it is",
+             "at the exit or the end of the channel; failed: see message; running, interrupted: incomplete, "
+             "other columns show the state so far",
              16),
       member("clogged_by", &RunRow::clogged_by, result, "",
-             "certified: a stable equilibrium was proved to be at hand, distance, lateral_displacement and "
-             "shape_parameter are its; threshold: E_k/E_t fell below clog_energy; none unless clogged; "
-             "empty: not known",
+             "certified: proved to be near a stable equilibrium, whose distance, lateral_displacement and "
+             "shape_parameter the row has; threshold: E_k/E_t fell below clog_energy; none: not clogged; "
+             "empty: unknown",
              16),
       member("distance", &RunRow::distance, result, "sigma",
              "displacement of the centre of mass along the flow since release"),
@@ -265,79 +262,76 @@ std::vector<Column> make_columns() {
              "displacement across the flow"),
       member("time", &RunRow::time, result, "t0", "time since release"),
       member("mean_speed", &RunRow::mean_speed, result, "sqrt(sigma g)",
-             "way over time after the transient and before the arrest; NaN if it moved less than half a "
-             "diameter in that time, or the transient was not over in half the run"),
+             "distance divided by time between transient and arrest; NaN if it moved less than half a "
+             "diameter in that time, or the transient took more than half of the run"),
       member("mean_speed_error", &RunRow::mean_speed_error, result, "sqrt(sigma g)",
-             "standard error of mean_speed from its course in this run; NaN for too short a run"),
+             "standard error of mean_speed from its variation during the run; NaN for too short a run"),
       member("transient", &RunRow::transient, result, "t0", "time at which the transient ends"),
       member("travel_time", &RunRow::travel_time, result, "t0",
-             "time that mean_speed is taken over: from the end of the transient to the arrest"),
-      member(
-          "contacts", &RunRow::contacts, result, "",
-          "how often the droplet came to touch an obstacle, as seen at the checks, 64 steps apart; one that "
-          "it has left by 0.1 sigma counts again; -1: not known"),
+             "time from the end of the transient to the arrest, of which mean_speed is the mean"),
+      member("contacts", &RunRow::contacts, result, "",
+             "number of contacts with obstacles, checked every 64 steps; an obstacle counts again after a "
+             "separation of 0.1 sigma; -1: unknown"),
       member("first_contact_at", &RunRow::first_contact_at, result, "sigma",
-             "distance at which it touched the first one; NaN: none"),
+             "distance of the first contact; NaN: none"),
       member("kinetic_energy_ratio", &RunRow::kinetic_energy_ratio, result, "",
              "E_k/E_t at the end; E_t: kinetic energy at terminal speed"),
       member("shape_parameter", &RunRow::shape_parameter, result, "",
              "A = perimeter^2/(4 pi area) at the end; 1 for a circle"),
       member("mechanism", &RunRow::mechanism, result, "",
-             "wrapped around obstacles, squeezed in gaps, hybrid (docs/explanation/clogged.md); none unless "
-             "clogged, or if nothing that it touches makes a gap; empty: not known",
+             "wrapped, squeezed or hybrid (docs/explanation/clogged.md); none: not clogged, or no touched "
+             "obstacle makes a gap; empty: unknown",
              16),
       member("wrapped_support", &RunRow::wrapped_support, result, "",
-             "part of the upstream support that wrapped obstacles give; NaN unless a clogged polygon"),
+             "fraction of the upstream support that wrapped obstacles give; NaN unless a clogged polygon"),
       member("num_wrapped", &RunRow::num_wrapped, result, "",
-             "touched obstacles that the clogged polygon hangs over, otherwise 0; -1: not known"),
+             "touched obstacles over which the clogged polygon hangs, otherwise 0; -1: unknown"),
       member("num_gaps", &RunRow::num_gaps, result, "",
-             "gaps that it looks into, at least one side of which supports it; -1: not known"),
-      member("num_arcs", &RunRow::num_arcs, result, "", "arcs of contact; -1: not known"),
-      member(
-          "mesh_hold", &RunRow::mesh_hold, result, "",
-          "part of the weight of a clogged polygon that the corners of its mesh can hold at most, where it "
-          "hangs over obstacles; NaN otherwise"),
+             "gaps in front of the clogged polygon with a side that supports it; -1: unknown"),
+      member("num_arcs", &RunRow::num_arcs, result, "", "arcs of contact; -1: unknown"),
+      member("mesh_hold", &RunRow::mesh_hold, result, "",
+             "largest fraction of the weight that corners of the mesh can hold where a clogged polygon hangs "
+             "over obstacles; NaN otherwise"),
       member("largest_shape_parameter", &RunRow::largest_shape_parameter, result, "",
-             "largest A on the way through a channel; NaN elsewhere, as in the next five"),
+             "largest A in a channel; NaN elsewhere, as for the next five"),
       member("largest_shape_parameter_at", &RunRow::largest_shape_parameter_at, result, "sigma",
              "h at which the droplet had it, from the line through the tips, positive downstream"),
       member("largest_relative_speed", &RunRow::largest_relative_speed, result, "",
-             "largest v_g/v_t on the way through a channel"),
+             "largest v_g/v_t in a channel"),
       member("largest_relative_speed_at", &RunRow::largest_relative_speed_at, result, "sigma",
              "h at which the droplet had it"),
       member("smallest_relative_speed", &RunRow::smallest_relative_speed, result, "",
-             "smallest v_g/v_t on the way through a channel, once the droplet has fallen for ten relaxation "
-             "times V_t/g"),
+             "smallest v_g/v_t in a channel, after ten relaxation times V_t/g"),
       member("smallest_relative_speed_at", &RunRow::smallest_relative_speed_at, result, "sigma",
              "h at which the droplet had it"),
-      member(
-          "sag", &RunRow::sag, result, "sigma",
-          "delta_s, how far the centroid of a droplet on a flat wall has sunk under gravity; NaN elsewhere"),
-      member("top_sag", &RunRow::top_sag, result, "sigma", "the same of its highest point"),
+      member("sag", &RunRow::sag, result, "sigma",
+             "delta_s, how far the centroid of a droplet on a flat wall has sunk; NaN elsewhere"),
+      member("top_sag", &RunRow::top_sag, result, "sigma", "the same for its highest point"),
       number_in(
           "thinnest_neck", [](auto& row) -> auto& { return row.neck.width; }, "sigma",
-          "width of the thinnest neck between two lobes that the droplet has had "
-          "(docs/explanation/wrapped.md); NaN: it had none, or break_up_neck is 0"),
+          "smallest width of a neck between two lobes during the run (docs/explanation/wrapped.md); NaN: no "
+          "neck, or break_up_neck is 0"),
       number_in(
           "thinnest_neck_at", [](auto& row) -> auto& { return row.neck.distance; }, "sigma",
           "distance at which it was found"),
       member("release_x", &RunRow::release_x, result, "sigma",
-             "where the centre of mass was released among user-supplied circles, in their coordinates; NaN "
-             "elsewhere; a little outside the array if the nearest void is there"),
+             "place of release of the centre of mass in the coordinates of user-supplied circles, possibly a "
+             "little outside the array; NaN elsewhere"),
       member("release_y", &RunRow::release_y, result, "sigma", "the same across the flow"),
-      member("steps", &RunRow::steps, result, "", "integrated steps, sub-steps counted singly"),
+      member("steps", &RunRow::steps, result, "", "integrated steps; sub-steps count singly"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",
-             "wall-clock time of the run, all sessions together"),
+             "wall-clock time of the run in all sessions"),
       member("processor_seconds", &RunRow::processor_seconds, circumstance, "s",
-             "processor time of the run, all sessions together; NaN: not known"),
-      member("rank", &RunRow::rank, circumstance, "", "MPI rank that did the run"),
+             "processor time of the run in all sessions; NaN: unknown"),
+      member("rank", &RunRow::rank, circumstance, "", "MPI rank that computed the run"),
       member("instruction_set", &RunRow::instruction_set, circumstance, "",
-             "of the polygon's step; mixed: interrupted under one, it went on under another, so that no "
-             "replay has its bits; none for sp",
+             "instruction set of the polygon's steps; mixed: several, so no replay reproduces the bits; "
+             "none: soft disk",
              16),
       member("host", &RunRow::host, circumstance, "", "host of that rank", 64),
-      member("attempt", &RunRow::attempt, circumstance, "",
-             "1 for the first try; interruptions do not count, nor do failures that may be the rank's"),
+      member(
+          "attempt", &RunRow::attempt, circumstance, "",
+          "1 for the first attempt; interruptions, and failures that may be the rank's fault, do not count"),
       member("message", &RunRow::message, circumstance, "", "why the run failed", 256),
   };
   all.insert(all.end(), others.begin(), others.end());

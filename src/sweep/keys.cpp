@@ -32,9 +32,9 @@ Key preset_key() {
           .words = preset_names(),
           .default_text = "robust",
           .help =
-              "sets the keys of the interface together, those given by hand excepted: robust (weight on the "
-              "liquid), heavy-interface (weight on the interface), elastic (the same, and it stretches like "
-              "rubber, K_l = 0.1 Gamma; shows the published trends), literal (the published equations)",
+              "sets all keys of the interface that are not given separately: robust (weight on the liquid), "
+              "heavy-interface (weight on the interface), elastic (weight on an interface that stretches "
+              "like rubber, K_l = 0.1 Gamma; shows the published trends), literal (the published equations)",
           .parameter = nullptr};
 }
 

@@ -1,4 +1,4 @@
-"""Tables of keys and columns in the documentation are those of clogsweep --schema.
+"""Lists of keys and columns in the documentation are those of clogsweep --schema.
 
     tests/lint/schema_tables.py build/release/bin/clogsweep .            # exit code 1 where one is stale
     tests/lint/schema_tables.py build/release/bin/clogsweep . --write    # renews them
@@ -14,28 +14,26 @@ import textwrap
 BEGIN, END = "<!-- {} of clogsweep --schema, by tests/lint/schema_tables.py -->", "<!-- end of {} -->"
 
 
-def cell(text):
-    return text.replace("|", r"\|")
+def values_of(key):
+    """Its default; then other values."""
+    words = [f"`{word}`" for word in key["words"] if word != key["default"]]
+    if key["kind"] != "word":
+        numbers = {"text": "a description, as of `--lab`", "file": "a file's name"}.get(key["kind"], key.get("range") or "any number")
+        words = [*words, numbers + (", or a share such as `50%`" if key["kind"] == "number or share" else "")]
+    return f"`{key['default']}`; {', '.join(words)}"
 
 
-def range_of(key):
-    if key["kind"] == "word":
-        return ", ".join(f"`{word}`" for word in key["words"])
-    words = "".join(f"`{word}` or " for word in key["words"])
-    if key["kind"] == "text":
-        return words + "a description, as of `--lab`"
-    if key["kind"] == "file":
-        return words + "a file's name"
-    share = ", or a share such as `50%`" if key["kind"] == "number or share" else ""
-    return words + (key.get("range") or "any number") + share
+def definition(term, meaning):
+    """An entry of a definition list."""
+    yield term
+    yield from textwrap.wrap(meaning, 120, initial_indent=": ", subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
+    yield ""
 
 
 def keys(schema):
-    yield "| key | default | values | meaning |"
-    yield "|---|---|---|---|"
     for key in schema["keys"]:
         scope = "" if key["scope"] == "all" else f" ({key['scope']})"
-        yield f"| `{key['key']}` | `{key['default']}` | {cell(range_of(key))} | {cell(key['help'])}{scope} |"
+        yield from definition(f"`{key['key']}` ({values_of(key)})", key["help"] + scope)
 
 
 def type_of(column):
@@ -43,7 +41,7 @@ def type_of(column):
 
 
 def columns(schema):
-    """Columns with the name and value of a key in one paragraph; columns whose meanings differ only in numbers in one row."""
+    """Columns with the name and value of a key in one paragraph; columns whose meanings differ only in numbers in one entry."""
     key_of = {(key.get("column"), key.get("meaning")): key["key"] for key in schema["keys"]}
     named, rows = [], {}
     for column in schema["columns"]:
@@ -52,15 +50,14 @@ def columns(schema):
         if key and key.replace("-", "_") == column["name"]:
             named.append(name)
             continue
-        meaning = f"key `{key}`" if key else cell(column["meaning"])
-        names, _, _ = rows.setdefault((column["unit"], re.sub(r"\d+", "", meaning)), ([], column["unit"], meaning))
+        meaning = f"key `{key}`" if key else column["meaning"]
+        meaning += f" [{column['unit']}]" if column["unit"] else ""
+        names, _ = rows.setdefault(re.sub(r"\d+", "", meaning), ([], meaning))
         names.append(name)
     yield from textwrap.wrap("Columns with the value of the [key](keys.md) of the same name, with `_` for `-`, in its unit: " + ", ".join(named) + ".", 120)
     yield ""
-    yield "| column | unit | meaning |"
-    yield "|---|---|---|"
-    for names, unit, meaning in rows.values():
-        yield f"| {', '.join(names)} | {unit} | {meaning}{'; and so on' if len(names) > 1 and re.search('[0-9]', meaning) else ''} |"
+    for (name, *others), meaning in rows.values():
+        yield from definition(name, meaning + ("; likewise " if others else "") + ", ".join(others))
 
 
 TABLES = [("docs/reference/keys.md", "keys", keys), ("docs/reference/columns.md", "columns", columns)]
@@ -71,7 +68,7 @@ def renewed(text, name, lines):
     before, _, rest = text.partition(begin)
     _, found, after = rest.partition(end)
     if not found:
-        sys.exit(f"no place for the table of {name}: it stands between '{begin}' and '{end}'")
+        sys.exit(f"no place for the list of {name}: it stands between '{begin}' and '{end}'")
     return "\n".join([before + begin, "", *lines, "", end + after])
 
 
@@ -84,10 +81,10 @@ def main(program, root, *options):
         new = renewed(text, name, lines(schema))
         if new == text:
             continue
-        stale.append(f"{path}: its table of {name} is stale; renew it with {sys.argv[0]} {program} {root} --write")
+        stale.append(f"{path}: its list of {name} is stale; renew it with {sys.argv[0]} {program} {root} --write")
         if "--write" in options:
             place.write_text(new)
-    print("\n".join(stale) or "tables are as the schema")
+    print("\n".join(stale) or "lists are as the schema")
     return bool(stale) and "--write" not in options
 
 

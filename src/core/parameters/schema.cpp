@@ -256,8 +256,8 @@ std::vector<Parameter> array_entries() {
             {.column = "obstacle_diameter",
              .symbol = R"(\sigma_\mathrm{ob})",
              .unit = "sigma",
-             .meaning = "sigma_ob, diameter of the obstacles; of user-supplied circles, of those without a "
-                        "diameter in the file",
+             .meaning = "sigma_ob, diameter of the obstacles, or of user-supplied circles without a diameter "
+                        "in the file",
              .scope = &arrays,
              .range = {positive, {}},
              .shapes_array = true}),
@@ -270,24 +270,22 @@ std::vector<Parameter> array_entries() {
                        below(1, "the smallest obstacles would have no diameter", "use less than 1")},
              .shapes_array = true,
              .elsewhere = 0.0}),
-      entry(
-          "obstacle-density", [](auto& run) -> auto& { return run.obstacles.density; },
-          {.column = "obstacle_density",
-           .symbol = R"(\rho_\mathrm{ob})",
-           .unit = "1/sigma^2",
-           .meaning = "obstacles per area; 12.5%: of the mean density of saturated arrays; saturated: until "
-                      "not one more fits. Refused if some seed cannot reach it",
-           .scope = &arrays,
-           .automatic_in = &arrays,
-           .range = {positive, {}},
-           .has_own_column = false,
-           .shapes_array = true,
-           .words = {"saturated"}}),
+      entry("obstacle-density", [](auto& run) -> auto& { return run.obstacles.density; },
+            {.column = "obstacle_density",
+             .symbol = R"(\rho_\mathrm{ob})",
+             .unit = "1/sigma^2",
+             .meaning = "obstacles per area, or a share of the mean density of saturated arrays; saturated: "
+                        "until no further one fits. Refused if some seed cannot reach it",
+             .scope = &arrays,
+             .automatic_in = &arrays,
+             .range = {positive, {}},
+             .has_own_column = false,
+             .shapes_array = true,
+             .words = {"saturated"}}),
       entry("obstacle-layout", [](auto& run) -> auto& { return run.obstacles.layout; },
             {.column = "obstacle_filling",
-             .meaning = "random: random sequential addition, lattice: as lattice, pitch and lattice-angle "
-                        "say, file: user-supplied circles (obstacles), channel: two wedges, wall: a flat "
-                        "wall",
+             .meaning = "random: random sequential addition, lattice: by the keys lattice, pitch and "
+                        "lattice-angle, file: user-supplied circles, channel: two wedges, wall: a flat wall",
              .has_own_column = false,
              .shapes_array = true}),
   };
@@ -298,33 +296,32 @@ std::vector<Parameter> own_circle_entries() {
   return {
       entry("obstacles", [](auto& run) -> auto& { return run.obstacles.own; },
             {.column = "obstacles",
-             .meaning = "CSV file of user-supplied circles: x, y and, if it differs from obstacle-diameter, "
-                        "the diameter; the result file stores the circles, each row their checksum",
+             .meaning = "CSV file of user-supplied circles: x, y and, unless it is obstacle-diameter, the "
+                        "diameter; the result file stores the circles, each row their checksum",
              .scope = &own_circles,
              .shapes_array = true}),
       entry("release", [](auto& run) -> auto& { return run.obstacles.release; },
             {.column = "release",
-             .meaning =
-                 "among user-supplied circles the droplet starts near the centre of the array, or near a "
-                 "place that follows from the seed: anywhere, or on the line of the entrance",
+             .meaning = "start among user-supplied circles: near the centre of the array, or near a place "
+                        "that the seed determines, anywhere or on the line of the entrance",
              .scope = &own_circles,
              .shapes_array = true}),
-      entry(
-          "length", [](auto& run) -> auto& { return run.obstacles.length; },
-          {.column = "length",
-           .symbol = R"(L_x)",
-           .unit = "sigma",
-           .meaning = "length of your own circles along the flow, after which they repeat; 0: boxes*box; of "
-                      "lattices that are not square the longest period along the flow, adjusted as box is",
-           .role = numerics,
-           .scope = &lengths,
-           .range = {not_negative, to(1e7, "no droplet gets as far", "use at most 1e7")},
-           .shapes_array = true,
-           .before = 0.0}),
+      entry("length", [](auto& run) -> auto& { return run.obstacles.length; },
+            {.column = "length",
+             .symbol = R"(L_x)",
+             .unit = "sigma",
+             .meaning =
+                 "length of user-supplied circles along the flow, after which they repeat; 0: boxes*box. For "
+                 "triangular and rhombic lattices the largest period along the flow, adjusted as box is",
+             .role = numerics,
+             .scope = &lengths,
+             .range = {not_negative, to(1e7, "no droplet gets as far", "use at most 1e7")},
+             .shapes_array = true,
+             .before = 0.0}),
       entry("side-walls", [](auto& run) -> auto& { return run.obstacles.side_walls; },
             {.column = "side_walls",
-             .meaning = "on: straight walls along the flow at y=0 and y=box, between which your own circles "
-                        "stand; off: they repeat across the flow",
+             .meaning = "on: straight walls along the flow at y=0 and y=box beside user-supplied circles; "
+                        "off: the circles repeat across the flow",
              .scope = &own_circles,
              .shapes_array = true,
              .before = "off"}),
@@ -332,8 +329,8 @@ std::vector<Parameter> own_circle_entries() {
             {.column = "entrance",
              .symbol = R"(x_\mathrm{in})",
              .unit = "sigma",
-             .meaning = "x of the line on which release=entrance places droplets; where it is not free, they "
-                        "start in the nearest void",
+             .meaning = "x of the line on which release=entrance places droplets, or in the nearest void if "
+                        "it is not free",
              .scope = &own_circles,
              .range = {not_negative, {}},
              .shapes_array = true,
@@ -360,8 +357,8 @@ std::vector<Parameter> own_circle_entries() {
             {.column = "exit",
              .symbol = R"(x_\mathrm{out})",
              .unit = "sigma",
-             .meaning = "x at which a droplet has passed your own circles, which ends its run; 0: nowhere, "
-                        "they repeat",
+             .meaning = "x at which a droplet has passed user-supplied circles, which ends its run; 0: no "
+                        "exit, the circles repeat",
              .scope = &own_circles,
              .range = {not_negative, {}},
              .before = 0.0}),
@@ -419,9 +416,9 @@ std::vector<Parameter> period_entries() {
   return {
       entry("lattice", [](auto& run) -> auto& { return run.obstacles.lattice; },
             {.column = "obstacle_filling",
-             .meaning = "square or triangular, turned by lattice-angle; rhombic: sheared by it, as in "
-                        "deterministic lateral displacement: columns of posts across the flow, each "
-                        "shifted by pitch*tan(lattice-angle)",
+             .meaning =
+                 "square or triangular, turned by lattice-angle; rhombic: columns of posts across the flow, "
+                 "each shifted by pitch*tan(lattice-angle), as in deterministic lateral displacement",
              .scope = &lattices,
              .has_own_column = false,
              .shapes_array = true}),
@@ -429,8 +426,7 @@ std::vector<Parameter> period_entries() {
             {.column = "obstacle_gap",
              .symbol = "a",
              .unit = "sigma",
-             .meaning = "distance between the centres of neighbours in a lattice; 0: obstacle-gap + "
-                        "obstacle-diameter",
+             .meaning = "distance of neighbouring centres in a lattice; 0: obstacle-gap + obstacle-diameter",
              .scope = &lattices,
              .range = {not_negative, {}},
              .has_own_column = false,
@@ -447,7 +443,7 @@ std::vector<Parameter> period_entries() {
              .shapes_array = true}),
       entry("seeds", [](auto& run) -> auto& { return run.seed; },
             {.column = "seed",
-             .meaning = "one run for each: obstacle array and release follow from the seed",
+             .meaning = "one run for each: the seed determines obstacles and release",
              .role = ensemble,
              .scope = &arrays,
              .range = {from(0, "a seed is not negative", "use 0..4294967295"),
@@ -468,8 +464,8 @@ std::vector<Parameter> period_entries() {
       entry("boxes", [](auto& run) -> auto& { return run.obstacles.boxes; },
             {.column = "boxes",
              .symbol = R"(n_\mathrm{box})",
-             .meaning = "number of boxes along the flow after which the array repeats; no droplet gets that "
-                        "far if boxes is at least terminal-speed*max-time/box",
+             .meaning = "number of boxes along the flow after which the array repeats; no droplet reaches "
+                        "this length with at least terminal-speed*max-time/box",
              .role = numerics,
              .scope = &arrays,
              .range = {from(1, "boxes in a row along the flow, after which the array repeats", "use 1..1e6"),
@@ -486,7 +482,7 @@ std::vector<Parameter> motion_entries() {
             {.column = "max_time",
              .symbol = "T",
              .unit = "t0",
-             .meaning = "longest run: one that has not clogged ends here",
+             .meaning = "time at which a run ends that has not clogged",
              .role = numerics,
              .range = {positive, {}}}),
       entry("terminal-speed", [](auto& run) -> auto& { return run.drag.terminal_speed; },
@@ -496,15 +492,15 @@ std::vector<Parameter> motion_entries() {
              .meaning = "V_t, speed without obstacles",
              .range = {positive, to(100, "the drag would not matter before many boxes have passed",
                                     "use at most 100")}}),
-      entry("near-wall-drag", [](auto& run) -> auto& { return run.drag.near_wall; },
-            {.column = "near_wall_drag",
-             .symbol = R"(b_0/b_\infty)",
-             .meaning = "b_0/b_inf, extra drag at a distance of one diameter from a wall, divided by the "
-                        "drag far from walls",
-             .scope = &polygons,
-             .range = {not_negative,
-                       to(1000, "near-wall drag would stop the droplet everywhere", "use at most 1000")},
-             .elsewhere = 0.0}),
+      entry(
+          "near-wall-drag", [](auto& run) -> auto& { return run.drag.near_wall; },
+          {.column = "near_wall_drag",
+           .symbol = R"(b_0/b_\infty)",
+           .meaning = "b_0/b_inf, extra drag at one diameter from a wall, divided by the drag far from walls",
+           .scope = &polygons,
+           .range = {not_negative,
+                     to(1000, "near-wall drag would stop the droplet everywhere", "use at most 1000")},
+           .elsewhere = 0.0}),
       entry("near-wall-exponent", [](auto& run) -> auto& { return run.drag.near_wall_exponent; },
             {.column = "near_wall_exponent",
              .symbol = R"(\alpha)",
@@ -516,7 +512,7 @@ std::vector<Parameter> motion_entries() {
             {.column = "near_wall_cutoff",
              .symbol = R"(d_\mathrm{min})",
              .unit = "sigma",
-             .meaning = "d_min, smallest distance from a wall that enters the near-wall drag",
+             .meaning = "d_min, distance from a wall below which the near-wall drag is constant",
              .scope = &polygons,
              .range = {positive, to(1, "drag would hardly depend on the distance",
                                     "use at most 1, a droplet diameter")}}),
@@ -537,8 +533,8 @@ std::vector<Parameter> interface_entries() {
       entry("vertices", [](auto& run) -> auto& { return run.dp.vertices; },
             {.column = "vertices",
              .symbol = "N_v",
-             .meaning = "N_v, number of vertices of the polygon; auto: 128, or more if edges would not be "
-                        "short compared with the obstacles' radius",
+             .meaning = "N_v, number of vertices of the polygon; auto: at least 128, and enough for edges "
+                        "that are short compared with the obstacles' radius",
              .role = numerics,
              .scope = &polygons,
              .automatic_in = &polygons,
@@ -549,9 +545,8 @@ std::vector<Parameter> interface_entries() {
       entry("inertia", [](auto& run) -> auto& { return run.dp.inertia; },
             {.column = "inertia",
              .symbol = "S",
-             .meaning =
-                 "S, inertial mass divided by the droplet's mass; weight and drag stay as they are, and the "
-                 "automatic time-step is sqrt(S) times as long",
+             .meaning = "S, inertial mass divided by the droplet's mass, without effect on weight and drag; "
+                        "the automatic time-step is sqrt(S) times as long",
              .role = numerics,
              .scope = &polygons,
              .range = {from(0.01, "steps would be needlessly short", "use 0.01..16"),
@@ -572,21 +567,18 @@ std::vector<Parameter> interface_entries() {
             {.column = "area_stiffness",
              .symbol = "K_a",
              .unit = "g rho/sigma",
-             .meaning =
-                 "K_a; auto: the area keeps within 0.2 % of its rest value as long as 1e4, the published "
-                 "value, can hold it",
+             .meaning = "K_a; auto: keeps the area within 0.2 % of its rest value, but is at most 1e4, the "
+                        "published value",
              .role = numerics,
              .scope = &polygons,
              .automatic_in = &polygons,
              .range = {positive, {}},
              .words = {"auto"}}),
-      entry(
-          "perimeter-spring", [](auto& run) -> auto& { return run.dp.perimeter_spring; },
-          {.column = "perimeter_spring",
-           .meaning =
-               "springs of the edges pull to l0 (rest, as published), to the mean edge length, or only along "
-               "the interface",
-           .scope = &polygons}),
+      entry("perimeter-spring", [](auto& run) -> auto& { return run.dp.perimeter_spring; },
+            {.column = "perimeter_spring",
+             .meaning = "springs of the edges pull to l0 (rest, as published), to the mean edge length "
+                        "(mean), or only along the interface (along)",
+             .scope = &polygons}),
       entry("perimeter-stiffness", [](auto& run) -> auto& { return run.dp.perimeter_stiffness; },
             {.column = "perimeter_stiffness",
              .symbol = "K_l",
@@ -599,7 +591,7 @@ std::vector<Parameter> interface_entries() {
       entry("perimeter-stiffness-ratio", [](auto& run) -> auto& { return run.dp.perimeter_stiffness_ratio; },
             {.column = "perimeter_stiffness",
              .symbol = R"(K_l/\Gamma)",
-             .meaning = "K_l/Gamma of springs to the rest length, where perimeter-stiffness=auto",
+             .meaning = "K_l/Gamma of rest springs, where perimeter-stiffness=auto",
              .scope = &polygons,
              .range = {not_negative, {}},
              .has_own_column = false}),
@@ -611,7 +603,7 @@ std::vector<Parameter> wall_entries() {
   return {
       entry("wall-contact", [](auto& run) -> auto& { return run.dp.wall_contact; },
             {.column = "wall_contact",
-             .meaning = "a wall pushes the nearest point of every edge, or the vertices alone (as published)",
+             .meaning = "a wall pushes the nearest point of every edge, or only the vertices (as published)",
              .role = numerics,
              .scope = &polygons}),
       entry(
@@ -631,9 +623,9 @@ std::vector<Parameter> wall_entries() {
           "wall-tension", [](auto& run) -> auto& { return run.dp.wall_tension; },
           {.column = "wall_tension",
            .symbol = R"(\Gamma_\mathrm{w}/\Gamma)",
-           .meaning = "tension of the interface where it touches a wall, divided by Gamma: minus the cosine "
-                      "of Young's contact angle; auto: minus the mean cosine of receding-angle and "
-                      "advancing-angle if both are given, else 1",
+           .meaning = "tension of the interface on walls divided by Gamma: minus the cosine of Young's "
+                      "contact angle; auto: minus the mean cosine of receding-angle and advancing-angle if "
+                      "both are given, else 1",
            .scope = &polygons,
            .range =
                {from(0.1,
@@ -688,7 +680,7 @@ std::vector<Parameter> self_contact_entries() {
   return {
       entry("self-contact", [](auto& run) -> auto& { return run.dp.self_contact; },
             {.column = "self_contact",
-             .meaning = "does the interface repel itself",
+             .meaning = "whether the interface repels itself",
              .role = numerics,
              .scope = &polygons}),
       entry(
@@ -700,14 +692,13 @@ std::vector<Parameter> self_contact_entries() {
            .scope = &polygons,
            .range = {positive, to(0.1, "thin parts of the droplet could be no thinner, and it could not fold",
                                   "use at most 0.1")}}),
-      entry(
-          "film-friction", [](auto& run) -> auto& { return run.dp.film_friction; },
-          {.column = "film_friction",
-           .meaning = "does friction of a wall also hold the interfaces that lie on the one that touches it, "
-                      "through the closed film between them; auto: on with friction and self-contact",
-           .scope = &polygons,
-           .automatic_in = &polygons,
-           .before = name(FilmFriction::off)}),
+      entry("film-friction", [](auto& run) -> auto& { return run.dp.film_friction; },
+            {.column = "film_friction",
+             .meaning = "whether wall friction also acts through a closed film on the interface above it; "
+                        "auto: on with friction and self-contact",
+             .scope = &polygons,
+             .automatic_in = &polygons,
+             .before = name(FilmFriction::off)}),
       entry("gravity", [](auto& run) -> auto& { return run.dp.gravity; },
             {.column = "gravity",
              .meaning =
@@ -722,49 +713,45 @@ std::vector<Parameter> verdict_entries() {
       entry("clog-energy", [](auto& run) -> auto& { return run.clog_energy; },
             {.column = "clog_energy",
              .symbol = "E_k/E_t",
-             .meaning = "a droplet is clogged when its kinetic energy, divided by that at terminal speed, "
-                        "stays below this",
+             .meaning = "a droplet is clogged when its kinetic energy stays below this fraction of that at "
+                        "terminal speed",
              .role = numerics,
              .range = {above(0, "no droplet comes to rest altogether", "try 1e-17"),
                        below(1e-3,
                              "a fraction of the kinetic energy at terminal speed: droplets that only pause "
                              "would count as clogged",
                              "try 1e-17")}}),
-      entry(
-          "clog-detection", [](auto& run) -> auto& { return run.clog_detection; },
-          {.column = "clog_detection",
-           .meaning =
-               "certified: a droplet that slows down is clogged once a stable equilibrium is proved to be at "
-               "hand, or by clog-energy; threshold: by clog-energy only",
-           .role = numerics}),
+      entry("clog-detection", [](auto& run) -> auto& { return run.clog_detection; },
+            {.column = "clog_detection",
+             .meaning = "certified: a droplet that slows down is clogged once a stable equilibrium is proved "
+                        "to be near, or by clog-energy; threshold: by clog-energy only",
+             .role = numerics}),
       entry("dwell-length", [](auto& run) -> auto& { return run.dwell_length; },
             {.column = "dwell_length",
              .symbol = R"(\delta_\mathrm{d})",
              .unit = "sigma",
-             .meaning = "a droplet that advances no farther than this is at rest (a dwell); the dwell "
-                        "columns record for how long",
+             .meaning = "a droplet that advances by at most this length rests (a dwell); the dwell columns "
+                        "record for how long",
              .role = numerics,
              .range = {positive, to(0.5, "a droplet that hangs moves less", "try 0.05")}}),
-      entry(
-          "break-up-neck", [](auto& run) -> auto& { return run.dp.break_up_neck; },
-          {.column = "break_up_neck",
-           .symbol = R"(w_\mathrm{b})",
-           .unit = "sigma",
-           .meaning = "a droplet with a thinner neck between two lobes has broken up, which ends the run; 0: "
-                      "necks are not looked for",
-           .scope = &polygons,
-           .range = {not_negative, to(0.5, "a droplet in a gap is no wider", "try 0.05")}}),
+      entry("break-up-neck", [](auto& run) -> auto& { return run.dp.break_up_neck; },
+            {.column = "break_up_neck",
+             .symbol = R"(w_\mathrm{b})",
+             .unit = "sigma",
+             .meaning = "width of a neck between two lobes below which a droplet has broken up, which ends "
+                        "the run; 0: never",
+             .scope = &polygons,
+             .range = {not_negative, to(0.5, "a droplet in a gap is no wider", "try 0.05")}}),
   };
 }
 
 /// Whose units results are wanted in.
 std::vector<Parameter> laboratory_entries() {
-  return {
-      entry("laboratory", [](auto& run) -> auto& { return run.laboratory; },
-            {.column = "laboratory",
-             .meaning = "description of the laboratory, as --lab FILE sets it; the result file stores it, "
-                        "each row its checksum",
-             .before = "none"})};
+  return {entry("laboratory", [](auto& run) -> auto& { return run.laboratory; },
+                {.column = "laboratory",
+                 .meaning = "description of the laboratory, set by --lab FILE; the result file stores it, "
+                            "each row its checksum",
+                 .before = "none"})};
 }
 
 /// All entries, in the order of the table's columns.
