@@ -302,6 +302,28 @@ TEST_F(SweepStateTest, GoesOnWhileItPublishesAndLosesNoRowThatComesMeanwhile) {
   EXPECT_EQ(state.num_resumed(), 1);
 }
 
+TEST_F(SweepStateTest, ShortensItsJournalHoweverManyRowsComeWhileItPublishes) {
+  settings_.set("seeds", "1..20001");
+  plan_ = sweep::Plan(settings_);
+  const auto size = [&] { return std::filesystem::file_size(store::journal_path(path())); };
+  {
+    SweepState state = open();
+    state.start(0, 0);
+    state.report(report(state, 0, RunStatus::running, 1, std::vector<std::byte>(70'000'000)));
+    is_disk_slow = true;
+    while (!state.is_publishing()) state.tick();
+    for (std::int64_t task = 0; task < plan_.size(); ++task) {
+      if (task > 0) state.start(task, 0);
+      state.report(report(state, task, RunStatus::clogged, 2));
+    }
+    EXPECT_GT(size(), 70'000'000u);
+    is_disk_slow = false;
+    while (state.is_publishing()) state.tick();
+    EXPECT_LT(size(), 70'000'000u);
+  }
+  EXPECT_EQ(open().tasks_begun().size(), 0u);
+}
+
 TEST_F(SweepStateTest, FindsItsRunsWhenTheListsHaveAnotherOrder) {
   {
     SweepState state = open();
