@@ -21,8 +21,8 @@ if(NOT CMAKE_UNITY_BUILD)  # which would report that names of one source hide th
   list(APPEND own_flags -Wshadow)
 endif()
 if(CLOG_SANITIZE)
-  list(APPEND own_flags -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_link_options(clog_flags INTERFACE "$<BUILD_INTERFACE:-fsanitize=address,undefined>")
+  list(APPEND own_flags -fsanitize=${CLOG_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(clog_flags INTERFACE "$<BUILD_INTERFACE:-fsanitize=${CLOG_SANITIZE}>")
 endif()
 if(CLOG_FUZZ)
   list(APPEND own_flags -fsanitize=fuzzer-no-link)  # main is libFuzzer's in its targets only

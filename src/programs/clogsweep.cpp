@@ -19,6 +19,7 @@
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/instruction_set.hpp"
 #include "clog/core/tools/memory.hpp"
 #include "clog/diagnostics/examination.hpp"
 #include "clog/diagnostics/limits.hpp"
@@ -30,6 +31,7 @@
 #include "clog/scheduler/isolated_jobs.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
+#include "clog/sweep/run_job.hpp"
 #include "clog/sweep/schema_json.hpp"
 #include "clogsweep_commands.hpp"
 #include "clogsweep_options.hpp"
@@ -91,7 +93,8 @@ std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::
     if (console::stop_signalled()) return console::exit_incomplete;
     results::print_limits(plan);
     // In the process that was forked before MPI began.
-    const sweep::JobFactory jobs = isolated.jobs(assignment(line, line.settings()).text());
+    const sweep::JobFactory jobs =
+        isolated.jobs(assignment(line, line.settings()).text(), sweep::run_jobs(plan));
     return results::print_cost(plan, driver_options(line).output, growing ? &growing->rule : nullptr, jobs);
   }
   if (line.has("print-config")) return console::exit_success;
@@ -143,14 +146,14 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
   if (exit_code != go_on) return exit_code;
   task = ranks.broadcast(task);
 
-  const scheduler::JobsOf jobs_of = [&](const std::string& assignment) {
-    return scheduler::Assignment::from(assignment).is_isolated ? isolated.jobs(assignment)
-                                                               : scheduler::assigned_jobs(assignment);
-  };
-  if (ranks.rank() == 0)
-    return scheduler::drive_sweep(ranks, driver_options(line), led->plan, jobs_of, task, led->state,
+  const auto assigned = scheduler::Assignment::from(task);
+  use_instruction_set(assigned.instruction_set);
+  sweep::JobFactory make_job = led ? sweep::run_jobs(led->plan) : scheduler::assigned_jobs(task);
+  if (assigned.is_isolated) make_job = isolated.jobs(task, std::move(make_job));
+  if (led)
+    return scheduler::drive_sweep(ranks, driver_options(line), led->plan, make_job, led->state,
                                   led->growing ? &led->growing->rule : nullptr);
-  scheduler::follow_sweep(ranks, jobs_of, task);
+  scheduler::follow_sweep(ranks, make_job, assigned.report_interval);
   return console::exit_success;
 }
 

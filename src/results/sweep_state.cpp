@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <deque>
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
@@ -146,7 +147,6 @@ sweep::Start SweepState::start(std::int64_t task, int rank) {
   entry.row.attempt = start.attempt;
   entry.row.status = RunStatus::running;
   entry.row.rank = rank;
-  changed_.insert(task);
   is_published_ = false;
   return start;
 }
@@ -194,7 +194,6 @@ std::vector<const SweepState::Entry*> SweepState::entries() const {
 void SweepState::write_down(const Entry& entry) {
   if (!journal_.is_there()) publish();
   journal_.add(entry.row, entry.snapshot);
-  changed_.insert(entry.row.task);
   is_published_ = false;
 }
 
@@ -214,11 +213,7 @@ void SweepState::tick() {
   if (publication_.valid()) {
     if (publication_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;
     end_publication();
-    // Rows that came meanwhile stay in the journal. With many of them a new one would save little and take
-    // long.
-    constexpr std::size_t most_kept = 10'000;
-    if (changed_.size() < most_kept && journal_.is_to_be_rewritten())
-      rewrite_journal(Records::of_unfinished_runs);
+    if (journal_.is_prepared()) journal_.replace();
     publication_end_ = Clock::now();
     return;
   }
@@ -270,10 +265,12 @@ void SweepState::begin_publication() {
     set_attribute(provenance_, "activity",
                   with_session(earlier_activity_, activity_->line(session_time_, seconds_so_far())));
   is_published_ = true;
-  changed_.clear();
-  publication_ = std::async([this, all = entries(), provenance = provenance_] {
+  publication_ = std::async([this, all = entries(), provenance = provenance_, end = journal_.num_bytes(),
+                             is_long = journal_.is_to_be_rewritten()] {
     journal_.flush();
-    return publish_to(place_, stamp_, all, provenance);
+    std::optional<std::string> stamp = publish_to(place_, stamp_, all, provenance);
+    if (stamp && is_long) prepare_journal(all, end);
+    return stamp;
   });
   if (has_journal) return;
   end_publication();
@@ -304,10 +301,19 @@ void SweepState::rescue() {
 void SweepState::rewrite_journal(Records records) {
   std::vector<const Entry*> needed = entries();
   if (records == Records::of_unfinished_runs)
-    std::erase_if(needed, [this](const Entry* entry) {
-      return is_over(entry->row) && !changed_.contains(entry->row.task);
-    });
+    std::erase_if(needed, [this](const Entry* entry) { return is_over(entry->row); });
   journal_.rewrite(needed);
+}
+
+/// The table has the results before this place of the journal; later records stay.
+void SweepState::prepare_journal(const std::vector<const Entry*>& all, std::uint64_t place) {
+  std::deque<Entry> unfinished;
+  std::vector<const Entry*> needed;
+  for (const Entry* entry : all) {
+    const std::lock_guard lock(changing_);
+    if (!is_over(entry->row)) needed.push_back(&unfinished.emplace_back(*entry));
+  }
+  journal_.prepare(needed, place);
 }
 
 std::string SweepState::finish() {

@@ -14,7 +14,6 @@
 #include "clog/console/status_line.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/results/progress.hpp"
-#include "clog/scheduler/assignment.hpp"
 #include "clog/scheduler/task_order.hpp"
 
 namespace clog::scheduler {
@@ -135,14 +134,12 @@ bool begin_round(results::SeedRule& rule, results::SweepState& state) {
 }  // namespace
 
 int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& options, const sweep::Plan& plan,
-                const JobsOf& jobs_of, const std::string& assignment, results::SweepState& state,
-                results::SeedRule* rule) {
+                const sweep::JobFactory& make_job, results::SweepState& state, results::SeedRule* rule) {
   const bool computes = scheduler::computes(ranks.size(), options.master_computes);
   const int computing_ranks = ranks.size() - (computes ? 0 : 1);
   if (options.log != Log::Level::quiet)
     announce(options.output, plan, state, rule != nullptr, computing_ranks);
   const sweep::GroupOf group_of = [&plan](std::int64_t task) { return plan.group_of(task); };
-  const sweep::JobFactory make_job = jobs_of(assignment);
   Driver driver(options, group_of, state, computing_ranks);
   state.watch_ranks(computing_ranks);
   scheduler::Schedule schedule(scheduler::TaskOrder(group_of), ranks.size(), computes);
@@ -173,10 +170,8 @@ int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& optio
   return no_rank_left ? console::exit_internal_fault : console::exit_incomplete;
 }
 
-void follow_sweep(const scheduler::Communicator& ranks, const JobsOf& jobs_of,
-                  const std::string& assignment) {
-  const sweep::JobFactory make_job = jobs_of(assignment);
-  const std::chrono::milliseconds report_interval = Assignment::from(assignment).report_interval;
+void follow_sweep(const scheduler::Communicator& ranks, const sweep::JobFactory& make_job,
+                  std::chrono::milliseconds report_interval) {
   scheduler::Schedule none(scheduler::TaskOrder({}), ranks.size(), false);
   do {
     scheduler::run_tasks(ranks, none, make_job, {}, report_interval);

@@ -32,7 +32,7 @@ using sweep::RunRow;
 using Clock = std::chrono::steady_clock;
 
 enum Kind : std::int64_t {
-  describe_jobs = 1,  // rank -> helper, or process: the description
+  describe_jobs = 1,  // rank -> helper: the description
   process_began,      // helper -> rank: its pid, once nobody else has its socket; -1 if it never began
   process_ended,      // helper -> rank: an Ending
   begin,              // rank -> process: a task's number and the snapshot to begin at
@@ -90,13 +90,8 @@ void let_crashes_kill() {
 /// which the sweep is over.
 void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
 
-std::string text_of(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// The life of a process that computes. An exception that gets out is a crash like any other.
-[[noreturn]] void compute(const Socket& rank, JobFactory make_job,
-                          const IsolatedJobs::Describe& describe) noexcept {
+[[noreturn]] void compute(const Socket& rank, const JobFactory& make_job) noexcept {
   std::unique_ptr<Job> job;
   std::int64_t number = 0;
   bool is_over = true;
@@ -114,10 +109,6 @@ std::string text_of(std::span<const std::byte> bytes) {
       job = make_job(task, snapshot);
       number = message->job;
       is_over = false;
-    } else if (message->kind == describe_jobs) {
-      job.reset();
-      is_over = true;
-      make_job = describe(text_of(message->bytes));
     } else if (message->kind == report) {
       rank.send(report, number, sweep::to_bytes({job->row(), job->snapshot()}));
     } else {
@@ -131,7 +122,8 @@ std::string text_of(std::span<const std::byte> bytes) {
 [[noreturn]] void start_processes(const Socket& rank, const IsolatedJobs::Describe& describe) noexcept {
   const auto description = rank.receive();
   if (!description) _exit(0);
-  const JobFactory make_job = describe(text_of(description->bytes));
+  const auto* text = reinterpret_cast<const char*>(description->bytes.data());
+  const JobFactory make_job = describe({text, description->bytes.size()});
   pid_t last = -1;
   while (true) {
     Socket socket = rank.receive_socket();
@@ -142,7 +134,7 @@ std::string text_of(std::span<const std::byte> bytes) {
     if (process == 0) {
       depend_on_parent(self);
       be_first_when_memory_runs_out();
-      compute(socket, make_job, describe);
+      compute(socket, make_job);
     }
     Ending ending{process < 0 ? errno : 0};
     socket.close();
@@ -169,14 +161,8 @@ class IsolatedJobs::Processes {
     helper_.limit_halts(patience);
   }
 
-  /// The first one is the helper's, a later one goes to each process: that of now, and those to come.
   void send_description(const std::string& description) {
-    if (!std::exchange(is_described_, true)) {
-      helper_.send(describe_jobs, 0, std::as_bytes(std::span(description)));
-      return;
-    }
-    later_description_ = description;
-    if (process_.is_open()) process_.send(describe_jobs, 0, std::as_bytes(std::span(later_description_)));
+    helper_.send(describe_jobs, 0, std::as_bytes(std::span(description)));
   }
 
   /// Is there a helper still? Without one no job can begin.
@@ -214,8 +200,6 @@ class IsolatedJobs::Processes {
   Socket process_;
   pid_t process_id_ = -1;
   std::int64_t last_job_ = 0;
-  bool is_described_ = false;
-  std::string later_description_;
 
   /// After the helper's reply only the process holds the other end of its socket, so the rank notices its
   /// death.
@@ -227,8 +211,6 @@ class IsolatedJobs::Processes {
     if (!began) return give_up_helper();
     process_id_ = from_bytes<pid_t>(began->bytes).first;
     process_ = std::move(mine);
-    if (!later_description_.empty())
-      process_.send(describe_jobs, 0, std::as_bytes(std::span(later_description_)));
   }
 
   void give_up_helper() {
@@ -303,7 +285,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
   }
 };
 
-IsolatedJobs::IsolatedJobs(const Describe& describe) : describe_(describe) {
+IsolatedJobs::IsolatedJobs(const Describe& describe) {
   auto [mine, theirs] = Socket::pair();
   const pid_t self = getpid();
   let_crashes_kill();
@@ -324,10 +306,10 @@ IsolatedJobs::~IsolatedJobs() {
   retried([&] { return waitpid(helper_, nullptr, 0); });
 }
 
-JobFactory IsolatedJobs::jobs(const std::string& description) {
+JobFactory IsolatedJobs::jobs(const std::string& description, JobFactory make_job) {
   processes_->send_description(description);
-  return [this, make_job = describe_(description)](
-             std::int64_t task, std::span<const std::byte> snapshot) -> std::unique_ptr<Job> {
+  return [this, make_job = std::move(make_job)](std::int64_t task,
+                                                std::span<const std::byte> snapshot) -> std::unique_ptr<Job> {
     if (!processes_->have_helper()) return make_job(task, snapshot);
     return std::make_unique<IsolatedJob>(*processes_, make_job(task, {})->row(), snapshot);
   };

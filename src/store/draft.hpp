@@ -31,6 +31,7 @@ class Draft {
   ~Draft();
 
   int descriptor() const { return file_; }
+  std::uint64_t size() const { return size_; }
 
   /// Appends to what it holds. @throws Error
   void write(std::span<const std::byte> bytes);

@@ -60,11 +60,16 @@ std::size_t size_of(int descriptor, const std::string& path) {
 }
 
 std::vector<std::byte> read_all(int descriptor, const std::string& path) {
-  std::vector<std::byte> bytes(size_of(descriptor, path));
+  return read_at(descriptor, 0, size_of(descriptor, path), path);
+}
+
+std::vector<std::byte> read_at(int descriptor, std::uint64_t place, std::size_t size,
+                               const std::string& path) {
+  std::vector<std::byte> bytes(size);
   std::size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t got = retried([&] {
-      return pread(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+      return pread(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(place + done));
     });
     if (got < 0) throw FileError(FileAction::read, path, last_error());
     if (got == 0) break;

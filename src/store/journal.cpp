@@ -45,21 +45,13 @@ std::span<const std::byte> bytes_of(const T& value) {
   return std::as_bytes(std::span(&value, 1));
 }
 
-void write_header(int descriptor, const std::string& path) {
-  const FileHeader header;
-  write_at(descriptor, bytes_of(header), 0, path);
-}
-
-/// Writes a record at a place of the file; returns where the next one goes.
-std::uint64_t write_record(int descriptor, const sweep::RunRow& row, std::span<const std::byte> snapshot,
-                           std::uint64_t place, const std::string& path) {
+std::vector<std::byte> record_of(const sweep::RunRow& row, std::span<const std::byte> snapshot) {
   const std::vector<std::byte> report = sweep::to_bytes({row, {snapshot.begin(), snapshot.end()}});
   std::vector<std::byte> record(sizeof(RecordHeader) + report.size());
   const RecordHeader header{report.size(), check_sum(report), record_magic};
   std::ranges::copy(report, record.begin() + sizeof header);
   std::ranges::copy(bytes_of(header), record.begin());
-  write_at(descriptor, record, place, path);
-  return place + record.size();
+  return record;
 }
 
 /// Is the header complete? If its writer died at once, it is missing or incomplete.
@@ -177,7 +169,7 @@ void Journal::open_and_lock(const OutputPath* table) {
 void Journal::begin() {
   if (has_begun_) return;
   if (contents_.num_bytes < sizeof(FileHeader)) {
-    write_header(file_, place_.path());
+    write_at(file_, bytes_of(FileHeader()), 0, place_.path());
     contents_.num_bytes = sizeof(FileHeader);
     check(sync(file_), FileAction::write, place_.path());
     place_.sync_folder();  // the table of the same folder tells whether that succeeds
@@ -219,7 +211,9 @@ bool Journal::make_anew(const OutputPath& table) {
 void Journal::add(const sweep::RunRow& row, std::span<const std::byte> snapshot) {
   check_place();
   begin();
-  contents_.num_bytes = write_record(file_, row, snapshot, contents_.num_bytes, place_.path());
+  const std::vector<std::byte> record = record_of(row, snapshot);
+  write_at(file_, record, contents_.num_bytes, place_.path());
+  contents_.num_bytes += record.size();
 }
 
 void Journal::flush() {
@@ -234,19 +228,44 @@ bool Journal::is_to_be_rewritten() const {
 }
 
 void Journal::rewrite(std::span<const Entry* const> entries) {
+  prepare(entries, contents_.num_bytes);
+  replace();
+}
+
+void Journal::prepare(std::span<const Entry* const> entries, std::uint64_t begin) {
   check_place();
-  Draft draft(place_, journal_mark);
+  next_ = std::make_unique<Draft>(place_, journal_mark);
   // Locking a draft is optional; here it must succeed before the rename.
-  if (!try_lock(draft.descriptor(), place_.path())) refuse_replaced();
-  write_header(draft.descriptor(), place_.path());
-  std::uint64_t size = sizeof(FileHeader);
-  for (const Entry* entry : entries)
-    size = write_record(draft.descriptor(), entry->row, entry->snapshot, size, place_.path());
+  if (!try_lock(next_->descriptor(), place_.path())) refuse_replaced();
+  next_->write(bytes_of(FileHeader()));
+  for (const Entry* entry : entries) next_->write(record_of(entry->row, entry->snapshot));
+  num_copied_ = begin;
+  constexpr std::size_t little = 4'000'000;  // replace() copies and synchronises it in no time
+  do check(sync(next_->descriptor()), FileAction::write, place_.path());
+  while (copy_additions() > little);
+}
+
+/// Returns the number of bytes. The last record may be incomplete: its writer is still writing it.
+std::uint64_t Journal::copy_additions() {
+  constexpr std::size_t block = 1'000'000;
+  const std::uint64_t before = num_copied_;
+  while (true) {
+    const std::vector<std::byte> bytes = read_at(file_, num_copied_, block, place_.path());
+    if (bytes.empty()) return num_copied_ - before;
+    next_->write(bytes);
+    num_copied_ += bytes.size();
+  }
+}
+
+void Journal::replace() {
+  check_place();
+  copy_additions();
   // The table of the same folder tells whether the folder can be synchronised.
-  if (!draft.publish(place_.stamp())) refuse_replaced();
-  file_ = draft.take_descriptor();
-  contents_.num_bytes = num_rewritten_bytes_ = size;
+  if (!next_->publish(place_.stamp())) refuse_replaced();
+  file_ = next_->take_descriptor();
+  contents_.num_bytes = num_rewritten_bytes_ = next_->size();
   has_begun_ = true;
+  next_.reset();
 }
 
 std::error_code Journal::remove() {

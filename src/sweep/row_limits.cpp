@@ -203,6 +203,7 @@ std::vector<std::string> missing_diameters(const Plan& plan) {
 }
 
 std::vector<std::string> limits_of_circles(const Plan& plan) {
+  if (plan.circle_files().empty()) return {};
   std::vector<std::string> all = missing_diameters(plan);
   std::set<std::tuple<std::string, double, double>> seen;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {

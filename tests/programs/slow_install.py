@@ -23,7 +23,7 @@ class Built(Installation):
         example = self.folder / "example"
         shutil.copytree(self.prefix / "share/doc/clogsweep/docs/examples/own-program", example)
         build_type = "-DCMAKE_BUILD_TYPE=Release"
-        flags = ["-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined"] if "CLOG_SANITIZE:BOOL=ON" in (BIN.parent / "CMakeCache.txt").read_text() else []
+        flags = ["-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined"] if "CLOG_SANITIZE:STRING=address" in (BIN.parent / "CMakeCache.txt").read_text() else []
         self.called("cmake", "-G", "Ninja", "-S", example, "-B", example / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}", build_type, *flags)
         self.called("cmake", "--build", example / "build")
         said = self.called(example / "build/own-program").splitlines()

@@ -280,25 +280,35 @@ TEST_F(SweepStateTest, LosesNoRowToATableThatComesWhileItsLastIsBroughtToTheDisk
   EXPECT_EQ(store::read_sweep(path() + ".rescued1").rows.size(), 2u);
 }
 
-TEST_F(SweepStateTest, GoesOnWhileItPublishesAndLosesNoRowThatComesMeanwhile) {
-  const std::vector<std::byte> large(70'000'000);  // the journal is rewritten afterwards
+TEST_F(SweepStateTest, TakesManyRowsWhileItPublishesAndShortensItsJournal) {
+  settings_.set("seeds", "1..20001");
+  plan_ = sweep::Plan(settings_);
+  const auto journal_size = [&] { return std::filesystem::file_size(store::journal_path(path())); };
+  const std::vector<std::byte> large(70'000'000);
   {
     SweepState state = open();
     for (const std::int64_t task : {0, 1}) state.start(task, 0);
-    state.report(report(state, 1, RunStatus::running, 1, large));
+    state.report(report(state, 0, RunStatus::running, 1, large));
+    state.report(report(state, 1, RunStatus::running, 1, snapshot_));
     is_disk_slow = true;
     while (!state.is_publishing()) state.tick();
     while (!is_draft_waiting) usleep(1000);
     state.report(report(state, 0, RunStatus::clogged, 2));
+    for (std::int64_t task = 2; task < plan_.size(); ++task) {
+      state.start(task, 0);
+      state.report(report(state, task, RunStatus::clogged, 2));
+    }
     state.tick();
     EXPECT_TRUE(state.is_publishing());
     EXPECT_EQ(store::read_sweep(path()).rows.size(), 0u) << "the earlier table";
     is_disk_slow = false;
     while (state.is_publishing()) state.tick();
     EXPECT_EQ(store::read_sweep(path()).rows.at(0).status, RunStatus::running) << "it was written before";
+    EXPECT_LT(journal_size(), large.size());
   }
   SweepState state = open();  // as after a kill
   EXPECT_EQ(state.row(0).distance, 2);
+  EXPECT_EQ(state.tasks_begun(), std::vector<std::int64_t>{1});
   EXPECT_EQ(state.num_resumed(), 1);
 }
 

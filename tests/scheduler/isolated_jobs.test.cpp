@@ -53,8 +53,7 @@ int oom_score_adj() {
 /// Crashes in its last slice, if it is one of those. Its row tells in which process it was.
 class CrashingJob final : public SyntheticJob {
  public:
-  CrashingJob(std::int64_t task, std::span<const std::byte> snapshot, double generation)
-      : SyntheticJob(task, snapshot), generation_(generation) {}
+  using SyntheticJob::SyntheticJob;
   bool advance() override {
     const std::int64_t task = row().task;
     if (getpid() != rank_pid && task >= first_task_that_stops_the_helper) {
@@ -79,19 +78,14 @@ class CrashingJob final : public SyntheticJob {
     sweep::RunRow row = SyntheticJob::row();
     row.num_arcs = getpid();
     row.time = oom_score_adj();
-    row.sag = generation_;
     return row;
   }
-
- private:
-  double generation_;  ///< which description made it
 };
 
 sweep::JobFactory describe(const std::string& description) {
-  expect(description == "crashing jobs" || description == "later crashing jobs", "the description arrives");
-  const double generation = description == "crashing jobs" ? 1 : 2;
-  return [generation](std::int64_t task, std::span<const std::byte> snapshot) {
-    return std::make_unique<CrashingJob>(task, snapshot, generation);
+  expect(description == "crashing jobs", "the description arrives");
+  return [](std::int64_t task, std::span<const std::byte> snapshot) {
+    return std::make_unique<CrashingJob>(task, snapshot);
   };
 }
 
@@ -234,30 +228,18 @@ void a_rank_goes_on_without_its_helper(const scheduler::Communicator& ranks,
 
 }  // namespace
 
-/// The present helper, and those that start after a crash.
-void a_later_description_reaches_all_processes(const scheduler::Communicator& ranks,
-                                               const sweep::JobFactory& make_job) {
-  std::set<double> generations;
-  scheduler::SweepEvents events;
-  events.ended = [&](const scheduler::Report& report) {
-    if (report.row.status == RunStatus::clogged) generations.insert(report.row.sag);
-  };
-  run_once(ranks, scheduler::order_of(40, 7), make_job, events, true);
-  if (ranks.rank() == 0)
-    expect(generations == std::set<double>{2}, "jobs are those of the later description");
-}
-
 int main(int argc, char** argv) {
   scheduler::IsolatedJobs isolated(describe);
   scheduler::IsolatedJobs others(describe);
   const scheduler::Communicator ranks(argc, argv);
-  const sweep::JobFactory make_job = isolated.jobs("crashing jobs");
+  const auto jobs = [](scheduler::IsolatedJobs& of) {
+    return of.jobs("crashing jobs", describe("crashing jobs"));
+  };
+  const sweep::JobFactory make_job = jobs(isolated);
   a_crash_fails_its_task_and_no_other(ranks, make_job);
   a_stopped_task_goes_on_from_its_snapshot(ranks, make_job);
   hanging_tasks_block_nobody(ranks, make_job);
-  const sweep::JobFactory later_jobs = isolated.jobs("later crashing jobs");
-  a_later_description_reaches_all_processes(ranks, later_jobs);
-  a_rank_goes_on_without_its_helper(ranks, later_jobs, first_task_that_kills_the_helper);
-  a_rank_goes_on_without_its_helper(ranks, others.jobs("crashing jobs"), first_task_that_stops_the_helper);
+  a_rank_goes_on_without_its_helper(ranks, make_job, first_task_that_kills_the_helper);
+  a_rank_goes_on_without_its_helper(ranks, jobs(others), first_task_that_stops_the_helper);
   if (ranks.rank() == 0) std::printf("crashes cost one task each on %d ranks\n", ranks.size());
 }

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <optional>
 
 #include "clog/core/tools/error.hpp"
@@ -262,6 +263,24 @@ TEST_F(JournalTest, KeepsOnlyWhatItIsRewrittenWith) {
     EXPECT_EQ(fs::file_size(path()), journal.num_bytes());
   }
   expect_entries(Journal(place()).take_entries(), 4);
+}
+
+TEST_F(JournalTest, LosesNoRecordThatComesWhileItIsRewritten) {
+  {
+    Journal journal(place());
+    add_entries(journal, 3, 7);
+    const std::uint64_t end = journal.num_bytes();
+    add_entries(journal, 1, 50);
+    const Journal::Entry kept{journal_row(0), {}};
+    auto preparing = std::async([&] { journal.prepare(std::vector{&kept}, end); });
+    add_entries(journal, 50, 100);
+    preparing.get();
+    add_entries(journal, 100, 110);
+    journal.replace();
+    add_entries(journal, 110, 112);
+    EXPECT_EQ(fs::file_size(path()), journal.num_bytes());
+  }
+  expect_entries(Journal(place()).take_entries(), 112);
 }
 
 TEST_F(JournalTest, CanBeRemoved) {

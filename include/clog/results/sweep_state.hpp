@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "clog/results/activity.hpp"
@@ -110,7 +109,6 @@ class SweepState {
   std::string session_time_;
   Clock::time_point begin_ = Clock::now();
   bool is_published_ = false;
-  std::unordered_set<std::int64_t> changed_;  // tasks, since the last publication began
   Clock::time_point publication_begin_, publication_end_;
   std::mutex changing_;                                  // rows that a publication may read meanwhile
   std::future<std::optional<std::string>> publication_;  // the stamp; the last member: it ends first
@@ -147,6 +145,7 @@ class SweepState {
   enum class Records { of_unfinished_runs, all };
   /// @param records  that the journal keeps: all, unless the table has every finished run
   void rewrite_journal(Records records);
+  void prepare_journal(const std::vector<const Entry*>& all, std::uint64_t place);
 };
 
 }  // namespace clog::results

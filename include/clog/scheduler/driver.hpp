@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 #include <limits>
 #include <string>
 
@@ -23,18 +22,14 @@ struct DriverOptions {
   Log::Level log = Log::Level::normal;
 };
 
-/// Makes the jobs of a rank from the text of an Assignment.
-using JobsOf = std::function<sweep::JobFactory(const std::string& assignment)>;
-
 /// Rank 0's part of a sweep, while the other ranks are in follow_sweep(): connects the scheduler with the
 /// state, the log and the progress line. Returns the exit code.
-/// @param assignment  of all ranks, as text
 /// @param rule  which requests more of the plan's tasks when those requested are over; nullptr: none
 int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& options, const sweep::Plan& plan,
-                const JobsOf& jobs_of, const std::string& assignment, results::SweepState& state,
-                results::SeedRule* rule);
+                const sweep::JobFactory& make_job, results::SweepState& state, results::SeedRule* rule);
 
 /// The part of the other ranks.
-void follow_sweep(const scheduler::Communicator& ranks, const JobsOf& jobs_of, const std::string& assignment);
+void follow_sweep(const scheduler::Communicator& ranks, const sweep::JobFactory& make_job,
+                  std::chrono::milliseconds report_interval);
 
 }  // namespace clog::scheduler

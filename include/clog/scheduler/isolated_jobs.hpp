@@ -22,8 +22,7 @@ namespace clog::scheduler {
 /// memory runs out the kernel takes the processes that compute first.
 class IsolatedJobs {
  public:
-  /// Makes the jobs that a text, such as a config, describes. Called in the helper or its processes, and in
-  /// the rank. While there is a helper, the rank constructs jobs only for their initial row; they do no work.
+  /// Makes the jobs that a text, such as a config, describes. Called in the helper.
   using Describe = std::function<sweep::JobFactory(const std::string& description)>;
 
   /// Forks the helper: to be called before MPI_Init, while there are no threads.
@@ -33,15 +32,15 @@ class IsolatedJobs {
   IsolatedJobs(const IsolatedJobs&) = delete;
   IsolatedJobs& operator=(const IsolatedJobs&) = delete;
 
-  /// May be called again with another description, as of a sweep that has grown, when none of the earlier
-  /// jobs exists any more. At most one of its jobs may exist at a time, and none may outlive this object.
-  sweep::JobFactory jobs(const std::string& description);
+  /// To be called once. At most one of its jobs may exist at a time, and none may outlive this object.
+  /// @param make_job  makes the described jobs in this rank: while there is a helper, only for their initial
+  /// row
+  sweep::JobFactory jobs(const std::string& description, sweep::JobFactory make_job);
 
  private:
   class Processes;
   class IsolatedJob;
 
-  Describe describe_;
   pid_t helper_ = -1;
   std::unique_ptr<Processes> processes_;
 };

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,8 @@
 #include "clog/sweep/messages.hpp"
 
 namespace clog::store {
+
+class Draft;
 
 /// The journal of the table at this path lies beside it (if the path is a link, beside what it leads to).
 std::string journal_path(const std::string& table);
@@ -69,6 +72,11 @@ class Journal {
   bool is_to_be_rewritten() const;
   /// Replaces the file by one that holds these entries only.
   void rewrite(std::span<const Entry* const> entries);
+  /// Prepares a file with these entries and the records that were added after the first `begin` bytes, to be
+  /// put in place by replace(). Another thread may call this, as flush().
+  void prepare(std::span<const Entry* const> entries, std::uint64_t begin);
+  bool is_prepared() const { return next_ != nullptr; }
+  void replace();
   /// Removes the file, unless it is no longer the one at the path; nothing may be added afterwards.
   /// Returns why that failed, if it did.
   std::error_code remove();
@@ -79,7 +87,10 @@ class Journal {
   Contents contents_;  ///< contents at opening; num_bytes is kept up to date
   std::uint64_t num_rewritten_bytes_ = 0;
   bool has_begun_ = false;
+  std::unique_ptr<Draft> next_;   ///< the file that is to replace this one
+  std::uint64_t num_copied_ = 0;  ///< bytes of this file that the next one has or does not need
 
+  std::uint64_t copy_additions();
   void open_and_lock(const OutputPath* table);
   void check_place() const;
   [[noreturn]] void refuse_replaced() const;
