@@ -195,7 +195,11 @@ class Sizes(ProgramTest):
         one, = self.fit("one.h5")["groups"]
         self.assertEqual((one["diameter_mm"], one["angle_degrees"]), (groups[0]["diameter_mm"], groups[0]["angle_degrees"]))
         self.assertIn("diameter_mm,angle_degrees,", self.succeed("clogfit", "s.h5", "--format", "csv").stdout)
-        self.assertIn("diameter = 1.6 mm", self.succeed("clogfit", "s.h5").stdout)
+        heading, *lines = [line.split() for line in self.succeed("clogfit", "s.h5").stdout.split("\n\n")[1].splitlines()]
+        self.assertEqual(heading[:3], ["diameter/mm", "angle/degrees", "lambda/mm"])
+        self.assertEqual(heading[-3:], ["line_tension", "terminal_speed", "note"])
+        self.assertNotIn("tension/(mN/m)", heading)  # 2 of all
+        self.assertEqual({tuple(map(float, line[:2])) for line in lines}, set(SETS))
         summary = clogsweep.open(self.folder / "s.h5", BIN).fit().summary
         self.assertEqual({"diameter_mm", "angle_degrees"} & set(summary.columns), {"diameter_mm", "angle_degrees"})
 
