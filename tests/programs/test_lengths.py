@@ -1,7 +1,9 @@
 import csv
 import io
 import json
+import math
 import sys
+import types
 import unittest
 
 import scipy.stats
@@ -48,6 +50,15 @@ class Lengths(ProgramTest):
         for name, expected in [("probability", 0.490909090909), ("standard_error", 0.1641932672211), ("lower", 0.1673309097769), ("upper", 0.753399790371)]:
             self.assertAlmostEqual(steps[4][name], expected, places=9)
         self.assertEqual(maintained["censored_distances"], [13, 28, 45, 161])
+        # The table of the Python module. summary(..., times=161), and of the other group the last step, whose bounds R does not know either
+        groups = [*told["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
+        known = types.SimpleNamespace(told={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
+        end, not_censored, none = (fit.Fit.survival(known, group).iloc[-1].to_dict() for group in range(3))
+        for name, expected in [("distance", 161), ("at_risk", 1), ("clogs", 0), ("probability", 0.184090909091), ("standard_error", 0.1534927457863),
+                               ("lower", 0.0117384801232), ("upper", 0.525014842727)]:
+            self.assertAlmostEqual(end[name], expected, places=9)
+        self.assertEqual((not_censored["distance"], not_censored["at_risk"], not_censored["clogs"]), (45, 1, 1))
+        self.assertEqual((none["distance"], none["at_risk"], none["probability"], math.isnan(none["lower"])), (3, 2, 1, True))
 
     def test_tables_of_spreadsheets_and_units_give_the_same_lengths(self):
         expected = [group["clogging_length_mm"] for group in self.lengths(self.write("mm.csv", table(["x", "distance [mm]", "clogged"])))["groups"]]
