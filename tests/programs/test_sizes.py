@@ -296,6 +296,7 @@ class Sizes(ProgramTest):
         found = pandas.DataFrame({"diameter_mm": [0.8, 0.8, 1.6, 1.6], "line_tension": [1, 3, 1, 3], "lower": 20.0, "upper": 21.0, "runs": 2})
         figure = style.figure_of(critical_angles.draw_on, found, fits.droplet_columns() | {column["name"]: column for column in columns})
         self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()], ["diameter 0.8 mm", "diameter 1.6 mm"])
+        self.assertTrue(figure.axes[0].get_xlabel().startswith(r"line tension $\Gamma"))
 
     def test_a_report_shows_each_droplet(self):
         self.write("posts.csv", POSTS)

@@ -72,7 +72,7 @@ def said(column: Column, value: float | str | None) -> str:
 
 
 def axis_label(column: Column) -> str:
-    if "meaning" in column:
+    if "label" in column:
         return f"{column['meaning']} [{column['unit']}]"
     return AXES.get(column["name"]) or f"{column['name'].replace('_', ' ')} ${symbol(column)}$"
 
