@@ -17,9 +17,15 @@
 set -euo pipefail
 # What belongs to the programs lies beside them; the batch system runs a copy of this script from somewhere else.
 bin=${CLOG_BIN:-build/release/bin}
+[ -n "${CLOG_BIN-}" ] || [ -x "$bin/clogsweep" ] || bin=$(dirname "$0")/../build/release/bin  # of a script that wraps this one
 if [ ! -x "$bin/clogsweep" ]; then
-  type -P clogsweep >/dev/null || { echo "no clogsweep in $bin or the PATH; set CLOG_BIN to its folder" >&2; exit 2; }
+  type -P clogsweep >/dev/null || { echo "no clogsweep in ${CLOG_BIN:-build/release/bin} or the PATH; set CLOG_BIN to its folder" >&2; exit 2; }
   bin=$(dirname "$(type -P clogsweep)")
+fi
+bin=$(realpath "$bin")
+# A script that wraps this one may have left the folder of the job, in which relative paths are: that of sbatch, or of its --chdir.
+if [ -n "${SLURM_JOB_ID-}" ]; then
+  folder=$(scontrol show job "$SLURM_JOB_ID" | sed -n "s/^ *WorkDir=//p") && cd "${folder:-.}"
 fi
 # shellcheck source=jobs/batch.sh
 . "$bin/../share/clogsweep/jobs/batch.sh"

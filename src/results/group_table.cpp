@@ -78,16 +78,6 @@ std::string legend(const std::vector<Group>& groups) {
   return text;
 }
 
-std::vector<ResultColumn> result_columns(const std::vector<Group>& groups, double confidence) {
-  const bool has_laboratory = have_laboratory(groups);
-  std::vector<ResultColumn> columns = columns_of_findings(groups, confidence, has_laboratory);
-  if (has_laboratory)
-    for (ResultColumn& column : laboratory_columns(groups)) columns.push_back(std::move(column));
-  if (std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); }))
-    columns.push_back({"note", [](const Group& group) { return letters(group.doubts); }});
-  return columns;
-}
-
 /// Explains columns that their heads do not.
 std::string column_notes(const std::vector<Group>& groups) {
   std::string text;
@@ -174,16 +164,25 @@ std::vector<bool> varying_columns(const std::vector<Group>& groups) {
   return varies;
 }
 
+/// Does a value of each group follow from others of it?
+template <class Value, class Others>
+bool follows(const std::vector<Group>& groups, const Value& value_of, const Others& others_of) {
+  std::map<decltype(others_of(groups.front())), decltype(value_of(groups.front()))> known;
+  return std::ranges::all_of(groups, [&](const Group& group) {
+    return known.try_emplace(others_of(group), value_of(group)).first->second == value_of(group);
+  });
+}
+
 /// Does an automatic value of the column follow from those that are shown, wherever the groups differ in it?
 bool follows_from_shown(std::size_t place, const std::vector<bool>& shown, const std::vector<Group>& groups) {
-  std::map<std::vector<Value>, Value> follows;
-  return std::ranges::all_of(groups, [&](const Group& group) {
-    const std::vector<Value> values = parameter_values(group.first_row);
-    std::vector<Value> from;
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (shown[i]) from.push_back(values[i]);
-    return follows.try_emplace(from, values[place]).first->second == values[place];
-  });
+  const auto shown_values = [&](const Group& group) {
+    std::vector<Value> values;
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      if (shown[i]) values.push_back(group_columns()[i]->get(group.first_row));
+    return values;
+  };
+  return follows(
+      groups, [&](const Group& group) { return group_columns()[place]->get(group.first_row); }, shown_values);
 }
 
 /// Columns that vary, except those whose automatic values follow from the others.
@@ -231,19 +230,71 @@ std::vector<std::string> shared_words(const std::vector<Group>& groups, const st
   return words;
 }
 
-/// The cells of a line for the columns of parameters that are shown.
-std::vector<std::string> shown_names(const std::vector<bool>& shown) {
-  std::vector<std::string> cells;
-  for (std::size_t i = 0; i < shown.size(); ++i)
-    if (shown[i]) cells.push_back(group_columns()[i]->name);
-  return cells;
+std::vector<std::string> cells(const Group& group, const std::vector<ResultColumn>& columns) {
+  std::vector<std::string> line;
+  line.reserve(columns.size());
+  for (const ResultColumn& column : columns) line.push_back(column.cell(group));
+  return line;
 }
-std::vector<std::string> shown_texts(const Group& group, const std::vector<Group>& groups,
-                                     const std::vector<bool>& shown) {
-  std::vector<std::string> cells;
-  for (std::size_t i = 0; i < shown.size(); ++i)
-    if (shown[i]) cells.push_back(rounded_text(group, groups, *group_columns()[i]));
-  return cells;
+std::vector<std::string> heads(const std::vector<ResultColumn>& columns) {
+  std::vector<std::string> line;
+  line.reserve(columns.size());
+  for (const ResultColumn& column : columns) line.push_back(column.name);
+  return line;
+}
+
+/// What the groups differ in. If their droplets differ in size or tilt, these come first; the numbers of the
+/// model that follow from them are separate.
+struct ParameterColumns {
+  std::vector<ResultColumn> droplets, others, following;
+
+  std::vector<ResultColumn> first() const {
+    std::vector<ResultColumn> both = droplets;
+    both.insert(both.end(), others.begin(), others.end());
+    return both;
+  }
+};
+
+ParameterColumns parameter_columns(const std::vector<Group>& groups, const std::vector<bool>& shown) {
+  ParameterColumns columns{.droplets = droplet_columns(groups), .others = {}, .following = {}};
+  const auto droplet_of = [&](const Group& group) { return cells(group, columns.droplets); };
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    if (!shown[i]) continue;
+    const sweep::Column& column = *group_columns()[i];
+    const auto cell = [&](const Group& group) { return rounded_text(group, groups, column); };
+    if (columns.droplets.empty() || !follows(groups, cell, droplet_of))
+      columns.others.push_back({column.name, cell});
+    else if (column.name != "laboratory")
+      columns.following.push_back({column.name, cell});
+  }
+  return columns;
+}
+
+/// All columns of the table.
+std::vector<ResultColumn> columns_of(const std::vector<Group>& groups, double confidence,
+                                     const ParameterColumns& parameters) {
+  std::vector<ResultColumn> columns = parameters.first();
+  const auto add = [&](const std::vector<ResultColumn>& more) {
+    columns.insert(columns.end(), more.begin(), more.end());
+  };
+  const bool has_laboratory = have_laboratory(groups);
+  const std::vector<ResultColumn> in_its_units =
+      has_laboratory ? laboratory_columns(groups, confidence) : std::vector<ResultColumn>();
+  const std::vector<ResultColumn> findings = columns_of_findings(groups, confidence, has_laboratory);
+  if (parameters.droplets.empty()) {
+    add(findings);
+    add(in_its_units);
+  } else {
+    add(in_its_units);
+    add(findings);
+    add(parameters.following);
+    std::erase_if(columns, [&](const ResultColumn& column) {
+      return std::ranges::all_of(groups, [&](const Group& group) { return column.cell(group) == "-"; });
+    });
+  }
+  if (std::ranges::any_of(groups, [](const Group& group) { return !group.doubts.empty(); }))
+    add({{"note", [](const Group& group) { return letters(group.doubts); }}});
+  return columns;
 }
 
 /// Words in lines that fit a terminal, each after a space.
@@ -288,9 +339,9 @@ std::vector<Passage> shown_passages(const std::vector<Passage>& all) {
 }
 
 /// Which shares of the droplets came past the lines of their devices.
-std::string table_of_passages(const std::vector<Group>& groups, const std::vector<bool>& shown,
+std::string table_of_passages(const std::vector<Group>& groups, const std::vector<ResultColumn>& parameters,
                               double confidence) {
-  std::vector<std::vector<std::string>> lines = {shown_names(shown)};
+  std::vector<std::vector<std::string>> lines = {heads(parameters)};
   for (const char* name : {"x/sigma", "came past", "of", "share"}) lines[0].emplace_back(name);
   lines[0].push_back(fmt::format("{:g} %", 100 * confidence));
   bool are_all_shown = true;
@@ -298,7 +349,7 @@ std::string table_of_passages(const std::vector<Group>& groups, const std::vecto
     const std::vector<Passage> passages = shown_passages(group.passages);
     are_all_shown = are_all_shown && passages.size() == group.passages.size();
     for (const Passage& passage : passages) {
-      append_passage(passage, lines.emplace_back(shown_texts(group, groups, shown)));
+      append_passage(passage, lines.emplace_back(cells(group, parameters)));
     }
   }
   if (lines.size() == 1) return "";
@@ -332,14 +383,11 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
   std::string text = "all runs:" + wrapped(shared_words(groups, varies, shown, shared));
   if (shared == SharedParameters::unusual) text += "\n(the rest as by default; --all-parameters names it)";
   text += definition_of_clogs(groups);
-  const std::vector<ResultColumn> columns = result_columns(groups, confidence);
-  std::vector<std::vector<std::string>> lines = {shown_names(shown)};
-  for (const ResultColumn& column : columns) lines[0].push_back(column.name);
-  for (const Group& group : groups) {
-    std::vector<std::string>& line = lines.emplace_back(shown_texts(group, groups, shown));
-    for (const ResultColumn& column : columns) line.push_back(column.cell(group));
-  }
-  return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, shown, confidence) +
+  const ParameterColumns parameters = parameter_columns(groups, shown);
+  const std::vector<ResultColumn> columns = columns_of(groups, confidence, parameters);
+  std::vector<std::vector<std::string>> lines = {heads(columns)};
+  for (const Group& group : groups) lines.push_back(cells(group, columns));
+  return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, parameters.first(), confidence) +
          legend(groups) + column_notes(groups) + note_of_rest(groups) + left_out(groups);
 }
 

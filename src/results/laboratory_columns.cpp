@@ -29,6 +29,19 @@ double tension_of(const Group& group) {
                                 : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Its lengths in millimetres; NaN without a laboratory.
+fit::CloggingLength clogging_in_mm(const Group& group) {
+  fit::CloggingLength clogging = group.clogging;
+  for (double* length : {&clogging.length, &clogging.interval.lower, &clogging.interval.upper})
+    *length *= scale_of(group).length;
+  return clogging;
+}
+
+bool is_constant(const ResultColumn& column, const std::vector<Group>& groups) {
+  return std::ranges::all_of(
+      groups, [&](const Group& group) { return column.cell(group) == column.cell(groups.front()); });
+}
+
 }  // namespace
 
 double short_number(double value) {
@@ -42,42 +55,50 @@ bool have_laboratory(const std::vector<Group>& groups) {
 
 std::vector<Field> laboratory_fields(const Group& group) {
   const LaboratoryScale scale = scale_of(group);
-  const fit::CloggingLength& clogging = group.clogging;
+  const fit::CloggingLength clogging = clogging_in_mm(group);
   return {{"diameter_mm", finite_value(short_number(scale.length))},
           {"angle_degrees", finite_value(scale.tilt)},
           {"tension_mN_per_m", finite_value(tension_of(group))},
-          {"clogging_length_mm", finite_value(clogging.length * scale.length)},
-          {"clogging_length_lower_mm", finite_value(clogging.interval.lower * scale.length)},
-          {"clogging_length_upper_mm", finite_value(clogging.interval.upper * scale.length)},
+          {"clogging_length_mm", finite_value(clogging.length)},
+          {"clogging_length_lower_mm", finite_value(clogging.interval.lower)},
+          {"clogging_length_upper_mm", finite_value(clogging.interval.upper)},
           {"speed_mm_per_s", finite_value(group.relative_speed_all.mean * scale.speed)},
           {"speed_error_mm_per_s", finite_value(group.relative_speed_all.standard_error * scale.speed)},
           {"time_to_clog_s", finite_value(time_to_clog(group))}};
 }
 
-std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups) {
+std::vector<ResultColumn> droplet_columns(const std::vector<Group>& groups) {
   std::vector<ResultColumn> columns = {
-      {"lambda/mm",
-       [](const Group& group) {
-         const LaboratoryScale scale = scale_of(group);
-         const fit::CloggingLength& clogging = group.clogging;
-         if (clogging.num_runs == 0 || std::isnan(scale.length)) return std::string("-");
-         if (clogging.num_clogs == 0) return "> " + console::plain(clogging.interval.lower * scale.length);
-         return console::with_interval(clogging.length * scale.length, clogging.interval.lower * scale.length,
-                                       clogging.interval.upper * scale.length)
-             .value;
-       }},
-      {"all runs/(mm/s)",
-       [](const Group& group) {
-         const LaboratoryScale scale = scale_of(group);
-         return console::with_error(group.relative_speed_all.mean * scale.speed,
-                                    group.relative_speed_all.standard_error * scale.speed)
-             .value;
-       }},
-      {"time to clog/s", [](const Group& group) { return console::plain(time_to_clog(group)); }}};
-  if (std::ranges::any_of(groups,
-                          [](const Group& group) { return group.first_row.parameters.model == Model::dp; }))
-    columns.insert(columns.begin(),
-                   {"tension/(mN/m)", [](const Group& group) { return console::plain(tension_of(group)); }});
+      {"diameter/mm", [](const Group& group) { return short_text(finite_value(scale_of(group).length)); }},
+      {"angle/degrees", [](const Group& group) { return short_text(finite_value(scale_of(group).tilt)); }}};
+  if (!have_laboratory(groups)) return {};
+  std::erase_if(columns, [&](const ResultColumn& column) { return is_constant(column, groups); });
+  return columns;
+}
+
+std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups, double confidence) {
+  const bool have_several_droplets = !droplet_columns(groups).empty();
+  std::vector<ResultColumn> columns = {
+      {"lambda/mm", [](const Group& group) { return length_text(clogging_in_mm(group)); }}};
+  if (have_several_droplets)
+    columns.push_back({fmt::format("{:g} %", 100 * confidence),
+                       [](const Group& group) { return interval_text(clogging_in_mm(group)); }});
+  columns.insert(
+      columns.end(),
+      {{"all runs/(mm/s)",
+        [](const Group& group) {
+          const LaboratoryScale scale = scale_of(group);
+          return console::with_error(group.relative_speed_all.mean * scale.speed,
+                                     group.relative_speed_all.standard_error * scale.speed)
+              .value;
+        }},
+       {"time to clog/s", [](const Group& group) { return console::plain(time_to_clog(group)); }}});
+  const ResultColumn tension = {"tension/(mN/m)",
+                                [](const Group& group) { return console::plain(tension_of(group)); }};
+  const bool has_polygons = std::ranges::any_of(
+      groups, [](const Group& group) { return group.first_row.parameters.model == Model::dp; });
+  if (has_polygons && !(have_several_droplets && is_constant(tension, groups)))
+    columns.insert(have_several_droplets ? columns.end() : columns.begin(), tension);
   return columns;
 }
 

@@ -22,9 +22,24 @@ const fit::CloggingLength* break_ups(const Group& group) {
   return nullptr;
 }
 
+console::RoundedInterval length_of(const fit::CloggingLength& clogging) {
+  return console::with_interval(clogging.length, clogging.interval.lower, clogging.interval.upper);
+}
+
 bool has_rows(const Group& group) { return !std::isnan(group.row_angle); }
 
 }  // namespace
+
+std::string length_text(const fit::CloggingLength& clogging) {
+  if (clogging.num_clogs > 0) return length_of(clogging).value;
+  return clogging.num_runs == 0 || std::isnan(clogging.interval.lower)
+             ? "-"
+             : "> " + console::plain(clogging.interval.lower);
+}
+std::string interval_text(const fit::CloggingLength& clogging) {
+  const console::RoundedInterval length = length_of(clogging);
+  return std::isfinite(clogging.length) ? length.lower + " .. " + length.upper : "-";
+}
 
 bool are_mechanisms_shown(const std::vector<Group>& groups) {
   std::set<Cause> seen;
@@ -50,19 +65,6 @@ std::string mechanism_counts(const Group& group) {
   for (const Group::EndsBy& cause : group.causes)
     if (cause.text->is_clog) counts.push_back(std::to_string(cause.ends.num_clogs));
   return counts.empty() ? "-" : joined(counts, "/");
-}
-
-console::RoundedInterval length_of(const fit::CloggingLength& clogging) {
-  return console::with_interval(clogging.length, clogging.interval.lower, clogging.interval.upper);
-}
-
-std::string length_text(const fit::CloggingLength& clogging) {
-  if (clogging.num_clogs > 0) return length_of(clogging).value;
-  return clogging.num_runs == 0 ? "-" : "> " + console::plain(clogging.interval.lower);
-}
-std::string interval_text(const fit::CloggingLength& clogging) {
-  const console::RoundedInterval length = length_of(clogging);
-  return clogging.num_clogs > 0 ? length.lower + " .. " + length.upper : "-";
 }
 
 std::string break_up_length(const Group& group) {
@@ -136,12 +138,12 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
                                     }},
                                    {"lambda_b/sigma", break_up_length}});
   append("<v_g>/v_t", speed_of, columns);
-  // Speeds in laboratory units are those of all runs. `of`: the number of runs behind the mean speed.
-  if (has_laboratory || std::ranges::any_of(groups, lacks_speeds)) {
+  const bool have_few_speeds = std::ranges::any_of(groups, lacks_speeds);
+  if (have_few_speeds)
     columns.push_back(
         {"of", [](const Group& group) { return std::to_string(group.relative_speed.num_runs); }});
-    append("all runs", speed_of_all, columns);
-  }
+  // Speeds in laboratory units are those of all runs.
+  if (has_laboratory || have_few_speeds) append("all runs", speed_of_all, columns);
   // A droplet in a random array goes straight on average.
   if (std::ranges::any_of(groups, has_rows)) {
     append("lateral/r", slope_of, columns);

@@ -14,6 +14,10 @@ struct ResultColumn {
   std::function<std::string(const Group&)> cell;
 };
 
+/// A clogging length, or its lower bound, and its interval; a dash where they are not known.
+std::string length_text(const fit::CloggingLength& clogging);
+std::string interval_text(const fit::CloggingLength& clogging);
+
 /// The columns of the scene's results. @param groups  not empty
 /// @param has_laboratory  columns in its units follow, in which speeds are those of all runs
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
@@ -28,6 +32,8 @@ bool have_laboratory(const std::vector<Group>& groups);
 /// A group's interfacial tension, clogging length, speed and time until a clog in laboratory units.
 std::vector<Field> laboratory_fields(const Group& group);
 /// The same for people.
-std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups);
+std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups, double confidence);
+/// Diameter and tilt, as far as the groups differ in them.
+std::vector<ResultColumn> droplet_columns(const std::vector<Group>& groups);
 
 }  // namespace clog::results

@@ -1,7 +1,10 @@
 import csv
 import io
 import json
+import math
+import subprocess
 import sys
+import types
 import unittest
 
 import scipy.stats
@@ -48,6 +51,15 @@ class Lengths(ProgramTest):
         for name, expected in [("probability", 0.490909090909), ("standard_error", 0.1641932672211), ("lower", 0.1673309097769), ("upper", 0.753399790371)]:
             self.assertAlmostEqual(steps[4][name], expected, places=9)
         self.assertEqual(maintained["censored_distances"], [13, 28, 45, 161])
+        # The table of the Python module. summary(..., times=161), and of the other group the last step, whose bounds R does not know either
+        groups = [*told["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
+        known = types.SimpleNamespace(told={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
+        end, not_censored, none = (fit.Fit.survival(known, group).iloc[-1].to_dict() for group in range(3))
+        for name, expected in [("distance", 161), ("at_risk", 1), ("clogs", 0), ("probability", 0.184090909091), ("standard_error", 0.1534927457863),
+                               ("lower", 0.0117384801232), ("upper", 0.525014842727)]:
+            self.assertAlmostEqual(end[name], expected, places=9)
+        self.assertEqual((not_censored["distance"], not_censored["at_risk"], not_censored["clogs"]), (45, 1, 1))
+        self.assertEqual((none["distance"], none["at_risk"], none["probability"], math.isnan(none["lower"])), (3, 2, 1, True))
 
     def test_tables_of_spreadsheets_and_units_give_the_same_lengths(self):
         expected = [group["clogging_length_mm"] for group in self.lengths(self.write("mm.csv", table(["x", "distance [mm]", "clogged"])))["groups"]]
@@ -80,6 +92,8 @@ class Lengths(ProgramTest):
             with self.subTest(text=text):
                 self.refuse("clogfit", "lengths", self.write("own.csv", text), words=["own.csv", *words])
         self.refuse("clogfit", "lengths", words=["missing table"])
+        self.refuse("clogfit", "lengths", "curve.h5", words=["cannot read curve.h5", "; clogfit curve.h5 fits a sweep"])
+        self.refuse("clogfit", "own.csv", words=["cannot read own.csv", "; clogfit lengths own.csv fits measured distances"])
 
 
 class Beside(ProgramTest):
@@ -138,6 +152,24 @@ class Beside(ProgramTest):
         self.assertEqual((entries[0], len(entries)), ("own.csv", len(set(entries))))
         with self.assertRaisesRegex(UserError, "--lab"):
             measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None).known, None)
+
+    def test_a_long_legend_widens_the_picture_once(self):
+        figure, axes = style.subplots(figsize=(6.4, 4.8))
+        for curve in range(8):
+            axes.plot([1, 2], [1, 2], label=f"curve {curve}")
+        style.legend(axes)
+        widened = figure.get_figwidth()
+        self.assertGreater(widened, 6.5)
+        style.legend(axes)
+        self.assertAlmostEqual(figure.get_figwidth(), widened)
+
+    def test_measured_lengths_are_not_drawn_among_lateral_displacements(self):
+        self.succeed("clogsweep", "obstacle-layout=lattice", "pitch=2", "vertices=64", "box=20", "max-time=1", "seeds=1", "--output", "lattice.h5")
+        self.write("own.csv", "distance [sigma],clogged\n3,1\n")
+        done = subprocess.run([sys.executable, "-m", "clogsweep", "clogging-length", "lattice.h5", "--with", "own.csv"], cwd=self.folder, capture_output=True, text=True,
+                              env={"PYTHONPATH": str(ROOT / "analysis"), "PATH": str(support.BIN)})
+        self.assertEqual((done.returncode, done.stderr), (2, "python3 -m clogsweep clogging-length: no place for --with (pictures of lattices show lateral displacements); "
+                                                          "clogfit compare own.csv lattice.h5 compares lengths\n"))
 
 
 if __name__ == "__main__":

@@ -52,7 +52,8 @@ class Module(Analysis):
         self.assertEqual(fit.groups.clogging_length.tolist(), [group["clogging_length"] for group in told["groups"]])
         curve = fit.survival(1)
         self.assertEqual(curve.iloc[0].to_dict(), {"distance": 0, "at_risk": 4, "clogs": 0, "probability": 1, "standard_error": 0, "lower": 1, "upper": 1})
-        self.assertEqual(curve.probability.tolist()[1:], [step["probability"] for step in told["groups"][1]["survival"]])
+        self.assertEqual(curve.probability.tolist()[1:len(told["groups"][1]["survival"]) + 1], [step["probability"] for step in told["groups"][1]["survival"]])
+        self.assertEqual(curve.distance.iloc[-1], max(told["groups"][1]["censored_distances"] + curve.distance.tolist()))
         self.assertEqual((fit.units["clogging_length"], fit.confidence), ("sigma", 0.95))
 
     def test_mean_speeds_of_fewer_than_three_runs_are_told_nowhere(self):

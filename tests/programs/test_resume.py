@@ -382,7 +382,7 @@ class Batch(ProgramTest):
     def script(self, name, *arguments, **environment):
         for command in ("scontrol", "qsub"):
             stub = self.folder / command
-            stub.write_text(f'#!/bin/sh\necho {command} "$@" >> "{self.folder}/called"\n')
+            stub.write_text(f'#!/bin/sh\n[ "$1" != show ] || exec echo "   WorkDir={self.folder}"\necho {command} "$@" >> "{self.folder}/called"\n')
             stub.chmod(0o755)
         variables = {**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}", "CLOG_BIN": str(BIN),
                      "OMPI_MCA_rmaps_base_oversubscribe": "1", **environment}
@@ -438,7 +438,9 @@ class Batch(ProgramTest):
         self.assertEqual(self.snapshot(), {})
 
     def test_a_complete_sweep_does_not_queue_again(self):
-        process = self.script("slurm.sh", *self.sweep("max-time=5"), SLURM_JOB_ID="77")
+        self.write("lab.cfg", "diameter = 1 mm\nangle = 20 deg\ntension = 2 mN/m\nspeed = 1 mm/s\n")
+        # Relative paths are those of the job's folder, not of that in which a wrapper called the script.
+        process = self.script("slurm.sh", *self.sweep("max-time=5", "--lab", "lab.cfg")[:-1], "s.h5", SLURM_JOB_ID="77")
         self.ended(process)
         self.assertEqual(self.called(), "")
         self.assertEqual(len(table(self.folder / "s.h5")), 20)

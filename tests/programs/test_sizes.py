@@ -8,14 +8,16 @@ import unittest
 
 import h5py
 import numpy as np
+import pandas
 from matplotlib.text import Text
 from support import BIN, ROOT, ProgramTest, table
 
 sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
 from clogsweep import style  # noqa: E402
-from clogsweep.drawing import lengths  # noqa: E402
+from clogsweep.drawing import critical_angles, device, lengths  # noqa: E402
 from clogsweep.pages import poster  # noqa: E402
+from clogsweep.reading import fits  # noqa: E402
 
 GRAVITY = 9.81 * (0.997 - 0.703) / 0.703  # [m/s^2], of octane in water between upright plates
 LAB = {"diameter": "0.8 mm, 1.6 mm", "angle": "20 deg, 45 deg", "speed": "1 mm/s", "tension": "2 mN/m"}
@@ -64,6 +66,9 @@ class Sizes(ProgramTest):
         self.assertIn(words, self.succeed("clogfit", "units", self.lab(**law)).stdout)
         self.assertIn(words, self.sweep("--dry-run", *ARRAY, **law).stderr)
         self.assertNotIn(words, self.sweep("--dry-run", "terminal-speed=0.03", *ARRAY, **law).stderr)
+        for name, given, is_law in [("s.h5", [], True), ("given.h5", ["terminal-speed=0.03"], False)]:
+            self.assertNotIn(words, self.sweep("--quiet", *given, *ARRAY[:-1], "seeds=1", output=name, **law).stderr)
+            self.assertEqual(words in self.succeed("clogsweep", "status", name).stdout, is_law)
         self.assertIn("no speed, so all droplets have terminal-speed=0.03", self.sweep("--dry-run", *ARRAY, speed="").stderr)
 
     def test_a_list_of_speeds_has_one_for_each_droplet_and_tilt(self):
@@ -130,10 +135,14 @@ class Sizes(ProgramTest):
         self.write("posts.csv", POSTS)
         lab = self.lab()
         for keys, words in [(["obstacle-gap=0.4"], "obstacle-gap=0.4"), (["obstacle-gap=0.4mm"], "obstacle-diameter=0.3"), (["obstacles=posts.csv", "box=10"], "box=10"),
+                            (["obstacle-gap=0.4mm,0.5", *ARRAY[1:3]], "obstacle-gap=0.4mm,0.5"), (["obstacle-gap=lin(0.4,0.5,3)", *ARRAY[1:3]], "obstacle-gap=lin(0.4,0.5,3)"),
+                            (["obstacle-layout=lattice", "pitch=0,1.8mm", "obstacle-diameter=0.3mm"], "obstacle-gap=0.2"),
+                            (["obstacle-layout=lattice", "pitch=1.2,1.8mm", "obstacle-diameter=0.3mm"], "pitch=1.2,1.8mm"),
                             (ARRAY[:2] + ["obstacle-density=0.4"], "obstacle-density=0.4"), (["obstacles=posts.csv", "box=10mm", "length=10"], "length=10")]:
             with self.subTest(keys):
                 self.refuse("clogsweep", "--quiet", "--lab", lab, *keys, "--output", "x.h5", words=[words, "without a unit", "sigma"])
         self.succeed("clogsweep", "--lab", lab, "obstacle-gap=0.4sigma", "obstacle-diameter=0.3sigma", "obstacle-density=saturated", "--dry-run")
+        self.succeed("clogsweep", "--lab", lab, "obstacle-layout=lattice", "pitch=lin(1.6mm,1.8mm,2)", "obstacle-diameter=0.3mm", "--dry-run")
         self.refuse("clogsweep", "--quiet", "--lab", self.lab("one.cfg", diameter="0.5 mm", angle="20 deg"), "obstacles=posts.csv", "box=10", "--output", "x.h5", words=["box=10"])
         self.refuse("clogsweep", "obstacle-gap=0.4mm", "--output", "x.h5", words=["obstacle-gap=0.4mm", "--lab"])
         self.write("plain.csv", "1,1,0.3\n")
@@ -195,7 +204,11 @@ class Sizes(ProgramTest):
         one, = self.fit("one.h5")["groups"]
         self.assertEqual((one["diameter_mm"], one["angle_degrees"]), (groups[0]["diameter_mm"], groups[0]["angle_degrees"]))
         self.assertIn("diameter_mm,angle_degrees,", self.succeed("clogfit", "s.h5", "--format", "csv").stdout)
-        self.assertIn("diameter = 1.6 mm", self.succeed("clogfit", "s.h5").stdout)
+        heading, *lines = [line.split() for line in self.succeed("clogfit", "s.h5").stdout.split("\n\n")[1].splitlines()]
+        self.assertEqual(heading[:3], ["diameter/mm", "angle/degrees", "lambda/mm"])
+        self.assertEqual(heading[-3:], ["line_tension", "terminal_speed", "note"])
+        self.assertNotIn("tension/(mN/m)", heading)  # 2 of all
+        self.assertEqual({tuple(map(float, line[:2])) for line in lines}, set(SETS))
         summary = clogsweep.open(self.folder / "s.h5", BIN).fit().summary
         self.assertEqual({"diameter_mm", "angle_degrees"} & set(summary.columns), {"diameter_mm", "angle_degrees"})
 
@@ -212,6 +225,7 @@ class Sizes(ProgramTest):
         self.assertEqual(groups.axis_label(), "diameter of the droplet [mm]")
         self.assertEqual(groups.values("obstacle_gap"), {0.4})
         self.assertEqual(groups.values("obstacle_density"), {0.8})
+        self.assertRegex(groups.caption(), r"/\\mathrm\{mm\} = 0.4\$.*\\mathrm\{mm\}\^2 = 0.8\$")
         axes = style.figure_of(lengths.draw_on, groups).axes[0]
         self.assertEqual(axes.get_ylabel(), r"$\lambda$ [mm]")
         bound = max(group["clogging_length_lower_mm"] for group in groups.members if group["clogs"] == 0)
@@ -262,6 +276,27 @@ class Sizes(ProgramTest):
                 texts = [text.get_text() for text in figure.findobj(Text)]
                 self.assertIn("Lateral displacement vs diameter", texts)
                 self.assertEqual(any("dashed: along the rows" in text for text in texts), bool(tangents))
+
+    def test_each_size_of_a_device_can_be_drawn(self):
+        self.write("posts.csv", POSTS)
+        self.sweep("obstacles=posts.csv", "box=10.2mm", "release=anywhere", "vertices=64", "max-time=5", "seeds=1")
+        with self.assertRaisesRegex(clogsweep.UserError, "cannot draw 2 devices as one; clogsweep select .*s.h5 obstacles=SUM .*posts.csv@0.8mm: [0-9a-f]{16}, ") as refused:
+            device.the_place(self.folder / "s.h5", BIN)
+        check_sum = str(refused.exception).split("@1.6mm: ")[1].rstrip(")")
+        self.succeed("clogsweep", "select", "s.h5", f"obstacles={check_sum}", "--output", "one.h5")
+        place = device.the_place(self.folder / "one.h5", BIN)
+        self.assertAlmostEqual(place.width * 1.6, 10.2)
+
+    def test_critical_angles_are_named_by_the_droplets(self):
+        self.sweep("obstacle-layout=lattice", "pitch=2.4mm", "obstacle-diameter=0.8mm", "lattice-angle=15,25", "line-tension=1,3", "vertices=64", "max-time=1", "seeds=1", angle="20 deg")
+        done = subprocess.run([sys.executable, "-m", "clogsweep", "critical-angle", "s.h5", "--format", "csv"], cwd=self.folder, capture_output=True, text=True,
+                              env={"PYTHONPATH": str(ROOT / "analysis"), "PATH": str(BIN)})
+        self.assertEqual(done.stdout, "diameter_mm,line_tension,lower,upper,runs\n0.8,1,,,2\n0.8,3,,,2\n1.6,1,,,2\n1.6,3,,,2\n", done.stderr)
+        columns = json.loads(self.succeed("clogsweep", "--schema").stdout)["columns"]
+        found = pandas.DataFrame({"diameter_mm": [0.8, 0.8, 1.6, 1.6], "line_tension": [1, 3, 1, 3], "lower": 20.0, "upper": 21.0, "runs": 2})
+        figure = style.figure_of(critical_angles.draw_on, found, fits.droplet_columns() | {column["name"]: column for column in columns})
+        self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()], ["diameter 0.8 mm", "diameter 1.6 mm"])
+        self.assertTrue(figure.axes[0].get_xlabel().startswith(r"line tension $\Gamma"))
 
     def test_a_report_shows_each_droplet(self):
         self.write("posts.csv", POSTS)

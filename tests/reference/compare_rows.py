@@ -72,7 +72,7 @@ CASES = {
     "run-wall": "clogrun sag vertices=64 line-tension=1",
     "run-own-circles": "clogrun array obstacles=own.csv box=10 max-time=30 vertices=64 --polygon-interval 5",
     "run-soft-disk": "clogrun array model=sp wall-stiffness=1 box=20 max-time=30 obstacle-density=saturated --sample-interval 0.5",
-    "interrupted": "clogsweep box=20 max-time=600 vertices=64 seeds=1..4 line-tension=0.1 obstacle-gap=0.6 obstacle-density=saturated",
+    "interrupted": "clogsweep box=20 max-time=20000 vertices=64 seeds=1..4 line-tension=0.1 obstacle-gap=0.6 obstacle-density=saturated",
 }
 
 

@@ -16,6 +16,7 @@ import pathlib
 from .. import style
 from ..drawing import curve, measured
 from ..results import fit
+from ..tools.errors import UserError
 from . import command_line
 
 
@@ -29,6 +30,8 @@ def body() -> int:
     lab = command_line.lab_options(arguments)
     fitted = fit.read(arguments.sweep, arguments.programs, *lab)
     groups = fitted.known.with_lengths(arguments.sweep)
+    if arguments.measured and groups.are_lattices:
+        raise UserError(f"no place for --with (pictures of lattices show lateral displacements); clogfit compare {arguments.measured} {arguments.sweep} compares lengths")
     own = measured.lengths_of(arguments.measured, groups, arguments.programs, *lab) if arguments.measured else []
     figure = style.figure_of(curve.draw_on, groups)
     if own:

@@ -18,7 +18,7 @@ import pandas
 
 from .. import style
 from ..drawing import critical_angles
-from ..reading import programs, stored
+from ..reading import fits, programs, stored
 from ..refinement import critical_angle
 from ..tools.errors import UserError
 from . import command_line
@@ -44,17 +44,23 @@ def body() -> int:
     arguments = command_line.sweep_to_draw(__doc__, "critical-angle", "file of clogsweep --output, or the table of this command",
                                            [command_line.add_width, add_format])
     schema = json.loads(programs.run_program(programs.programs_in(arguments.programs) / "clogsweep", "--schema"))
-    columns = {column["name"]: column for column in schema["columns"]}
+    columns = fits.droplet_columns() | {column["name"]: column for column in schema["columns"]}
     source = ""
     if arguments.sweep.suffix == ".csv":
         table = read_angles(arguments.sweep, columns)
     else:
         with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs) as file:
             source = stored.source(stored.attributes(file))
-        # Values that may follow from others come last.
-        parameters = sorted((name for name, column in columns.items() if column["role"] == "parameter" and column.get("parameter_role") != "ensemble"),
-                            key=lambda name: ("key" not in columns[name], "automatic_in" in columns[name]))
-        table = critical_angle.table_of(stored.read_table(arguments.sweep, arguments.programs), parameters)
+        # Sizes come first, and values that may follow from others last.
+        parameters = sorted((name for name, column in columns.items() if column.get("role") == "parameter" and column.get("parameter_role") != "ensemble"),
+                            key=lambda name: (name != "obstacle_diameter", "key" not in columns[name], "automatic_in" in columns[name]))
+        rows = stored.read_table(arguments.sweep, arguments.programs)
+        if (rows["laboratory"] != "none").all():
+            groups = fits.told(programs.programs_in(arguments.programs) / "clogfit", arguments.sweep)["groups"]
+            for name in fits.DROPLETS:
+                rows[name] = rows["laboratory"].map({group["laboratory"]: group[name] for group in groups})
+            parameters = [*fits.DROPLETS, *parameters]
+        table = critical_angle.table_of(rows, parameters)
     if arguments.format == "csv":
         print(table.to_csv(index=False, float_format="%.6g"), end="")
         return 0

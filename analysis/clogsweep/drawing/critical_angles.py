@@ -4,7 +4,7 @@ import pandas
 from matplotlib.axes import Axes
 
 from .. import style
-from ..labels import AXES, said, symbol
+from ..labels import axis_label, said
 from ..tools.errors import UserError
 from ..tools.hints import Column
 
@@ -36,6 +36,6 @@ def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> 
             for bound, marker in (("lower", "^"), ("upper", "v")):  # where the other end is not known
                 axes.plot(places[middle.isna()], points[bound][middle.isna()], marker, color=look["color"], fillstyle="none")
     style.logarithmic_abscissa(axes, table[abscissa].tolist())
-    axes.set_xlabel(AXES.get(abscissa) or f"${symbol(columns[abscissa])}$")
+    axes.set_xlabel(axis_label(columns[abscissa]))
     note = "droplets follow the rows at the lower end of a bar and leave them at the upper end; a triangle is a bound"
     style.finish(axes, "critical angle [degrees]", "", [note])

@@ -111,7 +111,8 @@ def the_place(path: AnyPath, folder: AnyPath | None = None) -> Place:
     """@throws UserError  as places(), and if there are several"""
     found = places(path, folder)
     if len(found) > 1:
-        raise UserError(f"{path} has {len(found)} devices ({', '.join(sorted({place.name for place in found}))}); sweep one at a time to draw it")
+        names = ", ".join(sorted({f"{place.name}: {stored.text(place.rows[0]['obstacles'])}" for place in found}))
+        raise UserError(f"cannot draw {len(found)} devices as one; clogsweep select {path} obstacles=SUM --output one.h5 takes one of them ({names})")
     return found[0]
 
 

@@ -31,7 +31,8 @@ LABORATORY = {
 
 
 def tex(unit: str) -> str:
-    """A unit as clogsweep writes it, e.g. g rho sigma^2, for matplotlib."""
+    """A unit as clogsweep writes it, e.g. g rho sigma^2, for matplotlib: the model's in italics, millimetres upright."""
+    unit = unit.replace("mm", r"\mathrm{mm}")
     for word in ("rho", "sigma"):
         unit = unit.replace(word, rf"\{word}")
     return unit.replace("sqrt(", r"\sqrt{").replace(")", "}").replace("t0", "t_0").replace("degrees", r"{}^\circ").replace(" ", r"\,")
@@ -63,9 +64,17 @@ def symbol(column: Column) -> str:
 
 def said(column: Column, value: float | str | None) -> str:
     """A parameter and its value in words, e.g. $N_v = 128$."""
+    if "label" in column:
+        return str(column["label"].format(value))
     if isinstance(value, str):
         return f"{column['name'].replace('_', ' ')} {literal(value)}"
     return f"${symbol(column)} = {number(value)}$"
+
+
+def axis_label(column: Column) -> str:
+    if "label" in column:
+        return f"{column['meaning']} [{column['unit']}]"
+    return AXES.get(column["name"]) or f"{column['name'].replace('_', ' ')} ${symbol(column)}$"
 
 
 def runs_a_point(groups: Collection[Group]) -> str:

@@ -11,7 +11,7 @@ from ..reading import fits, stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
 from ..tools.texts import literal
-from . import AXES, is_number, runs_a_point, said, symbol
+from . import AXES, axis_label, is_number, runs_a_point, said, symbol
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
 LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # by obstacle_filling
@@ -167,8 +167,6 @@ class Groups:
     def said(self, name: str, value: float | str | None) -> str:
         if name == "laboratory" and value in self.laboratories:
             return literal(self.laboratory_label(str(value)))
-        if name in fits.DROPLETS:
-            return fits.DROPLETS[name]["label"].format(value)
         return said(self.columns[name], self.named(name, value))
 
     def named(self, name: str, value: Any) -> Any:
@@ -205,11 +203,7 @@ class Groups:
         return fits.DROPLETS[self.abscissa]["key"] if self.abscissa in fits.DROPLETS else self.abscissa
 
     def axis_label(self) -> str:
-        if self.abscissa in fits.DROPLETS:
-            return f"{fits.DROPLETS[self.abscissa]['meaning']} [{fits.DROPLETS[self.abscissa]['unit']}]"
-        if self.abscissa in AXES:
-            return AXES[self.abscissa]
-        return f"{self.abscissa.replace('_', ' ')} ${self.symbol(self.abscissa)}$"
+        return axis_label(self.columns[self.abscissa])
 
     def curves(self) -> list[tuple[str, list[Group]]]:
         """A label, and the groups that differ in the abscissa only, for every curve."""

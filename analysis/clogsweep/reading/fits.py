@@ -5,7 +5,7 @@ import pathlib
 from collections.abc import Collection, Iterable
 from typing import Any
 
-from ..tools.hints import AnyPath, Group
+from ..tools.hints import AnyPath, Column, Group
 from . import programs, stored
 
 
@@ -41,11 +41,14 @@ def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
         return group | {"in_table": group} | lengths
 
     groups = [scaled(group) for group in groups]
-    own = [{"name": name, "kind": "number", "parameter_role": "physics", "shapes_array": False, **about} for name, about in DROPLETS.items()]
     columns = [column | ({"unit": column["unit"].replace("sigma", "mm")} if powers[column["name"]] else {}) |
                ({"automatic_in": "all"} if follows(groups, column["name"], DROPLETS) else {}) for column in fit["columns"]]
     names = [column["name"] for column in columns if column.get("automatic_in") != "all"]
-    return fit | {"groups": groups, "columns": own + columns, "lists": [*DROPLETS, *(name for name in fit["lists"] if name in names)], "in_mm": True}
+    return fit | {"groups": groups, "columns": [*droplet_columns().values(), *columns], "lists": [*DROPLETS, *(name for name in fit["lists"] if name in names)], "in_mm": True}
+
+
+def droplet_columns() -> dict[str, Column]:
+    return {name: {"name": name, "kind": "number", "parameter_role": "physics", "shapes_array": False, **about} for name, about in DROPLETS.items()}
 
 
 def fitted(clogfit: pathlib.Path, sweep: AnyPath, *options: object) -> tuple[dict[str, Any], dict[str, str]]:

@@ -61,9 +61,10 @@ class Fit:
     def survival(self, group: int) -> pandas.DataFrame:
         """P(r) of a group, by its index in `groups`: the probability of travelling farther than r without a clog.
 
-        A row for each `distance` r at which droplets clogged [sigma], after one for r = 0 with P = 1: `at_risk` runs came so far,
-        `clogs` of them clogged there; `probability` is P just beyond r, with its `standard_error` (Greenwood) and the ends of its
-        interval, `lower` and `upper`, which are NaN where P is 0. @throws UserError  if there is no such group or no P(r)"""
+        A row for each `distance` r at which droplets clogged [sigma], after one for r = 0 with P = 1, and before one for the longest
+        distance if runs went beyond the last clog: `at_risk` runs came so far, `clogs` of them clogged there; `probability` is P just
+        beyond r, with its `standard_error` (Greenwood) and the ends of its interval, `lower` and `upper`, which are NaN where P is 0,
+        and where no droplet clogged. @throws UserError  if there is no such group or no P(r)"""
         import pandas
 
         checked.whole("group", group, 0)
@@ -72,7 +73,12 @@ class Fit:
         self.known.with_lengths()
         told = self.told["groups"][group]
         start = {"distance": 0.0, "at_risk": told["runs"], "clogs": 0, "probability": 1.0, "standard_error": 0.0, "lower": 1.0, "upper": 1.0}
-        return pandas.DataFrame([start, *told["survival"]])
+        steps = [start, *told["survival"]]
+        beyond = [distance for distance in told["censored_distances"] if distance > steps[-1]["distance"]]
+        if beyond:
+            at_end = steps[-1] if told["survival"] else start | dict.fromkeys(("lower", "upper"))
+            steps.append(at_end | {"distance": max(beyond), "at_risk": beyond.count(max(beyond)), "clogs": 0})
+        return pandas.DataFrame(steps)
 
     def curve(self) -> Picture:
         """Clogging lengths over what the sweep varies; of lattices, how far droplets migrate sideways. @throws UserError  if there are none"""

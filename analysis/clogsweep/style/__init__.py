@@ -103,20 +103,27 @@ def main_mechanism(group: Group) -> str:
     return max(MECHANISM_MARKERS, key=lambda name: group[name])
 
 
+def width_of(legend: Legend) -> float:
+    """In inches."""
+    return legend.get_window_extent().width / legend.figure.dpi
+
+
 def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs") -> None:
     """Legend of named curves and of the markers that draw_lengths() gave these groups. A long legend is placed
-    beside the axes, and the figure gets wider. @param other  what clogs are called that are of no mechanism"""
+    beside the axes, and the figure gets wider, once. @param other  what clogs are called that are of no mechanism"""
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
     for name, marker in MECHANISM_MARKERS.items():
         if name in names:
             axes.plot([], [], color="0.4", marker=marker, linestyle="none", label=f"most clogs {name}" if name != "other" else other)
     entries = journal.legend_entries(axes)
+    before = axes.get_legend()
     if len(entries) > len(COLOURS):
+        width_before = width_of(before) if before and len(before.get_texts()) > len(COLOURS) else 0.0
         made = axes.legend(*zip(*entries), frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
                            loc="upper left", bbox_to_anchor=(1, 1))
         figure = axes.figure
         if isinstance(figure, Figure):  # not a part of one, whose width is given
-            figure.set_figwidth(figure.get_figwidth() + made.get_window_extent(figure.canvas.get_renderer()).width / figure.dpi)
+            figure.set_figwidth(figure.get_figwidth() + width_of(made) - width_before)
     elif entries:
         made = axes.legend(*zip(*entries), frameon=False)
     if entries:
