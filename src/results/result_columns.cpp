@@ -106,7 +106,7 @@ console::RoundedError share_of(const Group& group) {
   return console::with_error(share.slope, share.standard_error);
 }
 
-/// Are some runs too short to have a speed?
+/// Whether some runs are too short to have a speed.
 bool lacks_speeds(const Group& group) {
   return !std::isnan(group.relative_speed.mean) && group.relative_speed.num_runs < group.clogging.num_runs;
 }
@@ -136,7 +136,7 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
                                     }},
                                    {"lambda_b/sigma", break_up_length}});
   append("<v_g>/v_t", speed_of, columns);
-  // Speeds in laboratory units are those of all runs. `of`: the number of runs behind the mean speed.
+  // Speeds in laboratory units are those of all runs. `of`: the number of runs in the mean speed.
   if (has_laboratory || std::ranges::any_of(groups, lacks_speeds)) {
     columns.push_back(
         {"of", [](const Group& group) { return std::to_string(group.relative_speed.num_runs); }});
@@ -150,7 +150,7 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
   return columns;
 }
 
-/// A number of the one run that a group has where nothing is random.
+/// A number of the single run of a group without randomness.
 ResultColumn column_of_run(const char* name, double sweep::RunRow::*value) {
   return {name, [=](const Group& group) { return console::plain(group.first_row.*value, 4); }};
 }
