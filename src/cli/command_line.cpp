@@ -31,10 +31,10 @@ bool is_key(const std::string& name) {
   return std::ranges::any_of(sweep::keys(), [&](const sweep::Key& key) { return key.name == name; });
 }
 
-/// Takes the words for which there is no other place; no name that can be typed as an option.
+/// Collects positional words; its name cannot be typed as an option.
 constexpr const char* surplus_words = "surplus words";
 
-/// The keys that a newcomer needs, in the order of a newcomer's questions.
+/// Keys that a newcomer needs, in a useful order.
 constexpr std::string_view usual_keys[] = {
     "line-tension", "obstacle-gap",  "obstacle-density", "obstacle-diameter", "seeds",          "max-time",
     "box",          "boxes",         "obstacles",        "release",           "terminal-speed", "vertices",
@@ -47,7 +47,7 @@ bool is_assignment(const std::string& word) {
          word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == equals;
 }
 
-/// Whether a word that is no file looks like `Key=value`, with an unknown key.
+/// Whether a word that is no file looks like `Key=value` with an unknown key.
 bool begins_like_key(const std::string& word) {
   const auto equals = word.find('=');
   return equals != std::string::npos && equals > 0 && word.find_first_of("./ ") > equals;
@@ -164,7 +164,7 @@ void CommandLine::refuse_misspelt_command(const std::string& word) const {
 void CommandLine::refuse_surplus_words() const {
   std::string all;
   for (const std::string& word : get_all(surplus_words)) {
-    // Columns of the table are called like keys, with other dashes.
+    // Columns have the names of keys, with `_` in place of `-`.
     const std::size_t equals = std::min(word.find('='), word.size());
     std::string key = word.substr(0, equals);
     std::replace(key.begin(), key.end(), '_', '-');
@@ -185,7 +185,7 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
     for (const auto& known : group->options()) names.push_back(known->long_name());
   const std::string option = excerpt(word.substr(0, word.find('=')));
   const std::string bare = option.substr(std::min(option.find_first_not_of('-'), option.size()));
-  // The dashes of `key=value` are not the user's.
+  // Skips the dashes that were added to `key=value`.
   const bool has_dashes =
       std::any_of(typed.begin(), typed.end(), [&](std::string_view one) { return one.starts_with(word); });
   std::vector<std::string> meant = sweep::meant_names(bare, names);
@@ -196,8 +196,8 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
                              : fmt::format("; did you mean {}?", joined(meant, " or "))));
 }
 
-/// Boost would find it out, too, but puts the line into a message where it replaces %names%: one with such a
-/// name never ends (Boost 1.74).
+/// Boost would report this, too, but its message replaces %names% in the line: one with such a name never
+/// ends (Boost 1.74).
 static void refuse_lines_without_value(const std::string& path, const std::string& text) {
   std::istringstream lines(text);
   int number = 0;

@@ -36,18 +36,18 @@ bool is_unit(const std::string& unit) {
   return unit == droplet_diameters || console::metres_of(unit).has_value();
 }
 
-/// @throws Error  if one of them is no unit of length
+/// @throws Error if one of them is not a unit of length
 bool is_same_unit(const std::string& unit, const std::string& other) {
   if (unit == droplet_diameters || other == droplet_diameters) return unit == other;
   return metres_in(unit) == metres_in(other);
 }
 
-/// Lengths of the file in droplet diameters: one of them is `value` units long.
+/// Converts lengths of the file to droplet diameters; a unit is `value` droplet diameters long.
 struct Scale {
   std::string unit;  ///< of the numbers; empty: droplet diameters
   double droplet_metres = 0;
 
-  /// Rounded to the digits that people write, so that a file in other units gives the same bits.
+  /// Rounds to few enough digits that a file in other units gives the same bits.
   double in_diameters(double number) const {
     if (unit.empty()) return number;
     constexpr int digits = 13;
@@ -77,15 +77,15 @@ void read_scale(const std::string& comment, Scale& scale) {
     throw Error("droplet must be a diameter above 0, as in '# units=um droplet=200um'");
 }
 
-/// Places of the columns in a line; -1: there is none.
+/// Positions of the columns in a line; -1: missing.
 struct Columns {
   int x = 0, y = 1, diameter = 2, radius = -1;
   std::vector<std::string> header;  ///< empty: there is none
   std::string unit;                 ///< that the header names
 };
 
-/// Remembers where a cell of the header says a column is. @return whether it is one of those wanted
-/// @throws Error  if it is there twice, or in another unit than the others
+/// Stores the column that a cell of the header names. @return whether it is one of those wanted @throws Error
+/// if it occurs twice, or with another unit than the others
 bool take_column(Columns& columns, int place, const std::string& cell) {
   const auto [name, unit] = console::column_head(cell);
   int* const column = name == "x"                                            ? &columns.x
@@ -118,7 +118,7 @@ bool is_header(const std::vector<std::string>& cells) {
   });
 }
 
-/// @throws Error  if x or y is missing, or sizes may be
+/// @throws Error if x or y is missing, or if sizes are ambiguous
 Columns columns_named(std::vector<std::string> cells) {
   Columns columns{.x = -1, .y = -1, .diameter = -1, .radius = -1, .header = {}, .unit = ""};
   while (!cells.empty() && cells.back().empty()) cells.pop_back();
@@ -138,7 +138,7 @@ Columns columns_named(std::vector<std::string> cells) {
   return columns;
 }
 
-/// The columns that a comment names, as NumPy writes them; nothing if it says anything else.
+/// The columns that a comment names, as NumPy writes them; nothing for other comments.
 std::optional<Columns> columns_in(std::string comment) {
   for (char& letter : comment)
     if (std::string_view("#,;\t\"").find(letter) != std::string_view::npos) letter = ' ';
@@ -149,7 +149,7 @@ std::optional<Columns> columns_in(std::string comment) {
   return columns.x >= 0 && columns.y >= 0 ? std::optional(columns) : std::nullopt;
 }
 
-/// Reads numbers of a table, and refuses those whose comma may mean two things.
+/// Reads the numbers of a table, and refuses ambiguous commas.
 class Numbers {
  public:
   /// @param place  of the cell, from 0. @throws Error
@@ -164,7 +164,7 @@ class Numbers {
       throw Error(fmt::format("{}: {}", excerpt(name), error.what()));
     }
   }
-  /// To be called behind the last line. @throws Error  if each comma may separate thousands
+  /// Call this after the last line. @throws Error if every comma may be a thousands separator
   void check(const std::string& path) const { commas_.check(path); }
 
  private:
@@ -192,7 +192,7 @@ class Numbers {
   }
 };
 
-/// @throws Error  if the file does not say how long the header's unit is, or says something else
+/// @throws Error if the file does not define the header's unit, or contradicts it
 void check_unit(const Columns& columns, const Scale& scale) {
   const std::string unit = scale.unit.empty() ? droplet_diameters : scale.unit;
   if (columns.unit.empty() || is_same_unit(columns.unit, unit)) return;
@@ -235,7 +235,8 @@ Obstacle parse_circle(console::TableLine line, const Columns& columns, const Sca
 
 namespace {
 
-/// Parts of a name like posts.csv@0.8mm: a file, and the droplet to which its circles are to be scaled [m].
+/// Parts of a name like posts.csv@0.8mm: the file, and the diameter of the droplet to which its circles are
+/// scaled [m].
 std::pair<std::string, std::optional<double>> parts_of(const std::string& name) {
   const auto at = name.rfind('@');
   std::error_code none;

@@ -15,7 +15,7 @@
 namespace clog::cli {
 namespace {
 
-/// The columns that name keys. One without a name, as pandas writes its index, is none of them.
+/// Columns that name keys. A column without a name, such as pandas' index, is ignored.
 std::vector<std::size_t> columns_of(const std::vector<std::string>& header) {
   std::vector<std::size_t> columns;
   for (std::size_t i = 0; i < header.size(); ++i) try {
@@ -30,8 +30,8 @@ std::vector<std::size_t> columns_of(const std::vector<std::string>& header) {
   return columns;
 }
 
-/// A cell as a key's value. Where commas do not separate cells, a comma is decimal; pandas writes integers as
-/// 64.0 or 64,0 in a column with an empty cell. @throws Error  if a comma may be decimal or part of a list
+/// A cell as a key's value. If cells are not separated by commas, a comma is decimal; pandas writes integers
+/// as 64.0 or 64,0 in a column with an empty cell. @throws Error if a comma may be decimal or part of a list
 std::string value_of(const sweep::Key& key, const std::string& cell, char separator,
                      console::DecimalCommas& decimal_commas) {
   const bool is_integer = key.kind == ValueKind::integer;

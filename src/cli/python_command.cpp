@@ -17,7 +17,7 @@ namespace {
 
 const std::string python_path = "PYTHONPATH";
 
-/// The folder that Python looks for modules in, before all others.
+/// The folder in which Python looks for modules first.
 std::string with_others(const std::filesystem::path& folder) {
   const char* others = std::getenv(python_path.c_str());
   return others && *others ? folder.string() + ":" + others : folder.string();
@@ -40,7 +40,7 @@ void become_python(const std::string& name, const std::filesystem::path& module,
   console::flush_output();
   setenv("CLOG_CALLED_AS", name.c_str(), 1);
   setenv(python_path.c_str(), with_others(module.parent_path()).c_str(), 1);
-  setenv("PYTHONSAFEPATH", "1", 1);  // no modules from the folder in which the user is
+  setenv("PYTHONSAFEPATH", "1", 1);  // no modules from the user's working folder
   arguments.insert(arguments.begin(), {CLOG_PYTHON_COMMAND, "-m", "clogsweep"});
   std::vector<char*> words;
   words.reserve(arguments.size() + 1);

@@ -8,7 +8,7 @@ namespace {
 
 unsigned char byte_at(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
 
-/// Bytes of a UTF-8 character, by its first; 0 if none begins so.
+/// Number of bytes of a UTF-8 character with this first byte; 0 if there is none.
 std::size_t length_by(unsigned char first) {
   if (first < 0x80) return 1;
   if (first >= 0xc2 && first <= 0xdf) return 2;
@@ -16,7 +16,7 @@ std::size_t length_by(unsigned char first) {
   return first >= 0xf0 && first <= 0xf4 ? 4 : 0;
 }
 
-/// Bytes of the character that the text begins with; 0 if it is a control character, or no UTF-8.
+/// Number of bytes of the text's first character; 0 for a control character, or invalid UTF-8.
 std::size_t printable_length(std::string_view text) {
   const unsigned char first = byte_at(text, 0);
   const std::size_t length = length_by(first);

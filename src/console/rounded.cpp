@@ -14,10 +14,10 @@ constexpr int most_figures = 8;
 std::string scientific(double value, int figures) { return fmt::format("{:.{}e}", value, figures - 1); }
 std::string fixed(double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); }
 
-/// The value that is printed with so many figures.
+/// Rounds a value to this number of figures.
 double rounded(double value, int figures) { return std::strtod(scientific(value, figures).c_str(), nullptr); }
 
-/// The first figure's power of ten.
+/// The power of ten of the first figure.
 int exponent(double value) {
   return value == 0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value))));
 }

@@ -3,7 +3,7 @@
 namespace clog::console {
 namespace {
 
-volatile std::sig_atomic_t stop_flag = 0;  // the one thing a signal handler may write to
+volatile std::sig_atomic_t stop_flag = 0;  // the only thing that a signal handler may write
 
 void raise_stop_flag(int) { stop_flag = 1; }
 

@@ -16,11 +16,11 @@ namespace clog::console {
 void prepare_streams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
-      std::_Exit(exit_user_fault);  // there may be nowhere to say why
+      std::_Exit(exit_user_fault);  // standard error may be closed, too
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file as large as ulimit -f allows is one that cannot be written
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that reaches ulimit -f cannot be written
   std::cout.exceptions(std::ios_base::badbit);
-  std::cerr.tie(nullptr);  // what is wrong is told, whether the output can be written or not
+  std::cerr.tie(nullptr);  // print what is wrong even if the output cannot be written
 }
 
 void say(const std::string& line) { std::cerr << printable(line) << std::endl; }

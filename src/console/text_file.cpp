@@ -20,7 +20,7 @@
 namespace clog::console {
 namespace {
 
-/// UTF-8's, with which editors and spreadsheets of Windows begin their files.
+/// The byte-order mark of UTF-8, which editors and spreadsheets of Windows write.
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& reason) {
@@ -33,7 +33,7 @@ constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   refuse(path, std::strerror(error));
 }
 
-/// Waits for what comes next, but not longer than until a signal comes.
+/// Waits for input, at most until a signal arrives.
 void wait_for(const Descriptor& file, const std::string& path) {
   constexpr int milliseconds = 100;
   pollfd state{file, POLLIN, 0};
@@ -42,7 +42,7 @@ void wait_for(const Descriptor& file, const std::string& path) {
   } while (poll(&state, 1, milliseconds) <= 0);
 }
 
-/// Reads without blocking: a pipe that nobody writes to must not keep a signal from ending the program.
+/// Reads without blocking, so that a signal can end the program while a pipe has no writer.
 std::string read_to_end(const std::string& path) {
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   if (!file.is_open()) refuse(path, errno);
@@ -71,7 +71,7 @@ std::string from_utf16(const std::string& path, std::string text) {
   return converted;
 }
 
-/// Lines of Windows and of old Macs end as those of others.
+/// Converts line ends of Windows and old Macs.
 void unify_line_ends(std::string& text) {
   std::size_t length = 0;
   for (std::size_t i = 0; i < text.size(); ++i)

@@ -32,13 +32,13 @@ bool is_set(const char* name) { return std::getenv(name) != nullptr; }
 
 bool is_open_mpi() { return scheduler::Communicator::library_version().starts_with("Open MPI"); }
 
-/// How many processes belong together, as the launcher says; 0 if it says nothing.
+/// Number of processes that the launcher reports; 0 if unknown.
 int number_in(const char* name) {
   const char* text = std::getenv(name);
   return text ? std::atoi(text) : 0;
 }
 
-/// Why a rank that is alone should not be; nothing if a single rank is intended.
+/// Why a single rank should have company; nothing if one rank is intended.
 std::optional<Finding> why_not_alone(int num_ranks) {
   if (num_ranks > 1) return {};
   constexpr const char* of_open_mpi = "OMPI_COMM_WORLD_SIZE";
@@ -83,7 +83,7 @@ Finding instruction_sets_of(const std::vector<RankFacts>& ranks) {
               *all.rbegin()};
 }
 
-/// Ranks of one host that may only run on cores too few for all of them.
+/// Ranks of one host that are bound to too few cores.
 Finding cores(const std::string& host, const std::vector<const RankFacts*>& ranks) {
   std::map<std::vector<int>, int> ranks_by_cores;
   std::set<int> all;
@@ -112,7 +112,7 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
 }
 
 Finding memory(const std::string& host, const std::vector<const RankFacts*>& ranks) {
-  constexpr double needed = 100e6;  // of a rank with an array of 500 sigma, generously
+  constexpr double needed = 100e6;  // generous memory of a rank with an array of 500 sigma
   const double available = ranks.front()->memory / static_cast<double>(ranks.size());
   const std::string what = fmt::format("{}: {:.3g} GB of memory per rank", host, available / 1e9);
   if (available < needed) return {what, "start fewer ranks per host, or use a smaller box"};
@@ -137,7 +137,7 @@ Finding speed(const std::vector<RankFacts>& ranks) {
           "look for other programs on those cores, and for bound ranks"};
 }
 
-/// Tries in the sweep's folder, with another file, what the sweep will do.
+/// Tries the file operations of a sweep in its folder, on another file.
 Finding folder(const std::string& output) {
   namespace fs = std::filesystem;
   const fs::path parent = fs::path(output).parent_path();

@@ -33,11 +33,10 @@ std::optional<double> only_number(const fs::path& path) {
   std::ifstream file(path);
   double number = 0;
   if (file >> number) return number;
-  return {};  // no such file, or "max"
+  return {};  // no such file, or no limit ("max")
 }
 
-/// Folders of the process's control group and of those around it. In a container the inner ones may not be
-/// there.
+/// Control groups of the process, from the innermost outwards. In a container the inner ones may be missing.
 std::vector<fs::path> control_groups(const fs::path& root) {
   std::ifstream file(root / "proc/self/cgroup");
   std::string own = "/";

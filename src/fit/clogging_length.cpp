@@ -23,10 +23,10 @@ Interval chi_squared_interval(double total_distance, double degrees_of_freedom, 
   return {2 * total_distance / quantile(complement(chi2, tail)), 2 * total_distance / quantile(chi2, tail)};
 }
 
-/// Pushed back on release counts as not moved; what is not a number stays so.
+/// A droplet pushed back on release counts as not moved; NaN stays NaN.
 double way(const Observation& run) { return run.distance < 0 ? 0 : run.distance; }
 
-/// sqrt(2 (x + exp(-x) - 1)) with the sign of x. What is left of the sum at small x is its series.
+/// sqrt(2 (x + exp(-x) - 1)) with the sign of x. For small x the remaining sum is its series.
 double signed_root(double x) {
   constexpr double small = 1e-3;  // the next term of the series is x^4/360
   if (std::abs(x) < small) return x * std::sqrt(1 - x / 3 + x * x / 12 - x * x * x / 60);
@@ -92,7 +92,7 @@ CloggingLength fit_clogging_length(std::span<const Observation> runs, double con
 double relative_half_width(std::int64_t num_clogs, double confidence) {
   if (num_clogs == 0) return std::numeric_limits<double>::infinity();
   const auto d = static_cast<double>(num_clogs);
-  const Interval interval = chi_squared_interval(d, 2 * d, confidence);  // of an estimate of 1
+  const Interval interval = chi_squared_interval(d, 2 * d, confidence);  // relative to an estimate of 1
   return (interval.upper - interval.lower) / 2;
 }
 
@@ -101,7 +101,8 @@ double least_squares_length(std::span<const Observation> runs) {
   if (!all_finite(runs)) return undefined;
   double longest = 0;
   for (const Observation& run : runs) longest = std::max(longest, run.distance);
-  std::vector<double> clogs;  // from here on lengths are in units of the longest way: nothing overflows
+  std::vector<double>
+      clogs;  // from here on lengths are in units of the longest distance, so nothing overflows
   for (const Observation& run : runs)
     if (run.clogged) clogs.push_back(way(run) / longest);
   if (clogs.size() < 2 || !(longest > 0)) return undefined;
@@ -114,11 +115,12 @@ double least_squares_length(std::span<const Observation> runs) {
     }
     return sum;
   };
-  // No fit is longer than a straight line to one clog in so many runs, nor much shorter than the first clog.
+  // No fit is longer than a straight line to one clog in this number of runs, nor much shorter than the first
+  // clog.
   const double first = std::max(clogs.front(), 1e-6);
   const double low = std::log(first / (10 * std::log(static_cast<double>(runs.size()) + 2)));
   const double high = std::log(10 * static_cast<double>(runs.size()));
-  // The sum may have a local minimum or two: begin from a grid's best.
+  // The sum may have one or two local minima, so begin with the best place of a grid.
   constexpr int num_points = 200;
   const double spacing = (high - low) / num_points;
   double best = low;

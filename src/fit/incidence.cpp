@@ -12,7 +12,7 @@ namespace {
 /// The runs that end at one distance.
 struct Ends {
   double at_risk;
-  double all, own;  ///< by any cause, by the one looked at
+  double all, own;  ///< ends by any cause; by the given one
 };
 
 /// Sums over all distances so far from which the variance of F_c follows. With g = d/(n (n - d)), all causes,
@@ -23,7 +23,7 @@ struct VarianceSums {
   double own = 0;
   double h = 0, F_h = 0;
 
-  /// @param before  P before these ends  @param F  behind them
+  /// @param before P before these ends @param F after them
   void add(double before, double F, const Ends& ends) {
     // If all end here, F no longer grows, and (F - F_s)^2 g stays zero.
     if (ends.all < ends.at_risk) {

@@ -13,13 +13,13 @@
 namespace clog::fit {
 namespace {
 
-/// A share of the mean distance; the test counts shorter distances as that one: Weibull's law has no zero.
+/// Fraction of the mean distance to which the test raises shorter distances: Weibull's law excludes zero.
 constexpr double shortest_share = 1e-3;
 
-/// The interval of a falling function's root, [high/2, high] or further down; nothing if there is no root.
+/// The interval of a falling function's root, [high/2, high] or lower; nothing if there is no root.
 template <class Function>
 std::optional<std::pair<double, double>> bracket(const Function& falling) {
-  constexpr int most_doublings = 200;  // 2^200 is beyond any ratio of two different doubles' logarithms
+  constexpr int most_doublings = 200;  // 2^200 exceeds any ratio of two different doubles' logarithms
   double high = 1;
   for (int i = 0; falling(high) > 0; ++i, high *= 2)
     if (i == most_doublings) return std::nullopt;
@@ -44,7 +44,7 @@ PowerSums power_sums(const std::vector<double>& log_x, double shape) {
   return sums;
 }
 
-/// The ways of all runs for the test: x = r/(longest r), no shorter than a share of their mean.
+/// Distances of all runs for the test: x = r/(longest r), at least a fraction of their mean.
 struct LogWays {
   double longest = 0;         ///< [sigma]
   std::vector<double> log_x;  ///< of every run
@@ -52,7 +52,7 @@ struct LogWays {
   double clog_logs = 0;       ///< sum of log x over clogs
   bool clogs_differ = false;  ///< is there more than one distance with clogs?
 };
-/// Empty where no run has moved, or a distance is not finite.
+/// Empty if no run has moved, or a distance is not finite.
 LogWays log_ways(std::span<const Observation> runs) {
   LogWays ways;
   for (const Observation& run : runs) ways.longest = std::max(ways.longest, run.distance);

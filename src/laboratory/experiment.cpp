@@ -12,9 +12,9 @@
 namespace clog::laboratory {
 namespace {
 
-// Tables are made where they are first asked for: before main() a failed allocation could not be reported.
+// Tables are made on first use: before main() a failed allocation could not be reported.
 
-/// The units of a quantity, and what they are in SI units.
+/// The units of a quantity, with their values in SI units.
 const std::map<std::string, double>& known_units(const std::string& quantity) {
   static const std::map<std::string, std::map<std::string, double>> units = {
       {"length", {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}},
@@ -27,7 +27,7 @@ const std::map<std::string, double>& known_units(const std::string& quantity) {
   return units.at(quantity);
 }
 
-/// The unit with u for the micro sign, of which there are two.
+/// The unit with u for the micro sign, which has two code points.
 std::string with_plain_micro(const std::string& unit) {
   for (const std::string_view sign : {"µ", "μ"})
     if (unit.starts_with(sign)) return std::string("u").append(unit, sign.size());
@@ -41,7 +41,7 @@ const std::string& usual_unit(const std::string& quantity) {
   return units.at(quantity);
 }
 
-/// Factor from a unit alone. @throws Error
+/// Factor of a unit. @throws Error
 double si_factor(const std::string& unit, const std::string& units) {
   const auto& known = known_units(units);
   if (const auto found = known.find(with_plain_micro(unit)); found != known.end()) return found->second;

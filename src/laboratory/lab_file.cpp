@@ -131,7 +131,7 @@ Laboratory laboratory_of(const Entries& entries) {
   return lab;
 }
 
-/// The values of a list; none of a key that the file does not have.
+/// The values of a list; empty for a missing key.
 std::vector<std::string> values_of(const Entries& entries, const std::string& key) {
   std::vector<std::string> values;
   if (!entries.contains(key)) return values;

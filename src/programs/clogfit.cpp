@@ -1,4 +1,4 @@
-/// clogfit: from the table of runs to clogging lengths and mean speeds.
+/// clogfit: computes clogging lengths and mean speeds from the table of runs.
 
 #include <fmt/core.h>
 
@@ -64,10 +64,10 @@ advanced no farther than dwell-length (0.05 sigma by default) for longer than th
 did so, even if it moved on.
 )";
 
-/// Runs python3 -m clogsweep COMMAND, which asks these very programs for numbers.
+/// Runs python3 -m clogsweep COMMAND, which calls these programs for numbers.
 int in_python(int argc, const char* const* argv) {
   const std::string command = argv[1];
-  // The user's own --programs comes later and has the last word.
+  // The user's own --programs comes later and overrides this.
   std::vector<std::string> arguments = {command, "--programs", cli::own_folder()};
   arguments.insert(arguments.end(), argv + 2, argv + argc);
   cli::become_python("clogfit " + command, cli::find_python_module(), arguments);

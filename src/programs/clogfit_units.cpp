@@ -58,7 +58,7 @@ find the ratio of your droplet.
 constexpr double milli = 1e-3;
 constexpr double degree = std::numbers::pi / 180;
 
-/// A line of the answer: what, in the laboratory, in the model.
+/// A line of the answer: quantity, laboratory, model.
 using Line = std::vector<std::string>;
 
 std::string with_unit(double value, const char* unit, const std::string& otherwise = "-") {
@@ -102,14 +102,14 @@ std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
   return lines;
 }
 
-/// Why no tilt gives a droplet this Gamma.
+/// Explains why no tilt gives a droplet this Gamma.
 std::string why_no_tilt(const Laboratory& lab) {
   if (std::isnan(lab.experiment.interfacial_tension)) return "not known without tension in lab.cfg";
   return fmt::format("none: even upright, Gamma is {}",
                      console::plain(laboratory::line_tension_upright(lab)));
 }
 
-/// How a number of the model, an option's, is converted.
+/// Conversion of an option, a number of the model.
 struct Conversion {
   const char *option, *symbol;
   const char *name, *what, *unit;
@@ -135,7 +135,7 @@ Line line_of(const Conversion& conversion, double model) {
           fmt::format("{} = {}", conversion.symbol, console::plain(model))};
 }
 
-/// What to sweep in place of a droplet that is nearly rigid; nothing for others.
+/// A cheaper model for a nearly rigid droplet; nothing for others.
 std::string advice_of(const Scales& scales) {
   if (!(scales.line_tension > nearly_rigid_tension)) return "";
   return fmt::format(

@@ -1,4 +1,4 @@
-/// clogrun: one droplet, watched closely.
+/// clogrun: follows one droplet.
 
 #include <fmt/core.h>
 
@@ -41,7 +41,7 @@ bool is_film(const std::filesystem::path& name) {
   return name.extension() == ".mp4" || name.extension() == ".gif";
 }
 
-/// Declares the options and parses them. Returns whether something is left to do.
+/// Declares the options and parses them. Returns whether there is anything else to do.
 bool parse_options(cli::CommandLine& line, int argc, char** argv) {
   line.word("system", "array, channel (two wedges), sag (flat wall) or replay");
   if (argc > 1 && std::string_view(argv[1]) == "replay")
@@ -72,7 +72,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
   return true;
 }
 
-/// Files that the options of this name ask for; of a film without ending all that it may become.
+/// Files that an option writes; for a film without a suffix all candidates.
 std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const std::string& option) {
   if (!line.has(option)) return {};
   const std::filesystem::path name = line.get(option);
@@ -80,7 +80,7 @@ std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const 
   return {name.string() + ".mp4", name.string() + ".gif"};
 }
 
-/// Each file is written after the one before: two of one name would be found out when the run is over.
+/// Files are written one after the other, so two of the same name would be noticed only after the run.
 void refuse_same_files(const cli::CommandLine& line) {
   std::map<std::filesystem::path, std::string> options;
   for (const std::string option : {"output", "write-obstacles", "frames"})
@@ -93,7 +93,7 @@ void refuse_same_files(const cli::CommandLine& line) {
     }
 }
 
-/// Name of a film, as the script wants it. @throws Error  where none could be written
+/// Name of a film for the Python module. @throws Error if it cannot be written
 std::filesystem::path film_name(const cli::CommandLine& line) {
   std::filesystem::path name = line.get("frames");
   if (!line.has("polygon-interval"))
@@ -112,7 +112,7 @@ std::filesystem::path film_name(const cli::CommandLine& line) {
   return name;
 }
 
-/// How the Python module is to draw the film. @throws Error  where none could be written
+/// How the Python module draws the film. @throws Error if it cannot be written
 std::vector<std::string> film_options(const cli::CommandLine& line) {
   std::vector<std::string> options = {"droplet", line.get("output"), "--output=" + film_name(line).string(),
                                       "--film"};

@@ -35,7 +35,7 @@ int report(const cli::CommandLine& line, const single_run::RecordedRun& watched)
   const laboratory::Scales scales = laboratory::scales_of(laboratory::read_laboratory(line.get("lab")));
   constexpr double milli = 1e-3;
   const RunResult result = watched.result();
-  // Overdamped: times scale with the terminal speeds of both.
+  // Motion is overdamped, so times scale with the ratio of the terminal speeds.
   const double model_speed = watched.run().parameters().drag.terminal_speed;
   const double seconds = std::isfinite(scales.speed)
                              ? result.time * model_speed * scales.length / scales.speed

@@ -16,18 +16,18 @@ int clogrun_channel(cli::CommandLine& line);
 int clogrun_sag(cli::CommandLine& line);
 int clogrun_replay(cli::CommandLine& line);
 
-/// The command says which obstacle-layout is meant. @throws Error if the user says otherwise
+/// The command determines obstacle-layout. @throws Error if the user gives another one
 void choose_layout(cli::CommandLine& line, const std::string& layout);
 
-/// @throws Error if one of these options was given, which have no meaning for the system
+/// @throws Error for given options that have no meaning for the system
 void refuse_options(const cli::CommandLine& line, const std::string& system,
                     std::initializer_list<const char*> options);
 
 /// Reads --sample-interval and --polygon-interval. @throws Error
 single_run::RecordedRun::Intervals intervals(const cli::CommandLine& line, double time_step);
-/// Prints what a run came to, with --lab in mm and s, too. Returns the exit code.
+/// Prints the outcome of a run, with --lab in mm and s, too. Returns the exit code.
 int report(const cli::CommandLine& line, const single_run::RecordedRun& watched);
-/// Prints on the standard error which parameters are outside the range tested for soundness.
+/// Prints parameters outside the range tested for soundness on the standard error.
 void warn_of_untested_parameters(const sweep::Plan& plan);
 
 }  // namespace clog::programs

@@ -16,9 +16,8 @@
 namespace clog::programs {
 namespace {
 
-/// Everything that can be wrong is found before anything is computed or written.
-/// @param config  printed by --dry-run
-/// @param begin  called unless there is nothing to run
+/// Finds all errors before anything is computed or written. @param config printed by --dry-run @param begin
+/// called unless there is nothing to run
 int follow_run(const cli::CommandLine& line, const RunParameters& parameters, const std::string& config,
                const std::function<void(const DropletRun&)>& begin) {
   const std::string output = line.get("output");
@@ -45,7 +44,7 @@ void say_what_is_coarse(const RunParameters& run) {
                  "vertices=128 or more");
 }
 
-/// The row says all that there is to say of the run.
+/// The row has all results of the run.
 void refuse_keys(const cli::CommandLine& line) {
   for (const sweep::Key& key : sweep::keys())
     if (line.has(key.name))

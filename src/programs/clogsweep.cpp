@@ -1,4 +1,4 @@
-/// clogsweep: many independent runs, handed out to MPI ranks, gathered into one table.
+/// clogsweep: distributes many independent runs to MPI ranks and collects them in one table.
 
 #include <fmt/core.h>
 
@@ -59,7 +59,7 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 The same command resumes a stopped or killed sweep.
 )";
 
-/// @param growing  if the sweep adds runs by itself
+/// @param growing if the sweep adds runs automatically
 store::Provenance provenance(const cli::CommandLine& line,
                              const std::optional<results::GrowingSweep>& growing, int num_ranks) {
   store::Provenance all = cli::origin(line);
@@ -74,8 +74,8 @@ store::Provenance provenance(const cli::CommandLine& line,
   return all;
 }
 
-/// What rank 0 does before the sweep: everything a user can get wrong is found here, before any rank
-/// computes. Returns the exit code if there is nothing to run, otherwise the plan.
+/// Rank 0's work before the sweep: it finds all errors of the user before any rank computes. Returns the exit
+/// code if there is nothing to run, otherwise the plan.
 std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::IsolatedJobs& isolated) {
   if (line.has("schema")) {
     std::cout << console::json_text(sweep::schema_json());
@@ -92,7 +92,7 @@ std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::
     console::flush_output();
     if (console::stop_signalled()) return console::exit_incomplete;
     results::print_limits(plan);
-    // In the process that was forked before MPI began.
+    // In the process that was forked before MPI started.
     const sweep::JobFactory jobs =
         isolated.jobs(assignment(line, line.settings()).text(), sweep::run_jobs(plan));
     return results::print_cost(plan, driver_options(line).output, growing ? &growing->rule : nullptr, jobs);
@@ -120,7 +120,7 @@ struct Led {
   }
 };
 
-/// In place of an exit code: the sweep begins.
+/// Stands for no exit code: the sweep starts.
 constexpr int go_on = -1;
 
 int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::IsolatedJobs& isolated, int argc,
@@ -157,7 +157,7 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
   return console::exit_success;
 }
 
-/// The file that a sweep may resume, before its command line is checked; empty if none is named.
+/// The file that a sweep may resume, before its command line is checked; empty if none is given.
 std::string named_output(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
@@ -173,7 +173,7 @@ std::string named_output(int argc, const char* const* argv) {
 int main(int argc, char** argv) {
   console::prepare_streams();
   if (const auto exit_code = cli::run_command("clogsweep", file_commands, argc, argv)) return *exit_code;
-  console::catch_stop_signals();  // one that comes before the sweep begins stops it then
+  console::catch_stop_signals();  // a signal before the sweep stops it here
   std::optional<scheduler::IsolatedJobs> isolated;
   const int exit_code = cli::run_program("clogsweep", [&] {
     require_memory("start MPI", memory_of_mpi);
@@ -189,7 +189,7 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "doctor") return clogsweep_doctor(ranks, argc, argv);
     return sweep_on_all_ranks(ranks, *isolated, argc, argv);
   } catch (const std::exception& error) {
-    // Once the sweep runs, ranks wait for each other: a fault of one must end all.
+    // Once the sweep runs, ranks wait for each other, so an error of one must end all.
     console::say(fmt::format("clogsweep: rank {} on {}: {}", ranks.rank(),
                              scheduler::Communicator::host_name(), error.what()));
     const int code =

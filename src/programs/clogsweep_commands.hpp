@@ -5,7 +5,7 @@
 
 namespace clog::programs {
 
-/// `clogsweep NAME FILE ...`: what they do is in their --help. They need neither MPI nor the sweep's config,
+/// `clogsweep NAME FILE ...`, described by their --help. They need neither MPI nor the sweep's config,
 /// and never write to the file. Each returns the program's exit code. @throws Error
 int clogsweep_status(int argc, const char* const* argv);
 int clogsweep_verify(int argc, const char* const* argv);

@@ -71,7 +71,7 @@ double precision(const cli::CommandLine& line) {
               " (must lie between 0.1% and 100%) try 20%");
 }
 
-/// Does every point have a text for this key, so that its text on the command line would be of no use?
+/// Whether every point has a text for this key, which makes its text on the command line useless.
 bool is_full(const sweep::Points& points, std::size_t place) {
   return std::ranges::none_of(points.rows, [&](const auto& row) { return row[place].empty(); });
 }
@@ -106,7 +106,7 @@ void add_plan_options(cli::CommandLine& line) {
   }
 }
 
-/// A table is HDF5, whatever its name; a name that says something else is a mistake.
+/// A table is HDF5, whatever its name; another suffix is a mistake.
 void refuse_other_format(const cli::CommandLine& line) {
   if (!line.has("output")) return;
   const std::string name = line.get("output");
@@ -119,7 +119,7 @@ void refuse_other_format(const cli::CommandLine& line) {
 }
 
 /// --seeds-per-set: keeps the seeds of the keys and of the output's rows, and adds the smallest others. So
-/// the seeds are the same after each kill.
+/// the seeds are the same after a kill.
 void fill_seeds(cli::CommandLine& line) {
   if (!line.has("seeds-per-set")) return;
   for (const char* other : {"until-precision", "shard"})

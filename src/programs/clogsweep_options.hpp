@@ -10,15 +10,15 @@
 
 namespace clog::programs {
 
-/// Declares and parses the options of a sweep. Returns whether something is left to do. @throws Error, as all
-/// of these do
+/// Declares and parses the options of a sweep. Returns whether there is anything else to do. @throws Error,
+/// as all of these do
 bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv);
 
 /// Checked, the output's name excepted.
 scheduler::DriverOptions driver_options(const cli::CommandLine& line);
 scheduler::Assignment assignment(const cli::CommandLine& line, const sweep::Settings& settings);
 std::int64_t attempts(const cli::CommandLine& line);
-/// The rule by --until-precision and --most-seeds; nothing if the sweep is not to grow.
+/// The rule of --until-precision and --most-seeds; nothing if the sweep does not grow.
 std::optional<results::GrowingSweep> growing_sweep(const cli::CommandLine& line);
 
 }  // namespace clog::programs

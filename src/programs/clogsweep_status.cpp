@@ -38,22 +38,22 @@ would give too short ones, since runs that clog early finish first.
 
 constexpr const char* clear_screen = "\x1b[H\x1b[2J";
 
-/// Waits in short steps. Returns whether a signal has come.
+/// Waits in short steps. Returns whether a signal arrived.
 bool wait(std::chrono::milliseconds time) {
   constexpr std::chrono::milliseconds step{100};
   for (; time.count() > 0 && !console::stop_signalled(); time -= step) std::this_thread::sleep_for(step);
   return console::stop_signalled();
 }
 
-/// Prints a line for each event until the sweep ends. What a look costs is at most a tenth of the time.
+/// Prints a line for each event until the sweep ends. Reading takes at most a tenth of the time.
 int follow(const std::string& path) {
   constexpr int rest = 10;
   constexpr std::chrono::milliseconds shortest{200};
   results::Events events(path);
   std::string stamp;
   for (bool is_first = true;; is_first = false) {
-    const bool is_alive =
-        store::Journal::is_open(store::journal_path(path));  // asked before reading: no event is missed
+    const bool is_alive = store::Journal::is_open(
+        store::journal_path(path));  // queried before reading, so that no event is missed
     const auto begin = std::chrono::steady_clock::now();
     const std::string now = store::OutputPath::resolve(path).stamp();
     if (now != stamp || is_first || !is_alive) {

@@ -5,7 +5,8 @@
 
 namespace clog::programs {
 
-/// Parses the line of a command that uses HDF5. Returns whether something is left to do. @throws Error
+/// Parses the command line of a command that uses HDF5. Returns whether there is anything else to do. @throws
+/// Error
 inline bool parse_file_command(cli::CommandLine& line, int argc, const char* const* argv) {
   return cli::parse_command(line, argc, argv, {{"HDF5", store::library_version()}});
 }

@@ -35,7 +35,7 @@ results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
 /// Several droplets of one sweep, or one.
 struct Droplets {
   std::vector<laboratory::Laboratory> all;
-  /// Are there several sizes, or circles that are drawn for another one?
+  /// Whether there are several sizes, or circles drawn for another one.
   bool have_several_sizes = false;
 
   void note_size(double diameter) {
@@ -50,7 +50,7 @@ std::vector<std::string> circle_files(const std::string& list) {
   return names;
 }
 
-/// The names of these files, each with the droplet's diameter behind it if its circles are to be scaled.
+/// The names of these files, each followed by the droplet's diameter if its circles are to be scaled.
 std::string scaled_circles(const std::string& list, const laboratory::Laboratory& lab,
                            const Droplets& droplets) {
   constexpr double milli = 1e-3;
@@ -61,7 +61,7 @@ std::string scaled_circles(const std::string& list, const laboratory::Laboratory
   return joined(names, ",");
 }
 
-/// Does the array's geometry depend on this key, whose text is a plain number other than 0?
+/// Whether the array's geometry depends on this key, with a plain number other than 0.
 bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, const std::string& text) {
   RunParameters run;
   run.obstacles.layout = layout;
@@ -75,7 +75,7 @@ bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, c
 }
 
 /// In millimetres an array stays the same for all droplets; in sigma it would grow with them, which the user
-/// has to say. @param texts  as given. @throws Error
+/// must request. @param texts as given. @throws Error
 void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory::Texts& texts) {
   sweep::Settings settings = line.settings();
   if (const auto own = texts.find(sweep::circles_key); own != texts.end())
@@ -99,7 +99,7 @@ void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory:
     }
 }
 
-/// What the speed of each droplet is, where it was not measured.
+/// How the speeds that were not measured follow.
 void say_law_of_speed(const cli::CommandLine& line, const Droplets& droplets) {
   const laboratory::Laboratory& first = droplets.all.front();
   const bool is_given =
@@ -122,7 +122,7 @@ laboratory::Texts converted(const laboratory::Texts& given, const laboratory::La
   return texts;
 }
 
-/// What no point says otherwise.
+/// Keys that no point sets.
 laboratory::Texts texts_of(const laboratory::Laboratory& lab, const Droplets& droplets,
                            const laboratory::Texts& given, const sweep::Settings& settings) {
   laboratory::Texts texts = converted(given, lab, laboratory::scales_of(lab), droplets);
@@ -130,7 +130,7 @@ laboratory::Texts texts_of(const laboratory::Laboratory& lab, const Droplets& dr
   return texts;
 }
 
-/// What the points have for a key.
+/// The points' texts of a key.
 std::set<std::string> cells_of(const sweep::Points& points, const std::string& key) {
   std::set<std::string> cells;
   for (std::size_t i = 0; i < points.keys.size(); ++i)

@@ -9,9 +9,8 @@
 
 namespace clog::programs {
 
-/// Sets the keys that the file of --lab determines, if there is one, converts those that were given with
-/// units, and scales user-supplied circles to the droplet. @throws Error, also if the file has several
-/// droplets
+/// Sets the keys that the file of --lab determines, if any, converts those that were given with units, and
+/// scales user-supplied circles to the droplet. @throws Error, also if the file has several droplets
 void use_laboratory(cli::CommandLine& line);
 
 /// The same for the droplets of a file. Several become points, each with the texts of one droplet.
@@ -21,12 +20,12 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points);
 /// Gives each group the scale of --lab, or else of its own laboratory. @throws Error
 void set_scales(const cli::CommandLine& line, std::vector<results::Group>& groups);
 
-/// The scale of each laboratory of these rows; none if some row has none, or --lab counts for all. @throws
+/// The scale of each laboratory of these rows; none if some row has none, or if --lab applies to all. @throws
 /// Error
 results::Scales scales_of_rows(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
 
-/// The droplet's diameter in mm: that of --lab, or else of the laboratory that all rows have; nothing if
-/// neither is there. @throws Error
+/// The droplet's diameter in mm: that of --lab, or else of the common laboratory of all rows; nothing if
+/// neither exists. @throws Error
 std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
 
 }  // namespace clog::programs

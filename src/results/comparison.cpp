@@ -61,7 +61,7 @@ std::set<Value> values_in(const std::vector<ParameterSet>& sets, const std::stri
   return values;
 }
 
-/// Columns that vary within a side, and of which both have a value: by these parameter sets belong together.
+/// Columns that vary within a side and have values on both: they match parameter sets.
 std::vector<std::string> common_columns(const Side& there, const Side& here,
                                         const std::vector<ParameterSet>& sets_there,
                                         const std::vector<ParameterSet>& sets_here) {
@@ -132,7 +132,7 @@ Comparison compare_sets(const ParameterSet& here, const ParameterSet& there, dou
   return comparison;
 }
 
-/// Columns in which all compared sets differ, automatic values excepted.
+/// Columns in which all compared sets differ, except automatic values.
 std::vector<std::string> differing_columns(
     const std::vector<std::pair<const RunRow*, const RunRow*>>& pairs) {
   std::vector<std::string> columns;

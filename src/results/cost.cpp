@@ -37,7 +37,7 @@ class Outlook {
     slowing_ = fit::fit_clogging_length(logarithms, default_confidence);
   }
 
-  /// Mean time that a run still takes if nothing but max-time ends it after `longest`.
+  /// Mean remaining time of a run if only max-time ends it after `longest`.
   double seconds_left(const RunCost& run, double longest, Case which) const {
     const double most = longest - run.seconds;
     const bool may_never_end = !sets_with_ends_.contains(run.parameter_set);
@@ -49,7 +49,7 @@ class Outlook {
       case Case::middle:
         break;
     }
-    // Nothing is known: every order of magnitude of the remaining time is equally likely.
+    // Without information, every order of magnitude of the remaining time is equally likely.
     if (may_never_end) return most / std::log(longest / run.seconds);
     return std::sqrt(if_even(mean(even_), most) * if_slowing(mean(slowing_), run.seconds, longest));
   }
@@ -59,14 +59,14 @@ class Outlook {
   fit::CloggingLength even_;     // of times: one run ends as likely as any other
   fit::CloggingLength slowing_;  // of their logarithms: the longer a run has lasted, the longer it will
 
-  /// Half an end more: without any the mean is long, but not infinite.
+  /// Half an end more: without any the mean is long, but finite.
   static double mean(const fit::CloggingLength& fit) { return fit.total_distance / (fit.num_clogs + 0.5); }
 
   /// Ends are exponential, P = exp(-t/mean).
   static double if_even(double mean, double most) {
     return std::isinf(mean) ? most : mean * -std::expm1(-most / mean);
   }
-  /// Ends follow the power law that mixes all exponentials alike, P = (t/seconds)^(-1/mean).
+  /// Ends follow the power law that mixes all exponentials equally, P = (t/seconds)^(-1/mean).
   static double if_slowing(double mean, double seconds, double longest) {
     const double power = 1 - 1 / mean;
     const double logarithm = std::log(longest / seconds);
@@ -94,7 +94,7 @@ class Share {
   /// Remaining time of the sample's own runs.
   double seconds_left() const { return left_; }
 
-  /// Standard error over the value, as of a ratio of sums over a sample without replacement.
+  /// Relative standard error of a ratio of sums over a sample without replacement.
   double relative_error(std::int64_t population) const {
     const auto n = static_cast<double>(expected_.size());
     const auto all = static_cast<double>(population);
@@ -113,7 +113,7 @@ class Share {
   double left_ = 0;
 };
 
-/// The mean time of runs to begin, and per work.
+/// Mean time of runs that have not begun, and per work.
 struct Pace {
   double begin_seconds = 0;
   double seconds_per_work = 0;
@@ -132,7 +132,7 @@ struct Pace {
   }
 };
 
-/// Seconds that are expected at each outlook, with the standard error of the middle one.
+/// Expected seconds for each outlook, with the standard error of the middle one.
 struct Expectation {
   double lowest = 0;
   double middle = 0;
@@ -166,14 +166,14 @@ class Shares {
   Expectation left() const {
     return {lowest_.seconds_left(), middle_.seconds_left(), highest_.seconds_left()};
   }
-  /// Estimate for runs that take `longest` at most.
+  /// Estimate if runs take at most `longest`.
   Expectation of(double longest, double relative_error) const {
     const double middle = longest * middle_.value();
     return {longest * lowest_.value(), middle, longest * highest_.value(),
             std::pow(middle * relative_error, 2)};
   }
   double error_of_all(std::int64_t population) const { return middle_.relative_error(population); }
-  /// All of the error belongs to the runs outside the sample, since those in it are known.
+  /// The whole error belongs to the runs outside the sample, because those in it are known.
   double error_of_others(std::int64_t number) const {
     const std::int64_t all = num_runs_ + number;
     return middle_.relative_error(all) * static_cast<double>(all) / static_cast<double>(number);

@@ -20,7 +20,7 @@
 namespace clog::results {
 namespace {
 
-/// What the distances of a group say.
+/// Results of the distances of a group.
 struct Lengths {
   fit::CloggingLength clogging;
   double least_squares = 0;
@@ -45,7 +45,7 @@ std::vector<Lengths> lengths_of(const DistanceTable& table, double confidence) {
   return all;
 }
 
-/// A unit in which lengths are given: what names end with, and the factor from the table's unit.
+/// A unit of lengths: the suffix of names, and the factor from the table's unit.
 struct Unit {
   const char *suffix, *text;
   double factor;

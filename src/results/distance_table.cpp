@@ -25,7 +25,7 @@ namespace {
 constexpr const char* example = "its first line names columns, such as 'distance [mm],clogged,wall'";
 constexpr double metres_per_mm = 1e-3;
 
-/// Where the columns are, and what else the first line says.
+/// Places of the columns, and other contents of the first line.
 struct Head {
   int distance = -1, clogged = -1;
   double factor = 1;  ///< from the column's unit to the table's
@@ -38,7 +38,7 @@ void set_once(int& place, std::size_t column, const char* name) {
     throw Error(fmt::format("there are two columns named {}; leave one", name));
 }
 
-/// Takes a column of distances. @throws Error  if its unit is none of length
+/// Reads a column of distances. @throws Error if its unit is not a length
 void take_distance(Head& head, std::size_t column, const std::string& unit, DistanceTable& table) {
   set_once(head.distance, column, "distance");
   table.unit = unit == "sigma" ? unit : "mm";
@@ -90,7 +90,7 @@ class Cells {
     try {
       const double number = sweep::to_number(commas_.with_point(cell));
       if (number >= 0) return number;
-    } catch (const Error&) {  // the message below says all
+    } catch (const Error&) {  // the message below is complete
     }
     throw Error(fmt::format("distance is '{}'; write a number of 0 or more", excerpt(cell)));
   }
@@ -108,23 +108,24 @@ class Cells {
   console::DecimalCommas commas_;
 };
 
-/// The name that a label would have as a column of a sweep.
+/// The name of a label as a column of a sweep.
 std::string column_name(std::string label) {
   std::ranges::replace(label, '-', '_');
   return label;
 }
 
-/// How the groups of two tables belong together.
+/// How the groups of two tables match.
 struct Match {
   std::vector<std::string> columns;                         ///< labels here, then those that are only there
   std::vector<std::pair<std::size_t, std::size_t>> common;  ///< places of a label here and there
   std::vector<std::size_t> only_there;
 
   bool have_common_labels(const DistanceGroup& here, const DistanceGroup& there) const {
-    const auto number = [](const Value& value) {  // a text table does not tell integers from other numbers
-      const auto* count = std::get_if<std::int64_t>(&value);
-      return count ? Value(static_cast<double>(*count)) : value;
-    };
+    const auto number =
+        [](const Value& value) {  // a text table does not distinguish integers from other numbers
+          const auto* count = std::get_if<std::int64_t>(&value);
+          return count ? Value(static_cast<double>(*count)) : value;
+        };
     return std::ranges::all_of(common, [&](const auto& pair) {
       return number(here.labels[pair.first]) == number(there.labels[pair.second]);
     });

@@ -18,7 +18,7 @@ bool has_role(const sweep::Column& column, ParameterRole role) {
   return column.parameter && column.parameter->role == role;
 }
 
-/// Counts by cause and their lengths; without values where they are not known.
+/// Counts by cause and their lengths; unset if unknown.
 void append_causes(const Group& group, std::vector<Field>& fields) {
   const bool are_known = !group.causes.empty();
   const auto add = [&](const std::string& name, auto number) {

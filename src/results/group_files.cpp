@@ -35,7 +35,7 @@ Json scale_json(const LaboratoryScale& scale) {
           {"tension_mN_per_m_of_gamma_1", json_of(Value(scale.tension))}};
 }
 
-/// @param with_laboratory  if any of the groups has one
+/// @param with_laboratory whether any of the groups has one
 std::vector<Field> all_fields(const Group& group, bool with_laboratory) {
   std::vector<Field> fields;
   const std::vector<Value> values = parameter_values(group.first_row);
@@ -46,7 +46,7 @@ std::vector<Field> all_fields(const Group& group, bool with_laboratory) {
   return fields;
 }
 
-/// Units of a group's fields, where they have one, and of the entries of its lists.
+/// Units of a group's fields, if any, and of the entries of its lists.
 Json field_units(const std::vector<Group>& groups) {
   Json all;
   for (const auto& [name, value] : all_fields(groups.front(), have_laboratory(groups)))
@@ -60,7 +60,7 @@ Json field_units(const std::vector<Group>& groups) {
 Json group_json(const Group& group, bool with_laboratory) {
   Json entry;
   for (const auto& [name, value] : all_fields(group, with_laboratory)) entry[name] = json_of(value);
-  // For who draws them: such values separate no curves and need no mention.
+  // For programs that draw them: such values separate no curves and need no mention.
   entry["automatic"] = Json::array();
   for (const sweep::Column* column : group_columns())
     if (separating_value(*column, group.first_row) == Value() && column->get(group.first_row) != Value())
@@ -109,7 +109,7 @@ std::string to_json(const std::vector<Group>& groups, double confidence,
                    {"lists", listed_columns(provenance)},
                    {"sweep", origin},
                    {"groups", list}};
-  // One scale for all groups, or for each its own.
+  // One scale for all groups, or each group's own.
   for (const Group& group : groups)
     if (const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory)
       document["laboratories"][own->check_sum()] = console::printable(own->text());

@@ -36,7 +36,7 @@ std::vector<std::string> parts_of(const std::optional<LaboratoryText>& laborator
   return parts;
 }
 
-/// What distinguishes each group's laboratory from those of the others; of a single one all its parts.
+/// The entries in which each group's laboratory differs from the others; all entries of a single one.
 std::string laboratory_label(const Group& group, const std::vector<Group>& groups) {
   std::vector<std::string> own = parts_of(group.first_row.parameters.laboratory);
   const auto is_everywhere = [&](const std::string& part) {
@@ -50,7 +50,7 @@ std::string laboratory_label(const Group& group, const std::vector<Group>& group
   return joined(label.empty() ? own : label, "; ");
 }
 
-/// A parameter's value; user-supplied circles have the name of their file, if it is known.
+/// A parameter's value; the name of the file for user-supplied circles, if it is known.
 std::string rounded_text(const Group& group, const std::vector<Group>& groups, const sweep::Column& column) {
   const sweep::RunRow& row = group.first_row;
   if (column.name == "laboratory")
@@ -67,7 +67,7 @@ std::string letters(const std::vector<Doubt>& doubts) {
   return all;
 }
 
-/// Explains the letters that occur in the last column.
+/// Explains the letters in the last column.
 std::string legend(const std::vector<Group>& groups) {
   std::string text;
   for (const DoubtText& doubt : doubt_texts)
@@ -78,7 +78,7 @@ std::string legend(const std::vector<Group>& groups) {
   return text;
 }
 
-/// Explains columns that their heads do not.
+/// Explains columns whose heads are not enough.
 std::string column_notes(const std::vector<Group>& groups) {
   std::string text;
   if (are_mechanisms_shown(groups))
@@ -108,7 +108,7 @@ double shorter_dwell(double rest) {
   return digit < 1 ? 0.9 * unit : digit * unit;
 }
 
-/// Names the droplets at rest that count as moving, and what would count them as clogged.
+/// Counts resting droplets that count as moving, and names the option that counts them as clogged.
 std::string note_of_rest(const std::vector<Group>& groups) {
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity(), known_from = 0;
@@ -126,7 +126,7 @@ std::string note_of_rest(const std::vector<Group>& groups) {
   return text + '\n';
 }
 
-/// Names the runs that are missing from the table, or from some of its columns.
+/// Counts the runs that are missing from the table, or from some of its columns.
 std::string left_out(const std::vector<Group>& groups) {
   const auto sum = [&](int Group::*number) {
     int all = 0;
@@ -173,7 +173,7 @@ bool follows(const std::vector<Group>& groups, const Value& value_of, const Othe
   });
 }
 
-/// Does an automatic value of the column follow from those that are shown, wherever the groups differ in it?
+/// Whether automatic values of the column follow from those that are shown, wherever the groups differ in it.
 bool follows_from_shown(std::size_t place, const std::vector<bool>& shown, const std::vector<Group>& groups) {
   const auto shown_values = [&](const Group& group) {
     std::vector<Value> values;
@@ -198,7 +198,7 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
                     (column->get(first) != Value() && is_of(scene_of(run).gap_key)) ||
                     is_of(model_of(run).stiffness_key));
   }
-  // A given automatic value that others follow from comes before these.
+  // A given automatic value precedes the values that follow from it.
   std::vector<std::size_t> order(shown.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, [](std::size_t i) {
@@ -210,7 +210,7 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
   return shown;
 }
 
-/// The parameters that all groups share and that are worth a word.
+/// The parameters that all groups share and that need a mention.
 std::vector<std::string> shared_words(const std::vector<Group>& groups, const std::vector<bool>& varies,
                                       const std::vector<bool>& shown, SharedParameters shared) {
   const sweep::RunRow& row = groups.front().first_row;
@@ -312,7 +312,7 @@ std::string wrapped(const std::vector<std::string>& words) {
   return text;
 }
 
-/// One line across a device: where, how many droplets came past it and of how many, share and interval.
+/// One line across a device: x, number of droplets that passed it and of how many, fraction and interval.
 void append_passage(const Passage& passage, std::vector<std::string>& line) {
   const int num_known = passage.num_passed + passage.num_stopped;
   line.push_back(fmt::format("{:.4g}", passage.x));
@@ -338,7 +338,7 @@ std::vector<Passage> shown_passages(const std::vector<Passage>& all) {
   return shown;
 }
 
-/// Which shares of the droplets came past the lines of their devices.
+/// The fractions of the droplets that passed the lines of their devices.
 std::string table_of_passages(const std::vector<Group>& groups, const std::vector<ResultColumn>& parameters,
                               double confidence) {
   std::vector<std::vector<std::string>> lines = {heads(parameters)};
@@ -358,7 +358,7 @@ std::string table_of_passages(const std::vector<Group>& groups, const std::vecto
                      console::aligned(lines));
 }
 
-/// Defines a clog, if droplets that stood still count, too.
+/// Defines a clog, if resting droplets count, too.
 std::string definition_of_clogs(const std::vector<Group>& groups) {
   const double dwell = groups.front().dwell;
   if (std::isinf(dwell)) return "";

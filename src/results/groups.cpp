@@ -30,7 +30,7 @@
 namespace clog::results {
 namespace {
 
-/// May so many of the clogs be the mesh's that they move the length?
+/// Whether enough clogs may be artefacts of the mesh to move the length.
 bool hangs_on_mesh(const Group& group) {
   constexpr double tolerated = 0.1;  // of the clogs
   return group.num_on_mesh > 0 && group.num_on_mesh >= tolerated * group.clogging.num_clogs;
@@ -39,7 +39,7 @@ bool hangs_on_mesh(const Group& group) {
 std::vector<Doubt> doubts_about(const Group& group) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool has_length = has_clogging_length(group.first_row);
-  // Where all droplets passed the exit, more seeds add nothing but a higher bound.
+  // If all droplets passed the exit, more seeds only raise the bound.
   const bool lacks_clogs =
       clogging.num_runs > 0 && group.num_passed != clogging.num_runs && clogging.num_clogs < enough_clogs;
   const bool is_below_spacing = clogging.length < sweep::obstacle_spacing(group.first_row);
@@ -79,7 +79,7 @@ std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
   return distances;
 }
 
-/// How far a run got, and what it says about clogging.
+/// Distance of a run, and whether it clogged.
 struct Ending {
   double distance;  ///< [sigma]
   bool is_clog;
@@ -102,7 +102,7 @@ std::optional<Cause> cause_of(const sweep::RunRow& run) {
   throw std::logic_error("a mechanism that is no cause");
 }
 
-/// May the run have dwells as long as this? One that has not begun has none.
+/// Whether the run may have dwells of this length. A run that has not begun has none.
 bool has_dwells_to_tell(const sweep::RunRow& run, double dwell) {
   return dwell < run.parameters.max_time && run.steps > 0;
 }
@@ -112,7 +112,7 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
   const bool is_clogged = run.status == RunStatus::clogged;
   const Ending last = {run.distance, is_clogged, cause_of(run)};
   if (!has_dwells_to_tell(run, dwell)) return last;
-  // The mechanism of a droplet that moved on is not known: it counts among the others.
+  // The mechanism of a droplet that moved on is unknown: it counts as other.
   if (const Dwell* first = run.dwells.first_longer(dwell)) return {first->distance, true, Cause::other};
   return is_clogged || last.cause ? last : Ending{run.dwells.last_distance, false, {}};
 }
@@ -125,16 +125,16 @@ std::optional<Ending> counted(const sweep::RunRow& run, Ending ending) {
   return ending;
 }
 
-/// The later of two times; not known if one of them is not.
+/// The later of two times; unknown if one of them is.
 double later(double one, double other) { return std::isnan(one) || one > other ? one : other; }
 
-/// Three figures, not less than the number, for people to type.
+/// Three figures, rounded up, for people to type.
 std::string rounded_up(double number) {
   const double unit = std::pow(10, std::floor(std::log10(number)) - 2);
   return fmt::format("{:.3g}", std::ceil(number / unit) * unit);
 }
 
-/// @throws Error if rows that are sound do not tell which droplets stood for so long
+/// @throws Error if intact rows do not record which droplets rested for this time
 void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
   int num_unknown = 0;
   double known_from = 0;
@@ -156,9 +156,9 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
                     shortest(dwell), rounded_up(known_from)));
 }
 
-/// Clogging lengths of runs that are sound and reached the distance from which they count.
+/// Clogging lengths of intact runs that reached the distance from which they count.
 void fit_clogging(Group& group, std::span<const Ending> runs, double confidence, double from_distance) {
-  // Observations in which only some of the ends are such, the other runs being censored where they ended.
+  // Observations in which only some of the ends count as events; the others are censored.
   const auto observe = [&](auto is_end) {
     std::vector<fit::Observation> observations;
     observations.reserve(runs.size());
@@ -188,11 +188,11 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
   }
 }
 
-/// Fits the runs from the obstacles that they met on. @param runs  sound, and counted
+/// Fits the runs from their first obstacle on. @param runs intact, and counted
 struct Meetings {
   std::vector<fit::Observation> from_first;  ///< of the runs that met one
   std::int64_t num_contacts = 0;
-  double way = 0;  ///< of all runs that tell [sigma]
+  double way = 0;  ///< of all runs that record it [sigma]
   int num_free = 0;
 
   void count(const sweep::RunRow& run, const Ending& ending, double from_distance) {
@@ -211,8 +211,8 @@ void fit_meetings(Group& group, const Meetings& meetings, double confidence) {
   if (meetings.way > 0) group.contacts_per_length = static_cast<double>(meetings.num_contacts) / meetings.way;
 }
 
-/// One or two runs that happened to come far enough to have a speed say little of all: their mean is not
-/// told.
+/// One or two runs that travelled far enough to have a speed do not represent all, so their mean is not
+/// printed.
 fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   constexpr int fewest_runs = 3;
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -220,7 +220,7 @@ fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   return speed;
 }
 
-/// Counts a run that ended by max-time although its droplet had long been at rest.
+/// Counts a run that max-time ended although its droplet had rested for long.
 void add_rest(const sweep::RunRow& run, Group& group) {
   constexpr double diameters = 10;
   const double rest = run.time - run.dwells.last_begin;
@@ -229,14 +229,14 @@ void add_rest(const sweep::RunRow& run, Group& group) {
   group.shortest_rest = std::min(group.shortest_rest, rest);
 }
 
-/// The travel until the run ended or the droplet came to its arrest; not known in files without dwells.
+/// Distance and time until the end or the arrest; unknown in files without dwells.
 fit::Travel travel_until_arrest(const sweep::RunRow& run) {
   const bool is_clogged = run.status == RunStatus::clogged;
   const double way = is_clogged ? run.dwells.last_distance : run.distance;
   return {way / run.parameters.drag.terminal_speed, is_clogged ? run.dwells.last_begin : run.time};
 }
 
-/// Droplets that sank by less than half a diameter on the average have no speed, as single ones.
+/// As single droplets, groups that sank by less than half a diameter on average have no speed.
 fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double terminal_speed) {
   constexpr double shortest_way = 0.5;  // [sigma]
   double way = 0;
@@ -245,7 +245,7 @@ fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double te
   return of_enough_runs(is_far ? fit::fit_pooled_speed(travels) : fit::fit_pooled_speed({}));
 }
 
-/// Keeps of each droplet (one seed in one array) the run with the largest max-time; the longest come first.
+/// Keeps the run with the largest max-time of each droplet (one seed in one array); the longest come first.
 void keep_longest(std::vector<const sweep::RunRow*>& runs) {
   std::ranges::stable_sort(runs, std::ranges::greater(),
                            [](const sweep::RunRow* run) { return run->parameters.max_time; });
@@ -256,9 +256,9 @@ void keep_longest(std::vector<const sweep::RunRow*>& runs) {
   });
 }
 
-/// What the sound runs of a group say.
+/// Results of the intact runs of a group.
 struct Tally {
-  std::vector<Ending> endings;  ///< of the runs that count for the clogging length
+  std::vector<Ending> endings;  ///< runs that count for the clogging length
   std::vector<Arrival> arrivals;
   Meetings meetings;
   std::vector<double> speeds;

@@ -22,7 +22,7 @@ bool is_automatic(const sweep::Key& key, const sweep::Settings& settings) {
          });
 }
 
-/// Is any value of the one list in the other? Numbers may be written differently.
+/// Whether any value of one list is in the other. Numbers may be written differently.
 bool have_common_value(const std::vector<std::string>& some, const std::vector<std::string>& others) {
   return std::any_of(some.begin(), some.end(), [&](const std::string& value) {
     return std::any_of(others.begin(), others.end(),
@@ -30,7 +30,7 @@ bool have_common_value(const std::vector<std::string>& some, const std::vector<s
   });
 }
 
-/// A key's values: as the user typed them, unless points have other ones.
+/// A key's values as the user typed them, unless points have others.
 std::string shown(const sweep::Settings& settings, const sweep::Key& key,
                   const std::map<std::string, std::vector<std::string>>& values) {
   const std::vector<std::string>& all = values.at(key.name);

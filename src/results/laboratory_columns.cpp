@@ -14,8 +14,8 @@ namespace {
 
 LaboratoryScale scale_of(const Group& group) { return group.laboratory.value_or(LaboratoryScale()); }
 
-/// Mean time until a clog: lambda over the speed of all runs, which the laboratory's terminal speed scales
-/// [s].
+/// Mean time until a clog: lambda divided by the speed of all runs, in units of the laboratory's terminal
+/// speed [s].
 double time_to_clog(const Group& group) {
   const LaboratoryScale scale = scale_of(group);
   if (group.clogging.num_clogs == 0) return std::numeric_limits<double>::quiet_NaN();

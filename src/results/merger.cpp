@@ -88,7 +88,7 @@ class Rows {
     paths_[place] = path;
   }
 
-  /// Is it to replace the row that there is? @throws Error if they contradict each other
+  /// Whether it replaces the existing row. @throws Error if they contradict each other
   bool is_better(const RunRow& row, std::size_t place, const std::string& path) {
     const RunRow& known = rows_[place];
     if (!sweep::is_result(row.status) || !sweep::is_result(known.status)) {
@@ -98,7 +98,7 @@ class Rows {
     }
     const std::vector<std::string> differing = differing_results(known, row);
     if (differing.empty()) return false;
-    // A run under two instruction sets is reproduced by none.
+    // No replay reproduces a run under two instruction sets.
     const bool is_mixed = row.instruction_set == sweep::mixed_instruction_sets;
     if (known.instruction_set == row.instruction_set && !is_mixed)
       throw Error(fmt::format(
@@ -110,7 +110,7 @@ class Rows {
   }
 };
 
-/// Adds circles that are not there yet.
+/// Adds circles that are missing.
 void add_circles(const store::SweepFile& file, std::vector<store::CircleFile>& all) {
   for (const store::CircleFile& one : file.circles) {
     const auto known =
@@ -184,7 +184,7 @@ std::string part_line(const std::string& path, const store::SweepFile& file, con
   return console::json_text(part, -1) + attribute(file.provenance, "parts");
 }
 
-/// Attributes about the program's call: a new file has its own, which summarise those of its parts.
+/// Attributes of the program's call: a new file has its own, which summarise those of its parts.
 static constexpr std::string_view replaced_attributes[] = {"config", "sessions", "parts", "stopping_rule",
                                                            "num_wanted"};
 
@@ -249,7 +249,7 @@ store::SweepFile read_together(const std::vector<std::string>& paths) {
     const sweep::Settings settings = runs.settings();
     config = settings.to_config();
     number_tasks(settings, merged.table);
-  } catch (const Error&) {  // of a version that had other keys
+  } catch (const Error&) {  // from a version with other keys
   }
   merged.table.provenance =
       joint_provenance(parts.front().table.provenance, config, tables_of(parts), lines_of(parts));

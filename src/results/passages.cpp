@@ -8,7 +8,7 @@
 namespace clog::results {
 namespace {
 
-/// x of the rows of posts between entrance and exit: each x at which there are centres.
+/// x of the rows of posts between entrance and exit: each x of centres.
 std::vector<double> rows_of_posts(const ObstacleParameters& obstacles) {
   constexpr double same_row = 1e-6;  // [sigma]
   std::vector<double> rows;

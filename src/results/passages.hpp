@@ -7,14 +7,14 @@
 
 namespace clog::results {
 
-/// Where a droplet of a device got to, in the coordinates of its circles [sigma].
+/// The position that a droplet of a device reached, in the coordinates of its circles [sigma].
 struct Arrival {
   double x;
-  bool is_final;  ///< otherwise it was still on its way
+  bool is_final;  ///< otherwise it was still moving
 };
 
-/// The shares of droplets that came past the rows of posts downstream of the entrance, and past the exit.
-/// @param lines  x of lines in place of the rows of posts, whose x is that of their centres
+/// The fractions of droplets that passed the rows of posts downstream of the entrance, and the exit. @param
+/// lines x of lines in place of the rows of posts, whose x is that of their centres
 std::vector<Passage> passages_of(const RunParameters& device, std::span<const Arrival> arrivals,
                                  std::span<const double> lines, double confidence);
 

@@ -69,7 +69,7 @@ double longest_work(const RunParameters& run) { return run.max_time / *run.time_
 struct Sample {
   std::vector<RunCost> costs;
   std::string source;
-  std::string failure;  ///< of the first that could not begin; these are not among the costs
+  std::string failure;  ///< reason of the first that could not begin; these are not among the costs
   std::int64_t num_clogged = 0;
   std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
   double spacing = 0;          ///< of the obstacles of such a run [sigma]
@@ -99,7 +99,7 @@ RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunP
 constexpr std::size_t fewest_stored_runs = 5;
 constexpr double hour = 3600;
 
-/// The runs in the sweep's own file; empty if there is no file.
+/// The runs in the sweep's own file; empty without a file.
 struct Stored {
   Sample sample;
   std::vector<WaitingRuns> waiting;  ///< runs of each parameter set that are not in the sample
@@ -137,7 +137,7 @@ Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
 /// Tasks spread over parameter sets and, where these are few, over seeds; those of the same array together.
 std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
   constexpr std::int64_t most_tasks = 24;
-  constexpr std::int64_t most_seeds = 4;  // of many parameter sets: arrays may take long to make
+  constexpr std::int64_t most_seeds = 4;  // few of many parameter sets, because arrays may take long to build
   const std::int64_t num_tasks = std::min(plan.size(), most_tasks);
   const std::int64_t num_groups = plan.num_groups();
   std::vector<std::int64_t> tasks;
@@ -158,8 +158,8 @@ std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
 
 constexpr double seconds_to_try = 10;
 
-/// Runs short pieces of these tasks. The jobs may be those of another process, which answers between slices
-/// of its work; one that takes too long, as a release that does not come to rest, is dropped.
+/// Runs short pieces of these tasks. Another process may compute the jobs and answers between slices of its
+/// work; one that takes too long, such as a release that does not come to rest, is dropped.
 Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
   constexpr double fewest_seconds = 0.1;  // for a run whose array took all of its share
   constexpr double grace = 0.5;           // for the last answer
@@ -176,7 +176,7 @@ Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
     const double end = elapsed() + share;
     const auto job = jobs(tasks[i], {});
     const auto answers = [&] { return job->refresh(); };
-    advance_until(*job, seconds_to_try + grace, answers);  // its array and its release
+    advance_until(*job, seconds_to_try + grace, answers);  // time of its array and its release
     const sweep::RunRow first = job->row();
     advance_until(*job, std::max(end, elapsed() + fewest_seconds), [] { return false; });
     advance_until(*job, seconds_to_try + grace, answers);
@@ -202,14 +202,14 @@ SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample) {
   return sweep_cost(sample.costs, all_work, plan.size());
 }
 
-/// Adds time that was spent before, or subtracts it.
+/// Adds earlier time, or subtracts it.
 SweepCost plus(SweepCost cost, double seconds) {
   for (double* part : {&cost.bound, &cost.expected, &cost.lower, &cost.upper})
     *part = std::max(0.0, *part + seconds);
   return cost;
 }
 
-/// What is known better than its interval, which stays as wide as it is.
+/// Limits an estimate by what is known; its interval keeps its width.
 SweepCost with_expected(SweepCost cost, double expected) {
   cost.lower *= expected / cost.expected;
   cost.upper *= expected / cost.expected;
@@ -242,10 +242,10 @@ void print_left(const sweep::Plan& plan, const std::string& output, const Stored
              plan.size() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
 }
 
-/// Clogging lengths below an obstacle spacing would be doubted (`v`): warns before the runs, not after.
+/// Clogging lengths below an obstacle spacing would be doubted (`v`): warns before the runs.
 void print_short_lengths(const Sample& sample) {
   constexpr std::int64_t fewest = 3;
-  constexpr std::int64_t one_in = 4;  // of lengths of five spacings one clog in six is that short
+  constexpr std::int64_t one_in = 4;  // if the length is five spacings, one clog in six is this short
   if (sample.num_short < fewest || one_in * sample.num_short < sample.num_clogged) return;
   fmt::print(std::cout,
              "# {} of {} clogged within one obstacle spacing ({:.3g} sigma) of their release: such lengths "

@@ -108,7 +108,7 @@ console::RoundedError share_of(const Group& group) {
   return console::with_error(share.slope, share.standard_error);
 }
 
-/// Are some runs too short to have a speed?
+/// Whether some runs are too short to have a speed.
 bool lacks_speeds(const Group& group) {
   return !std::isnan(group.relative_speed.mean) && group.relative_speed.num_runs < group.clogging.num_runs;
 }
@@ -152,7 +152,7 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
   return columns;
 }
 
-/// A number of the one run that a group has where nothing is random.
+/// A number of the single run of a group without randomness.
 ResultColumn column_of_run(const char* name, double sweep::RunRow::*value) {
   return {name, [=](const Group& group) { return console::plain(group.first_row.*value, 4); }};
 }

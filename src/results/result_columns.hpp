@@ -8,7 +8,7 @@
 
 namespace clog::results {
 
-/// A column of results in the table for people.
+/// A column of results in the printed table.
 struct ResultColumn {
   std::string name;
   std::function<std::string(const Group&)> cell;
@@ -27,7 +27,7 @@ std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, 
 bool are_mechanisms_shown(const std::vector<Group>& groups);
 bool have_some_broken(const std::vector<Group>& groups);
 
-/// Has any group a laboratory, and are there lengths to convert?
+/// Whether any group has a laboratory and lengths to convert.
 bool have_laboratory(const std::vector<Group>& groups);
 /// A group's interfacial tension, clogging length, speed and time until a clog in laboratory units.
 std::vector<Field> laboratory_fields(const Group& group);

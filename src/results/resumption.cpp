@@ -9,18 +9,19 @@
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_row.hpp"
 
-/// What a sweep takes over from the table and the journal of its earlier sessions.
+/// What a sweep adopts from the table and the journal of its earlier sessions.
 namespace clog::results {
 
-/// Is it the run that the plan has by its number? Usually all are: the sweep is resumed as it was begun.
+/// Whether it is the run that has this number in the plan. Usually all are, because the sweep resumes
+/// unchanged.
 bool SweepState::is_of_its_task(const sweep::RunRow& row) const {
   return row.task >= 0 && row.task < plan_->size() &&
          sweep::identity(row) == sweep::identity(sweep::describe(plan_->task(row.task)));
 }
 
-/// Rows of the table, and records of the journal in its order, become runs: in runs_ if all are of their
-/// tasks, otherwise in the list that it returns. Each goes from one place to the other, since a large sweep
-/// has memory for each row just once.
+/// Turns rows of the table, and records of the journal in its order, into runs: in runs_ if all are of their
+/// tasks, otherwise in the list that it returns. Each is moved, because a large sweep has memory for each row
+/// just once.
 SweepState::Known SweepState::recognise(std::vector<sweep::RunRow> rows, std::vector<Entry> records,
                                         const sweep::Settings& settings) {
   Known known;
@@ -105,7 +106,7 @@ void SweepState::refuse_foreign(const sweep::RunRow& record, const FixedValues& 
                     path_, journal_.path(), differing));
 }
 
-/// Runs that are not of this plan may be among other circles.
+/// Runs outside this plan may have other circles.
 void SweepState::keep_circles(const store::SweepFile& file) {
   for (const store::CircleFile& one : file.circles)
     if (std::ranges::none_of(circles_, [&](const auto& known) { return known.circles == one.circles; }))

@@ -32,12 +32,12 @@ double number_or_infinity(const std::string& text) try {
   return std::numeric_limits<double>::infinity();
 }
 
-/// Numbers by their size, then other texts.
+/// Sorts numbers by size, then other texts.
 bool is_less(const std::string& a, const std::string& b) {
   return std::pair(number_or_infinity(a), a) < std::pair(number_or_infinity(b), b);
 }
 
-/// `1..10,15`; of many seeds that do not follow each other several texts.
+/// `1..10,15`; several texts if many seeds are not consecutive.
 Texts texts_of(const std::set<std::uint32_t>& seeds) {
   Texts texts;
   std::string text;
@@ -58,7 +58,8 @@ void set_all(sweep::Settings& settings, const Texts& texts) {
     if (!texts[i].empty()) settings.set(sweep::keys()[i].name, texts[i]);
 }
 
-/// What the texts of a plan's first parameter set become for another run; nothing if a file's name is needed.
+/// Texts of a plan's first parameter set, changed to those of another run; nothing if a file's name is
+/// needed.
 std::optional<Texts> texts_of(const sweep::RunRow& row, const sweep::Plan& plan) {
   const sweep::RunRow first = sweep::describe(plan.group(0));
   Texts texts = plan.texts(0);
@@ -133,13 +134,13 @@ bool RunList::add(const sweep::Plan& plan, const sweep::RunRow& row) try {
   if (sweep::identity(sweep::describe(one.task(0))) != sweep::identity(row)) return false;
   set_of(plan, row, std::move(*texts)).seeds.insert(row.parameters.seed);
   return true;
-} catch (const Error&) {  // of a version that had other keys or ranges
+} catch (const Error&) {  // from a version with other keys or ranges
   return false;
 }
 
 namespace {
 
-/// Keys for which the texts are not all the same, by place.
+/// Keys with different texts, by place.
 std::vector<std::size_t> differing_places(const std::vector<const Texts*>& all) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < all.front()->size(); ++i)
@@ -148,7 +149,7 @@ std::vector<std::size_t> differing_places(const std::vector<const Texts*>& all) 
   return places;
 }
 
-/// Every text of a key once.
+/// Every different text of a key.
 Texts values_of(const std::vector<const Texts*>& all, std::size_t place) {
   Texts values;
   values.reserve(all.size());

@@ -17,7 +17,7 @@
 namespace clog::results {
 namespace {
 
-/// Fixed values by which records of this sweep are recognised; nothing if its config is lost.
+/// Fixed values that identify records of this sweep; nothing if its config is lost.
 std::optional<FixedValues> fixed_values(const std::string& path, const store::SweepFile& table) try {
   return FixedValues(stored_plan(path, table), stored_settings(path, table.provenance));
 } catch (const Error&) {
@@ -85,7 +85,7 @@ Salvage salvage(const std::string& path) {
 
 std::vector<std::string> drop_faulty(std::vector<sweep::RunRow>& rows) {
   std::vector<std::string> faults;
-  std::unordered_map<std::string, std::int64_t> seen;  // tasks, by what runs are
+  std::unordered_map<std::string, std::int64_t> seen;  // tasks by runs
   std::erase_if(rows, [&](const sweep::RunRow& row) {
     std::string fault = sweep::fault_of(row);
     if (fault.empty())

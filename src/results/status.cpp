@@ -17,8 +17,8 @@ namespace {
 
 using sweep::RunRow;
 
-/// Times of the parameter sets of the last config. With --until-precision a set may want more seeds than
-/// others, which is not known here: each is taken to want the mean of all.
+/// Times of the parameter sets of the last config. With --until-precision sets may request different numbers
+/// of seeds, which are unknown here: each counts with the mean of all.
 std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep::Plan& plan,
                                     std::int64_t num_wanted) {
   std::vector<SetTimes> sets(static_cast<std::size_t>(plan.num_groups()));

@@ -94,7 +94,7 @@ sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file) {
   });
 }
 
-/// Has the key a list of its own, or one in points? Others may vary because they follow from a word.
+/// Whether the key has a list of its own, or one in points. Others may vary because they follow from a word.
 static bool is_listed(const sweep::Key& key, const sweep::Settings& settings) {
   const std::vector<std::string>& keys = settings.points().keys;
   return settings.values(key.name).size() > 1 || std::ranges::find(keys, key.name) != keys.end();
@@ -109,7 +109,7 @@ std::vector<std::string> listed_columns(const store::Provenance& provenance) try
       columns.emplace_back(key.parameter->column);
   return columns;
 } catch (const Error&) {
-  return {};  // of a version that had other keys
+  return {};  // from a version with other keys
 }
 
 std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
@@ -123,7 +123,7 @@ RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, 
   RunCount count;
   count.num_beyond = std::count_if(file.rows.begin(), file.rows.end(),
                                    [&](const sweep::RunRow& row) { return row.task >= plan.size(); });
-  // An earlier --until-precision may have had more of the plan's runs.
+  // An earlier --until-precision may have requested more of the plan's runs.
   count.num_runs = std::max(stored_num_wanted(path, file.provenance, plan) + count.num_beyond,
                             static_cast<std::int64_t>(file.rows.size()));
   return count;

@@ -15,7 +15,8 @@
 namespace clog::results {
 namespace {
 
-/// Keeps `sessions` short, however often a sweep is resumed: the oldest lines go, and a long last one is cut.
+/// Keeps `sessions` short, however often a sweep is resumed: the oldest lines are removed, and a long last
+/// one is cut.
 std::string latest_lines(std::string text) {
   constexpr std::size_t longest_line = 2000;
   constexpr std::size_t longest = 30'000;
@@ -25,7 +26,7 @@ std::string latest_lines(std::string text) {
   return text;
 }
 
-/// Resets a run to its release: only its parameters and its cost so far stay.
+/// Resets a run to its release, except its parameters and its cost so far.
 void restart(sweep::RunRow& row) {
   RunResult nothing;
   nothing.status = RunStatus::interrupted;
@@ -207,8 +208,8 @@ void SweepState::withdraw_failure(std::int64_t task) {
 }
 
 void SweepState::tick() {
-  // Writing the whole table takes longer the more runs there are, and the journal must be rewritten now and
-  // then; they may take two percent of the time.
+  // Writing the whole table takes longer for more runs, and the journal must be rewritten now and then; both
+  // may take two percent of the time.
   const Clock::time_point now = Clock::now();
   if (publication_.valid()) {
     if (publication_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;
@@ -286,7 +287,7 @@ void SweepState::end_publication() {
   stamp_ = *std::move(published);
 }
 
-/// Writes the table under another name, to keep the file that somebody else has put in its place.
+/// Writes the table under another name, to keep the foreign file in its place.
 void SweepState::rescue() {
   if (journal_.is_there()) rewrite_journal(Records::all);
   int number = 1;
@@ -318,7 +319,7 @@ void SweepState::prepare_journal(const std::vector<const Entry*>& all, std::uint
 
 std::string SweepState::finish() {
   publish();
-  if (place_.stamp() != stamp_) publish();  // somebody has moved or removed it meanwhile
+  if (place_.stamp() != stamp_) publish();  // somebody moved or removed it meanwhile
   const std::vector<const Entry*> all = entries();
   const bool is_complete =
       std::ssize(all) - std::ssize(other_runs_) >= num_wanted_ &&

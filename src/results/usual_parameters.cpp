@@ -15,7 +15,7 @@
 namespace clog::results {
 namespace {
 
-/// Model and preset of the row, all else by default; not resolved yet.
+/// Model and preset of the row, defaults otherwise; not resolved yet.
 RunParameters defaults_for(const sweep::RunRow& row) {
   sweep::Settings settings;
   settings.set("model", name(row.parameters.model));
@@ -31,13 +31,13 @@ bool are_circles_missing(const RunParameters& run) {
          !(run.obstacles.own && run.obstacles.own->are_known());
 }
 
-/// A key of user-supplied circles alone, which a row of the default layout says nothing about.
+/// A key that applies only to user-supplied circles, about which a row of the default layout says nothing.
 bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
   return scene_of(run).walls_from == WallsFrom::circles && column.parameter &&
          column.parameter->applies_to(run) && !column.parameter->applies_to(RunParameters());
 }
 
-/// A share of the saturated density is another number for each gap and diameter.
+/// A share of the saturated density is a different number for each gap and diameter.
 Value usual_density(RunParameters run) {
   run.obstacles.density = ObstacleParameters().density;
   return sweep::describe(resolve(run)).obstacle_density;
@@ -50,7 +50,7 @@ bool has_derived_density(const sweep::RunRow& row) {
          (!obstacles.density.per_area && !obstacles.density.share);
 }
 
-/// Do automatic values of the one parameter follow from the other? The step follows from the vertices, the
+/// Whether automatic values of one parameter follow from the other. The step follows from the vertices, the
 /// stiffness of walls from both.
 bool follows(const Parameter& one, const Parameter& other) {
   constexpr std::string_view chain[] = {"vertices", "time-step", "wall-stiffness"};
@@ -61,10 +61,11 @@ bool follows(const Parameter& one, const Parameter& other) {
 
 enum class Others { all, independent };
 
-/// Is the value automatic if the other parameters are given: all, or those that do not follow from it?
+/// Whether the value is automatic if the other parameters are given: all, or those that do not follow from
+/// it.
 bool is_automatic_with(Others others, const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
-  if (are_circles_missing(row.parameters)) return true;  // as far as anybody can tell
+  if (are_circles_missing(row.parameters)) return true;  // as far as the row shows
   RunParameters run = defaults_for(row);
   for (const Parameter& parameter : parameter_schema())
     if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column) &&
@@ -89,7 +90,7 @@ Value separating_value(const sweep::Column& column, const sweep::RunRow& row) {
   const DpParameters& dp = row.parameters.dp;
   if (column.name == "perimeter_stiffness" && dp.perimeter_spring == PerimeterSpring::rest &&
       dp.perimeter_stiffness && dp.line_tension > 0) {
-    constexpr double figures = 1e9;  // the ratio is known to round-off only
+    constexpr double figures = 1e9;  // the ratio is known only to round-off
     return std::round(figures * *dp.perimeter_stiffness / dp.line_tension) / figures;
   }
   return column.get(row);

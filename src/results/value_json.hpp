@@ -9,7 +9,7 @@
 
 namespace clog::results {
 
-/// Unset where the number is not finite.
+/// Unset if the number is not finite.
 inline Value finite_value(double number) { return std::isfinite(number) ? Value(number) : Value(); }
 /// @returns null for an unset value and for a number that is not finite
 nlohmann::ordered_json json_of(const sweep::Value& value);
@@ -24,11 +24,11 @@ nlohmann::ordered_json step_json(const Step& step, const char* name, int num_end
           {"lower", step.interval.lower},
           {"upper", step.interval.upper}};
 }
-/// For a table: four figures; `-` for an unset value. A foreign file's words may hold control characters.
+/// For a table: four figures; `-` for an unset value. A foreign file's words may contain control characters.
 std::string short_text(const sweep::Value& value);
-/// For CSV: all digits; in quotes where a word holds a comma or a quote.
+/// For CSV: all digits; quoted if a word contains a comma or a quote.
 std::string csv_cell(const sweep::Value& value);
-/// A line for each row, below one with the names of its fields.
+/// A line for each row, after one with the names of the fields.
 std::string csv_table(const std::vector<std::vector<Field>>& rows);
 
 }  // namespace clog::results

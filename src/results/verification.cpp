@@ -30,7 +30,7 @@ Verification verify(const std::string& path) {
   store::Examination found = store::examine_sweep(path);
   store::SweepFile& file = found.whole;
   const bool has_config = !attribute(file.provenance, "config").empty();
-  RunCount runs;  // not asked for where the file is damaged
+  RunCount runs;  // not queried if the file is damaged
   if (found.damage.empty() && has_config) runs = stored_num_runs(path, file, stored_plan(path, file));
   Verification result{.findings = found.damage};
   for (std::string& fault : drop_faulty(file.rows)) result.findings.push_back(std::move(fault));

@@ -15,9 +15,9 @@ namespace {
 /// Variables in which launchers give a process its rank.
 constexpr const char* rank_variables[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
 
-/// A rank that no launcher has started stands alone. Otherwise Open MPI would begin a daemon for it, which
-/// looks for ssh and takes the rank with it when it is killed; and a folder of a name that all such ranks of
-/// a user share, so that one that starts while another ends may fail.
+/// A rank that no launcher has started is alone. Otherwise Open MPI would start a daemon for it, which looks
+/// for ssh and ends the rank when it is killed; and it would use a folder whose name all such ranks of a user
+/// share, so that one that starts while another ends may fail.
 void stand_alone_without_launcher() {
   for (const char* name : rank_variables)
     if (std::getenv(name)) return;
@@ -30,7 +30,7 @@ void stand_alone_without_launcher() {
 
 Communicator::Communicator(int& argc, char**& argv) {
   stand_alone_without_launcher();
-  int provided = 0;  // another thread publishes the table; this one alone calls MPI
+  int provided = 0;  // another thread publishes the table; only this one calls MPI
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);

@@ -99,7 +99,7 @@ class Driver {
       report.row = state_.row(report.row.task);
       report.row.status = RunStatus::interrupted;
       report.row.wall_seconds = report.row.processor_seconds =
-          0;  // the state of the sweep adds what was before
+          0;  // the state of the sweep adds the earlier cost
     }
     state_.report(report);
     if (report.row.status == RunStatus::failed && state_.tries_again(report.row)) {

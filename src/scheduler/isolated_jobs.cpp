@@ -43,10 +43,10 @@ enum Kind : std::int64_t {
 
 /// How long a rank waits for a process that should answer at once: a stopped one never does.
 constexpr std::chrono::milliseconds patience{2000};
-/// Patience for the start of a process, which takes long when memory is scarce.
+/// Timeout for the start of a process, which takes long when memory is scarce.
 constexpr std::chrono::milliseconds patience_for_start{20'000};
 
-/// How a process came to its end.
+/// How a process ended.
 struct Ending {
   int fork_error = 0;  // errno, if it never began
   int code = 0;        // of SIGCHLD: CLD_EXITED or another
@@ -73,24 +73,24 @@ std::string describe(const Ending& ending) {
                      signal == SIGKILL ? ", as the kernel does when memory runs out" : "");
 }
 
-/// The process dies when the one that forked it does. Signals that stop a sweep are the rank's business.
+/// The process dies with the one that forked it. The rank handles signals that stop a sweep.
 void depend_on_parent(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);  // it was quicker
   for (const int signal : console::stop_signals) std::signal(signal, SIG_IGN);
 }
 
-/// Libraries of MPI, such as UCX, handle a crash as soon as they are loaded, and may wait for ever in their
-/// handlers. The processes forked from now on die of a crash.
+/// Libraries of MPI, such as UCX, install handlers for crashes when they are loaded, and may wait in them for
+/// ever. In processes forked from now on a crash is fatal.
 void let_crashes_kill() {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL}) std::signal(signal, SIG_DFL);
 }
 
-/// When memory runs out, the kernel is to take this process, and neither the helper nor the rank, without
-/// which the sweep is over.
+/// When memory runs out, the kernel should kill this process rather than the helper or the rank, without
+/// which the sweep ends.
 void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
 
-/// The life of a process that computes. An exception that gets out is a crash like any other.
+/// Main function of a computing process. An uncaught exception is a crash like any other.
 [[noreturn]] void compute(const Socket& rank, const JobFactory& make_job) noexcept {
   std::unique_ptr<Job> job;
   std::int64_t number = 0;
@@ -118,7 +118,8 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
   }
 }
 
-/// The life of the helper: one process after the other, each with a socket that the rank made for it.
+/// Main function of the helper: forks one process after the other, each with a socket that the rank made for
+/// it.
 [[noreturn]] void start_processes(const Socket& rank, const IsolatedJobs::Describe& describe) noexcept {
   const auto description = rank.receive();
   if (!description) _exit(0);
@@ -154,7 +155,7 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
 
 }  // namespace
 
-/// The rank's side of its helper and of the process that computes now.
+/// The rank's side of its helper and of the computing process.
 class IsolatedJobs::Processes {
  public:
   Processes(Socket helper, pid_t helper_pid) : helper_(std::move(helper)), helper_pid_(helper_pid) {
@@ -165,7 +166,7 @@ class IsolatedJobs::Processes {
     helper_.send(describe_jobs, 0, std::as_bytes(std::span(description)));
   }
 
-  /// Is there a helper still? Without one no job can begin.
+  /// Whether the helper is alive. Without it no job can start.
   bool have_helper() const { return helper_.is_open(); }
 
   /// Starts a job in a live process, or detects that the helper is dead. Returns the job's number.
@@ -183,11 +184,11 @@ class IsolatedJobs::Processes {
   const Socket& process() const { return process_; }
 
   /// Kills the process unless it is dead already. Returns how it ended; nothing if the helper, which reports
-  /// that, has died or is stopped: the rank then gives the helper up.
+  /// this, is dead or stopped: the rank then stops using it.
   std::optional<Ending> bury() {
     process_.close();
     if (process_id_ > 0)
-      kill(process_id_, SIGKILL);  // no other has its number until the helper starts the next
+      kill(process_id_, SIGKILL);  // its pid is not reused until the helper starts the next
     if (helper_.wait(patience))
       if (const auto message = helper_.receive()) return from_bytes<Ending>(message->bytes).first;
     give_up_helper();
@@ -255,7 +256,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
 
   Processes& processes_;
   std::int64_t number_;
-  sweep::Report last_;  ///< how it began, or what the process said last
+  sweep::Report last_;  ///< how it started, or the process's last message
   bool is_over_ = false;
   bool is_asked_ = false;
   bool has_answered_ = false;
@@ -302,7 +303,7 @@ IsolatedJobs::IsolatedJobs(const Describe& describe) {
 }
 
 IsolatedJobs::~IsolatedJobs() {
-  kill(helper_, SIGKILL);  // the process that computes goes with it
+  kill(helper_, SIGKILL);  // ends the computing process, too
   retried([&] { return waitpid(helper_, nullptr, 0); });
 }
 

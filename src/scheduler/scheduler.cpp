@@ -139,20 +139,20 @@ class Master {
     return running_.empty() && (stopping_ || !has_tasks() || schedule_.trust.num_in_service() == 0);
   }
 
-  /// Are tasks left while every rank is on hold, or waits for a rank that is?
+  /// Whether tasks remain while every rank is on hold, or waits for a rank that is.
   bool nobody_can_work() const {
     const bool all_wait = static_cast<int>(waiting_.size()) + num_dismissed_ == ranks_.size() - 1;
     return running_.empty() && all_wait && !is_over();
   }
 
-  /// Time on one clock for all rounds.
+  /// One clock for all rounds.
   static double seconds() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
   struct Beginning {
     std::int64_t task = no_more_tasks;
     std::vector<std::byte> snapshot;
   };
-  /// The next task for this rank, if there is one for it now.
+  /// The next task for this rank, if there is one now.
   std::optional<Beginning> take_task(int rank) {
     if (stopping_ || !schedule_.trust.may_work(rank)) return std::nullopt;
     auto failed = std::find_if(failed_tasks_.begin(), failed_tasks_.end(),
@@ -204,13 +204,13 @@ class Master {
 
   void withdraw_failure(std::int64_t task) {
     if (running_.contains(task) || !withdrawn_.insert(task).second)
-      return;  // it is tried elsewhere, or will be
+      return;  // another rank tries it, now or later
     if (std::find(failed_tasks_.begin(), failed_tasks_.end(), task) == failed_tasks_.end())
       failed_tasks_.push_back(task);
     events_.failure_withdrawn(task);
   }
 
-  /// Takes every message that waits. Returns whether there was one.
+  /// Receives all waiting messages. Returns whether there was any.
   bool serve() {
     bool served = false;
     while (const auto envelope = ranks_.probe(Communicator::any, Communicator::any)) {

@@ -51,7 +51,7 @@ void Socket::limit_halts(std::chrono::milliseconds longest) const {
 bool Socket::write_all(const void* bytes, std::size_t num_bytes) const {
   const char* next = static_cast<const char*>(bytes);
   while (num_bytes > 0) {
-    // MSG_NOSIGNAL: the death of the other process is no reason to die.
+    // MSG_NOSIGNAL: the death of the other process must not kill this one.
     const ssize_t sent = retried([&] { return ::send(descriptor_, next, num_bytes, MSG_NOSIGNAL); });
     if (sent <= 0) return false;
     next += sent;

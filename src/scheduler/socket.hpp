@@ -12,8 +12,8 @@
 
 namespace clog::scheduler {
 
-/// One end of a connection between two processes of one machine. Messages are whole, or the other process has
-/// died.
+/// One end of a connection between two processes of one machine. Messages are complete, or the other process
+/// has died.
 class Socket {
  public:
   Socket() = default;
@@ -28,20 +28,20 @@ class Socket {
     std::vector<std::byte> bytes;
   };
   bool is_open() const { return descriptor_.is_open(); }
-  /// From now on a message that has begun, in either direction, and comes to a halt for so long counts as the
+  /// From now on a message that stops for this long after its beginning, in either direction, counts as the
   /// other process's death: it may have been stopped.
   void limit_halts(std::chrono::milliseconds longest) const;
   void close() { descriptor_ = Descriptor(); }
   /// A message to a process that has died is lost.
   void send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const;
-  /// Waits for a message, without bound unless halts are limited; none: the other process has died.
+  /// Waits for a message, without a timeout unless limited; nothing: the other process has died.
   std::optional<Message> receive() const;
-  /// Is there something to receive, be it the end?
+  /// Whether there is something to receive, possibly the end.
   bool wait(std::chrono::milliseconds longest) const;
 
   /// Hands the other process a socket of its own (SCM_RIGHTS).
   void send_socket(const Socket& socket) const;
-  /// Waits for one; not open: the other process has died.
+  /// Waits for a socket; not open: the other process has died.
   Socket receive_socket() const;
 
  private:

@@ -20,10 +20,10 @@
 namespace clog::single_run {
 namespace {
 
-/// The range around a droplet that a film shows [sigma].
+/// The range around a droplet in a film [sigma].
 constexpr double surroundings = 5 * units::droplet_diameter;
 
-/// Obstacles, periodic images included, in the surroundings of the polygons. Tips of wedges are none.
+/// Obstacles, periodic images included, in the surroundings of the polygons. Excludes tips of wedges.
 std::vector<Obstacle> obstacles_along(const std::vector<store::PolygonFrame>& frames,
                                       const ObstacleArray& array) {
   constexpr double inf = std::numeric_limits<double>::infinity();
@@ -43,7 +43,7 @@ std::vector<Obstacle> obstacles_along(const std::vector<store::PolygonFrame>& fr
   return obstacles;
 }
 
-/// The number of checks of the run in so much time, at least one.
+/// The number of checks of the run in this time, at least one.
 std::int64_t in_checks(double interval, double time_step) {
   constexpr double never = 1e15;
   return std::llround(std::clamp(interval / (DropletRun::steps_per_check * time_step), 1.0, never));

@@ -14,12 +14,12 @@
 namespace clog::store {
 namespace {
 
-/// The attribute that has a line for every other one, and for the table: checksum and name.
+/// The attribute with a line, checksum and name, for every other attribute and for the table.
 constexpr const char* list_name = "checksums";
 
 std::string line_of(const NamedCheckSum& one) { return fmt::format("{:08x} {}\n", one.second, one.first); }
 
-/// A line of the list; nothing if it does not look like one.
+/// A line of the list; nothing if it is malformed.
 std::optional<NamedCheckSum> check_sum_in(const std::string& line) {
   constexpr std::size_t num_digits = 8;
   if (line.size() <= num_digits + 1) return std::nullopt;
@@ -42,14 +42,14 @@ std::optional<std::uint32_t> listed_check_sum(hid_t file, const std::string& nam
   return std::nullopt;
 }
 
-/// An attribute holds less than 64 KiB: the rest of a longer text goes to others, `config.2` and so on.
+/// An attribute holds less than 64 KiB: the rest of a longer text is in others, `config.2` and so on.
 constexpr std::size_t longest_part = 60'000;
 
 std::string name_of_part(const std::string& name, std::size_t part) {
   return part == 0 ? name : fmt::format("{}.{}", name, part + 1);
 }
 
-/// Puts together what name_of_part() has named.
+/// Joins the parts that name_of_part() names.
 void join_parts(Provenance& provenance) {
   for (std::size_t i = 0; i < provenance.size(); ++i)
     for (std::size_t part = 1;; ++part) {
@@ -61,7 +61,7 @@ void join_parts(Provenance& provenance) {
     }
 }
 
-/// The rest of an attribute of which a part is damaged says nothing.
+/// The rest of an attribute with a damaged part is useless.
 void drop_attribute(const std::string& part, Provenance& provenance) {
   const std::string name = part.substr(0, part.find('.'));
   std::erase_if(provenance,

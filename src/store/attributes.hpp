@@ -11,23 +11,23 @@
 
 #include "clog/store/run_table.hpp"
 
-/// Attributes of a file's root. One of them has the checksum of every other one, and of the table. Texts that
+/// Attributes of a file's root. One of them has the checksums of all others, and of the table. Texts that
 /// are too long for one attribute are stored in several.
 namespace clog::store {
 
 using NamedCheckSum = std::pair<std::string, std::uint32_t>;
 
-/// @param table  what the list says of the table. @throws LibraryError
+/// @param table the list's entry about the table. @throws LibraryError
 void write_attributes(hid_t file, const NamedCheckSum& table, const Provenance& attributes);
 
-/// An attribute's text: of the candidates the one that was written, as its checksum says, if it is damaged.
+/// An attribute's text; if it is damaged, the candidate that matches its checksum.
 std::string text_as_written(hid_t file, const std::string& name,
                             std::span<const std::string_view> candidates);
 /// An attribute's text; empty if it is missing or damaged.
 std::string intact_text(hid_t file, const std::string& name);
 
-/// Appends the intact attributes to `whole`, and a sentence for each damaged one, or a table that differs, to
-/// `damage`.
+/// Appends the intact attributes to `whole`, and a sentence to `damage` for each damaged one, or for a table
+/// that differs.
 void compare_attributes(hid_t file, const NamedCheckSum& table, Provenance& whole,
                         std::vector<std::string>& damage);
 

@@ -14,7 +14,7 @@ namespace clog::store {
 /// @throws LibraryError
 void write_circles(hid_t file, std::span<const CircleFile> circles);
 
-/// Appends what is as it was written to `whole`, a sentence for each of the others to `damage`.
+/// Appends intact circles to `whole`, and a sentence for each of the others to `damage`.
 void read_circles(hid_t file, std::vector<CircleFile>& whole, std::vector<std::string>& damage);
 
 }  // namespace clog::store

@@ -19,7 +19,7 @@ OutputPath draft_place(const OutputPath& place, int number) {
   return place.beside(".clogsweep-draft" + std::to_string(number));
 }
 
-/// Does it begin with the mark, as far as its maker came?
+/// Whether it begins with the mark, possibly incomplete.
 bool begins_with(int descriptor, std::string_view mark) {
   std::array<char, 64> bytes;
   const ssize_t size = pread(descriptor, bytes.data(), std::min(mark.size(), bytes.size()), 0);
@@ -40,13 +40,14 @@ void remove_stale_drafts(const OutputPath& place, std::string_view mark) {
 }
 
 Draft::Draft(OutputPath place, std::string_view mark) : place_(std::move(place)), draft_(place_) {
-  const mode_t mode = place_.exists() ? 0600 : 0666;  // nobody reads it before it has its place's access
+  const mode_t mode =
+      place_.exists() ? 0600 : 0666;  // nobody reads it before it has the access rights of its target
   for (int number = 1;; ++number) {
     draft_ = draft_place(place_, number);
     remove_if_stale(draft_, mark);
     file_ = draft_.create(mode);
     if (!file_.is_open()) continue;
-    // Another process may have taken it for stale before it was locked. Where there are no locks, none does.
+    // Another process may have removed it as stale before it was locked. Without locks none does.
     const bool is_taken = flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     if (!is_taken && draft_.holds(file_)) return;
   }

@@ -15,13 +15,13 @@ namespace clog::store {
 
 enum class FileAction { create, write, read };
 
-/// A system call on a file has failed.
+/// A system call on a file failed.
 class FileError : public Error {
  public:
   FileError(FileAction action, const std::string& path, std::error_code reason);
 };
 
-/// Why the last system call failed: to be asked at once.
+/// Why the last system call failed: call this at once.
 inline std::error_code last_error() { return {errno, std::generic_category()}; }
 
 /// @throws FileError if there is a reason
@@ -29,7 +29,7 @@ inline void check(std::error_code reason, FileAction action, const std::string& 
   if (reason) throw FileError(action, path, reason);
 }
 
-/// Saves a file to disk. Returns why that failed, if it did.
+/// Saves a file to disk. Returns why that failed, or nothing.
 std::error_code sync(int descriptor);
 
 /// Locks an open file for this process alone, until it is closed. Returns false if another process holds the
@@ -41,14 +41,14 @@ bool try_lock(int descriptor, const std::string& path);
 /// Size of an open file [bytes]. @throws FileError naming the path, as do the functions below
 std::size_t size_of(int descriptor, const std::string& path);
 
-/// All bytes of a file; fewer than size_of() if somebody shortens it meanwhile.
+/// All bytes of a file; fewer than size_of() if somebody truncates it meanwhile.
 std::vector<std::byte> read_all(int descriptor, const std::string& path);
 
 /// So many bytes from a place on; fewer if the file ends before.
 std::vector<std::byte> read_at(int descriptor, std::uint64_t place, std::size_t size,
                                const std::string& path);
 
-/// Writes all bytes or none: what does not fit is cut off again.
+/// Writes all bytes or none: an incomplete write is undone.
 void write_at(int descriptor, std::span<const std::byte> bytes, std::uint64_t place, const std::string& path);
 
 }  // namespace clog::store

@@ -23,7 +23,7 @@ namespace clog::store {
 
 void prepare_library() {
   static const bool is_prepared = [] {
-    H5dont_atexit();  // before anything else: asking for the version begins it, too
+    H5dont_atexit();  // before anything else: querying the version initialises it, too
     setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
     return true;
   }();
@@ -39,8 +39,8 @@ namespace {
 
 constexpr std::string_view hdf5_mark = "\x89HDF\r\n\x1a\n";
 
-/// Passes on the bytes of a file of the earliest format. It is filled in memory, so that the library never
-/// meets a disk that is full, which it does not always survive.
+/// Returns the bytes of a file of the earliest format. It is built in memory, because the library does not
+/// always survive a full disk.
 void with_file_image(const std::string& path, const std::function<void(hid_t file)>& fill,
                      const std::function<void(std::span<const std::byte> image)>& use) try {
   prepare_library();
@@ -116,7 +116,7 @@ File open_image(std::vector<std::byte>& image, const std::string& path) {
       image.data()};
   H5Pset_file_image_callbacks(access, &no_copies);
   H5Pset_file_image(access, image.data(), image.size());
-  constexpr const char* no_file = "/dev/null/image";  // the library wants a name that nothing has
+  constexpr const char* no_file = "/dev/null/image";  // the library needs an unused name
   File file(H5Fopen(no_file, H5F_ACC_RDONLY, access));
   if (!file.valid())
     throw Error("cannot read " + path +
@@ -194,7 +194,7 @@ void write_attribute(hid_t object, const std::string& name, const std::string& t
 }
 
 std::string read_attribute(hid_t object, const std::string& name) {
-  constexpr std::size_t longest = 65536;  // an object's header holds no more
+  constexpr std::size_t longest = 65536;  // the limit of an object's header
   if (H5Aexists(object, name.c_str()) <= 0) return {};
   const Attribute attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT));
   if (!attribute.valid()) return {};

@@ -45,54 +45,53 @@ using Attribute = Handle<H5Aclose>;
 using PropertyList = Handle<H5Pclose>;
 using Group = Handle<H5Gclose>;
 
-/// Must come before the first use of the library: no clean-up of its own at exit, which crashes after a write
-/// that failed; no error stack on the screen (we print one line of our own); and no file locks (a reader that
-/// has the file open must not make a row fail to be written; they also fail on many cluster file systems).
+/// Call this before the first use of the library: no clean-up of its own at exit, which crashes after a
+/// failed write; no error stack on the screen (we print one line of our own); and no file locks (a reader
+/// with the file open must not make a write fail; they also fail on many cluster file systems).
 void prepare_library();
 
-/// The library keeps what it reads and writes in memory, and may crash where there is none.
-/// @param purpose  as in "read sweep.h5"; @param size  of the file [bytes]
-/// @throws Error if there is not so much
+/// The library keeps what it reads and writes in memory, and may crash without it. @param purpose as in "read
+/// sweep.h5"; @param size of the file [bytes] @throws Error if there is not enough
 void require_memory_of_file(const std::string& purpose, std::size_t size, int copies = 2);
 
-/// The library could not do something in memory.
+/// The library failed in memory.
 class LibraryError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Has a file of the earliest format filled in memory, writes it as a draft with a seal at its end and
-/// publishes it: see Draft::publish(). @param fill  may throw LibraryError. @throws Error naming the path
+/// Builds a file of the earliest format in memory, writes it as a draft with a seal at its end and publishes
+/// it: see Draft::publish(). @param fill may throw LibraryError. @throws Error naming the path
 std::optional<std::string> write_whole(const OutputPath& place, const std::string& stamp,
                                        const std::function<void(hid_t file)>& fill);
 
-/// All that a regular file holds. @throws Error that says what is wrong with the path
+/// The content of a regular file. @throws Error that says what is wrong with the path
 std::vector<std::byte> read_file(const std::string& path);
-/// Opens the bytes of a file for reading, so that what was checked is what is read. They must live as long.
-/// @throws Error naming the path if they are no HDF5 file
+/// Opens the bytes of a file for reading, so that the checked bytes are those that are read. They must live
+/// as long. @throws Error naming the path if they are not an HDF5 file
 File open_image(std::vector<std::byte>& image, const std::string& path);
 
 Space space_of(std::initializer_list<hsize_t> shape);
-/// Chunks of so many rows, with checksums by which other programs notice damage.
+/// Chunks of this many rows, with checksums by which other programs detect damage.
 PropertyList checked_chunks(hsize_t num_rows);
-/// Creates and fills a dataset; attributes can be added to what is returned. @throws LibraryError
-/// @param data  nullptr: nothing yet
+/// Creates and fills a dataset; attributes can be added to the result. @throws LibraryError @param data
+/// nullptr: nothing yet
 Dataset write_dataset(hid_t parent, const std::string& name, hid_t type, hid_t space, const void* data,
                       hid_t properties = H5P_DEFAULT);
-/// How many elements a list of them has; nothing if it has another shape.
+/// Number of elements of a list; nothing for another shape.
 std::optional<hsize_t> length_of(hid_t dataset);
-/// Can a dataset hold so many elements, of so many bytes each?
+/// Whether a dataset can hold this number of elements of this size.
 bool can_hold(hid_t dataset, hsize_t number, std::size_t bytes_each);
 
 /// Fixed-length, zero-padded text; the length is at least 1.
 Type text_type(std::size_t length);
-/// Names of what is in a group.
+/// Names of the objects in a group.
 std::vector<std::string> names_in(hid_t group);
 /// Name of a member of a compound type; empty if there is none.
 std::string member_name(hid_t type, unsigned index);
 /// @throws LibraryError
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
-/// Empty if there is none, or one that is no text of fixed length.
+/// Empty if there is none, or if it is not a text of fixed length.
 std::string read_attribute(hid_t object, const std::string& name);
 
 }  // namespace clog::store

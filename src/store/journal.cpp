@@ -26,7 +26,7 @@ std::uint32_t check_sum_of_columns() {
   return check_sum(list);
 }
 
-/// The beginning of the file: other columns are another version.
+/// The header of the file: other columns mean another version.
 struct FileHeader {
   char kind[16] = "clogsweep jrnl2";
   std::uint64_t columns = check_sum_of_columns();
@@ -54,7 +54,7 @@ std::vector<std::byte> record_of(const sweep::RunRow& row, std::span<const std::
   return record;
 }
 
-/// Is the header complete? If its writer died at once, it is missing or incomplete.
+/// Is the header complete? It is missing or incomplete if its writer died at once.
 bool has_header(std::span<const std::byte> bytes, const std::string& path) {
   const FileHeader header;
   const std::size_t size = std::min(bytes.size(), sizeof header);
@@ -129,7 +129,7 @@ Journal::Journal(OutputPath place, const OutputPath* table) : place_(std::move(p
     remove_stale_drafts(place_, journal_mark);
     const std::vector<std::byte> bytes = read_all(file_, place_.path());
     if (has_header(bytes, place_.path())) contents_ = parse(bytes);
-    if (bytes.empty()) begin();  // a disk that is full is noticed before hours of work
+    if (bytes.empty()) begin();  // a full disk is noticed before hours of work
   } catch (...) {
     remove_if_empty();
     throw;
@@ -270,7 +270,7 @@ void Journal::replace() {
 
 std::error_code Journal::remove() {
   const std::error_code reason = is_there() ? place_.remove() : std::error_code();
-  place_.sync_folder();  // if a power cut restores the file, it holds nothing that is not in the table
+  place_.sync_folder();  // if a power cut restores the file, everything in it is in the table, too
   close();
   return reason;
 }

@@ -14,7 +14,7 @@ namespace clog::store {
 /// checksum, which rows refer to.
 /// @throws LibraryError
 void write_laboratories(hid_t file, const std::set<std::string>& check_sums);
-/// Makes the texts known; a sentence goes to the damage for one that is not as it was written.
+/// Adds the texts; appends a sentence to the damage for each damaged one.
 void read_laboratories(hid_t file, std::vector<std::string>& damage);
 /// Files before format 10 have one description for all rows, in an attribute.
 void adopt_laboratory_of_all(SweepFile& file);

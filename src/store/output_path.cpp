@@ -26,8 +26,8 @@ std::string folder_of(const fs::path& path) {
   return folder.empty() ? "." : folder.string();
 }
 
-/// As the kernel's fs.protected_symlinks: in a world-writable sticky folder only links of this user, or of
-/// the folder's owner, are followed.
+/// Like the kernel's fs.protected_symlinks: in a world-writable sticky folder it follows only links of this
+/// user, or of the folder's owner.
 void refuse_link_of_others(const fs::path& link) {
   struct stat folder {
   }, there{};
@@ -51,7 +51,7 @@ constexpr const char* access_list = "system.posix_acl_access";
 
 /// Empty if the file has none.
 std::vector<char> access_list_of(const Descriptor& file) {
-  std::vector<char> list(65536);  // the kernel has none that is longer
+  std::vector<char> list(65536);  // the kernel's limit
   const ssize_t size = fgetxattr(file, access_list, list.data(), list.size());
   list.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
   return list;
@@ -70,7 +70,7 @@ std::string follow_links(const std::string& path) {
   return target.string();
 }
 
-/// Has the file system no such way to rename?
+/// Whether the file system lacks this way to rename.
 bool is_unsupported(std::error_code reason) {
   return reason == std::errc::invalid_argument || reason == std::errc::function_not_supported;
 }
@@ -168,7 +168,7 @@ std::error_code OutputPath::replace(const std::string& stamp, const OutputPath& 
 void OutputPath::sync_folder() const {
   const Descriptor folder(openat(folder_->descriptor, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   const std::error_code reason = folder.is_open() ? sync(folder) : last_error();
-  // Folders may be writable but not readable; some file systems synchronise none.
+  // Folders may be writable but not readable; some file systems cannot synchronise them.
   const std::errc harmless = folder.is_open() ? std::errc::invalid_argument : std::errc::permission_denied;
   if (reason && reason != harmless) folder_->sync_fault = reason.message();
 }
@@ -185,7 +185,7 @@ void OutputPath::lend_access_to(int descriptor) const {
   mode_t mode = there->st_mode & permissions;
   // A new group gets only the rights of others.
   if (!has_group) mode &= ~static_cast<mode_t>(S_IRWXG) | ((mode & S_IRWXO) << 3);
-  fremovexattr(descriptor, access_list);  // the folder may have given it one
+  fremovexattr(descriptor, access_list);  // the folder may have set one
   fchmod(descriptor, mode);
   if (has_group && !list.empty()) fsetxattr(descriptor, access_list, list.data(), list.size(), 0);
 }

@@ -11,22 +11,21 @@
 
 namespace clog::store {
 
-/// How a row lies in a file: one column after the other without gaps. Older files have fewer columns, in
+/// Arrangement of a row in a file: columns without gaps. Older files have fewer columns, in
 /// another order.
 class RowLayout {
  public:
   /// The layout that this version writes.
   static RowLayout present();
-  /// The layout of a stored table; nothing unless each member is one of our columns, and there are at least
-  /// `least` of them.
+  /// The layout of a stored table; nothing unless each member is one of our columns and at least `least` of
+  /// them exist.
   static std::optional<RowLayout> of(hid_t stored, std::size_t least);
 
   hid_t type() const { return type_; }
   std::size_t size() const { return size_; }
   /// Writes name and meaning of each column to the table's attributes.
   void describe(hid_t table) const;
-  /// Columns that the file does not have are unknown.
-  /// @param packed  size() bytes
+  /// Missing columns are unknown. @param packed size() bytes
   sweep::UnpackedRow unpack(const std::byte* packed) const;
 
  private:

@@ -35,18 +35,18 @@ constexpr const char* runs_name = "runs";
 constexpr const char* sums_name = "row_checksums";
 constexpr const char* sweep_kind = "clogsweep sweep";
 constexpr hsize_t rows_per_chunk = 64;
-constexpr std::size_t rows_per_block = 1024;  // that are copied at once
+constexpr std::size_t rows_per_block = 1024;  // rows that are copied at once
 
 using CheckSums = std::vector<std::uint32_t>;  // of the rows
 
-/// Calls with the number of the first row of each block and how many rows it has.
+/// Calls with the first row and the number of rows of each block.
 template <class Visit>
 void for_each_block(std::size_t num_rows, Visit visit) {
   for (std::size_t first = 0; first < num_rows; first += rows_per_block)
     visit(first, std::min(rows_per_block, num_rows - first));
 }
 
-/// Rows of the table that are to be read or written at once.
+/// Rows of the table that are read or written together.
 Space select_rows(hid_t table, std::size_t first, std::size_t number) {
   Space space(H5Dget_space(table));
   const hsize_t start = first, count = number;
@@ -54,7 +54,7 @@ Space select_rows(hid_t table, std::size_t first, std::size_t number) {
   return space;
 }
 
-/// A list that may be longer one day, for readers who append.
+/// A list of unlimited length, for programs that append.
 Space growing_space(std::size_t num_rows) {
   const hsize_t size = num_rows, unlimited = H5S_UNLIMITED;
   return Space(H5Screate_simple(1, &size, &unlimited));
@@ -85,10 +85,10 @@ CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& labor
   return sums;
 }
 
-/// Tells a damaged table, which lacks a column that was written, from one of an older program.
+/// Distinguishes a damaged table, which lacks a written column, from one of an older program.
 constexpr const char* num_columns_name = "num_columns";
 
-/// What the list of checksums says of the rows as a whole.
+/// What the list of checksums says about the rows as a whole.
 NamedCheckSum joint_check_sum(const CheckSums& sums) {
   return {fmt::format("{} rows", sums.size()), check_sum(std::as_bytes(std::span(sums)))};
 }
@@ -140,7 +140,7 @@ void require_readable_version(hid_t file, const std::string& path) {
         path, version, readable_versions.front(), format_version));
 }
 
-/// @throws Error if an open file is not one of our sweeps, or of a version that is not read
+/// @throws Error if an open file is not one of our sweeps, or has a version that is not read
 void require_sweep(hid_t file, const std::string& path) {
   const std::array<std::string_view, 1> kinds = {sweep_kind};
   const std::string kind = text_as_written(file, "kind", kinds);
@@ -154,7 +154,7 @@ void require_sweep(hid_t file, const std::string& path) {
   require_readable_version(file, path);
 }
 
-/// Why nothing of a table can be read.
+/// Why a table is unreadable.
 class Damage : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -164,7 +164,7 @@ std::string counted_rows(std::size_t number) {
   return sweep::counted(static_cast<std::int64_t>(number), "row");
 }
 
-/// How long a dataset is; a size that cannot be is not believed. @throws Damage
+/// Length of a dataset; rejects impossible sizes. @throws Damage
 std::size_t num_rows_of(hid_t dataset, std::size_t bytes_each) {
   const std::optional<hsize_t> number = length_of(dataset);
   if (!number) throw Damage("its table has another shape than it was given");
@@ -172,7 +172,7 @@ std::size_t num_rows_of(hid_t dataset, std::size_t bytes_each) {
   return *number;
 }
 
-/// Checksums of ours say which rows are damaged, so the library is to give all it has.
+/// Our checksums identify damaged rows, so the library should return all data.
 PropertyList without_library_check() {
   PropertyList properties(H5Pcreate(H5P_DATASET_XFER));
   H5Pset_edc_check(properties, H5Z_DISABLE_EDC);
@@ -231,7 +231,7 @@ CheckSums read_rows(hid_t file, Examination& found) {
   return sums;
 }
 
-/// Does the library refuse a dataset when it compares its own checksums, too?
+/// Whether the library refuses a dataset when it compares its own checksums.
 bool is_refused(hid_t file, const char* name) {
   const Dataset dataset(H5Dopen2(file, name, H5P_DEFAULT));
   const Type type(H5Dget_type(dataset));
@@ -268,7 +268,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
                           damage.what()));
 }
 
-/// Returns the seal of the file, which can be read in this process then.
+/// Returns the seal of the file, which then can be read in this process.
 Seal try_unless_whole(std::vector<std::byte>& image, const std::string& path) {
   const Seal seal = look_at_seal(image);
   if (seal != Seal::whole) try_in_child(image, path, [&] { examine(image, seal, path); });
@@ -288,7 +288,7 @@ void try_before_mpi(const std::string& path) try {
   std::vector<std::byte> image = read_file(path);
   try_unless_whole(image, path);
 } catch (const std::exception&) {
-  // the reading itself throws it again
+  // the actual read throws it again
 }
 
 SweepFile read_sweep(const std::string& path) {

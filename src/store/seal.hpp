@@ -7,19 +7,19 @@
 
 namespace clog::store {
 
-/// Is a file, every bit of it, as it was written?
+/// Whether a file is as it was written, bit for bit.
 enum class Seal {
   whole,    ///< yes
   broken,   ///< no
   missing,  ///< not known: a copy made by another program, or one that lost its end
 };
 
-/// A line that goes to the end of a file, behind what HDF5 reads: the size and the checksum of all before it.
-/// Other programs pass over it; those that write to the file cut it off.
+/// A line at the end of a file, after the part that HDF5 reads: the size and the checksum of all before it.
+/// Other programs ignore it; those that write to the file remove it.
 std::string seal_of(std::span<const std::byte> content);
 
 inline constexpr std::size_t seal_size = 64;
-/// Does the last line of a file begin as a seal does?
+/// Whether the last line of a file begins like a seal.
 bool has_seal_mark(std::string_view end);
 
 /// Seal of a file's whole content.

@@ -19,7 +19,7 @@
 namespace clog::store {
 namespace {
 
-/// Far more than reading takes [s of CPU time]; a loop never ends.
+/// Far more than a read takes [s of CPU time]; an endless loop exceeds it.
 rlim_t time_limit(std::size_t num_bytes) {
   constexpr std::size_t least = 10, bytes_per_second = 50'000'000;
   return least + num_bytes / bytes_per_second;
@@ -33,16 +33,16 @@ rlim_t time_limit(std::size_t num_bytes) {
   setrlimit(RLIMIT_CPU, &time);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL, SIGXCPU}) std::signal(signal, SIG_DFL);
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  dup2(nowhere, STDERR_FILENO);  // for what a library prints when it dies
+  dup2(nowhere, STDERR_FILENO);  // for the last message of a library that crashes
   try {
     read();
   } catch (const std::exception&) {
-    // the reading itself throws it again
+    // the actual read throws it again
   }
   _exit(0);
 }
 
-/// Returns how the child process died; empty if it did not.
+/// Returns how the child process died; empty if it survived.
 std::string death_of_child(std::size_t num_bytes, const std::string& path,
                            const std::function<void()>& read) {
   const pid_t process = fork();

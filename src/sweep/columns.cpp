@@ -25,7 +25,7 @@ std::size_t longest(const std::vector<std::string>& words) {
   return size;
 }
 
-// How a member of RunRow is seen from outside, by its type.
+// Conversion of a member of RunRow to and from a value, by its type.
 
 Value outside(double value) { return is_known(value) ? Value(value) : Value(); }
 Value outside(std::int64_t value) { return value; }
@@ -115,7 +115,7 @@ Value value_of(const Parameter& parameter, const RunRow& row) {
   return row.unknown_parameters.contains(&parameter) ? Value() : parameter.get(row.parameters);
 }
 
-/// An empty value is unknown: of a parameter that is younger than the row's file.
+/// An empty value is unknown: the file is older than the parameter.
 void set_parameter(const Parameter& parameter, RunRow& row, const Value& value) {
   if (!parameter.applies_to(row.parameters)) return;
   row.unknown_parameters.erase(&parameter);
@@ -125,7 +125,7 @@ void set_parameter(const Parameter& parameter, RunRow& row, const Value& value) 
     parameter.set(row.parameters, value);
 }
 
-/// Digits of a check sum stand for what is in a file or text.
+/// Digits of a checksum, which represents a file or text.
 constexpr std::size_t check_sum_size = 16;
 
 Column parameter_column(const Parameter& parameter) {

@@ -8,7 +8,7 @@
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
 
-/// Settings as text: of a config file, and as they travel to other ranks.
+/// Settings as text, in a config file and in messages to other ranks.
 namespace clog::sweep {
 namespace {
 
@@ -19,7 +19,7 @@ constexpr const char* usual_text = "*";  // of a key for which a point has no te
 // Behind the config, for each file its name and the number of its circles, then a circle a line.
 constexpr const char* file_mark = "#circles ";
 
-/// The text without blanks, which separate texts.
+/// The text with blanks escaped, because they separate texts.
 std::string word_of(const std::string& text) {
   if (text.empty()) return usual_text;
   if (text == usual_text) return "\\x2a";

@@ -52,7 +52,7 @@ std::string replaced(std::string text, std::string_view part, std::string_view o
   return text;
 }
 
-/// One text for all ways to type a symbol: as TeX writes it, in Latin letters, without the dash below.
+/// Common form of all spellings of a symbol: as in TeX, in Latin letters, without the underscore.
 std::string plain_symbol(std::string text) {
   constexpr std::pair<const char*, const char*> words[] = {
       {"\\mathrm", ""}, {"\\", ""},     {"{", ""},      {"}", ""},      {"_", ""},
@@ -72,7 +72,7 @@ std::string key_of_symbol(std::string_view symbol) {
   };
   for (const Parameter& parameter : parameter_schema())
     if (!plain.empty() && plain_symbol(parameter.symbol) == plain) return parameter.key;
-  // One letter is too little to guess by.
+  // One letter is too little for a suggestion.
   for (const Parameter& parameter : parameter_schema())
     if (plain.size() > 1 && lower(plain_symbol(parameter.symbol)) == lower(plain)) return parameter.key;
   return "";
@@ -114,7 +114,7 @@ std::vector<std::string> meant_names(std::string_view word, const std::vector<st
   std::vector<std::string> all = with_part(word, names);
   const std::string near = did_you_mean(word, names);
   std::erase(all, near);
-  // A word that lacks its last letters, such as a plural's, comes before words that only contain it.
+  // A word without its last letters, such as a plural's, precedes words that only contain it.
   if (!near.empty() && (all.empty() || near.starts_with(word))) all.insert(all.begin(), near);
   if (all.size() > most_named) all.resize(most_named);
   return all;

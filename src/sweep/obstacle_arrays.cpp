@@ -22,19 +22,19 @@
 namespace clog::sweep {
 namespace {
 
-/// Smaller ones are built in less time than it takes to see whether another process has them.
+/// Building a smaller array is faster than checking whether another process has it.
 constexpr double fewest_shared = 1e5;
 constexpr std::chrono::milliseconds pause{5};
 constexpr std::chrono::milliseconds pause_between_looks{500};
 
-/// At least as many obstacles as there will be, up to the part of the area that discs leave empty.
+/// Upper bound of the number of obstacles, from the largest part of the area that discs cover.
 double num_places(const ObstacleParameters& parameters) {
   const double per_side = parameters.box / (parameters.smallest_diameter() + parameters.gap);
   return parameters.boxes * per_side * per_side;
 }
 
-/// Names the array to processes of this executable. To others, which may make or lay out arrays otherwise, it
-/// means nothing.
+/// Names the array to processes of this executable. Other programs, which may build or arrange arrays
+/// differently, do not find it.
 std::optional<std::string> shared_name(const RunParameters& run) {
   struct stat executable;
   if (stat("/proc/self/exe", &executable) != 0) return std::nullopt;
@@ -103,12 +103,12 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
     const NameLock lock(*name);
     if (lock.state() == NameLock::State::impossible) return build(run);
     if (lock.state() == NameLock::State::held) {
-      // Nobody makes one meanwhile. Those who wait do not search: that would take the builder's time.
+      // Nobody makes one meanwhile. Waiting processes do not search, which would take the builder's time.
       if (auto memory = SharedMemory::find(*name)) {
         is_waiting_worthwhile_ = true;
         return array_over(std::move(memory));
       }
-      // The one waited for has been killed, or what it made cannot be seen: it may run in another container.
+      // The builder has been killed, or its array is not visible: it may run in another container.
       if (has_waited) is_waiting_worthwhile_ = false;
       ObstacleArray array = build(run);
       auto memory = publish(*name, array);
@@ -122,7 +122,7 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
     std::this_thread::sleep_for(pause);
     has_waited = true;
   } while (std::chrono::steady_clock::now() < end);
-  // Someone who takes longer is stuck; one's own array is then the quickest.
+  // A builder that takes longer is stuck; building here is then fastest.
   is_waiting_worthwhile_ = false;
   return build(run);
 }
@@ -130,12 +130,11 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
 std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const RunParameters& run) {
   const Scene& scene = scene_of(run);
   if (scene.walls_from == WallsFrom::droplet) return std::make_shared<ObstacleArray>(scene.walls(run));
-  // In a device with side walls the droplet's own reach limits where it may start, so it shifts the walls,
-  // too.
+  // In a device with side walls the droplet's reach limits where it may start, and so shifts the walls, too.
   std::string key = array_key(run);
   if (scene.walls_from == WallsFrom::circles) key += shortest(model_of(run).reach(run));
   if (key != key_) {
-    array_.reset();  // the memory may be needed for the next
+    array_.reset();  // frees memory for the next array
     key_.clear();
     array_ = std::make_shared<ObstacleArray>(find_or_build(run));
     key_ = key;

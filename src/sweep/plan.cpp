@@ -23,9 +23,8 @@ namespace {
 
 constexpr std::int64_t largest_sweep = 100'000'000;
 
-/// What a check of one branch of the settings returns. Where a list like 0,3 may have been meant as 0.3 and
-/// one of its values is refused, the message asks.
-/// @param where  what the message is to begin with
+/// What a check of one branch of the settings returns. If one value of a list like 0,3 is refused, the
+/// message asks whether 0.3 was meant. @param where beginning of the message
 template <class Check>
 auto checked(const Settings& branch, const std::string& where, const Check& check) try {
   return check();
@@ -49,7 +48,8 @@ std::vector<std::uint32_t> seeds_of(const Settings& settings) {
   return seeds;
 }
 
-/// A shard's seeds: every n-th, offset in each parameter set, so that all shards have equal work.
+/// A shard's seeds: every n-th, with an offset that differs between parameter sets, so that all shards have
+/// equal work.
 std::vector<std::uint32_t> part_of(const std::vector<std::uint32_t>& seeds, std::size_t share,
                                    const Shard& shard) {
   const auto of = static_cast<std::size_t>(shard.of);
@@ -59,7 +59,7 @@ std::vector<std::uint32_t> part_of(const std::vector<std::uint32_t>& seeds, std:
   return part;
 }
 
-/// Whether each parameter by itself is possible; resolve() says which is not.
+/// Whether each parameter alone is possible; resolve() names the impossible one.
 bool is_each_possible(const RunParameters& run) try {
   check_each(run);
   return true;
@@ -117,7 +117,7 @@ class Plan::Builder {
         own[axis] = values;
   }
 
-  /// All at once; a single one resolve() refuses.
+  /// All at once; resolve() refuses a single one.
   void refuse_misfitting_angles(std::size_t product, std::int64_t num_places,
                                 const std::string& where) const {
     std::vector<std::string> angles;
@@ -140,7 +140,7 @@ class Plan::Builder {
                       where, joined(angles, ","), largest_angle_error, box));
   }
 
-  /// The number of groups: without the seeds, which count for the limit.
+  /// The number of groups, without the seeds, which only count for the limit.
   std::int64_t size_of_product(const Settings& branch) {
     auto num_places = std::int64_t{1};
     const std::int64_t num_seeds = std::ssize(*last_seeds_);
@@ -153,8 +153,8 @@ class Plan::Builder {
     return num_places;
   }
 
-  /// Different texts may mean the same parameter set: tilts that lead to the same lattice, `auto` and the
-  /// value behind it. With other seeds that is one group.
+  /// Different texts may mean the same parameter set: tilts of the same lattice, or `auto` and its value.
+  /// With other seeds that is one group.
   void add_group(RunRow run, std::size_t product, std::int64_t place) {
     run.parameters.seed = 0;
     const auto [known, is_new] = known_.emplace(identity(run), plan_.num_groups());
@@ -186,7 +186,7 @@ class Plan::Builder {
     }
   }
 
-  /// One part of what there is.
+  /// One part of a product.
   void keep(const Shard& shard) {
     std::vector<Group> groups;
     for (std::size_t i = 0; i < plan_.groups_.size(); ++i) {
@@ -259,7 +259,7 @@ std::int64_t Plan::task_of(std::int64_t group, std::int64_t place) const {
   const auto next = std::ranges::upper_bound(layers_, place, {}, &Layer::first_seed);
   const Layer& layer = *std::prev(next);
   const auto found = std::ranges::lower_bound(layer.groups, group);
-  assert(found != layer.groups.end() && *found == group);  // else the group has no such seed
+  assert(found != layer.groups.end() && *found == group);  // otherwise the group has no such seed
   return layer.first_task + (place - layer.first_seed) * std::ssize(layer.groups) +
          std::distance(layer.groups.begin(), found);
 }

@@ -34,10 +34,10 @@ constexpr double most_shape =
 /// No run takes longer than a hundred years [s].
 constexpr double longest_patience = 3.2e9;
 
-/// No droplet lies on more obstacles, gaps or arcs.
+/// Largest number of obstacles, gaps or arcs of a droplet.
 constexpr std::int64_t most_contacts = 1'000'000;
 
-/// The same as a part of the weight: x^2/16 of an edge as long as the droplet, on a needle.
+/// The same as a fraction of the weight: x^2/16 of an edge as long as the droplet, on a needle.
 constexpr double most_mesh_hold = 1e6;
 
 bool is_number_below(double value, double bound) { return std::isfinite(value) && std::abs(value) <= bound; }
@@ -49,7 +49,7 @@ std::string named(std::string_view column, std::string_view word) {
   return fmt::format("{}='{}'", column, word);
 }
 
-/// Rules are those of this program's model.
+/// The rules are those of this program's model.
 std::string parameter_fault(const RunRow& row) {
   const RunParameters& run = row.parameters;
   for (const auto& [name, value] : {std::pair{"time_step", run.time_step.value_or(RunRow::not_known)},
@@ -63,7 +63,7 @@ std::string parameter_fault(const RunRow& row) {
   try {
     const Scene& scene = scene_of(run);
     if (scene.walls_from == WallsFrom::circles) {
-      check_each(run);  // the row has the check sum only
+      check_each(run);  // the row has only the checksum
       return "";
     }
     const double density = scene.density(resolve(run).obstacles);
@@ -117,7 +117,7 @@ std::string motion_fault(const RunRow& row) {
     return named("transient", row.transient) + " is not within the run";
   if (is_known(row.travel_time) && !(row.travel_time > 0 && row.travel_time <= slightly_more))
     return named("travel_time", row.travel_time) + " is not within the run";
-  // An older file does not say over which time; it was one step at least.
+  // An older file lacks the time over which the speed was taken; it was at least one step.
   const double travel_time = is_known(row.travel_time) ? row.travel_time : time_step_of(row);
   if (is_known(row.mean_speed) && !is_number_below(row.mean_speed * travel_time, 2 * farthest))
     return named("mean_speed", row.mean_speed) + " is faster than a droplet can be";
@@ -127,7 +127,7 @@ std::string motion_fault(const RunRow& row) {
   return "";
 }
 
-/// A dwell begins on the way and in the time of the run.
+/// A dwell begins within the path and the time of the run.
 std::string dwell_begin_fault(const RunRow& row, const std::string& column, double distance, double begin) {
   if (distance < 0 || distance > farthest_way(row))
     return named(column + "_at", distance) + " is not on the droplet's way";
@@ -136,7 +136,7 @@ std::string dwell_begin_fault(const RunRow& row, const std::string& column, doub
   return "";
 }
 
-/// @param next  the dwell that is longer; the run's end if there is none
+/// @param next the longer dwell; the run's end if there is none
 std::string dwell_fault(const RunRow& row, const std::string& column, const Dwell& dwell, const Dwell& next) {
   if (std::string fault = dwell_begin_fault(row, column, dwell.distance, dwell.begin); !fault.empty())
     return fault;
@@ -153,7 +153,7 @@ std::string dwells_fault(const RunRow& row) {
   const bool are_known = is_known(dwells.known_from);
   if (is_known(dwells.last_distance) != are_known || is_known(dwells.last_begin) != are_known)
     return "dwells_known_from, last_dwell_at, last_dwell_from: only some are known";
-  // A run too short for any dwell that is kept is over before this time.
+  // A run too short for any recorded dwell ends before this time.
   const RunParameters& run = row.parameters;
   const double first = DwellRecord::shortest * run.dwell_length / run.drag.terminal_speed;
   if (are_known &&
@@ -166,7 +166,7 @@ std::string dwells_fault(const RunRow& row) {
   for (std::size_t i = 0; i < Dwells::most; ++i) {
     const Dwell& dwell = dwells.longest[i];
     if (!is_known(dwell.length) && !is_known(dwell.distance) && !is_known(dwell.begin)) {
-      next.length = -infinity;  // none before it was longer
+      next.length = -infinity;  // no earlier one was longer
       continue;
     }
     if (std::string fault = dwell_fault(row, dwell_column(i), dwell, next); !fault.empty()) return fault;
@@ -175,7 +175,7 @@ std::string dwells_fault(const RunRow& row) {
   return "";
 }
 
-/// Checks the shape of a droplet that has moved: before that it is not known.
+/// Checks the shape of a droplet that has moved; before, it is unknown.
 std::string shape_fault(const RunRow& row) {
   if (row.steps == 0) return "";
   if (!(row.kinetic_energy_ratio >= 0 && row.kinetic_energy_ratio < diverged_energy_ratio))
@@ -254,7 +254,7 @@ std::string passage_fault(const RunRow& row) {
   return "";
 }
 
-/// Only a thinner neck than that makes a droplet break up, and each such neck does.
+/// Only a thinner neck breaks a droplet, and every such neck does.
 std::string neck_fault(const RunRow& row) {
   const double width = row.neck.width, least = row.parameters.dp.break_up_neck;
   if (is_known(width) != is_known(row.neck.distance))
@@ -296,7 +296,7 @@ std::string result_fault(const RunRow& row) {
 }  // namespace
 
 double farthest_way(const RunRow& row) {
-  // Springs along the interface have no energy; a tenth more is for the little work that they do.
+  // Springs along the interface have no energy; an additional tenth covers their little work.
   constexpr double margin = 1.1;
   const double weight = units::droplet_mass * units::gravity;
   const RunParameters& run = row.parameters;

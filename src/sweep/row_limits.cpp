@@ -52,7 +52,7 @@ std::string untested_vertices(const DpParameters& dp) {
   return fmt::format("vertices={} (tested from {} to {})", *dp.vertices, fewest_vertices, most_vertices);
 }
 
-/// @param hold  of walls, by friction or a yield traction
+/// @param hold friction or yield traction of walls
 std::string untested_hold(const char* key, double hold, double most, const char* unit) {
   if (hold <= most) return "";
   return fmt::format("{}={} (tested up to {}{})", key, shortest(hold), shortest(most), unit);
@@ -64,8 +64,8 @@ std::string untested_angle(const DpParameters& dp) {
                      shortest(smallest_receding_angle));
 }
 
-/// Needles slip through the interface: then the droplet encloses them, at its release or on its way. Seen
-/// with obstacles as thick as an edge is long and thinner ones, the more often the more of them there are.
+/// Needles slip through the interface, and the droplet encloses them, at its release or later. Observed with
+/// obstacles up to as thick as an edge is long; more of them make it more frequent.
 std::string untested_diameter(const RunParameters& run) {
   constexpr double thinnest = 2;                                  // over the length of an edge, with a margin
   if (scene_of(run).walls_from == WallsFrom::droplet) return "";  // there are no obstacles
@@ -182,8 +182,8 @@ std::string small_part(std::span<const Obstacle> circles, const ObstacleParamete
       obstacles.own->source(), left.x, right.x, lowest.y, highest.y, along, obstacles.box);
 }
 
-/// A line for each file of circles without diameters, unless obstacle-diameter was chosen: they have one
-/// nonetheless, which is easily overlooked.
+/// One line for each file of circles without diameters, unless obstacle-diameter was chosen: the default
+/// diameter is easily overlooked.
 std::vector<std::string> missing_diameters(const Plan& plan) {
   std::map<std::string, std::string> lines;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
@@ -212,7 +212,7 @@ std::vector<std::string> limits_of_circles(const Plan& plan) {
     if (scene_of(run).walls_from != WallsFrom::circles) continue;
     if (!seen.emplace(obstacles.own->check_sum(), obstacles.box, obstacles.period().along()).second) continue;
     const std::vector<Obstacle> circles = obstacles.own->with_radii(obstacles.diameter / 2);
-    // A bare band before an exit, or a bare lane between walls, is meant to be there.
+    // A bare band before an exit, or a bare lane between walls, is intended.
     if (obstacles.exit == 0) all.push_back(bare_band(circles, obstacles));
     if (obstacles.side_walls == SideWalls::off) all.push_back(bare_lanes(circles, obstacles));
     if (obstacles.exit > 0 || obstacles.side_walls == SideWalls::on)

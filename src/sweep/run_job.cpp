@@ -18,16 +18,15 @@ constexpr int checks_per_look_at_the_clock = 8;
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Fills in the results of a run that goes on.
+/// Fills in the results of an incomplete run.
 void record_interrupted(const DropletRun& run, RunRow& row) {
   RunResult result = run.result();
   result.status = RunStatus::interrupted;
   record(result, row);
 }
 
-/// From the snapshot, if there is one and a run of these parameters can have come there. Otherwise (it may be
-/// of another version) the run restarts from its beginning, and is the same.
-/// @param row  of the run, without results
+/// From the snapshot, if a run with these parameters can have written it. Otherwise (it may be of another
+/// version) the run restarts, with the same result. @param row of the run, without results
 DropletRun start(const RunParameters& run, RunRow row, std::span<const std::byte> snapshot,
                  ObstacleArrays& arrays) {
   const std::shared_ptr<const ObstacleArray> obstacles = arrays.get(run);
@@ -66,7 +65,7 @@ bool RunJob::advance() {
     record(failure, row_);
     run_.reset();
   }
-  // Clocks of simulated time, and of some virtual machines, go back.
+  // Clocks of simulated time, and of some virtual machines, may step back.
   wall_seconds_ += std::max(0.0, std::chrono::duration<double>(Clock::now() - begin).count());
   processor_seconds_ += std::max(0.0, processor_seconds() - processor_begin);
   return over_;

@@ -17,13 +17,13 @@ bool is_of_channel(const Key& key) {
   return key.parameter && key.parameter->scope->word == std::string_view("channel");
 }
 
-/// May the texts of other keys follow from this one's? See Settings::resolved().
+/// Whether the texts of other keys may follow from this one's. See Settings::resolved().
 bool leads(const Key& key) {
   return key.name == "preset" || key.name == circles_key || key.name == layout_key || key.name == "release" ||
          is_of_channel(key);
 }
 
-/// The scene of a layout; nullptr if the text is none, such as a list.
+/// The scene of a layout; nullptr for other texts, such as a list.
 const Scene* scene_in(const std::string& text) {
   const std::optional<ObstacleLayout> layout = meant_by<ObstacleLayout>(text);
   return layout ? &scene_of(*layout) : nullptr;
@@ -40,7 +40,7 @@ std::string unit_in_words(const Key& key) {
   return unit.empty() ? "a pure number" : "in " + unit;
 }
 
-/// The list of a key, each value of which some run can have. @throws Error that names the key
+/// The list of a key; some run can have each value. @throws Error that names the key
 std::vector<std::string> values_of(const Key& key, const std::string& text) {
   constexpr std::size_t longest_text = 3000;  // in a config
   try {
@@ -113,9 +113,8 @@ const Settings::Entries& Settings::entries() const {
   return all_;
 }
 
-/// What was given, what follows from it for other keys, and the defaults. The keys of a preset, the layout
-/// and the seeds follow: user-supplied circles and keys of a channel set the layout, and where nothing is
-/// random there is one seed.
+/// The given texts, those that follow from them for other keys, and the defaults. User-supplied circles and
+/// keys of a channel set the layout; the preset sets its keys; without randomness there is one seed.
 Settings::Entries Settings::resolved() const {
   static const Entries defaults = [] {
     Entries entries;
@@ -198,8 +197,8 @@ std::map<std::string, std::vector<std::string>> Settings::all_values() const {
   return all;
 }
 
-/// Keys that nobody has given, and that have another text in a branch because of its words: written down as
-/// given they would contradict it.
+/// Keys that nobody has given and whose texts differ between branches: writing them down as given would
+/// contradict it.
 std::set<std::string> Settings::keys_that_follow() const {
   std::set<std::string> following;
   visit_branches([&](const Settings& branch, std::int64_t) {

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr int seals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
 
-/// An array without the seals is not complete: the process that builds it has not finished.
+/// An array without seals is incomplete: the process that builds it has not finished.
 bool is_complete_and_own(int descriptor) {
   struct stat status;
   const int found = fcntl(descriptor, F_GET_SEALS);
@@ -44,8 +44,8 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
   return true;
 }
 
-/// Visits files that processes of this user have open, as /proc names them, until told that it is enough.
-/// @param link  where the entry of such a file leads
+/// Visits files that processes of this user have open, by /proc, until told to stop. @param link where the
+/// entry of such a file leads
 void visit_open_files(const fs::path& link, const std::function<bool(const fs::path&)>& visit) {
   // An unreadable process belongs to another user, or has just ended.
   std::error_code error;
@@ -63,7 +63,7 @@ void visit_open_files(const fs::path& link, const std::function<bool(const fs::p
   }
 }
 
-/// The inode of the socket bound to an abstract address; empty if there is none, or it cannot be known.
+/// The inode of the socket bound to an abstract address; empty if there is none, or it is unknown.
 std::string inode_of(const std::string& address) {
   std::ifstream sockets("/proc/net/unix");
   for (std::string line; std::getline(sockets, line);) {
@@ -114,7 +114,7 @@ NameLock::NameLock(const std::string& name)
     : address_(fmt::format("clogsweep-{}-{}", geteuid(), std::hash<std::string>{}(name))),
       socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   if (!socket_.is_open()) return;
-  // An abstract address, known to this machine only as long as the socket exists. No one ever connects to it.
+  // An abstract address, which exists on this machine as long as the socket. Nobody ever connects to it.
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   std::memcpy(address.sun_path + 1, address_.data(), address_.size());

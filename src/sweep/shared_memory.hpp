@@ -10,16 +10,16 @@
 
 namespace clog::sweep {
 
-/// Memory that processes of one user on one machine read together, found by its name. It is a memfd, sealed
-/// when complete and seen by others in /proc: no file of any kind is made, and the memory goes with the last
-/// process that holds it, however that ends.
+/// Memory that processes of one user on one machine share, found by its name. It is a memfd, sealed when
+/// complete and visible in /proc: no file is made, and the memory is freed with the last process that holds
+/// it, however that ends.
 class SharedMemory {
  public:
-  /// Memory that a process, perhaps this one, holds under the name; nullptr if there is none, or none can be
-  /// had.
+  /// Memory that a process, perhaps this one, holds under the name; nullptr if there is none, or it is not
+  /// accessible.
   static std::shared_ptr<const SharedMemory> find(const std::string& name);
-  /// Makes it of pieces, one behind the other; nullptr if the system has no such memory, or no more.
-  /// @param name  up to 200 characters
+  /// Makes it of consecutive pieces; nullptr if the system has no such memory, or no more. @param name up to
+  /// 200 characters
   static std::shared_ptr<const SharedMemory> publish(const std::string& name,
                                                      std::span<const std::span<const std::byte>> pieces);
 
@@ -30,7 +30,7 @@ class SharedMemory {
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:
-  Descriptor file_;  // kept open: it is what others find
+  Descriptor file_;  // stays open, because others find it
   std::span<const std::byte> bytes_;
 
   explicit SharedMemory(Descriptor file) : file_(std::move(file)) {}
@@ -42,12 +42,12 @@ class NameLock {
  public:
   enum class State { held, held_by_another, impossible };
 
-  /// Takes the lock, if nobody has it and the system can make one.
+  /// Takes the lock if it is free and the system supports it.
   explicit NameLock(const std::string& name);
 
   State state() const { return state_; }
-  /// Anybody can take an address, so that others wait for nothing. Takes some time: all processes of this
-  /// user are looked at.
+  /// Any process can take an address; others then wait in vain. Slow, because it inspects all processes of
+  /// this user.
   bool is_taken_by_another_user() const;
 
  private:

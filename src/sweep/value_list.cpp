@@ -66,7 +66,7 @@ std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
     double value =
         logarithmic ? first * portable::pow(last / first, fraction) : std::lerp(first, last, fraction);
     if (i == count - 1 && count > 1) value = last;
-    // Twelve digits are what a person would write for such a value, and spare the file 0.30000000000000004.
+    // Twelve digits are enough for what a person would write, and avoid 0.30000000000000004 in the file.
     if (i > 0 && i < count - 1) {
       char digits[32];
       const char* const end =
@@ -117,7 +117,7 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
   return {shortest(to_number(item))};
 }
 
-/// @param rest  what follows the number that the text begins with
+/// @param rest what follows the number at the beginning of the text
 [[noreturn]] void refuse_number(std::string_view text, std::string_view rest, const std::string& why) {
   constexpr std::string_view no_unit = ".+-*/0123456789";
   rest = trimmed(rest);

@@ -14,9 +14,9 @@
 
 namespace clog::cli {
 
-/// Command line of one program: its own options, and, if it runs droplets, every key of the config file as an
-/// option, `--key=value` or `key=value`. Settings come from the defaults, then the --config file, then the
-/// command line.
+/// Command line of one program: its own options, and for programs that run droplets every key of the config
+/// file as an option, `--key=value` or `key=value`. Settings come from the defaults, then the --config file,
+/// then the command line.
 class CommandLine {
  public:
   enum class SweepKeys { none, accepted };
@@ -24,25 +24,25 @@ class CommandLine {
   /// @param program  as it is called, with the name of a command: `clogsweep merge`
   CommandLine(std::string program, std::string usage, SweepKeys sweep_keys = SweepKeys::none);
 
-  /// Declares an option without a value; as all declarations, to be called before parse().
+  /// Declares an option without a value; like all declarations, call it before parse().
   CommandLine& flag(const char* name, const char* help);
-  /// Declares an option with a value. @param otherwise  its value if it is not given
+  /// Declares an option with a value. @param otherwise its default
   CommandLine& option(const char* name, const char* help, const char* otherwise = nullptr);
   /// Declares an option that may be a word without dashes: the first, the second ...
   CommandLine& word(const char* name, const char* help);
-  /// Declares an option of all words without dashes that follow.
+  /// Declares an option for all further words without dashes.
   CommandLine& words(const char* name, const char* help);
-  /// Declares what the first word may be instead of a file: a near miss is answered with the command meant.
+  /// Declares what the first word may be instead of a file; after a misspelling the message suggests it.
   void add_commands(std::vector<std::string> names) { commands_ = std::move(names); }
-  /// Declares what to say of words for which there is no place, e.g. "one sweep file is read at a time".
+  /// Declares the message for surplus words, e.g. "one sweep file is read at a time".
   void explain_surplus_words(std::string remedy) { surplus_remedy_ = std::move(remedy); }
 
-  /// Parses what follows the command's name. @throws Error for anything that is not understood
+  /// Parses the rest of the command line. @throws Error for anything that is not understood
   void parse(int argc, const char* const* argv);
 
   bool has(const std::string& option) const { return values_.count(option) > 0; }
   std::string get(const std::string& option) const { return values_.at(option).as<std::string>(); }
-  /// All values of an option that words() has declared.
+  /// All values of an option declared by words().
   std::vector<std::string> get_all(const std::string& option) const;
   /// @throws Error if the option was not given
   std::string require(const std::string& option) const;
@@ -54,16 +54,15 @@ class CommandLine {
   double get_share(const std::string& option) const;
   /// @throws Error if the option's value is not a number above zero
   double get_positive(const std::string& option) const;
-  /// All values of a list, as of a key: `0.1,0.2` or `log(0.1,1,5)`; none if the option was not given.
+  /// All values of a list, as for a key: `0.1,0.2` or `log(0.1,1,5)`; none if the option was not given.
   std::vector<double> get_positives(const std::string& option) const;
-  /// The option's value, or the default if it was not given. @throws Error if it is no whole number in the
-  /// range
+  /// The option's value, or its default. @throws Error if it is not a whole number in the range
   std::int64_t get_whole(const std::string& option, std::int64_t otherwise, std::int64_t least,
                          std::int64_t most) const;
   const std::string& program() const { return program_; }
   const sweep::Settings& settings() const { return settings_; }
   sweep::Settings& settings() { return settings_; }
-  /// Texts of keys whose numbers have units, which only --lab gives a meaning; the settings lack them.
+  /// Texts of keys with units, which only --lab can convert; the settings lack them.
   const std::map<std::string, std::string>& texts_with_units() const { return texts_with_units_; }
   /// The command as it was given, in one line.
   const std::string& text() const { return text_; }
@@ -89,7 +88,7 @@ class CommandLine {
 
   double number(const std::string& option) const;
   [[noreturn]] void refuse_missing(const std::string& option) const;
-  /// Is this an option whose value is the next word?
+  /// Whether this is an option whose value is the next word.
   bool awaits_value(const std::string& word) const;
   void refuse_misspelt_command(const std::string& word) const;
   [[noreturn]] void refuse_surplus_words() const;

@@ -8,12 +8,11 @@
 
 namespace clog::cli {
 
-/// Reads circles from a text file, one a line: x, y and the diameter [sigma], or as the names in the first
-/// line say; cells are separated by commas, semicolons, tabs or blanks. A line without a diameter means
-/// obstacle-diameter. Lines starting with # are skipped, but for `# units=um droplet=200um`, which says in
-/// which units the following lengths are; then no diameter may be missing.
-/// @param name  of the file, with @0.8mm behind it if the circles are to be scaled to a droplet of 0.8 mm
-/// @throws Error naming the line
+/// Reads circles from a text file, one a line: x, y and the diameter [sigma], or columns as the first line
+/// names them; cells are separated by commas, semicolons, tabs or blanks. A line without a diameter means
+/// obstacle-diameter. Lines starting with # are skipped, except `# units=um droplet=200um`, which gives the
+/// units of the following lengths; then every line needs a diameter. @param name of the file, followed by
+/// @0.8mm if the circles are to be scaled to a droplet of 0.8 mm @throws Error naming the line
 OwnCircles read_circles(const std::string& name);
 
 /// Writes them in the same form, with digits that read back exactly. @throws Error

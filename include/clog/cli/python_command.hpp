@@ -6,22 +6,20 @@
 
 namespace clog::cli {
 
-/// The folder of the Python module clogsweep, which is installed with this program.
-/// @throws Error  if it is not there
+/// The folder of the Python module clogsweep, which is installed with this program. @throws Error if it is
+/// missing
 std::filesystem::path find_python_module();
 
-/// The process continues as `python3 -m clogsweep`; its exit code is the module's.
-/// @param name  under which the module speaks of itself
-/// @param module  as find_python_module() gives it
-/// @param arguments  a command of the module first
-/// @throws Error  if it cannot be run
+/// The process continues as `python3 -m clogsweep`; its exit code is the module's. @param name that the
+/// module uses for itself @param module from find_python_module() @param arguments a command of the module
+/// first @throws Error if it cannot be run
 [[noreturn]] void become_python(const std::string& name, const std::filesystem::path& module,
                                 std::vector<std::string> arguments);
 
 /// The command as a user types it.
 std::string python_command(const std::filesystem::path& module, const std::vector<std::string>& arguments);
 
-/// Is there a program of this name in PATH?
+/// Whether PATH has a program of this name.
 bool is_installed(const std::string& program);
 
 /// The folder this program is in.

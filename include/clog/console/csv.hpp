@@ -29,13 +29,11 @@ struct TableLine {
   char separator;                  ///< a blank stands for any number of blanks
 };
 
-/// Goes through a table line by line. Spreadsheets, pandas, R and ImageJ write such files: the first line
-/// tells whether semicolons, tabs, commas or blanks separate the cells, unless `sep=;` comes before it; cells
-/// may be quoted. Text that is not UTF-8 is taken for Latin-1. Non-breaking blanks are blanks. Blank lines
-/// and those that begin with # count for nothing.
-/// @param each  an Error from there gets path and number
-/// @param comment  called with lines that begin with #
-/// @throws Error as read_text(), or for a quote that does not end
+/// Reads a table line by line. Supports files of spreadsheets, pandas, R and ImageJ: the first line shows
+/// whether semicolons, tabs, commas or blanks separate the cells, unless `sep=;` precedes it; cells may be
+/// quoted. Text that is not UTF-8 is read as Latin-1. Non-breaking blanks are blanks. Blank lines and those
+/// that begin with # are ignored. @param each an Error from there gets path and number @param comment called
+/// with lines that begin with # @throws Error as read_text(), or for a quote without an end
 void read_table(const std::string& path, const std::function<void(const TableLine& line)>& each,
                 const std::function<void(const std::string& text)>& comment = {});
 

@@ -4,7 +4,7 @@
 
 namespace clog::console {
 
-/// A duration in the unit that suits it.
+/// A duration in a suitable unit.
 std::string readable_duration(double seconds);
 
 }  // namespace clog::console

@@ -3,13 +3,12 @@
 namespace clog::console {
 
 inline constexpr int exit_success = 0;
-/// A fault of the program. Also what verify, replay and doctor return when they find damage, other bits, or
-/// something to fix.
+/// The program failed. Also for verify, replay and doctor: damage, different bits, or something to fix.
 inline constexpr int exit_internal_fault = 1;
 inline constexpr int exit_user_fault = 2;
-/// Stopped before the end; the same command makes sense again.
+/// Stopped before the end; repeating the command resumes.
 inline constexpr int exit_incomplete = 75;
-/// The reader of the output went away before its end: what a shell shows for programs that SIGPIPE has ended.
+/// The reader of the output closed it early: the code that a shell reports after SIGPIPE.
 inline constexpr int exit_reader_gone = 141;
 
 }  // namespace clog::console

@@ -5,8 +5,8 @@
 
 namespace clog::console {
 
-/// The text as one line that a terminal takes for nothing but text: control characters, and bytes that are no
-/// UTF-8, are written as escapes. Names and values that a message repeats may hold any of them.
+/// The text as one harmless line for a terminal: control characters, and bytes that are not UTF-8, are
+/// escaped. Names and values in a message may contain any of them.
 std::string printable(std::string_view text);
 
 }  // namespace clog::console

@@ -6,7 +6,7 @@
 
 namespace clog::console {
 
-/// A signal ended what the program was waiting for; it leaves with exit_incomplete.
+/// A signal interrupted a wait; the program ends with exit_incomplete.
 class Stopped : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -15,7 +15,7 @@ class Stopped : public std::runtime_error {
 /// Signals that stop a program. A closed terminal sends HUP; batch systems warn by USR1, USR2 and XCPU.
 inline constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
 
-/// Makes them raise a flag, and nothing else. SIGHUP stays ignored under nohup.
+/// Makes them set a flag only. SIGHUP stays ignored under nohup.
 void catch_stop_signals();
 bool stop_signalled();
 

@@ -6,8 +6,7 @@
 
 namespace clog::console {
 
-/// Says how something is getting on: one line that is renewed on a terminal, now and then a new line
-/// elsewhere.
+/// Reports progress: one line that is renewed on a terminal, a new line now and then elsewhere.
 class StatusLine {
  public:
   enum class Screen { terminal, plain, none };
@@ -16,10 +15,10 @@ class StatusLine {
 
   StatusLine(std::ostream& out, Screen screen);
 
-  /// Has the line been there long enough?
+  /// Whether it is time to renew the line.
   bool is_due() const;
   void renew(const std::string& text);
-  /// Prints a line that stays, whatever the screen.
+  /// Prints a permanent line, on any screen.
   void say(const std::string& text);
   /// Keeps the line on a terminal; other text follows below it.
   void keep();

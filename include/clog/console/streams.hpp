@@ -4,19 +4,19 @@
 
 namespace clog::console {
 
-/// What every program does first. Descriptors 0 to 2 that are closed are opened on /dev/null: files and
-/// sockets would get their numbers otherwise, and with them what is printed. A reader that goes away does not
-/// end the program (SIGPIPE is ignored); what is printed to std::cout from then on throws. A file that may
-/// not grow (SIGXFSZ) is one that cannot be written.
+/// The first call of every program. Opens closed descriptors 0 to 2 on /dev/null: otherwise files and sockets
+/// would get their numbers, and the program's output. Ignores SIGPIPE, so that a closed reader does not end
+/// the program; printing to std::cout then throws. Ignores SIGXFSZ, so that a file at its size limit fails to
+/// be written.
 void prepare_streams();
 
 /// Prints a line on the error stream, control characters escaped.
 void say(const std::string& line);
 
-/// Hands everything printed so far to the system. @throws std::ios_base::failure if it cannot be written
+/// Passes everything printed so far to the system. @throws std::ios_base::failure if it cannot be written
 void flush_output();
 
-/// Has everybody left who could read the output?
+/// Whether nobody reads the output any more.
 bool is_reader_gone();
 
 }  // namespace clog::console

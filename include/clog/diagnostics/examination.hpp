@@ -7,17 +7,17 @@
 
 namespace clog::diagnostics {
 
-/// One thing looked at: what is so, and what to do if it is not well.
+/// A check of the machine: the finding, and a remedy for a problem.
 struct Finding {
   std::string what;
-  std::string remedy = {};  ///< empty if all is well
+  std::string remedy = {};  ///< empty if there is no problem
 };
 
-/// Would a sweep on these ranks, that writes to `output`, go well?
+/// Whether a sweep on these ranks, with this `output`, would have problems.
 std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::string& output);
 
-/// srun without PMIx, and the mpirun of another MPI, start programs each of which believes that it is alone.
-/// @throws Error if this is one of them
+/// srun without PMIx, and the mpirun of another MPI, start programs that each believe to be alone. @throws
+/// Error if this is one of them
 void refuse_to_be_alone(int num_ranks);
 
 /// The setting that lets ranks use every core of their host.

@@ -4,9 +4,9 @@
 
 namespace clog::diagnostics {
 
-// What the host leaves to this process. Containers and batch systems may grant less than there is, through
-// control groups (Linux, Documentation/admin-guide/cgroup-v2.rst): the tightest of the process's own group
-// and all groups around it counts. Limits of version 1 are not seen.
+// Resources of the host that this process may use. Containers and batch systems may grant only a part,
+// through control groups (Linux, Documentation/admin-guide/cgroup-v2.rst): the tightest of the process's own
+// group and all enclosing groups counts. Limits of version 1 are ignored.
 
 /// Cores that the control groups grant to all of their processes, as time per period; 0: no limit.
 /// @param root  holds proc and sys
@@ -17,9 +17,8 @@ double granted_cores(const std::filesystem::path& root = "/");
 /// @param root  holds proc and sys
 double available_memory(const std::filesystem::path& root = "/");
 
-/// Raises the limit on open files if it is low, as far as that is allowed. MPI needs about twenty, and dies
-/// of fewer with a crash or messages of its own.
-/// @throws Error if it stays too low
+/// Raises the limit on open files if it is low, as far as allowed. MPI needs about twenty, and crashes or
+/// prints messages of its own with fewer. @throws Error if it stays too low
 void require_open_files();
 
 }  // namespace clog::diagnostics

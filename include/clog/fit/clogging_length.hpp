@@ -5,14 +5,14 @@
 
 namespace clog::fit {
 
-/// What one run says about clogging: it went `distance` [sigma] and clogged there, or was still going when it
-/// was last seen (censored).
+/// Outcome of one run: it went `distance` [sigma] and clogged there, or was still moving when it was last
+/// seen (censored).
 struct Observation {
   double distance;
   bool clogged;
 };
 
-/// Whether all distances are finite. If one is not, results are not known, and NaN.
+/// Whether all distances are finite. If one is not, results are NaN.
 bool all_finite(std::span<const Observation> runs);
 
 struct Interval {
@@ -57,13 +57,13 @@ struct CloggingLength {
 /// @throws std::invalid_argument unless 0 < confidence < 1
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence = 0.95);
 
-/// Half of the chi-squared interval's width over the estimate; infinite without clogs. That where all runs
-/// have clogged, which is a little wider than with censored ones.
+/// Half of the chi-squared interval's width over the estimate; infinite without clogs. The width if all runs
+/// have clogged, which is a little larger than with censored ones.
 double relative_half_width(std::int64_t num_clogs, double confidence = 0.95);
 
 /// Least squares of exp(-r/lambda) on P(r) = 1 - N_clog(r)/N at every clog, as published (Cheng et al.,
-/// appendix C) [sigma]. Biased: it takes a censored run for one that would have gone on for ever, and weighs
-/// points as if they were independent. NaN for fewer than two clogs, and for distances that are not finite.
+/// appendix C) [sigma]. Biased: it treats a censored run as one that would never clog, and points as
+/// independent. NaN for fewer than two clogs, and for distances that are not finite.
 double least_squares_length(std::span<const Observation> runs);
 
 }  // namespace clog::fit

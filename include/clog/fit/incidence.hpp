@@ -8,15 +8,15 @@
 
 namespace clog::fit {
 
-/// What one run says where it may end by several causes: it went `distance` [sigma] and ended there by one of
-/// them, or was still going when it was last seen (censored).
+/// Outcome of one run with several causes: it went `distance` [sigma] and ended there by one of them, or was
+/// still moving when it was last seen (censored).
 struct CompetingEnd {
   double distance;
   std::optional<int> cause;
 };
 
-/// A step of the estimated F_c(r), the probability to end by cause c within r, the other causes being at
-/// work.
+/// A step of the estimated F_c(r), the probability to end by cause c within r in the presence of the other
+/// causes.
 struct IncidenceStep {
   double distance;        ///< of one or more ends by this cause [sigma]
   int num_at_risk;        ///< runs that came so far
@@ -28,11 +28,11 @@ struct IncidenceStep {
 
 /// Aalen and Johansen's estimate (Scand. J. Stat. 5, 141 (1978)): F_c grows by P d_c/n at every distance with
 /// ends, P the probability to have come so far (survival_curve() of all causes), n the runs at risk, d_c
-/// those of them that end by the cause. So F_c of all causes and P add up to 1, which one minus the survival
-/// curves of single causes, the other ends being censored, do not. One step per distance with ends by the
-/// cause, in increasing order; at equal distances ends come before censorings. The variance is that of Dinse
-/// and Larson (Biometrika 73, 379 (1986)), binomial without censoring. Intervals are symmetric in log(-log
-/// F_c), as those of survival_curve().
+/// those of them that end by the cause. So F_c of all causes and P add up to 1, unlike one minus the survival
+/// curves of single causes with the other ends censored. One step per distance with ends by the cause, in
+/// increasing order; at equal distances ends come before censorings. The variance is that of Dinse and Larson
+/// (Biometrika 73, 379 (1986)), binomial without censoring. Intervals are symmetric in log(-log F_c), as
+/// those of survival_curve().
 /// @throws std::invalid_argument unless 0 < confidence < 1
 std::vector<IncidenceStep> cumulative_incidence(std::span<const CompetingEnd> runs, int cause,
                                                 double confidence = 0.95);

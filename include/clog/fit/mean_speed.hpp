@@ -11,18 +11,18 @@ struct MeanSpeed {
   double standard_error = 0;  ///< NaN for fewer than two
 };
 
-/// @param speeds  one per run, in any unit; NaN (a run too short to have a speed) is left out
+/// @param speeds one per run, in any unit; NaN (a run too short to have a speed) is excluded
 MeanSpeed fit_mean_speed(std::span<const double> speeds);
 
-/// How far one run went, and how long that took, in any units.
+/// Distance and duration of one run, in any units.
 struct Travel {
   double distance;
   double time;
 };
 
 /// Speed of all runs together, (sum of distances)/(sum of times), which weighs a run by its time. The error
-/// is the jackknife's over runs: sqrt((n - 1)/n sum (R_i - mean)^2), R_i the ratio without run i.
-/// @param runs  one each; those with a NaN are left out. NaN where a sum is not finite
+/// is the jackknife's over runs: sqrt((n - 1)/n sum (R_i - mean)^2), with R_i the ratio without run i. @param
+/// runs one each; those with a NaN are excluded. NaN where a sum is not finite
 MeanSpeed fit_pooled_speed(std::span<const Travel> runs);
 
 }  // namespace clog::fit

@@ -16,12 +16,12 @@ struct Migration {
   double standard_error = 0;  ///< from the scatter between runs; NaN for fewer than two
 };
 
-/// A run that went less far says nothing of where droplets migrate, as it has no speed [sigma].
+/// Shorter runs do not show where droplets migrate, just as they have no speed [sigma].
 inline constexpr double shortest_migration = 0.5;
 
-/// Ratio of the sums over runs that went at least shortest_migration, (sum of across)/(sum of along): long
-/// runs weigh more, and short ones, whose own ratios scatter wildly, do no harm. Its error is the linearised
-/// one of a ratio estimate (Cochran, Sampling Techniques, ch. 6).
+/// Ratio of the sums over runs that went at least shortest_migration, (sum of across)/(sum of along), so that
+/// short runs, whose own ratios scatter, have little weight. Its error is the linearised one of a ratio
+/// estimate (Cochran, Sampling Techniques, ch. 6).
 Migration fit_migration(std::span<const Displacement> runs);
 
 }  // namespace clog::fit

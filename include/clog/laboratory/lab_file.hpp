@@ -34,9 +34,9 @@ struct Laboratory {
 std::vector<Laboratory> read_laboratories(const std::string& path);
 /// The only one. @throws Error if there are several, too
 Laboratory read_laboratory(const std::string& path);
-/// How the terminal speed was scaled, a line; empty if it was measured.
+/// How the terminal speed was scaled, in one line; empty if it was measured.
 std::string law_of_speed(const Laboratory& lab);
-/// @param source  what the text is called in messages
+/// @param source name of the text in messages
 Laboratory parse_laboratory(const std::string& text, const std::string& source);
 
 }  // namespace clog::laboratory

@@ -8,8 +8,8 @@
 
 namespace clog::laboratory {
 
-/// What the model's units are in a laboratory, and its numbers for a droplet there. NaN where the laboratory
-/// does not say enough.
+/// The model's units in a laboratory, and its numbers for a droplet there. NaN if the description of the
+/// laboratory is incomplete.
 struct Scales {
   double length = 0;   ///< sigma [m]
   double gravity = 0;  ///< g_exp [m/s^2]
@@ -35,15 +35,15 @@ Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings);
 /// @throws Error that names the key, if one of its numbers has another unit than the key can have
 std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales);
 
-/// How far the centroid of a droplet sinks that its weight presses on a flat wall, which it does not wet: the
-/// two-dimensional equation of Young and Laplace [sigma]. NaN for Gamma below 1e-3 and above 1e4.
+/// How far the centroid of a droplet sinks on a flat wall that it does not wet: the two-dimensional equation
+/// of Young and Laplace [sigma]. NaN for Gamma below 1e-3 and above 1e4.
 double sag_on_wall(double line_tension);
-/// Gamma of the droplet that sags so far; NaN if none does.
+/// Gamma of the droplet with this sag; NaN if there is none.
 double line_tension_of_sag(double sag);
-/// E_w = pi/(16 sag), of the soft disk that sags as far.
+/// E_w = pi/(16 sag), of the soft disk with this sag.
 double wall_stiffness_of_sag(double sag);
 
-/// Gamma of the laboratory's droplet between upright plates, the least it can have; NaN without its tension.
+/// Gamma of the laboratory's droplet between upright plates, its smallest value; NaN without its tension.
 double line_tension_upright(const Laboratory& lab);
 /// Tilt at which a droplet of the laboratory has this Gamma [rad]; NaN if none does.
 double tilt_of(double line_tension, const Laboratory& lab);

@@ -5,14 +5,14 @@
 
 namespace clog::results {
 
-/// How many ranks were busy, over the time of one session of a sweep: as means over equal stretches of time,
-/// which get longer as the session does.
+/// Number of busy ranks during one session of a sweep, as means over equal stretches of time, which get
+/// longer with the session.
 class Activity {
  public:
   /// @param num_ranks  that compute
   explicit Activity(int num_ranks) : num_ranks_(num_ranks) {}
 
-  /// A rank begins, or ends, a task. @param now  since the session began, never less than before [s]
+  /// A rank begins, or ends, a task. @param now time since the session began, never less than before [s]
   void started(double now);
   void ended(double now);
 

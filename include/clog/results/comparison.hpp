@@ -12,7 +12,7 @@
 
 namespace clog::results {
 
-/// Runs that are compared with others: those of a file, or those with one value of a parameter.
+/// Runs that are compared: those of a file, or those with one value of a parameter.
 struct Side {
   std::string name;
   std::vector<sweep::RunRow> rows;
@@ -40,8 +40,8 @@ struct Comparisons {
 /// @throws Error if the side has no runs, or runs without a clogging length
 void require_lengths(const Side& side);
 
-/// The sides of a comparison of files: the first is what the others are compared with.
-/// @throws Error as read_with_caution()
+/// The sides of a comparison of files; the others are compared with the first. @throws Error as
+/// read_with_caution()
 std::vector<Side> sides_of_files(const std::vector<std::string>& paths);
 /// The sides of a comparison of a column's values, in the order of numbers or words: the others are compared
 /// with the first.

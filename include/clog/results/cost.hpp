@@ -34,10 +34,10 @@ struct SweepCost {
 
 /// Cost of a sweep, estimated from some of its runs, which were chosen as if at random.
 ///
-/// The remaining time of unfinished runs is estimated from late ends: those after half the shortest time that
-/// an unfinished run has taken, since earlier ends say little about it. The lower limit assumes that late
-/// ends are exponentially distributed; the upper limit, that they come from a mixture of short and long runs
-/// and become rarer with time; the estimate is the geometric mean of both. If no run of a parameter set has
+/// The remaining time of unfinished runs is estimated from late ends, those after half the shortest time of
+/// an unfinished run, because earlier ends say little about it. The lower limit assumes that late ends are
+/// exponentially distributed; the upper limit, that they come from a mixture of short and long runs and
+/// become rarer with time; the estimate is the geometric mean of both. If no run of a parameter set has
 /// ended, all may last to max-time: this is the upper limit, and for the estimate every order of magnitude of
 /// the remaining time is equally likely. The interval combines the error of each law with that of the sample.
 /// @param sample  of at least one run that has done some work, in some time

@@ -25,13 +25,13 @@ struct DistanceTable {
   std::vector<DistanceGroup> groups;
 };
 
-/// Is this the name of a text table, not of a sweep's file?
+/// Whether this is the name of a text table, not of a sweep's file.
 bool is_distance_table(const std::string& path);
 /// Reads a table with the columns `distance [UNIT]` and `clogged` (1 or 0, yes or no, true or false); all
 /// others separate groups.
 /// @throws Error that names file and line
 DistanceTable read_distances(const std::string& path);
-/// What the model's units are in each laboratory, by its checksum.
+/// The model's units in each laboratory, by its checksum.
 using Scales = std::map<std::string, LaboratoryScale>;
 /// The runs of a sweep; the parameters that vary separate groups. @throws Error as require_lengths()
 /// @param scales  of several laboratories: then distances are in mm, and the droplet's diameter [mm] and the

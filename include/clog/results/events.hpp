@@ -12,17 +12,17 @@
 namespace clog::results {
 
 /// Events of a sweep, found by reading its file repeatedly: a line of JSON for every start, end and
-/// interruption of a task, every new attempt, every round. A task that starts and ends between two looks has
+/// interruption of a task, every new attempt, every round. A task that starts and ends between two reads has
 /// both lines.
 class Events {
  public:
   /// @param path  of the file, for messages
   explicit Events(std::string path) : path_(std::move(path)) {}
 
-  /// Events since the last look; the first look returns only how many runs there are, and how many are over.
+  /// Events since the last call; the first call returns only the numbers of all runs and of finished ones.
   /// @throws Error as stored_plan()
   std::vector<std::string> look(const store::SweepFile& file);
-  /// The last line, when no sweep writes to the file any more.
+  /// The last line, after the sweep has ended.
   std::string end() const;
 
  private:

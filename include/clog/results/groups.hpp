@@ -18,9 +18,9 @@
 
 namespace clog::results {
 
-inline constexpr int enough_clogs = 5;  ///< with fewer, the interval is wide and its coverage wavers
+inline constexpr int enough_clogs = 5;  ///< with fewer, the interval is wide and its coverage varies
 
-/// What may spoil a group's clogging length; doubt_texts say what each means.
+/// Doubts about a group's clogging length; doubt_texts explains each.
 enum class Doubt {
   few_clogs,
   not_exponential,
@@ -74,7 +74,7 @@ const DoubtText& text_of(Doubt doubt);
 /// The ways in which a run may end, competing risks: the mechanism that holds a clog (`other`: none of them),
 /// or the droplet's break-up.
 enum class Cause { wrapped, squeezed, hybrid, other, broken };
-/// Names in files: the number of runs that it ended, and their length (S over that number).
+/// Names in files: the number of runs that it ended, and their length (S divided by that number).
 struct CauseText {
   Cause cause;
   bool is_clog;
@@ -86,7 +86,7 @@ inline constexpr CauseText cause_texts[] = {{Cause::wrapped, true, "wrapped", "c
                                             {Cause::other, true, "other", "clogging_length_other"},
                                             {Cause::broken, false, "broken", "break_up_length"}};
 
-/// The model's units in a laboratory; NaN where they are not known.
+/// The model's units in a laboratory; NaN if unknown.
 struct LaboratoryScale {
   double length = std::numeric_limits<double>::quiet_NaN();   ///< of sigma [mm]
   double time = std::numeric_limits<double>::quiet_NaN();     ///< of t0 [s]
@@ -106,7 +106,7 @@ struct Passage {
   fit::Interval share;  ///< of num_passed in both
 };
 
-/// The runs of a sweep that differ in their seed only, and what they say together.
+/// The runs of a sweep that differ in their seed only, and their results.
 struct Group {
   sweep::RunRow first_row;                                 ///< its parameters are those of all
   double dwell = std::numeric_limits<double>::infinity();  ///< see group_runs() [t0]
@@ -114,26 +114,27 @@ struct Group {
   fit::CloggingLength clogging;
   double least_squares_length = 0;  ///< the published way, biased; NaN for fewer than two clogs
   fit::WeibullTest weibull;
-  /// The runs that met an obstacle, each from its first one on. Runs of files without contacts are excluded.
+  /// The runs that met an obstacle, each from its first one on. The runs that met an obstacle, each from its
+  /// first one on.
   fit::CloggingLength clogging_met;
   double contacts_per_length = std::numeric_limits<double>::quiet_NaN();  ///< of all that tell [1/sigma]
   std::vector<fit::SurvivalStep> survival;
   std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
   /// One of each Cause, in their order: the runs that it ended, all others censored. Empty if the mechanism
-  /// of a clog is not known.
+  /// of a clog is unknown.
   struct EndsBy {
     const CauseText* text;
     fit::CloggingLength ends;
-    std::vector<fit::IncidenceStep> incidence;  ///< empty where there is no clogging length
+    std::vector<fit::IncidenceStep> incidence;  ///< empty without a clogging length
   };
   std::vector<EndsBy> causes;
   fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
   fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, way over time of all runs together
   /// v_g/v_t, way over time of all runs until they ended or came to their arrest, however short their way
-  /// was. Where droplets clog, only the faster runs go far enough to have an individual mean speed.
+  /// was. If droplets clog, only the faster runs go far enough to have a mean speed of their own.
   fit::MeanSpeed relative_speed_all;
   fit::Migration migration;
-  /// Tilt of the rows of posts from the flow towards +y, of lattices their own; NaN: not known [degrees].
+  /// Tilt of the rows of posts from the flow towards +y, of lattices their own; NaN: unknown [degrees].
   double row_angle = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::uint32_t> seeds;  ///< of the runs behind the clogging length
   int num_passed = 0;                ///< came to the exit of their device
@@ -155,23 +156,23 @@ struct Group {
   std::optional<LaboratoryScale> laboratory = {};  ///< in whose units results are wanted, too
 };
 
-/// Are there user-supplied circles that droplets enter on a line, or leave at an exit?
+/// Whether there are user-supplied circles with an entrance or an exit.
 bool is_device(const RunParameters& run);
 
-/// What a sound run says about the clogging length, from its release on; in a device from the first obstacle
-/// that its droplet met, and nothing if it met none.
+/// The outcome of an intact run from its release on; in a device from the first obstacle that its droplet
+/// met, and nothing if it met none.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
-/// Groups rows by everything but the seed, in the order of their parameters. See observation_of().
-/// @param from_distance  distances are measured from here [sigma]: runs that ended earlier are excluded, the
-/// others count with the distance beyond it (left truncation)
-/// @param dwell  a droplet that has stood for longer than this counts as clogged where it did so first [t0].
-/// One that has neither stood so long nor clogged is censored where its last dwell began, because the full
-/// length of that dwell is not known. A value of max-time or more changes nothing.
+/// Groups rows by everything but the seed, in the order of their parameters. See observation_of(). @param
+/// from_distance distances are measured from here [sigma]: runs that ended earlier are excluded, the others
+/// count with the distance beyond it (left truncation) @param dwell a droplet that rested for longer than
+/// this counts as clogged where it first did so [t0]. A droplet that has neither rested so long nor clogged
+/// is censored where its last dwell began, because the full length of that dwell is unknown. A value of
+/// max-time or more changes nothing.
 /// @param pooled  columns of max-time and boxes that do not separate groups. Of the runs of one seed in the
-/// same array the one with the largest max-time counts; with other boxes the array is another one
-/// @param lines  x of the passages in devices; by default those of the rows of posts [sigma]
-/// @throws Error if the rows do not tell which droplets stood for so long
+/// same array the one with the largest max-time counts; with other boxes the array is another one @param
+/// lines x of the passages in devices; by default those of the rows of posts [sigma] @throws Error if the
+/// rows do not record which droplets rested for so long
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
                               double from_distance = 0,
                               double dwell = std::numeric_limits<double>::infinity(),
@@ -182,18 +183,18 @@ std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
 /// Lateral displacement over that of a droplet that follows the rows: 0 in the zigzag mode, 1 in the
 /// displacement (bump) mode of deterministic lateral displacement. NaN for rows along the flow.
 fit::Migration share_along_rows(const Group& group);
-/// Can a droplet of this group have stood for so long?
+/// Whether a droplet of this group can have rested for so long.
 bool is_dwell_possible(const Group& group);
 
 using sweep::Value;
 using Field = std::pair<std::string, Value>;
-/// Columns that make a group: all parameters but the seed. Physical parameters come first, and among
+/// Columns that define a group: all parameters but the seed. Physical parameters come first, and among
 /// them those that shape the array.
 std::span<const sweep::Column* const> group_columns();
 /// The values of a row in these columns.
 std::vector<Value> parameter_values(const sweep::RunRow& row);
-/// False in a channel and on a wall, where nothing is random: each group is one run there, and its row has
-/// the results.
+/// False in a channel and on a wall, where nothing is random: each group is one run, whose row has the
+/// results.
 bool has_clogging_length(const sweep::RunRow& row);
 /// The results of a group, by name.
 std::vector<Field> result_fields(const Group& group);

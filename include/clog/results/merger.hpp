@@ -10,9 +10,9 @@
 
 namespace clog::results {
 
-/// Rows of several files as those of one sweep. A run that several files have is there once: a result rather
-/// than an unfinished or failed row, an unfinished row rather than a failed one, otherwise the row with more
-/// steps. Of results that differ by instruction set, those of the file named first are kept.
+/// Rows of several files as one sweep. A run that several files have is included once: a result rather than
+/// an unfinished or failed row, an unfinished row rather than a failed one, otherwise the row with more
+/// steps. Of results that differ by instruction set, those of the first file are kept.
 struct MergedSweep {
   store::SweepFile table;
   std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs
@@ -27,8 +27,8 @@ struct MergedSweep {
 /// damaged or being written, or has other circles under the same name
 MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance& maker);
 
-/// The rows of several files together, for reading only: also those of running sweeps, and of files whose
-/// config cannot be read any more. A single file is returned as it is.
+/// The rows of several files together, for reading only, including running sweeps and files whose config is
+/// unreadable. A single file is returned as it is.
 store::SweepFile read_together(const std::vector<std::string>& paths);
 
 /// Gives tasks the numbers, and circles the names, that they have in the settings; rows of runs outside the

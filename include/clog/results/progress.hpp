@@ -15,7 +15,7 @@
 
 namespace clog::results {
 
-/// Tells the user how a sweep is getting on: one line that is renewed on a terminal, now and then a new line
+/// Reports the progress of a sweep: one line that is renewed on a terminal, a new line now and then
 /// elsewhere.
 class Progress {
  public:
@@ -34,9 +34,9 @@ class Progress {
   void tried(std::int64_t task) { running_.erase(task); }
   /// A task that ended as failed will run again.
   void not_ended(const sweep::RunRow& failed);
-  /// Prints a line that stays, whatever the screen.
+  /// Prints a permanent line, on any screen.
   void say(const std::string& text) { status_.say(text); }
-  /// Prints if it is time to.
+  /// Prints if it is time.
   void tick();
   void finish();
 

@@ -13,7 +13,7 @@
 
 namespace clog::results {
 
-/// Runs of one or several sweeps, and the settings of a sweep that has just these.
+/// Runs of one or several sweeps, and the settings of a sweep with exactly these runs.
 class RunList {
  public:
   /// All runs of a plan. @throws Error if another plan has other circles under the same name
@@ -25,7 +25,7 @@ class RunList {
 
   /// Adds the seed of a run whose parameter set is known. Returns whether it is.
   bool add_seed(const sweep::RunRow& row);
-  /// Gives every parameter set the smallest unused seeds until it has so many.
+  /// Gives every parameter set the smallest unused seeds until it has this number.
   void fill_seeds(std::size_t number);
 
   bool empty() const { return sets_.empty(); }

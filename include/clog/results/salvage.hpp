@@ -16,12 +16,11 @@ struct Salvage {
   std::vector<std::string> damage;               ///< a sentence each
 };
 
-/// Reads, and changes nothing. @throws Error if the table is missing, not ours, or nothing of it can be read
+/// Reads only. @throws Error if the table is missing, not ours, or completely unreadable
 Salvage salvage(const std::string& path);
-/// Removes rows that are physically impossible, or of a run that an earlier row has. Returns a line for each.
+/// Removes rows that are physically impossible, or repeat a run of an earlier row. Returns a line for each.
 std::vector<std::string> drop_faulty(std::vector<sweep::RunRow>& rows);
-/// Removes rows and attributes, written as they are, with which verify() refuses a file. Each is named in the
-/// damage.
+/// Removes intact rows and attributes for which verify() refuses a file. The damage names each.
 void drop_what_verify_refuses(const std::string& path, Salvage& found);
 /// Makes the table, and a journal beside it if there are snapshots. @throws Error if the table exists
 void write(const store::SweepFile& table, const std::vector<store::Journal::Entry>& snapshots,

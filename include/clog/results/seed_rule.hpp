@@ -10,20 +10,20 @@
 
 namespace clog::results {
 
-/// Adds seeds to a sweep until the clogging length of every parameter set is known well enough: in rounds.
+/// Adds seeds to a sweep, in rounds, until the clogging length of every parameter set is precise enough.
 /// Each round is determined when the previous one has ended, from the number of clogs alone. So the runs of a
 /// sweep depend neither on the ranks nor on interruptions, and lambda stays unbiased (stopping at a number of
-/// clogs is inverse sampling; the relative width of the interval depends on nothing else).
+/// clogs is inverse sampling; the relative width of the interval depends only on this number).
 class SeedRule {
  public:
-  /// @param precision  half the 95 % interval's width over lambda, to be reached
-  /// @param first_seeds, most_seeds  per parameter set, to begin with and at most
+  /// @param precision required half-width of the 95 % interval divided by lambda @param first_seeds,
+  /// most_seeds per parameter set, at first and at most
   SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds, std::int64_t most_seeds);
 
   /// Tasks of the next round, once all tasks so far are over; empty at the end. Task s num_groups + g is the
   /// s-th seed of parameter set g. A set that is not precise enough gets as many more seeds as its fraction
-  /// of clogs so far requires, but at most as many as it has already.
-  /// @param has_clogged  of a task that is over
+  /// of clogs so far requires, but at most as many as it already has. @param has_clogged whether a finished
+  /// task has clogged
   std::vector<std::int64_t> next_round(const std::function<bool(std::int64_t task)>& has_clogged);
 
   std::int64_t num_groups() const { return static_cast<std::int64_t>(num_seeds_.size()); }
@@ -31,7 +31,7 @@ class SeedRule {
   std::int64_t clogs_needed() const;
   double precision() const { return precision_; }
   std::int64_t most_seeds() const { return most_seeds_; }
-  /// Parameter sets that were precise enough when next_round() looked last.
+  /// Parameter sets that were precise enough at the last next_round().
   std::int64_t num_reached() const { return num_reached_; }
   /// The clogs and seeds of a parameter set that was not measured as precisely.
   struct Unreached {
@@ -49,18 +49,17 @@ class SeedRule {
   std::vector<Unreached> unreached_;
 };
 
-/// One line: which parameter sets ran out of seeds before they reached the rule's precision, and what to do;
-/// if all reached it, how many there are.
+/// One line: which parameter sets used all seeds before they reached the precision, and a remedy; or how many
+/// sets there are, if all reached it.
 std::string outcome(const SeedRule& rule, const sweep::Plan& plan);
 
-/// A sweep that a rule may enlarge: its settings have all seeds that it may come to, those given first.
+/// A sweep that a rule may enlarge: its settings have all possible seeds, those given first.
 struct GrowingSweep {
   sweep::Settings settings;
   std::int64_t num_first = 0;  ///< tasks to begin with
   SeedRule rule;
 };
-/// @param precision, most_seeds  see SeedRule
-/// @throws Error if there are not so many seeds
+/// @param precision, most_seeds see SeedRule @throws Error if there are too few seeds
 GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, std::int64_t most_seeds);
 
 }  // namespace clog::results

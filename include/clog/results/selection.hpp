@@ -17,11 +17,11 @@ class Condition {
   /// relation orders words or a list
   explicit Condition(const std::string& text);
 
-  /// A row that has no value in the column holds to no condition.
+  /// A row without a value in the column satisfies no condition.
   bool holds(const sweep::RunRow& row) const;
 
-  /// A misspelt word would be equal to no row's, and so select none or all.
-  /// @throws Error if no row has one of the words
+  /// A misspelt word would equal no row's, and so select none or all. @throws Error if no row has one of the
+  /// words
   void require_known_words(std::span<const sweep::RunRow> rows) const;
 
  private:
@@ -37,9 +37,8 @@ class Condition {
   bool compare(const T& value, const std::vector<T>& others) const;
 };
 
-/// The rows of a file that hold to all conditions, as a sweep that has just these runs.
-/// @param maker  the program that makes the file, as cli::origin() says it
-/// @throws Error if no row does, or a word is in no row
+/// The rows of a file that satisfy all conditions, as a sweep of exactly these runs. @param maker the program
+/// that makes the file, from cli::origin() @throws Error if no row does, or a word is in no row
 store::SweepFile select(const std::string& path, const std::vector<std::string>& conditions,
                         const store::Provenance& maker);
 

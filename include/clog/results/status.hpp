@@ -12,7 +12,7 @@
 
 namespace clog::results {
 
-/// How far a sweep is, and what it has found so far.
+/// Progress of a sweep, and its results so far.
 struct Status {
   RunCount runs;
   std::map<RunStatus, std::int64_t> by_status;
@@ -34,13 +34,12 @@ struct Status {
   }
 };
 
-/// Status from a sweep's file, also while it is written. Runs in progress count as not clogged so far, at the
-/// distance they have reached: finished runs alone would give too short lengths, since runs that clog early
-/// finish first.
-/// @throws Error if the file does not say what its sweep is
+/// Status from a sweep's file, also while it is written. Runs in progress count as not clogged so far, at
+/// their present distance: finished runs alone would give too short lengths, because runs that clog early
+/// finish first. @throws Error if the file lacks the description of its sweep
 Status status_of(const std::string& path, const store::SweepFile& file, double confidence);
 
-/// The status as text for people.
+/// The status as printed text.
 std::string to_text(const std::string& path, const Status& status, double confidence,
                     SharedParameters shared);
 std::string to_json(const Status& status, double confidence);

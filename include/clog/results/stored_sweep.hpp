@@ -11,9 +11,8 @@ namespace clog::results {
 
 /// The description of a sweep in its file, apart from the rows.
 
-/// Opens a sweep for reading; warns on stderr about anything that could not be verified. Rows know their
-/// circles, with the name of the file that these are from.
-/// @throws Error as store::read_sweep()
+/// Opens a sweep for reading; warns on stderr about anything that could not be verified. Rows have their
+/// circles, with the name of their file. @throws Error as store::read_sweep()
 store::SweepFile read_with_caution(const std::string& path);
 
 /// Text of an attribute; empty if there is none.
@@ -24,24 +23,24 @@ void set_attribute(store::Provenance& provenance, const std::string& name, const
 /// stored_plan()
 sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance);
 sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file);
-/// Columns of the keys that its config has lists for; none if that cannot be read.
+/// Columns of the keys with lists in its config; none if it cannot be read.
 std::vector<std::string> listed_columns(const store::Provenance& provenance);
-/// How many runs are wanted so far: of --until-precision those asked for, otherwise all of the plan.
+/// Number of runs requested so far: with --until-precision those of the rounds, otherwise all of the plan.
 /// @throws Error, which names the file, if the attribute cannot be parsed
 std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
                                const sweep::Plan& plan);
-/// The number of runs of a file's sweep: those that are wanted, and others that the file holds.
+/// The number of runs of a file's sweep: those requested, and others in the file.
 struct RunCount {
   std::int64_t num_runs = 0;
-  std::int64_t num_beyond = 0;  ///< of these, runs that the lists of its last command do not have
+  std::int64_t num_beyond = 0;  ///< those outside the lists of its last command
 
   /// The latter in brackets, with a space before; empty for none.
   std::string text_of_beyond() const;
 };
 RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);
 
-/// The row of a task to be replayed. Switches to its instruction set.
-/// @throws Error if there is none, it is not over, or this program would come to something else
+/// The row of a task to be replayed. Switches to its instruction set. @throws Error if there is none, it is
+/// not over, or this program would give another result
 sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& task);
 
 }  // namespace clog::results

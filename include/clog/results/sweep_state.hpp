@@ -20,28 +20,26 @@
 
 namespace clog::results {
 
-/// The state of a sweep's runs, on rank 0 and on disk: the table, which another thread publishes as a whole
-/// from time to time, and the journal beside it, which holds later results and the snapshots of running
-/// tasks. A stopped or killed sweep resumes from these files. A run is identified by its parameters and seed
+/// The state of a sweep's runs, on rank 0 and on disk: the table, which another thread publishes from time to
+/// time, and the journal beside it, which contains later results and the snapshots of running tasks. A
+/// stopped or killed sweep resumes from these files. A run is identified by its parameters and seed
 /// (sweep::identity), not by its task number.
 class SweepState {
  public:
-  /// Reads what is there, and checks that it belongs to this sweep.
-  /// @param num_wanted  number of tasks, from the start of the plan, that are requested at first (rounds may
-  /// request more)
-  /// @param attempts  how often a run that fails is tried, over all sessions
-  /// @throws Error if the file is not a sweep's, has another model version or other settings, or another
-  /// sweep is writing to it
+  /// Reads the files, and checks that they belong to this sweep. @param num_wanted number of tasks, from the
+  /// start of the plan, that are requested at first (rounds may request more) @param attempts number of
+  /// attempts for a failing run, over all sessions @throws Error if the file is not a sweep's, has another
+  /// model version or other settings, or another sweep is writing to it
   SweepState(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
              store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts);
 
   /// Requests more of the plan's tasks; tasks_left() then returns the unfinished ones among these.
   void want(const std::vector<std::int64_t>& tasks);
   std::int64_t num_wanted() const { return num_wanted_; }
-  /// Tasks that have begun and are not over, wanted or not.
+  /// Tasks that have begun and are not over, requested or not.
   std::vector<std::int64_t> tasks_begun() const;
 
-  /// Tasks that are wanted and not over.
+  /// Tasks that are requested and not over.
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
   /// How many of these resume from a snapshot.
   std::int64_t num_resumed() const;
@@ -52,7 +50,7 @@ class SweepState {
   /// Damaged records of the journal: their runs resume from an earlier record, or restart.
   std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
 
-  /// Names what could not be checked in the file that the sweep resumes from; empty if all was checked.
+  /// Names what could not be verified in the file that the sweep resumes from; empty if all was verified.
   const std::string& caution() const { return caution_; }
 
   /// Starts to record in the table how many of `num_ranks` ranks are busy (Activity).
@@ -68,8 +66,7 @@ class SweepState {
   /// Discards a failure: the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
-  /// Begins to publish the table if it is time to, or finds that this has ended: it does not wait for the
-  /// disk.
+  /// Starts to publish the table if it is time, or detects that this has ended, without waiting for the disk.
   void tick();
   bool is_publishing() const { return publication_.valid(); }
   /// Publishes the table, and removes the journal of a complete sweep. Returns a message if that fails.
@@ -124,7 +121,7 @@ class SweepState {
   store::SweepFile read_table();
   void adopt(const store::SweepFile& file, const sweep::Settings& settings);
   std::string settings_that_differ(const store::SweepFile& file, const sweep::Settings& settings) const;
-  /// Runs by what they are.
+  /// Runs by their identity.
   using Known = std::unordered_map<std::string, std::unique_ptr<Entry>>;
   bool is_of_its_task(const sweep::RunRow& row) const;
   Known recognise(std::vector<sweep::RunRow> rows, std::vector<Entry> records,

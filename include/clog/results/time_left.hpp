@@ -7,7 +7,7 @@
 
 namespace clog::results {
 
-/// How long a sweep still takes, as a range [s].
+/// Remaining time of a sweep, as a range [s].
 struct TimeLeft {
   bool is_known = false;
   double shortest = 0;
@@ -24,9 +24,9 @@ struct SetTimes {
 };
 /// Short runs end first, so the mean over finished runs alone is too small: running ones count as censored,
 /// as for the clogging length. Each parameter set has its own mean; a set without a finished run gets the
-/// mean of all, with an error as large. The time left is then each rank's share of the waiting runs, plus a
-/// tail in which ranks run out of tasks one by one (the largest of W exponential times is 1 + 1/2 + ... + 1/W
-/// means). The range is that of the means, 80 %.
+/// mean of all, with an equally large error. The time left is then each rank's share of the waiting runs,
+/// plus a tail in which ranks run out of tasks one by one (the largest of W exponential times is 1 + 1/2 +
+/// ... + 1/W means). The range is 80 % of the means.
 TimeLeft time_left(std::span<const SetTimes> sets, std::size_t num_ranks);
 
 }  // namespace clog::results

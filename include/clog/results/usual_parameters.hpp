@@ -6,15 +6,15 @@
 
 namespace clog::results {
 
-/// The parameter_values() by default of a run with this model and preset; of a parameter that may be
-/// automatic the row's value if it is automatic. Empty if the row's parameters are impossible.
+/// The default parameter_values() of a run with this model and preset; for a parameter that may be automatic
+/// the row's value if it is automatic. Empty if the row's parameters are impossible.
 std::vector<Value> usual_parameters(const sweep::RunRow& row);
 
-/// Is this value what `auto` gives for the row's other parameters, or what its preset sets?
+/// Whether this value is what `auto` gives for the row's other parameters, or what its preset sets.
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row);
 
-/// The value by which a column separates curves and comparisons: unset where it is automatic or follows from
-/// the array; for springs to the rest length the ratio K_l/Gamma, which `perimeter-stiffness-ratio` sets.
+/// The value by which a column separates curves and comparisons: unset if it is automatic or follows from the
+/// array; for springs to the rest length the ratio K_l/Gamma of `perimeter-stiffness-ratio`.
 Value separating_value(const sweep::Column& column, const sweep::RunRow& row);
 
 }  // namespace clog::results

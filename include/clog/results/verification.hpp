@@ -6,9 +6,9 @@
 
 namespace clog::results {
 
-/// Are a sweep's file and the journal beside it undamaged?
+/// Whether a sweep's file and the journal beside it are undamaged.
 struct Verification {
-  std::vector<std::string> findings;  ///< a line for each fault, then what is there
+  std::vector<std::string> findings;  ///< a line for each finding, then a summary
   std::int64_t num_faults = 0;
 };
 /// @throws Error if the file or its journal cannot be read

@@ -8,7 +8,7 @@
 
 namespace clog::scheduler {
 
-/// Rank 0's message to the others before a sweep: what to compute, and how.
+/// Rank 0's message to the others before a sweep: the task descriptions and options.
 struct Assignment {
   std::chrono::milliseconds report_interval{10'000};
   std::string instruction_set = "auto";
@@ -20,8 +20,7 @@ struct Assignment {
   static Assignment from(const std::string& text);
 };
 
-/// The jobs of an assignment, in whichever process they are to be worked on.
-/// @param text  see Assignment::text()
+/// The jobs of an assignment, in any process. @param text see Assignment::text()
 sweep::JobFactory assigned_jobs(const std::string& text);
 
 }  // namespace clog::scheduler

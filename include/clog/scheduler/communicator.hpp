@@ -18,7 +18,7 @@ class Communicator {
   Communicator(const Communicator&) = delete;
   Communicator& operator=(const Communicator&) = delete;
 
-  /// Before MPI begins, by what the launcher says: true of rank 0, and of others whose launcher says nothing.
+  /// Before MPI starts, from the launcher's variables: true on rank 0, and on others without such variables.
   static bool may_be_rank_0();
 
   int rank() const { return rank_; }
@@ -32,7 +32,7 @@ class Communicator {
   int broadcast(int number) const;
   /// Collective: rank 0 returns every rank's text, in the order of ranks; the others return nothing.
   std::vector<std::string> gather(const std::string& text) const;
-  /// Collective: returns when all ranks have come, sleeping meanwhile (MPI's own barrier spins).
+  /// Collective: returns when all ranks have called it, sleeping meanwhile (MPI's own barrier spins).
   void wait_for_all() const;
 
   struct Envelope {
@@ -45,10 +45,10 @@ class Communicator {
   void send(int destination, int tag, std::span<const std::byte> bytes) const;
   /// Is a message waiting? Never blocks.
   std::optional<Envelope> probe(int source, int tag) const;
-  /// Receives the message that probe() saw.
+  /// Receives the message that probe() found.
   std::vector<std::byte> receive(const Envelope& envelope) const;
 
-  /// Ends all ranks at once; for faults after which they could only wait for each other.
+  /// Ends all ranks at once, for errors after which they could only wait for each other.
   [[noreturn]] void abort(int exit_code) const;
 
  private:

@@ -9,12 +9,12 @@
 
 namespace clog::scheduler {
 
-/// Tells, before a sweep, which runs are known and which remain. @param may_grow  runs may be added later
+/// Prints, before a sweep, which runs are known and which remain. @param may_grow runs may be added later
 void announce(const std::string& output, const sweep::Plan& plan, const results::SweepState& state,
               bool may_grow, int num_ranks);
 
-/// Tells what happens in a sweep, a line for each event:
-///   12:03:17 task 17 rank 3: clogged at 4.21 sigma after 812 t0 (Gamma=0.3, gap=0.2, seed 4)
+/// Prints the events of a sweep, one line each: 12:03:17 task 17 rank 3: clogged at 4.21 sigma after 812 t0
+/// (Gamma=0.3, gap=0.2, seed 4)
 class Log {
  public:
   enum class Level {

@@ -7,8 +7,8 @@
 
 namespace clog::scheduler {
 
-/// Whose fault is a failed task: its own, or that of the rank (a broken node)? A task's result depends on no
-/// rank, so the way to know is to try it elsewhere:
+/// Decides whether a failed task or its rank (a broken node) is at fault. A task's result depends on no rank,
+/// so the test is to try it elsewhere:
 ///
 /// - A failure counts against its rank until the rank succeeds with another task, or until the task also
 ///   fails on a trusted rank: then the task is at fault. A rank is trusted if it has succeeded and is not on
@@ -31,10 +31,10 @@ class RankTrust {
 
   int num_in_service() const { return num_in_service_; }
   bool may_work(int rank) const { return records_.at(rank).in_service && !is_on_hold(rank); }
-  /// Is this the place for another attempt of a task that failed? Not while another rank has not tried it.
+  /// Whether this rank may retry a failed task. Not before every other rank has tried it.
   bool is_next_for(std::int64_t task, int rank) const;
   bool is_trusted(int rank) const;
-  /// Tasks that failed on this rank, without having failed on a trusted one or succeeded on any.
+  /// Tasks that failed on this rank, and neither failed on a trusted one nor succeeded on any.
   std::vector<std::int64_t> unsettled_tasks(int rank) const;
   /// Unsettled tasks of this rank that other ranks should try, to decide whether it may be released: those
   /// that some rank in service has not tried yet. Empty if this rank is not on hold, or if all tasks seem to

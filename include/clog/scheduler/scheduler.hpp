@@ -28,7 +28,7 @@ struct SweepEvents {
   std::function<void(const Report&)> progressed = [](const Report&) {};
   /// Every task that was started ends here once for each attempt; `interrupted` after a stop.
   std::function<void(const Report&)> ended = [](const Report&) {};
-  /// Should a task that ended as `failed` be tried again?
+  /// Whether a task that ended as `failed` should be tried again.
   std::function<bool(const sweep::RunRow&)> tries_again = [](const sweep::RunRow&) { return false; };
   /// Called for a task that `failed` when the rank may be at fault (see RankTrust): the attempt does not
   /// count, and the task is tried once more whatever tries_again() returned.
@@ -39,7 +39,7 @@ struct SweepEvents {
   /// About every 0.1 s; less often while this rank samples an array or releases a droplet (a second, in large
   /// boxes).
   std::function<void()> idle = [] {};
-  /// Should the sweep stop now? Running tasks are then ended as interrupted, no more are handed out.
+  /// Whether the sweep should stop now. Running tasks are then ended as interrupted, no more are handed out.
   std::function<bool()> stop_requested = [] { return false; };
 };
 

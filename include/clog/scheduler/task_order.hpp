@@ -11,13 +11,13 @@
 
 namespace clog::scheduler {
 
-/// Which task to hand out next: the one expected to run longest, so that no long one is left for the end,
-/// when ranks without work would wait for it.
+/// Chooses the task to hand out next: the one expected to run longest, so that ranks do not idle while a long
+/// one finishes last.
 ///
 /// The tasks of a group differ in their seed only, and are handed out in order. A group's expected run time
-/// is the mean of an exponential distribution fitted to its finished and, as censored, its running tasks: all
-/// their time over the number that ended. A group of which none has ended is expected to be longer than any
-/// other; among those the one with fewest tasks handed out is next.
+/// is the mean of an exponential distribution fitted to its finished and, as censored, its running tasks:
+/// their total time divided by the number that ended. A group without an ended task is expected to be longer
+/// than any other; among those the one with fewest tasks handed out is next.
 class TaskOrder {
  public:
   using GroupOf = std::function<std::int64_t(std::int64_t task)>;
@@ -28,16 +28,15 @@ class TaskOrder {
   void add(const std::vector<std::int64_t>& tasks);
 
   bool empty() const { return num_left_ == 0; }
-  /// Hands out a task; there must be one. Costs a look at every group that runs.
-  /// @param now  time [s], from any moment on, the same in all calls
+  /// Hands out a task; there must be one. Takes time for every running group. @param now time [s], from any
+  /// moment on, the same in all calls
   std::int64_t take(double now);
   void ended(std::int64_t task, double now);
   /// A task that ended before starts again.
   void begun_again(std::int64_t task, double now);
 
  private:
-  /// Less: it is handed out earlier. The expected run time with a minus, tasks handed out, number of the
-  /// group.
+  /// Smaller: it is handed out earlier. Minus the expected run time, tasks handed out, number of the group.
   using Turn = std::tuple<double, std::int64_t, std::size_t>;
   struct Group {
     std::vector<std::int64_t> tasks;
@@ -53,7 +52,7 @@ class TaskOrder {
   GroupOf number_of_group_;
   std::int64_t num_left_ = 0;
   std::vector<Group> groups_;
-  // Groups with tasks that wait: those of which none runs, and the numbers of the others.
+  // Groups with waiting tasks: those of which none runs, and the numbers of the others.
   std::set<Turn> resting_;
   std::set<std::size_t> running_;
   std::unordered_map<std::int64_t, double> running_since_;  // by task

@@ -4,7 +4,7 @@
 
 namespace clog::single_run {
 
-/// The duration of runs of which none ends before max-time.
+/// Upper bound of the duration of runs: none ends before max-time.
 struct MostCost {
   double time = 0;  ///< [t0]
   double steps = 0;

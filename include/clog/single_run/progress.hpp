@@ -8,7 +8,8 @@
 
 namespace clog::single_run {
 
-/// Tells on the standard error how far one run is. On a terminal the line goes when the run is over.
+/// Reports on the standard error the progress of one run. On a terminal the line disappears when the run is
+/// over.
 class RunProgress {
  public:
   RunProgress();

@@ -13,10 +13,10 @@
 
 namespace clog::single_run {
 
-/// Follows one droplet to its end, or to a signal, and keeps samples of it on the way.
+/// Follows one droplet to its end, or to a signal, and records samples.
 class RecordedRun {
  public:
-  /// How often, in checks of the run (0: no polygons).
+  /// Intervals in checks of the run (0: no polygons).
   struct Intervals {
     std::int64_t samples = 1;
     std::int64_t polygons = 0;
@@ -27,17 +27,16 @@ class RecordedRun {
   RecordedRun(DropletRun run, Intervals intervals);
 
   void follow();
-  /// Advances the run by a short piece, to see what a step costs. The run is good for nothing else then.
+  /// Advances the run by a short piece, to measure the cost of a step. The run is useless afterwards.
   MostCost measure_cost();
 
   const DropletRun& run() const { return run_; }
   /// The run's result; its status is `interrupted` if a signal ended it.
   RunResult result() const;
-  /// Samples, polygons, the obstacles near them, and the row's columns of results.
-  /// @param row  the columns of what was run, see sweep::describe()
-  /// @param origin  where the trajectory comes from
+  /// Samples, polygons, the obstacles near them, and the row's columns of results. @param row the columns of
+  /// parameters, see sweep::describe() @param origin of the trajectory
   store::Trajectory trajectory(sweep::RunRow row, store::Provenance origin) const;
-  /// Two lines on how it ended. Returns the exit code.
+  /// Two lines about its end. Returns the exit code.
   int report() const;
 
  private:

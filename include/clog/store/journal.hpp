@@ -17,7 +17,7 @@ namespace clog::store {
 
 class Draft;
 
-/// The journal of the table at this path lies beside it (if the path is a link, beside what it leads to).
+/// The journal of the table at this path is beside it (for a link, beside its target).
 std::string journal_path(const std::string& table);
 OutputPath journal_place(const OutputPath& table);
 
@@ -38,26 +38,26 @@ class Journal {
     std::uint64_t num_bytes = 0;      ///< without a torn end
   };
 
-  /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, something else, or
-  /// cannot be written. @param table  whose mode, owner, group and access list a new one gets
+  /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, another kind of
+  /// file, or cannot be written. @param table whose mode, owner, group and access list a new one gets
   explicit Journal(OutputPath place, const OutputPath* table = nullptr);
   Journal(Journal&&) = delete;
   ~Journal();
 
-  /// Is a sweep writing to this one?
+  /// Whether a sweep writes to this one.
   static bool is_open(const std::string& path);
   /// Reads the records without changing the file; nothing if there is no file. @throws Error if it cannot be
   /// read
   static std::optional<Contents> look(const std::string& path);
 
   const std::string& path() const { return place_.path(); }
-  /// Is the open file still the one at its place?
+  /// Whether the open file is still the one at its place.
   bool is_there() const { return place_.holds(file_); }
   /// Creates and locks an empty journal where the old one was removed. Returns false if another sweep has
   /// started there. @throws Error if it cannot be written
   bool make_anew(const OutputPath& table);
 
-  /// What the file held when it was opened, oldest first.
+  /// The file's content when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(contents_.entries); }
   std::int64_t num_unreadable() const { return contents_.num_unreadable; }
   /// @throws Error if the disk is full, or the file is no longer the one at the path; so do flush() and
@@ -68,9 +68,9 @@ class Journal {
   /// Writes the header of a new file, and removes an incomplete record at the end; so does the first add().
   void begin();
   std::uint64_t num_bytes() const { return contents_.num_bytes; }
-  /// Is it larger than 64 MB, and more than twice as large as after its last rewrite?
+  /// Whether it is larger than 64 MB, and more than twice as large as after its last rewrite.
   bool is_to_be_rewritten() const;
-  /// Replaces the file by one that holds these entries only.
+  /// Replaces the file by one with only these entries.
   void rewrite(std::span<const Entry* const> entries);
   /// Prepares a file with these entries and the records that were added after the first `begin` bytes, to be
   /// put in place by replace(). Another thread may call this, as flush().
@@ -78,7 +78,7 @@ class Journal {
   bool is_prepared() const { return next_ != nullptr; }
   void replace();
   /// Removes the file, unless it is no longer the one at the path; nothing may be added afterwards.
-  /// Returns why that failed, if it did.
+  /// Returns why that failed, or nothing.
   std::error_code remove();
 
  private:

@@ -11,8 +11,8 @@
 
 namespace clog::store {
 
-/// Tables, trajectories and journals are regular files: opening a pipe would wait, and nothing else can be
-/// locked, read at any place and replaced as a whole. Links are followed; a path to nothing is accepted.
+/// Tables, trajectories and journals are regular files: opening a pipe would wait, and only regular files can
+/// be locked, read at any place and replaced as a whole. Links are followed; a path to nothing is accepted.
 /// Returns the path.
 /// @throws Error if something else is there
 std::string require_regular(std::string path);
@@ -34,18 +34,18 @@ class OutputPath {
   const std::string& path() const { return path_; }
   /// The file there, never through a link; not open: see errno.
   Descriptor open(int flags) const;
-  /// A new file, to read and write; not open if something is there already. @throws Error
+  /// A new file, to read and write; not open if something exists already. @throws Error
   Descriptor create(mode_t mode) const;
   bool exists() const { return status().has_value(); }
-  /// Is this open file still the one here? Somebody may have replaced or removed it meanwhile.
-  /// @param failure  if given, why this is not known
+  /// Whether this open file is still the one here. Somebody may have replaced or removed it meanwhile. @param
+  /// failure if given, why this is unknown
   bool holds(int descriptor, std::error_code* failure = nullptr) const;
-  /// Removes the file, if there is one. Returns why that failed, if it did.
+  /// Removes the file, if there is one. Returns why that failed, or nothing.
   std::error_code remove() const;
-  /// The file of another name of this folder takes the place of the one with this stamp(), or of none if that
-  /// was removed or the stamp is empty. Returns why that failed, if it did: `file_exists` if a different file
-  /// is here; both then stay. Where the file system can exchange two names at once, a file that comes here in
-  /// the last moment is kept, too.
+  /// Renames the file of another name of this folder to this one, replacing the file with this stamp(), or
+  /// none if that was removed or the stamp is empty. Returns why that failed, or nothing: `file_exists` if a
+  /// different file is here; both then stay. If the file system can exchange two names at once, a file that
+  /// appears here at the last moment is kept, too.
   std::error_code replace(const std::string& stamp, const OutputPath& other) const;
   /// Synchronises the folder to disk, so that renames survive a power cut.
   void sync_folder() const;

@@ -16,7 +16,7 @@ namespace clog::store {
 /// Version of the file format; see docs/reference/files.md.
 inline constexpr const char* format_version = "10";
 
-/// Name and text of the attributes at the file's root: where its numbers come from.
+/// Name and text of the attributes at the file's root: the origin of its numbers.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
 /// Version of the HDF5 library, e.g. "1.10.8".
@@ -25,17 +25,16 @@ std::string library_version();
 /// @throws Error if the path exists: results are never overwritten
 void refuse_existing(const std::string& path);
 [[noreturn]] void refuse_to_overwrite(const std::string& path);
-/// To be called before hours of work. @throws Error if the path exists or no file can be made there
+/// Call this before hours of work. @throws Error if the path exists or no file can be made there
 void refuse_unwritable(const std::string& path);
 
-/// User-supplied circles, and the file that they were read from; its name is empty if the sweep's last
-/// command does not name it.
+/// User-supplied circles, and their file; its name is empty if the sweep's last command does not name it.
 struct CircleFile {
   std::string name;
   OwnCircles circles;
 };
 
-/// Which parts of a file have been compared with a checksum.
+/// Parts of a file that have been compared with a checksum.
 enum class Checked {
   everything,         ///< every bit of it
   rows_and_settings,  ///< each row and each attribute: another program copied or changed the file
@@ -48,18 +47,18 @@ struct SweepFile {
   Checked checked = Checked::everything;
 };
 
-/// The rows that a file is to get. Each is asked for once, in this order, so they need not be in one place.
+/// The rows for a file. Each is requested once, in this order, so they need not be in one place.
 struct Rows {
   std::size_t number;
   std::function<sweep::RunRow(std::size_t i)> row;
 
-  /// These, which must live as long.
+  /// Given rows, which must live as long.
   static Rows of(std::span<const sweep::RunRow> rows) {
     return {rows.size(), [rows](std::size_t i) { return rows[i]; }};
   }
 };
 
-/// Writes a sweep's file, in place of the one with this OutputPath::stamp(), if that is still there: at every
+/// Writes a sweep's file, replacing the one with this OutputPath::stamp(), if that is still there: at every
 /// moment the path names a complete table, the old or the new, so it can be read at any time. It is on the
 /// disk when this returns. Returns the stamp of the file that it wrote, even if somebody has replaced that
 /// since; nothing if a different file is there, which stays. @throws Error, and the old file stays
@@ -71,17 +70,16 @@ inline std::optional<std::string> publish_sweep(const OutputPath& place, const s
   return publish_sweep(place, stamp, Rows::of(content.rows), content.provenance, content.circles);
 }
 
-/// Files of format versions 9 and 10. Columns that a file does not have get Parameter::before, or are
-/// unknown.
-/// @throws Error if the file is missing, not HDF5, not ours, of another format version, or damaged
+/// Files of format versions 9 and 10. Missing columns get Parameter::before, or are unknown. @throws Error if
+/// the file is missing, not HDF5, not ours, of another format version, or damaged
 SweepFile read_sweep(const std::string& path);
-/// Tries to read a file without a whole seal in a child process, so that a later read_sweep() of the same
+/// Tries to read a file without a valid seal in a child process, so that a later read_sweep() of the same
 /// bytes does not fork: a process that has called MPI_Init must not. Throws nothing: read_sweep() does.
 void try_before_mpi(const std::string& path);
-/// A warning for readers of this file; empty if all of it was checked.
+/// A warning for readers of this file; empty if all of it was verified.
 std::string caution(const std::string& path, const SweepFile& file);
 
-/// A file that may be damaged: the intact rows and attributes, and a list of what is damaged.
+/// A file that may be damaged: the intact rows and attributes, and a list of the damage.
 struct Examination {
   SweepFile whole;
   std::vector<std::string> damage;  ///< a sentence each
@@ -89,7 +87,7 @@ struct Examination {
   /// file?
   bool is_refused_by_others = false;
 };
-/// @throws Error if the file is missing, not ours, or so damaged that nothing can be read
+/// @throws Error if the file is missing, not ours, or completely unreadable
 Examination examine_sweep(const std::string& path);
 
 }  // namespace clog::store

@@ -16,7 +16,8 @@ struct TrajectoryColumn {
   std::vector<double> values;
 };
 
-/// The polygon at one moment, all x then all y, in coordinates that go on across box borders [sigma].
+/// The polygon at one moment, all x then all y, in coordinates that are continuous across box borders
+/// [sigma].
 struct PolygonFrame {
   double time;
   std::vector<double> position;
@@ -31,7 +32,7 @@ struct Trajectory {
   Provenance provenance;
 };
 
-/// Writes a new file, whole or not at all. @throws Error if it exists or cannot be written
+/// Writes a new file, complete or not at all. @throws Error if it exists or cannot be written
 void write_trajectory(const std::string& path, const Trajectory& trajectory);
 
 }  // namespace clog::store

@@ -33,7 +33,7 @@ struct clog::Words<clog::sweep::ColumnRole> {
 
 namespace clog::sweep {
 
-/// A row's value in a column; std::monostate if it is not known, or has no meaning for the run.
+/// A row's value in a column; std::monostate if it is unknown, or does not apply to the run.
 using Value = ParameterValue;
 
 struct Column {
@@ -57,7 +57,7 @@ struct Column {
     return parameter && parameter->may_be_automatic(run);
   }
 
-  /// Writes `size` bytes as they lie in a file, where an unknown value is NaN, -1, or an empty text.
+  /// Writes `size` bytes in a file's layout, where an unknown value is NaN, -1, or an empty text.
   void pack(const RunRow& row, std::byte* bytes) const;
   /// Reads them; columns are to be read in the order of columns(). Keeps the first fault.
   void unpack(const std::byte* bytes, UnpackedRow& unpacked) const;
@@ -70,7 +70,7 @@ std::string dwell_column(std::size_t place);
 /// @throws std::out_of_range if there is none
 const Column& column(std::string_view name);
 
-/// The value as people read it: a word as it is, a number by its shortest exact text; empty for nothing.
+/// The value as text: a word as it is, a number by its shortest exact text; empty for unset.
 std::string text_of(const Value& value);
 
 }  // namespace clog::sweep

@@ -11,15 +11,15 @@
 
 namespace clog::sweep {
 
-/// One task being worked on, in slices, so that its process can handle messages in between.
+/// A task computed in slices, so that its process can handle messages in between.
 class Job {
  public:
   virtual ~Job() = default;
-  /// Works for some milliseconds. Returns whether the task is over. Faults of the task itself end it with a
-  /// row of status `failed`; advance() does not throw.
+  /// Works for some milliseconds. Returns whether the task is over. Errors of the task end it with a row of
+  /// status `failed`; advance() does not throw.
   virtual bool advance() = 0;
-  /// Do row() and snapshot() say how far the task is now? Never waits. A job whose work is done by another
-  /// process asks it, and is up to date for one call once advance() has met with the answer.
+  /// Whether row() and snapshot() have the task's present state. Never waits. A job in another process asks
+  /// it, and is up to date for one call after advance() has received the answer.
   virtual bool refresh() { return true; }
   /// The task's row; `interrupted` if it is not over.
   virtual RunRow row() const = 0;

@@ -20,24 +20,24 @@ struct Key {
   std::string help;            ///< meaning and unit
   const Parameter* parameter;  ///< nullptr: preset
 
-  /// Not of the key obstacles, whose values name files: Plan knows what is in these.
-  /// @throws Error, without the key's name, if the value cannot be read or is out of the type's range
+  /// Not for the key obstacles, whose values name files: Plan knows their content. @throws Error, without the
+  /// key's name, if the value cannot be read or is out of the type's range
   void apply(RunParameters& run, const std::string& value) const;
 };
 
-/// Every key, in the order in which they are shown. The one place that knows them.
+/// Every key, in the order in which they are shown. The only such list.
 const std::vector<Key>& keys();
-/// What a word that is none of the names may have meant: the key of a paper's symbol (Gamma, w_ob), up to
-/// three names that it is a part of, or the nearest name. Empty if there is none.
+/// Suggestions for a word that is no key: the key of a paper's symbol (Gamma, w_ob), up to three names that
+/// contain it, or the nearest name. Empty if there is none.
 std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names);
 /// @throws Error that names the nearest key
 const Key& find_key(std::string_view name);
 /// Its place in keys(). @throws Error likewise
 std::size_t place_of_key(std::string_view name);
 
-/// A parameter's value as a config file has it.
+/// A parameter's value as text of a config file.
 std::string written(const ParameterValue& value, const Parameter& parameter);
-/// Do two texts of a list mean the same value, as 1e-3 and 0.001 do?
+/// Whether two texts of a list mean the same value, as 1e-3 and 0.001 do.
 bool is_same_value(const std::string& a, const std::string& b);
 
 std::vector<std::string> preset_names();

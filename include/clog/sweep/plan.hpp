@@ -16,9 +16,9 @@ namespace clog::sweep {
 /// Parameter set of a task, by its number.
 using GroupOf = std::function<std::int64_t(std::int64_t task)>;
 
-/// The runs of a sweep: a description, from which any task can be had in any order. It is a list of parameter
-/// sets, called groups, each with its seeds. They come from products of the settings' lists, one product for
-/// each point.
+/// The runs of a sweep: a description that yields any task in any order. It is a list of parameter sets,
+/// called groups, each with its seeds. They come from products of the settings' lists, one product for each
+/// point.
 ///
 /// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array:
 /// task s * num_groups() + g is seed s of group g if all groups have equally many seeds.
@@ -42,10 +42,10 @@ class Plan {
   std::vector<std::string> texts(std::int64_t group) const;
   /// @param place  of its seed among those of the group, 0 <= place < num_seeds(group)
   std::int64_t task_of(std::int64_t group, std::int64_t place) const;
-  /// Has every group as many seeds, and is task s num_groups() + g seed s of group g?
+  /// Whether every group has equally many seeds, and task s num_groups() + g is seed s of group g.
   bool has_equal_seeds() const { return layers_.size() == 1; }
 
-  /// Circles that its tasks are among.
+  /// Circles of its tasks.
   const CircleFiles& circle_files() const { return circle_files_; }
   /// Lists that were typed like a decimal with a comma, 0,5, one line each.
   const std::vector<std::string>& possible_decimals() const { return possible_decimals_; }
@@ -55,8 +55,7 @@ class Plan {
     const Key* key;
     std::vector<std::string> values;
   };
-  /// The lists of one branch of the settings that are others than those of the first branch, by place in
-  /// axes_.
+  /// The lists of one branch of the settings that differ from those of the first branch, by place in axes_.
   using OwnLists = std::map<std::size_t, std::vector<std::string>>;
   using Seeds = std::shared_ptr<const std::vector<std::uint32_t>>;
   struct Group {
@@ -64,7 +63,7 @@ class Plan {
     std::int64_t place;  ///< in the product, seeds excepted
     Seeds seeds;
   };
-  /// Successive tasks that go through the same groups again and again, seed by seed.
+  /// Successive tasks that repeat the same groups, seed by seed.
   struct Layer {
     std::int64_t first_task;
     std::int64_t first_seed;  ///< place among the seeds of a group
@@ -87,7 +86,7 @@ class Plan {
   RunParameters parameters(std::size_t product, std::int64_t place, std::uint32_t seed) const;
 };
 
-/// The one parameter set that the settings mean. @throws Error if they mean several
+/// The single parameter set of the settings. @throws Error if there are several
 RunParameters single_run(const Settings& settings);
 
 }  // namespace clog::sweep

@@ -6,22 +6,22 @@
 
 namespace clog::sweep {
 
-/// Parameter sets, listed one by one: each gives texts for these keys, and all other keys have the texts of
-/// the settings. A text may be a list; that of the key seeds usually is.
+/// Parameter sets, listed one by one: each has texts for these keys, and the texts of the settings for all
+/// others. A text may be a list; that of the key seeds usually is.
 struct Points {
   std::vector<std::string> keys;
-  /// A text for every key; an empty one stands for what the settings say.
+  /// A text for every key; an empty one stands for the settings' text.
   std::vector<std::vector<std::string>> rows;
 
   bool empty() const { return keys.empty(); }
   /// Drops all points, and names the keys of others. @throws Error if there is none, or one is unknown or
   /// repeated
   void begin(const std::vector<std::string>& names);
-  /// @throws Error that names the point, if it has not a text for each key, or one that cannot be read
+  /// @throws Error that names the point, if it lacks a text for a key, or has one that cannot be read
   void add(const std::vector<std::string>& texts);
 };
 
-/// The part of a sweep that one of several machines takes.
+/// The part of a sweep for one of several machines.
 struct Shard {
   std::int64_t number = 1;
   std::int64_t of = 1;

@@ -6,16 +6,16 @@
 
 namespace clog::sweep {
 
-/// The first impossible value of a row: a parameter that no run can have, a number that is none, a result
-/// that contradicts another or physics. Empty if nothing is wrong. Columns that are not known, as in files of
-/// older formats, are no fault.
+/// The first impossible value of a row: a parameter that no run can have, a number that is not finite, a
+/// result that contradicts another or physics. Empty if nothing is wrong. Unknown columns, as in files of
+/// older formats, are accepted.
 std::string fault_of(const RunRow& row);
 
-/// No droplet gets farther from its release in the time of this row [sigma].
+/// Largest possible distance from the release in the time of this row [sigma].
 ///
-/// Drag takes at least b_inf v^2 out of a droplet whose centre moves at v, b_inf = M g/V_t, and gravity and
-/// the energy U that it was released with are all that is put in: b_inf (integral of v^2) <= M g x + U. A way
-/// of length r in the time t has (integral of v^2) >= r^2/t, and x <= r, so that r <= V_t t + U/(M g).
+/// Drag takes at least b_inf v^2 from a droplet whose centre moves at v, b_inf = M g/V_t, and only gravity
+/// and the energy U at its release supply energy: b_inf (integral of v^2) <= M g x + U. A path of length r in
+/// the time t has (integral of v^2) >= r^2/t, and x <= r, so that r <= V_t t + U/(M g).
 double farthest_way(const RunRow& row);
 
 }  // namespace clog::sweep

@@ -8,19 +8,19 @@
 
 namespace clog::sweep {
 
-/// The parameters of a run outside the range that tests/soundness found sound, each with its value and that
-/// range: "line-tension=30 (robust is tested from 0.02 to 10)".
+/// The parameters of a run outside the tested range of soundness, each with its value and that range:
+/// "line-tension=30 (robust is tested from 0.02 to 10)".
 std::vector<std::string> untested_parameters(const RunRow& row);
 /// One line about all runs of a plan; empty if all are within.
 std::string untested_parameters(const Plan& plan);
 
-/// The way after which a droplet may meet the same obstacles again [sigma]: the length of an array that
-/// stands for a random one. Periodicity across the flow does not shorten it. Infinite for lattices, which
-/// repeat by nature, and where there is no array.
+/// Distance after which a droplet may meet the same obstacles again [sigma]: the length of an array that
+/// represents a random one. Periodicity across the flow does not shorten it. Infinite for lattices, which
+/// repeat by nature, and without an array.
 double repetition_length(const RunRow& row);
-/// Has the droplet come so far?
+/// Whether the droplet has come this far.
 bool has_met_repetition(const RunRow& row);
-/// One line that says whether runs of a plan may come so far; empty if none does.
+/// One line on whether runs of a plan may come this far; empty if none does.
 std::string possible_repetition(const Plan& plan);
 
 /// Lines about files of circles that leave a conspicuous part of their array bare, or have circles without a
@@ -37,14 +37,14 @@ inline constexpr double tolerated_mesh_hold = 0.01;
 /// interfaces bears on half of a round obstacle: their tensions have a ratio of at most exp(pi mu) (capstan).
 /// Zero if friction does not act on both.
 double weight_borne_by_friction(const DpParameters& dp);
-/// May the corners be what holds this clog? True if they can bear more than friction, and for every droplet
-/// that hangs over obstacles if mesh_hold is unknown, or if friction acts on one of its interfaces only
+/// Whether the corners may hold this clog. True if they can bear more than friction; if mesh_hold is unknown,
+/// or friction acts on one interface only, true for every droplet that hangs over obstacles
 /// (docs/explanation/wrapped.md).
 bool may_hang_on_mesh(const RunRow& row);
 
 /// Smallest possible centre-to-centre distance of two obstacles; the mean of these if diameters vary [sigma].
 /// For user-supplied circles, which may have any diameters and one gap narrower than all others:
-/// 1/sqrt(circles per area). The void in which a droplet is released is about as large.
+/// 1/sqrt(circles per area). The release void is about as large.
 double obstacle_spacing(const RunRow& row);
 
 }  // namespace clog::sweep

@@ -29,7 +29,7 @@ struct clog::Words<clog::sweep::FoundBy> {
 
 namespace clog::sweep {
 
-/// Instruction set of a run that went on from a snapshot of another one.
+/// Instruction set of a run that resumed from a snapshot of another one.
 inline constexpr const char* mixed_instruction_sets = "mixed";
 
 /// One row of the table of runs: parameters, results, circumstances. Its columns, their units and meanings
@@ -86,39 +86,37 @@ struct RunRow {
   std::string message;
 };
 
-/// Is this number of a row known?
+/// Whether this number of a row is known.
 inline bool is_known(double number) { return !std::isnan(number); }
 
-/// Has the run come to its end, so that it has a result?
+/// Whether the run is over, so that it has a result.
 inline bool is_result(RunStatus status) {
   return status == RunStatus::clogged || status == RunStatus::broken || status == RunStatus::flowing ||
          status == RunStatus::passed;
 }
-/// Is the run in progress, or was it interrupted?
+/// Whether the run is in progress, or was interrupted.
 inline bool is_unfinished(RunStatus status) {
   return status == RunStatus::running || status == RunStatus::interrupted;
 }
 
-/// Cost of a run so far [s]: its processor time, or its wall-clock time if that is not known.
+/// Cost of a run so far [s]: its processor time, or its wall-clock time if that is unknown.
 inline double cost_seconds(const RunRow& row) {
   return is_known(row.processor_seconds) ? row.processor_seconds : row.wall_seconds;
 }
 
-/// What was run, seed included, as bytes: equal for equal runs, whatever their place in a sweep.
+/// The parameters, seed included, as bytes: equal for equal runs, wherever they are in a sweep.
 std::string identity(const RunRow& row);
 
-/// The columns that say what was run.
-/// @param run  resolved
+/// The columns of parameters. @param run resolved
 RunRow describe(const RunParameters& run);
 /// Fills the columns of results.
 void record(const RunResult& result, RunRow& row);
 
-/// The row as bytes, one column after the other: so it is stored, and sent to other processes of this
-/// version.
+/// The row as bytes, one column after the other, as it is stored and sent to other processes of this version.
 std::size_t packed_size();
 void pack(const RunRow& row, std::span<std::byte> packed);
 
-/// A row, and what is wrong with its bytes: the first value that no row can hold; empty if there is none.
+/// A row, and the error in its bytes: the first value that no row can have; empty if there is none.
 struct UnpackedRow {
   RunRow row;
   std::string fault;

@@ -16,22 +16,22 @@
 
 namespace clog::sweep {
 
-/// A value in a line of a config, from which unescaped() makes the same text, whatever bytes it has: what
-/// would end or cut the line (control characters, #, a backslash, blanks at the ends) becomes a backslash, x
+/// Escapes a value for a line of a config; unescaped() restores it, whatever bytes it has: characters that
+/// would end or cut the line (control characters, #, a backslash, blanks at the ends) become a backslash, x
 /// and two digits.
 std::string escaped(const std::string& text);
-/// The way back. A backslash without x and two hexadecimal digits is one.
+/// The way back. Any other backslash stays a backslash.
 std::string unescaped(const std::string& text);
 
-/// Circles by the name of their file, as a value of the key obstacles has it.
+/// Circles by the name of their file, as in the key obstacles.
 using CircleFiles = std::map<std::string, OwnCircles>;
 inline constexpr const char* circles_key = "obstacles";
 
-/// Does a config explain its keys?
+/// Whether a config explains its keys.
 enum class Comments { none, help };
 
-/// The settings of a sweep: the texts given, and what follows from them for the other keys. The parameter
-/// sets are the product of all lists; or points, each with the product of the other keys' lists.
+/// The settings of a sweep: the given texts, and those that follow for the other keys. The parameter sets are
+/// the product of all lists, or of the remaining lists for each point.
 class Settings {
  public:
   /// Reads the text that to_config() wrote. @throws Error as set(), or if a line is not one of a config
@@ -39,7 +39,8 @@ class Settings {
 
   /// @throws Error if there is no such key or its list cannot be read
   void set(const std::string& name, const std::string& text);
-  /// Did set() give the key its text? Other keys have that of the preset, one that follows, or the default.
+  /// Whether set() gave the key its text. Other keys have that of the preset, one that follows, or the
+  /// default.
   bool is_given(const std::string& name) const;
   /// The reference is valid until the key's text changes.
   const std::string& text(const std::string& name) const { return entry(name).text; }
@@ -54,9 +55,9 @@ class Settings {
   void set_shard(Shard shard) { shard_ = shard; }
   const Shard& shard() const { return shard_; }
 
-  /// Called for each combination of words of each point, with settings that have no points and one value for
-  /// each key of words, so that the runs are the product of the other lists.
-  /// @param point  its place; -1 where there are no points
+  /// Calls for each combination of words of each point, with settings that have no points and one value for
+  /// each key of words, so that the runs are the product of the other lists. @param point its place; -1
+  /// without points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;
   /// The values() of each key in all branches together.
@@ -64,17 +65,17 @@ class Settings {
 
   /// A line of a config: a key with its text, or one of `point-keys`, `point`, `shard`.
   void set_line(const std::string& name, const std::string& text);
-  /// Is this the name of such a line and no key?
+  /// Whether this is the name of such a line and not a key.
   static bool is_plan_line(const std::string& name);
 
   /// The circles in the files that the key obstacles names. The caller that sets the key reads them.
   const CircleFiles& circle_files() const { return circle_files_; }
   void attach(const std::string& file, OwnCircles circles) { circle_files_.insert_or_assign(file, circles); }
   void detach(const std::string& file) { circle_files_.erase(file); }
-  /// Files that are named and not attached.
+  /// Files that are named but not attached.
   std::vector<std::string> missing_files() const;
 
-  /// Everything, circles included, as text that travels; and the way back. @throws Error
+  /// Everything, circles included, as text for other ranks; and the inverse. @throws Error
   std::string packed() const;
   static Settings from_packed(const std::string& text);
 
@@ -86,7 +87,7 @@ class Settings {
     std::string text;
     std::vector<std::string> values;
   };
-  /// By place in keys(). Branches of a sweep share those that they have in common: there may be many.
+  /// By place in keys(). Shared by the branches of a sweep, of which there may be many.
   using Entries = std::vector<std::shared_ptr<const Entry>>;
 
   Entries given_ = Entries(keys().size());
@@ -102,10 +103,10 @@ class Settings {
   std::set<std::string> keys_that_follow() const;
 };
 
-/// Refuses keys that another key, or the scene, leaves without effect, beyond those that check_each() knows.
-/// @param settings  with one value for each key of words; no parameter set is made of them yet. @throws Error
+/// Refuses keys that another key, or the scene, leaves without effect, in addition to those of check_each().
+/// @param settings with one value for each key of words, before parameter sets are made @throws Error
 void refuse_contradictions(const Settings& settings);
-/// A question about a list that could be a decimal below one; empty for any other.
+/// A question about a list that may be a decimal below one; empty for any other.
 std::string possible_decimal(const Key& key, const Settings& settings);
 
 }  // namespace clog::sweep

@@ -18,7 +18,7 @@ namespace clog::sweep {
 /// @throws Error, without the key's name, that says what is wrong with which item
 std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
                                      const std::vector<std::string>& words);
-/// The same where values may repeat.
+/// The same if values may repeat.
 std::vector<std::string> expand_values(std::string_view text, ValueKind kind,
                                        const std::vector<std::string>& words);
 
@@ -27,7 +27,7 @@ using clog::shortest;
 /// `1 run`, `2 runs`.
 std::string counted(std::int64_t number, const std::string& noun);
 
-/// What a text is that begins with a number and continues with something like a unit.
+/// Describes a text that begins with a number and continues with something like a unit.
 struct NumberWithUnit : Error {
   using Error::Error;
 };
@@ -36,14 +36,14 @@ double to_number(std::string_view text);
 /// @throws Error if the whole text is not one integer, NumberWithUnit if it has one
 long long to_integer(std::string_view text);
 
-/// The number `0.3` that a text like `0,3` means with a decimal comma; empty for any other text.
+/// The number `0.3` that `0,3` means with a decimal comma; empty for any other text.
 std::string with_decimal_point(std::string_view text);
 
 /// The candidate nearest to a mistyped word, or empty if none is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
-/// The candidates that end with the word, as wall-contact ends with contact; if there are none, those of
-/// which it is another part between dashes.
+/// The candidates that end with the word, as wall-contact ends with contact; if there are none, those that
+/// contain it between dashes.
 std::vector<std::string> with_part(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace clog::sweep

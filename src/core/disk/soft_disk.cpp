@@ -18,8 +18,8 @@
 namespace clog {
 namespace {
 
-/// Up to a dozen obstacles of a saturated array overlap a soft disk at once; (omega dt)^2 of all their
-/// contacts together is bounded as that of the polygon's modes is.
+/// Up to a dozen obstacles of a saturated array overlap a soft disk at once. The bound on (omega dt)^2 of all
+/// contacts together is that of the polygon's modes.
 constexpr double most_contacts = 12;
 constexpr double max_omega_dt2 = 3.0;
 
@@ -75,7 +75,7 @@ DropletState release_disk(const RunParameters& run, const ObstacleArray& obstacl
   return state;
 }
 
-/// Bound: as many obstacles as find room in the disk's reach, each pushed in no farther than its centre.
+/// Upper bound: as many obstacles as fit into the disk's reach, each overlapping at most to its centre.
 double energy_of_overlaps(const RunParameters& run) {
   const double spacing = run.obstacles.smallest_diameter() + run.obstacles.gap;
   const double across = (units::droplet_diameter + run.obstacles.diameter + spacing) / spacing;
@@ -91,7 +91,7 @@ Axes x_and_y(const DropletState& state) {
   Axes axes{.directions = Eigen::SparseMatrix<double>(2 * state.size(), 2 * state.size()), .slide = {}};
   axes.directions.setIdentity();
   return axes;
-}  // NOLINT(clang-analyzer-unix.Malloc): the matrix takes its memory along
+}  // NOLINT(clang-analyzer-unix.Malloc): the matrix owns this memory after the move
 
 std::optional<DropletState> equilibrium_of_disk(const RunParameters& run, const ObstacleArray& obstacles,
                                                 const DropletState& state) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_steps_per_check = 32;
 constexpr double contact_range = units::droplet_diameter / 2;
-/// A disk moves as far in some hundred steps: few obstacles are listed in vain, and lists are seldom renewed.
+/// Distance that a disk moves in some hundred steps: the list stays short and is seldom renewed.
 constexpr double usual_skin = 0.02;  // [sigma]
 
 }  // namespace
@@ -29,7 +29,7 @@ void SpForces::update_contacts(const DropletState& state, const Travel& travel) 
   near_.clear();
   reference_ = centre;
   listed_ = true;
-  if (!centre.allFinite()) return;  // a disk that has diverged; the run will see it at its next check
+  if (!centre.allFinite()) return;  // the disk has diverged; the run detects this at its next check
   obstacles_->gather({state.frame.origin[0], state.frame.origin[1], centre[0], centre[0], centre[1],
                       centre[1], contact_range + skin_},
                      near_);
@@ -52,11 +52,11 @@ Eigen::Array2d SpForces::wedge_force(const Eigen::Array2d& place, const LocalFra
   return force;
 }
 
-/// The result waits only for a root, a division and a few sums; the rest is done meanwhile.
+/// Only a root, a division and a few sums depend on each other; the processor overlaps the rest.
 [[gnu::always_inline]] inline Eigen::Array2d SpForces::scaled_force(double scale, const Eigen::Array2d& place,
                                                                     const LocalFrame& frame) const {
   const double stiffness = scale * contact_stiffness(wall_stiffness_, units::droplet_diameter);
-  Eigen::Array2d push(0, 0);  // of springs of no length, at the ends of arms as long as the reach
+  Eigen::Array2d push(0, 0);  // stiffness of springs of zero length, on arms as long as the reach
   Eigen::Array2d rest = scale * weight_;
   for (const Obstacle& obstacle : near_) {
     const Eigen::Array2d arm = place - Eigen::Array2d(obstacle.x, obstacle.y);
@@ -110,7 +110,7 @@ void SpDroplet::start_afresh() {
 void SpDroplet::advance(int num_steps) {
   const double dt = run_.time_step.value();
   for (int done = 0, steps = 0; done < num_steps; done += steps) {
-    // Large steps and high speeds are looked after more often, so that the list of obstacles stays short.
+    // Checks more often at large steps and high speeds, so that the list of obstacles stays short.
     steps = std::min(most_steps_per_check, num_steps - done);
     while (steps > 1 && state_.possible_travel(steps * dt).absolute > usual_skin) steps /= 2;
     if (state_.recentre().any()) forces_.forget_contacts();

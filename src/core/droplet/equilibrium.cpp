@@ -24,28 +24,28 @@ constexpr int most_stiffnesses = 30;  // most searches compute two
 constexpr int most_steps = 50;        // with one computed stiffness; most need 15
 constexpr int most_rejections = 10;   // of steps in a row
 constexpr int most_halvings = 10;
-/// Step of the central differences [sigma]: far below a contact's range, far above round-off.
+/// Step of the central differences [sigma]: much smaller than a contact's range, much larger than round-off.
 constexpr double difference_step = 1e-6;
-/// Force on a point over its weight; round-off of the contact forces is 1e-10.
+/// Force on a point divided by its weight; round-off of the contact forces is 1e-10.
 constexpr double force_tolerance = 1e-7;
 /// Remaining Newton step [sigma].
 constexpr double move_tolerance = 1e-7;
-/// What an accepted step leaves of the way at most.
+/// Largest fraction of the remaining distance that an accepted step may leave.
 constexpr double most_left = 0.75;
-/// A correction leaves at least this part of the stiffness along a step. A contact that opens on the way may
-/// take nearly all of it, and the next step would be far too long.
+/// A correction keeps at least this fraction of the stiffness along a step. A contact that opens during the
+/// step may remove nearly all of it, and the next step would be far too long.
 constexpr double least_part = 0.5;
 
 MatrixXd symmetric(const MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2; }
 
-/// Do all displacements x have x.Kx > bound x.x?
+/// Whether x.Kx > bound x.x for all displacements x.
 bool is_definite(double bound, const MatrixXd& k) {
   MatrixXd shifted = symmetric(k);
   shifted.diagonal().array() -= bound;
   return Eigen::LLT<MatrixXd>(shifted).info() == Eigen::Success;
 }
 
-/// Does every displacement decay under drag, dx/dt = -Kx, faster than with stiffness `bound`? True if K -
+/// Whether every displacement decays under drag, dx/dt = -Kx, faster than with stiffness `bound`. True if K -
 /// bound is positive definite, which is cheaper to test; if the forces have an energy, K is symmetric and
 /// this is also necessary. Springs along the interface have no energy: they make K slightly unsymmetric, and
 /// a soft K may be stable without being definite.
@@ -55,15 +55,14 @@ bool is_stable(double bound, const MatrixXd& k, bool has_energy) {
 }
 
 /// The stiffness K, which is minus the derivative of the force, in two parts: K_tt of the vertices along the
-/// interface, and the Schur complement K_nn - K_nt K_tt^-1 K_tn, the stiffness of the shape when the vertices
-/// along it adapt at once. With vertices held in place, a droplet that is free to drift aside would seem to
-/// be held by its own discretisation.
+/// interface, and the Schur complement K_nn - K_nt K_tt^-1 K_tn, the stiffness of the shape if the vertices
+/// adapt along it. With fixed vertices, the mesh would seem to hold a droplet that is free to drift aside.
 class Stiffness {
  public:
   explicit Stiffness(bool has_energy) : has_energy_(has_energy) {}
 
-  /// Replaces K. Returns whether it resists all displacements by more than `bound`, and lets the vertices
-  /// find their places; otherwise nothing can be solved.
+  /// Replaces K. Returns whether the shape resists all displacements by more than `bound` and the vertices
+  /// can adapt; otherwise nothing can be solved.
   bool set(const MatrixXd& k, double bound) {
     const Index n = k.rows() / 2;
     if (!is_definite(0, k.bottomRightCorner(n, n))) return false;
@@ -87,10 +86,9 @@ class Stiffness {
     return move;
   }
 
-  /// Changes K by a matrix of rank one, so that solve() gives `step` for the change of force along it, or
-  /// comes as near to it as least_part allows. The change that a contact makes has rank one, too, so a few
-  /// corrections are enough. C. G. Broyden, Math. Comp. 19, 577 (1965); J. J. More and J. A. Trangenstein,
-  /// Math. Comp. 30, 523 (1976).
+  /// Changes K by a matrix of rank one, so that solve() gives `step` for the change of force along it, as far
+  /// as least_part allows. A contact changes K by rank one, too, so a few corrections are enough. C. G.
+  /// Broyden, Math. Comp. 19, 577 (1965); J. J. More and J. A. Trangenstein, Math. Comp. 30, 523 (1976).
   /// @param found  what solve() gives for that change until now
   void learn(const VectorXd& step, const VectorXd& found) {
     const double part_kept = step.dot(found) / step.squaredNorm();
@@ -98,7 +96,7 @@ class Stiffness {
     const VectorXd excess = share * (found - step);
     corrections_.push_back({step, excess / step.dot(step + excess)});
   }
-  /// Makes what solve() gave before the last correction what it gives now.
+  /// Updates a solution for the last correction.
   void correct(VectorXd& move) const { corrections_.back().apply_to(move); }
 
  private:
@@ -113,7 +111,7 @@ class Stiffness {
   Eigen::PartialPivLU<MatrixXd> along_, shape_factor_;
 };
 
-/// Forces along given axes, around a state that moves.
+/// Forces along the axes of a given state, at states nearby.
 class ForceField {
  public:
   ForceField(const EquilibriumForces& forces, DropletState state)
@@ -132,7 +130,7 @@ class ForceField {
     return force;
   }
 
-  /// At the place of the last force_at(). Valid until the next call.
+  /// At the position of the last force_at(). Valid until the next call.
   const MatrixXd& stiffness(const Axes& axes) {
     const ArrayXd middle = state_.position;
     stiffness_.resize(middle.size(), middle.size());
@@ -170,10 +168,10 @@ class ForceField {
 
 /// Newton's method. A step is accepted if it shortens the remaining Newton step, computed with the present
 /// stiffness (P. Deuflhard's natural monotonicity test): a test on forces would reject nearly every step,
-/// because contacts that open or close dominate them. To compute a stiffness costs as much as 80 steps, so
-/// each step, accepted or not, corrects it for the next one. It is recomputed where this does not help, and
-/// at last within difference_step of the rest. Where such steps lead nowhere, or to a place without
-/// resistance, the search goes back and on without corrections: it halves its steps.
+/// because contacts that open or close dominate them. Computing a stiffness costs as much as 80 steps, so
+/// each step, accepted or not, corrects it for the next one. It is recomputed where corrections do not help,
+/// and finally within difference_step of the rest. If such steps fail, or lead to a place without resistance,
+/// the search returns to the last computed stiffness and continues without corrections, with halved steps.
 class Search {
  public:
   Search(const EquilibriumForces& forces, const DropletState& initial)
@@ -213,7 +211,7 @@ class Search {
   // At the position:
   Axes axes_;
   VectorXd force_;
-  VectorXd move_;  // to the rest, by the stiffness
+  VectorXd move_;  // displacement to the rest, by the stiffness
 
   DropletState state() {
     field_.move_to(position_);
@@ -230,14 +228,15 @@ class Search {
     return longest() < move_tolerance && force_.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight_;
   }
 
-  /// Not along axes of an earlier place.
+  /// Axes of an earlier place do not apply.
   bool rests_along_own_axes() {
     find_axes_and_force();
     move_ = stiffness_.solve(force_);
     return rests();
   }
 
-  /// Goes a part of the move if this leaves at most a share of the way, and returns whether it did.
+  /// Moves by a part of the step if this leaves at most a given fraction of the distance, and returns whether
+  /// it did.
   bool tries(double part, double share) {
     const VectorXd step = part * move_;
     const ArrayXd place = position_ + (axes_.directions * step).array();
@@ -255,8 +254,8 @@ class Search {
     return succeeds;
   }
 
-  /// Takes steps with the stiffness computed here. Returns whether they have come closer, or the droplet
-  /// rests, and is not too far away.
+  /// Takes steps with the stiffness computed here. Returns whether they reduced the distance, or the droplet
+  /// rests, and whether it is near enough.
   bool approach() {
     begun_at_ = position_;
     move_ = stiffness_.solve(force_);

@@ -3,7 +3,7 @@
 namespace clog {
 namespace {
 
-/// Shares of the support below and above which one mechanism alone holds the droplet.
+/// Fractions of the support above and below which one mechanism alone holds the droplet.
 constexpr double squeezed_below = 1.0 / 3;
 constexpr double wrapped_above = 2.0 / 3;
 

@@ -37,7 +37,7 @@ constexpr ParameterScope lattices = {
     "lattice", "a random array has no rows", "add obstacle-layout=lattice",
     [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::lattice; }};
 
-// How a member is seen from outside, by its type.
+// Conversion of a member to and from a value, by its type.
 
 template <class T>
 struct Outside;
@@ -101,7 +101,7 @@ struct Outside<Enum> {
   }
 };
 
-/// A word, or an automatic one.
+/// A word, or `auto`.
 template <class Enum>
 requires std::is_enum_v<Enum>
 struct Outside<std::optional<Enum>> : Outside<Enum> {
@@ -166,7 +166,7 @@ struct Outside<std::optional<LaboratoryText>> {
   }
 };
 
-/// An entry's facts about a parameter, except its key, its member and what follows from the member's type.
+/// Properties of a parameter, except its key, its member and what follows from the member's type.
 struct Facts {
   const char* column;
   const char* symbol = "";
@@ -598,7 +598,7 @@ std::vector<Parameter> interface_entries() {
   };
 }
 
-/// Contact with walls, and what walls hold.
+/// Contact with walls, and the forces along them.
 std::vector<Parameter> wall_entries() {
   return {
       entry("wall-contact", [](auto& run) -> auto& { return run.dp.wall_contact; },
@@ -675,7 +675,7 @@ std::vector<Parameter> wall_entries() {
   };
 }
 
-/// Contact of the interface with itself, and where the weight acts.
+/// Self-contact, and where the weight acts.
 std::vector<Parameter> self_contact_entries() {
   return {
       entry("self-contact", [](auto& run) -> auto& { return run.dp.self_contact; },
@@ -707,7 +707,7 @@ std::vector<Parameter> self_contact_entries() {
   };
 }
 
-/// Parameters of a run's end and its verdict.
+/// Parameters of a run's end and of its status.
 std::vector<Parameter> verdict_entries() {
   return {
       entry("clog-energy", [](auto& run) -> auto& { return run.clog_energy; },
@@ -745,7 +745,7 @@ std::vector<Parameter> verdict_entries() {
   };
 }
 
-/// Whose units results are wanted in.
+/// The laboratory whose units results have.
 std::vector<Parameter> laboratory_entries() {
   return {entry("laboratory", [](auto& run) -> auto& { return run.laboratory; },
                 {.column = "laboratory",
@@ -787,7 +787,7 @@ void check_range(const Parameter& parameter, double number, const ParameterValue
     refuse(parameter, value, upper->reason, upper->remedy);
 }
 
-/// A share is checked as the number it stands for.
+/// A share is checked as the number that it represents.
 std::optional<double> number_of(const ParameterValue& value, ValueKind kind) {
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);

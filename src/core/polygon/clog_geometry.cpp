@@ -17,8 +17,8 @@ struct Polygon {
   Eigen::Index next(Eigen::Index i) const { return i + 1 < size() ? i + 1 : 0; }
   Eigen::Array2d vertex(Eigen::Index i) const { return {position[i], position[size() + i]}; }
 
-  /// Calls visit(coordinate) for every place where the contour crosses the line on which coordinate `axis` is
-  /// `value`, with the place's other coordinate.
+  /// Calls visit(coordinate) wherever the contour crosses the line on which coordinate `axis` is `value`,
+  /// with the other coordinate.
   template <class Visit>
   void visit_crossings(int axis, double value, Visit visit) const {
     for (Eigen::Index i = 0; i < size(); ++i) {
@@ -29,7 +29,7 @@ struct Polygon {
   }
 };
 
-/// An obstacle: a circle, or several that are one post.
+/// An obstacle: a circle, or the circles of a post.
 struct Post {
   std::vector<Obstacle> circles;
 
@@ -51,8 +51,8 @@ std::vector<Post> posts_of(std::span<const Obstacle> circles) {
   return posts;
 }
 
-/// Does the droplet hang over a post? Its interface covers the upstream side, not farther off than the radius
-/// there, and reaches beyond the post on both sides.
+/// Whether the droplet hangs over a post. Its interface covers the upstream side, at most one radius away,
+/// and reaches beyond the post on both sides.
 bool hangs_over(const Polygon& polygon, const Post& post) {
   const Obstacle& upstream = post.most_upstream();
   bool covers = false;
@@ -69,17 +69,17 @@ bool hangs_over(const Polygon& polygon, const Post& post) {
   return left && right;
 }
 
-/// A touched obstacle, a post or a wall. The support is the force that the overlaps of all edges exert on the
-/// droplet against the flow, over the contact's stiffness [sigma].
+/// A touched obstacle, a post or a wall. The support is the force of all its overlaps on the droplet against
+/// the flow, divided by the contact's stiffness [sigma].
 struct Touched {
   double support = 0;
   bool is_wrapped = false;
   std::vector<Obstacle> circles;  ///< of a post
   std::optional<Wedge> wall;
-  double longest_link = 0;  ///< that touches it, over the radius at which it lies; 0 for walls
+  double longest_link = 0;  ///< length of a touching edge divided by the radius at which it lies; 0 for walls
 };
 
-/// Which obstacle each edge touches, the one that it overlaps most; -1 for none.
+/// The obstacle that each edge overlaps most; -1: none.
 class Contacts {
  public:
   Contacts(const Polygon& polygon, double range)
@@ -111,7 +111,7 @@ class Contacts {
     bool is_touched = false;
     for (Eigen::Index i = 0; i < polygon.size(); ++i) {
       const Eigen::Array2d begin = polygon.vertex(i), end = polygon.vertex(polygon.next(i));
-      // Nearest to a flank is an end of the edge; to the rounded tip, maybe a place between them.
+      // The closest point to a flank is an end of the edge; to the rounded tip it may be between them.
       const auto distance = [&](const Eigen::Array2d& place) {
         return distance_to(wall, place - wall.centre());
       };
@@ -135,7 +135,7 @@ class Contacts {
   std::vector<int> of_edge_;
   std::vector<double> deepest_;
 
-  /// Does the edge touch the obstacle that touched_ gets next? If so, adds its push along the flow.
+  /// Whether the edge touches the obstacle that touched_ gets next. If so, adds its force along the flow.
   bool take(Eigen::Index edge, double overlap, double push, Touched& obstacle) {
     if (overlap <= 0) return false;
     obstacle.support -= push;
@@ -147,7 +147,7 @@ class Contacts {
   }
 };
 
-/// Is there no gap between the two, because a post overlaps a wall?
+/// Whether there is no gap between the two, because a post overlaps a wall.
 bool overlap(const Touched& one, const Touched& other) {
   if (!one.wall) return other.wall && overlap(other, one);
   return std::ranges::any_of(other.circles, [&](const Obstacle& circle) {
@@ -219,7 +219,7 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& a
     const Arc& to = arcs[(i + 1) % arcs.size()];
     if (from.obstacle == to.obstacle) continue;
     if (overlap(contacts.touched()[from.obstacle], contacts.touched()[to.obstacle])) continue;
-    // One side may push across the flow only, or a little downstream, and is a side of the gap all the same.
+    // One side may push only across the flow, or a little downstream; it still is a side of the gap.
     const std::vector<Touched>& touched = contacts.touched();
     if (std::max(touched[from.obstacle].support, touched[to.obstacle].support) <= 0) continue;
     // The outward normal of a counter-clockwise contour points downstream where y grows.

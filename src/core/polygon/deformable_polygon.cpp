@@ -24,18 +24,18 @@ void choose_vertices(RunParameters& run, double obstacle_diameter) {
 
 int num_vertices(const RunParameters& run) { return *run.dp.vertices; }
 
-/// The narrowest passage is as wide as an edge is long at rest.
+/// The narrowest passage has the width of an edge at rest.
 double edge_length(const RunParameters& run) { return units::regular_edge_length(*run.dp.vertices); }
 
-/// The regular polygon in which area pressure balances line tension and springs, a little smaller than a_0.
+/// The regular polygon in which pressure balances line tension and springs, a little smaller than a_0.
 Eigen::ArrayXd free_polygon(const RunParameters& run) {
   const int n = *run.dp.vertices;
   const double spring =
       run.dp.perimeter_spring == PerimeterSpring::rest ? run.dp.perimeter_stiffness.value() * n : 0;
   const double rest_edge = units::regular_edge_length(n);
-  // K_a (a_0 - a) = T dP/da, T the tension of an edge; dP/da = P/(2a). The correction is small, so iterating
-  // converges at once; a droplet that is no stiffer than its tension has no such state, and keeps half of
-  // a_0.
+  // K_a (a_0 - a) = T dP/da, with T the tension of an edge and dP/da = P/(2a). The correction is small, so
+  // the iteration converges at once. If the area is no stiffer than the tension there is no such state, and
+  // half of a_0 is kept.
   double area = units::rest_area;
   for (int i = 0; i < 50; ++i) {
     const double edge = units::regular_edge_length(n, area);
@@ -54,7 +54,7 @@ ContactReach contact_reach_of_polygon(const RunParameters& run) {
   return {.range = run.dp.contact_range.value(), .by_edges = run.dp.wall_contact == WallContact::edge};
 }
 
-/// The interface of a droplet released among obstacles is longer than a circle; it gets hardly twice as long.
+/// The interface of a released droplet among obstacles is longer than a circle, but hardly twice as long.
 double energy_of_interface(const RunParameters& run) {
   constexpr double excess_perimeter = 20;  // [sigma]
   const double spring =
@@ -67,7 +67,7 @@ std::unique_ptr<Droplet> make_polygon(const RunParameters& run, const ObstacleAr
   return std::make_unique<DpDroplet>(run, obstacles, std::move(initial));
 }
 
-/// Normal to the interface at each vertex, to the chord between its neighbours, then along it.
+/// Axes at each vertex: normal to the chord between its neighbours, then along it.
 Axes axes_of_interface(const DpParameters& dp, const DropletState& state) {
   using Eigen::Index;
   const Index n = state.size();
@@ -86,11 +86,10 @@ Axes axes_of_interface(const DpParameters& dp, const DropletState& state) {
     axes.slide[i] = length;
   }
   axes.slide.normalize();
-  // Springs with an energy leave vertices unevenly spread, ripples are higher, and it pays to follow them to
-  // the end.
+  // Springs with an energy leave uneven edges and higher ripples, so following them to the end is worthwhile.
   if (dp.perimeter_spring != PerimeterSpring::along) axes.slide.resize(0);
   return axes;
-}  // NOLINT(clang-analyzer-unix.Malloc): the matrix takes its memory along
+}  // NOLINT(clang-analyzer-unix.Malloc): the matrix owns this memory after the move
 
 std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, const ObstacleArray& obstacles,
                                                    const DropletState& state) {
@@ -101,12 +100,12 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   const EquilibriumForces asked = EquilibriumForces::of(rest_forces, axes, have_energy);
   std::optional<DropletState> rest = find_equilibrium(asked, state);
   if (!forces.has_anchors()) return rest;
-  // Walls hold the droplet by springs, whose anchors rest while it is searched. Where a wall does not bear
-  // what its spring asks for, it gives what it bears, whatever the droplet does, and the search goes on from
-  // there until all walls bear what they give.
+  // Walls hold the droplet by springs, whose anchors stay fixed during a search. A wall whose limit is
+  // exceeded exerts its largest force, whatever the droplet does; the search continues until every wall bears
+  // its force.
   constexpr int most_yields = 20;
-  // If all walls come to bear what they give, the excess is below the first one by then
-  // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above for all the yields.
+  // If all walls can bear their forces, the excess is below the first one by then
+  // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above after all yields.
   constexpr int yields_until_excess_has_fallen = 12;
   const double bearable = 1e-6 * units::droplet_mass * units::gravity / *run.dp.vertices;
   WallTouches touches(run, obstacles);

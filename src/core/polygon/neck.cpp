@@ -8,16 +8,16 @@
 namespace clog {
 namespace {
 
-/// A part of the droplet is a lobe if a drop of its area is at least so many times as wide as the neck. What
-/// a chord cuts off a circle is at most half as large as a drop of the chord's width.
+/// A part of the droplet is a lobe if a circle of its area is at least this many times as wide as the neck. A
+/// chord cuts off a circle at most half of the area of a circle of the chord's width.
 constexpr double lobe_width = 2;
-/// A lobe also has at least this share of the droplet's area. Without it a droplet would lose no more than a
-/// bead: films end in beads of a thousandth when they draw in.
+/// A lobe also has at least this fraction of the droplet's area. Otherwise a droplet would only lose a bead:
+/// retracting films end in beads of a thousandth.
 constexpr double lobe_share = 0.02;
 
-/// Cosine of an angle that counts as a right one: of a bridge with straight sides all segments are equal.
+/// Cosine of an angle that counts as right: all segments of a bridge with straight sides are equal.
 constexpr double round_off = 1e-9;
-/// Is a cosine, or sine, times both lengths no more than that? Without square roots.
+/// Whether a cosine, or sine, times both lengths is at most this. Without square roots.
 bool is_hardly_positive(double value, double squared_lengths) {
   return value <= 0 || value * value <= round_off * round_off * squared_lengths;
 }
@@ -28,7 +28,7 @@ double dot(const Array2d& a, const Array2d& b) { return a[0] * b[0] + a[1] * b[1
 double cross(const Array2d& a, const Array2d& b) { return a[0] * b[1] - a[1] * b[0]; }
 double length(const Array2d& a) { return std::sqrt(dot(a, a)); }
 
-/// Is the other end of the segment no nearer from a bit further along this edge?
+/// Whether a segment gets no shorter when its end moves a bit along this edge.
 bool leads_away(const Array2d& segment, const Array2d& edge) {
   return is_hardly_positive(dot(segment, edge), dot(segment, segment) * dot(edge, edge));
 }
@@ -49,7 +49,7 @@ class Outline {
   /// Edge i leads from vertex i to the next.
   Array2d edge(Eigen::Index i) const { return vertex(next(i)) - vertex(i); }
 
-  /// Is the outline concave at this vertex, or straight?
+  /// Whether the outline is concave or straight at this vertex.
   bool turns_inwards(Eigen::Index i) const {
     const Array2d come = edge(before(i)), go = edge(i);
     return is_hardly_positive(cross(come, go), dot(come, come) * dot(go, go));
@@ -62,14 +62,14 @@ class Outline {
   }
   Array2d normal_at_vertex(Eigen::Index i) const { return normal_of_edge(before(i)) + normal_of_edge(i); }
 
-  /// Area between the outline from vertex `from` to a point of edge `to`, and the segment back.
+  /// Area between the outline from vertex `from` to a point of edge `to` and the segment back.
   double area_behind(Eigen::Index from, Eigen::Index to, const Array2d& point) const {
     const double way = sectors_[to] - sectors_[from] + (to < from ? sectors_[n_] : 0);
     return way + 0.5 * (cross(vertex(to), point) + cross(point, vertex(from)));
   }
   double area() const { return sectors_[n_]; }
 
-  /// Is no other part of the outline between a vertex and a point of an edge?
+  /// Whether no other part of the outline is between a vertex and a point of an edge.
   bool is_clear(Eigen::Index from, Eigen::Index to, const Array2d& point) const {
     const Array2d begin = vertex(from), segment = point - begin;
     for (Eigen::Index i = 0; i < n_; ++i) {
@@ -88,7 +88,7 @@ class Outline {
   std::vector<double> sectors_;  // area between the origin and the outline from vertex 0 to vertex i
 };
 
-/// The point of an edge that is nearest to another point.
+/// The point of an edge that is closest to another point.
 struct Foot {
   Eigen::Index edge;
   double place;  ///< 0 at the edge's first vertex, 1 at its second
@@ -100,7 +100,7 @@ Foot foot_on(const Outline& outline, Eigen::Index edge, const Array2d& from) {
   return {edge, place, begin + place * along};
 }
 
-/// Does the segment get no shorter when either of its ends moves along the outline?
+/// Whether the segment gets no shorter when either of its ends moves along the outline.
 bool is_local_minimum(const Outline& outline, Eigen::Index vertex, const Foot& foot) {
   const Array2d there = foot.point - outline.vertex(vertex), back = -there;
   return leads_away(there, outline.edge(vertex)) &&
@@ -125,12 +125,12 @@ bool parts_are_lobes(const Outline& outline, Eigen::Index vertex, const Foot& fo
   return part >= least && outline.area() - part >= least;
 }
 
-/// The widest possible neck: the one between parts of equal area.
+/// The widest possible neck, between parts of equal area.
 double widest_neck(const Outline& outline) {
   return std::sqrt(outline.area() / 2 / (std::numbers::pi / 4)) / lobe_width;
 }
 
-/// Edges `first` to `last`, not included, and the rectangle that they are in.
+/// Edges `first` to `last`, exclusive, and their bounding rectangle.
 struct Run {
   Eigen::Index first, last;
   Array2d low, high;
@@ -139,8 +139,8 @@ struct Run {
     const Array2d away = (low - point).max(point - high).max(0);
     return dot(away, away);
   }
-  /// Does some point of it lie where segments from `point` have no acute angle with this edge?
-  /// @param tolerance  round-off times the edge's length
+  /// Whether at some point of it segments from `point` have no acute angle with this edge. @param tolerance
+  /// round-off times the edge's length
   bool reaches_behind(const Array2d& point, const Array2d& edge, double tolerance) const {
     const double x = edge[0] > 0 ? low[0] : high[0];
     const double y = edge[1] > 0 ? low[1] : high[1];
@@ -163,7 +163,7 @@ std::vector<Run> runs_of_edges(const Outline& outline) {
   return runs;
 }
 
-/// The width of the thinnest neck from a vertex to these edges; `below` if there is none thinner.
+/// The width of the thinnest neck from a vertex to these edges, at most `below`.
 double thinnest_neck_to(const Outline& outline, Eigen::Index vertex, const Run& run, double below) {
   const Array2d from = outline.vertex(vertex);
   double thinnest = below;

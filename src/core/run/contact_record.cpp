@@ -8,12 +8,12 @@
 namespace clog {
 namespace {
 
-/// Only round-off separates places of the same obstacle seen from two frames [sigma].
+/// Positions of an obstacle in two frames differ only by round-off [sigma].
 constexpr double same_place = 1e-6;
-/// Obstacles so much farther away than they matter are listed, so that lists are seldom renewed [sigma].
+/// Additional distance up to which obstacles are listed, so that lists are seldom renewed [sigma].
 constexpr double skin = 0.25;
 
-/// Distance from a point to the stretch between two others [sigma].
+/// Distance from a point to the segment between two others [sigma].
 double distance_to_edge(const Eigen::Array2d& point, const Eigen::Array2d& begin, const Eigen::Array2d& end) {
   const Eigen::Array2d edge = end - begin;
   const double length2 = edge.square().sum();
@@ -21,7 +21,7 @@ double distance_to_edge(const Eigen::Array2d& point, const Eigen::Array2d& begin
   return (begin + place * edge - point).matrix().norm();
 }
 
-/// Distance from a circle's centre to the nearest vertex, or to the nearest point of its edges [sigma].
+/// Distance from a circle's centre to the closest vertex, or to the closest point of its edges [sigma].
 double distance_from(const Obstacle& circle, const DropletState& state, bool meets_edges) {
   const auto x = state.x();
   const auto y = state.y();
@@ -36,7 +36,7 @@ double distance_from(const Obstacle& circle, const DropletState& state, bool mee
                   distance_to_edge(centre, middle, vertex(nearest + 1)));
 }
 
-/// Distance of the nearest point that moves [sigma].
+/// Distance of the closest point that moves [sigma].
 double gap_to(const Wedge& wedge, const DropletState& state) {
   double gap = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < state.size(); ++i) {
@@ -78,7 +78,7 @@ void ContactRecord::look_around(const DropletState& state, const ObstacleArray& 
   lower_ = lower - skin;
   upper_ = upper + skin;
   near_.clear();
-  // Obstacles that have just come out of reach must be seen once more, so that they count as left.
+  // Obstacles just out of reach must be seen once more, so that they count as left.
   obstacles.gather(
       {origin_[0], origin_[1], lower_[0], upper_[0], lower_[1], upper_[1], reach_.range + parting + 2 * skin},
       near_);

@@ -17,36 +17,36 @@
 namespace clog {
 namespace {
 
-/// A droplet just released is slow; it cannot be told from a clogged one before it had the time to fall.
+/// A droplet just after its release is slow; before it had time to fall, it looks like a clogged one.
 constexpr double relaxation_times_before_a_clog = 10;
 
-/// E_k/E_t below which an equilibrium is looked for. The droplet must also be slow enough not to coast, for
-/// the relaxation time at its speed, farther than it may be from it.
+/// E_k/E_t below which the program searches for an equilibrium. The droplet must also be so slow that it
+/// coasts, in the relaxation time at its speed, no farther than the allowed distance.
 double first_search(const RunParameters& run) {
   constexpr double slow = 1e-4;
-  // While walls with friction yield, a droplet may creep, come free and continue, which no search foresees
+  // While walls with friction yield, a droplet may creep, come free and continue, which no search predicts
   // (docs/notes/2026-11-25-searches-with-friction.md).
   constexpr double slow_with_friction = 1e-10;
   const bool has_friction = run.dp.friction > 0 || run.dp.yield_traction > 0;
   const double coasting = farthest_rest / (relaxation_time(run) * run.drag.terminal_speed);  // over V_t
   return std::min(has_friction ? slow_with_friction : slow, coasting * coasting);
 }
-/// After a search in vain the next one waits until E_k/E_t has fallen by so much again,
+/// After a failed search the next one waits until E_k/E_t has fallen by this factor again,
 constexpr double fall_between_searches = 0.1;
-/// or, once it has risen above so many times the first search's, until the droplet slows down anew.
+/// or, once it exceeds this multiple of the first search's, until the droplet slows down anew.
 constexpr double rise_of_a_moving_droplet = 10;
 
-/// Changes with what a snapshot holds.
+/// Change this whenever the content of a snapshot changes.
 constexpr std::uint64_t snapshot_kind = 0x636c6f6773000004;
 
-/// Whether a snapshot's frame is possible. @param way  no droplet of the run gets farther [sigma]
+/// Whether a snapshot's frame is possible. @param way largest distance of any droplet of the run [sigma]
 bool is_in_range(const LocalFrame& frame, const Period& period, double way) {
   return frame.period[0] == period.along() && frame.period[1] == period.across() &&
          (frame.origin >= 0).all() && (frame.origin < frame.period).all() &&
          (frame.image.cast<double>().abs() * frame.period <= way + frame.period).all();
 }
 
-/// Twice as far as a droplet falls without obstacles [sigma].
+/// Twice the distance that a droplet falls without obstacles [sigma].
 double farthest_way(const RunParameters& run) { return 2 * run.drag.terminal_speed * run.max_time; }
 
 /// Checks a snapshot's state before anything is computed with it.
@@ -95,7 +95,7 @@ DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> o
 
 PotentialEnergy DropletRun::potential_energy() const {
   PotentialEnergy energy = droplet_->potential_energy();
-  // Gravity's part between the place of release and the frame's origin.
+  // Gravity's energy between the place of release and the frame's origin.
   energy.gravity -= units::droplet_mass * units::gravity * displacement_of({0, 0})[0];
   return energy;
 }
@@ -171,7 +171,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
   }
 }
 
-/// Checks the members that a snapshot holds beside the droplet itself.
+/// Checks the other members of a snapshot, beside the droplet itself.
 bool DropletRun::is_in_range() const {
   return (start_.abs() < burst_perimeter).all() &&
          clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&
@@ -219,7 +219,7 @@ bool DropletRun::is_passage() const { return scene_of(run_).finding == Finding::
 
 bool DropletRun::has_broken() {
   if (run_.dp.break_up_neck == 0) return false;
-  const double thinnest = std::fmin(neck_.width, no_neck);  // of NaN and a number the number
+  const double thinnest = std::fmin(neck_.width, no_neck);  // a NaN and a number give the number
   const double width = model_of(run_).neck(droplet_->state(), thinnest);
   if (width < thinnest) neck_ = {.width = width, .distance = displacement()[0]};
   return width < run_.dp.break_up_neck;
@@ -244,8 +244,7 @@ bool DropletRun::finds_rest(double energy_ratio) {
 }
 
 Sag DropletRun::sag(const Droplet& droplet) const {
-  // Before gravity the droplet was a circle around its centre, so the centroid was where displacement is
-  // zero.
+  // Before gravity acted, the droplet was a circle around its centre, so the centroid had no displacement.
   const DropletState& state = droplet.state();
   const Eigen::ArrayXd before = model_of(run_).free_shape(run_);
   const double top = displacement_of({state.x().minCoeff(), 0})[0] - before.head(state.size()).minCoeff();

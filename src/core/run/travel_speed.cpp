@@ -11,14 +11,14 @@ namespace {
 constexpr std::size_t batch_size = 5;
 constexpr std::size_t fewest_batches = 10;
 constexpr std::size_t fewest_for_error = 200;
-/// Standard error of a mean, over that mean, below which the transient is over: the rest may be round-off.
+/// Relative standard error of a mean below which the transient is over: the rest may be round-off.
 constexpr double negligible_error = 1e-6;
 
 double mean_of(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Means of successive pieces of equal length; what is left over at the end is left out.
+/// Means of successive blocks of equal length; a shorter rest is excluded.
 std::vector<double> means_of_pieces(std::span<const double> values, std::size_t length) {
   std::vector<double> means;
   for (std::size_t begin = 0; begin + length <= values.size(); begin += length)
@@ -43,8 +43,8 @@ double squared_error_of_mean(std::span<const double> values) {
 std::optional<std::size_t> transient_length(std::span<const double> values) {
   const std::vector<double> batches = means_of_pieces(values, batch_size);
   if (batches.size() < fewest_batches) return std::nullopt;
-  // White's statistic is the sum of squares over n^2; quadratic in the batches, of which there are 200 at
-  // most.
+  // White's statistic is the sum of squares divided by n^2; the loops are quadratic in the number of batches,
+  // at most 200.
   const std::size_t last = batches.size() / 2;
   const double negligible = negligible_error * mean_of(std::span(batches).subspan(last));
   std::size_t best = 0;

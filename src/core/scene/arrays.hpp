@@ -17,13 +17,13 @@ void check_spacing(const RunParameters& run);
 /// The density as text, as in the key `obstacle-density`: `0.35`, `12.5%`, `saturated`.
 std::string density_text(const ObstacleDensity& density);
 
-/// The interface bends around obstacles.
+/// Largest curvature of the interface, around obstacles.
 double smallest_diameter(const RunParameters& run);
 
 /// Releases the droplet in the void nearest to the centre. @throws Error if there is no room for it
 DropletState release_in_void(const RunParameters& run, const ObstacleArray& obstacles);
 
-/// A droplet never comes to the end of a periodic array, nor through a wall.
+/// A droplet never reaches the end of a periodic array, and never passes a wall.
 double endless_way(const RunParameters& run, const Eigen::Array2d& start);
 
 }  // namespace clog

@@ -19,9 +19,8 @@ namespace clog {
 
 namespace {
 
-/// The largest h at which the free droplet is upstream and clear of the channel [sigma]; infinite if it
-/// touches nothing anywhere.
-/// @param run  resolved
+/// The largest h at which the free droplet is upstream of the channel and touches nothing [sigma]; infinite
+/// if it never touches. @param run resolved
 double last_free_start(const RunParameters& run) {
   const ChannelParameters& channel = run.channel;
   const double droplet_reach = model_of(run).reach(run);
@@ -63,7 +62,7 @@ void check_clearance(RunParameters& run) {
   if (!(channel.end > channel.start)) refuse("end", channel.end, "must lie downstream of the start) try 3");
 }
 
-/// The interface bends around the tips.
+/// Largest curvature of the interface, around the tips.
 double tip_diameter(const RunParameters& run) {
   constexpr double sharpest = 1e-3;
   return std::max(2 * run.channel.tip_radius, sharpest);

@@ -22,7 +22,7 @@ std::string remedy(const ObstacleParameters& obstacles) {
   return text;
 }
 
-/// Replaces periods and angle of a lattice by those of the nearest one that is periodic.
+/// Replaces periods and angle of a lattice by those of the nearest periodic one.
 void find_period(RunParameters& run) {
   ObstacleParameters& obstacles = run.obstacles;
   const double angle = obstacles.lattice_angle;
@@ -51,8 +51,8 @@ void find_period(RunParameters& run) {
 
 ObstacleArray lattice_walls(const RunParameters& run) { return lattice_obstacles(run.obstacles, run.seed); }
 
-/// All voids of a lattice are alike, so the seed decides where in one a droplet starts (lattice_obstacles):
-/// if it touches nothing at the box's centre it starts right there, as if there were no obstacles.
+/// All voids of a lattice are alike, so the seed chooses a start within one (lattice_obstacles). A droplet
+/// that touches nothing at the box's centre starts exactly there, as without obstacles.
 DropletState release_in_lattice(const RunParameters& run, const ObstacleArray& obstacles) {
   const DropletModel& model = model_of(run);
   const Period& period = obstacles.period();

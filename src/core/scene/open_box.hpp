@@ -7,12 +7,12 @@
 
 namespace clog {
 
-/// Channels and walls have no periodic images: the box is only where their coordinates live [sigma].
+/// Channels and walls have no periodic images: the box only bounds their coordinates [sigma].
 inline constexpr double open_box = 256;
 inline Eigen::Array2d middle_of_open_box() { return {open_box / 2, open_box / 2}; }
 inline Eigen::Array2d period_of_open_box() { return {open_box, open_box}; }
 
-/// There are no circles to be counted.
+/// There are no circles to count.
 inline double no_density(const ObstacleParameters&) { return std::numeric_limits<double>::quiet_NaN(); }
 
 }  // namespace clog

@@ -94,7 +94,7 @@ GapAtWall smallest_gap_at_wall(const ObstacleArray& array, double box) {
   return smallest;
 }
 
-/// What is known of all circles of one period; kept, because most tasks of a plan have the same circles.
+/// Properties of all circles of one period; kept, because most tasks of a plan have the same circles.
 struct Examined {
   ObstacleArray::Pair pair;
   GapAtWall at_wall;
@@ -121,7 +121,7 @@ Examined examined(const ObstacleParameters& obstacles) {
   return found;
 }
 
-/// A post may grow out of a wall. Where it does not, the gap between both must be resolved.
+/// A post may grow out of a wall. Otherwise the gap between both must be resolved.
 void check_gaps_at_walls(const RunParameters& run) {
   const ObstacleParameters& obstacles = run.obstacles;
   if (obstacles.side_walls == SideWalls::off) return;
@@ -228,7 +228,7 @@ Eigen::Array2d place_on_entrance(const RunParameters& run) {
   double from = obstacles.entrance_from;
   double to = obstacles.entrance_to > 0 ? obstacles.entrance_to : obstacles.box;
   if (obstacles.side_walls == SideWalls::on) {
-    constexpr double film = 0.01;  // so that the droplet does not touch a wall
+    constexpr double film = 0.01;  // margin, so that the droplet does not touch a wall
     const double nearest = std::min(model_of(run).reach(run) + film, obstacles.box / 2);
     from = std::clamp(from, nearest, obstacles.box - nearest);
     to = std::clamp(to, nearest, obstacles.box - nearest);
@@ -236,7 +236,7 @@ Eigen::Array2d place_on_entrance(const RunParameters& run) {
   return {obstacles.entrance, from + drawn_from(run.seed)[0] * (to - from)};
 }
 
-/// Converts coordinates of the file to those of the array, in whose centre a droplet starts.
+/// Converts coordinates of the file to those of the array, whose centre is a droplet's start.
 Eigen::Array2d shift_of(const RunParameters& run) {
   const Period period = period_of(run.obstacles);
   switch (run.obstacles.release) {
@@ -267,7 +267,7 @@ ObstacleArray shifted_device(const RunParameters& run) {
   return {period_of(obstacles), std::move(circles), std::move(walls)};
 }
 
-/// On the line of an entrance where it is free, as if there were no obstacles; otherwise in the nearest void.
+/// On the line of the entrance if there is room, as without obstacles; otherwise in the nearest void.
 DropletState release_in_device(const RunParameters& run, const ObstacleArray& device) {
   const Period& period = device.period();
   const bool starts_free = run.obstacles.release == Release::entrance &&

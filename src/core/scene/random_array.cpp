@@ -14,14 +14,14 @@ namespace clog {
 
 namespace {
 
-/// Makes a share of the saturated density a density. Whether that comes out must not depend on the seed: a
-/// sweep would find out row by row.
+/// Converts a share of the saturated density to a density. Its success must not depend on the seed; otherwise
+/// a sweep would fail row by row.
 void find_density(RunParameters& run) {
   ObstacleParameters& obstacles = run.obstacles;
   const std::optional<double> density = wanted_density(obstacles);
   if (!density) return;
   const double largest = largest_density(obstacles);
-  // The value in the message, rounded, may be the least bit larger.
+  // The rounded value in the message may exceed the limit by the last bit.
   if (*density > (1 + 1e-9) * largest)
     refuse("obstacle-density", density_text(obstacles.density),
            fmt::format(

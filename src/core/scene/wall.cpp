@@ -10,8 +10,8 @@ namespace clog {
 
 namespace {
 
-// A flat wall, and a circular droplet that touches it, under no weight so far: its way to rest under gravity
-// is the sag delta_s (Cheng et al., Fig. 7b).
+// A flat wall, and a circular droplet that touches it, before it has weight: its displacement to rest under
+// gravity is the sag delta_s (Cheng et al., Fig. 7b).
 
 void nothing_to_check(const RunParameters&) {}
 void nothing_to_resolve(RunParameters&) {}
@@ -34,7 +34,7 @@ const Scene wall_scene = {
     .gap_key = nullptr,
     .check = nothing_to_check,
     .resolve = nothing_to_resolve,
-    // The same as among obstacles of the usual size: sags are compared with droplets in such arrays.
+    // The automatic values of droplets among obstacles of the usual size, with which sags are compared.
     .sharpest_bend = smallest_diameter,
     .density = no_density,
     .walls = flat_wall,

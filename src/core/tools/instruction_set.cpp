@@ -8,14 +8,14 @@
 namespace clog {
 namespace {
 
-/// Named as people call them.
+/// The names that people use.
 std::string name_of(std::int64_t target) {
   if (target == HWY_AVX3) return "avx512";
   if (target == HWY_AVX2) return "avx2";
   return HWY_ARCH_X86 ? "baseline" : hwy::TargetName(target);
 }
 
-/// Lets every kernel choose among these targets from now on; 0: all that the processor has.
+/// Lets every kernel choose among these targets from now on; 0: all that the processor supports.
 void allow_targets(std::int64_t targets) {
   hwy::SetSupportedTargetsForTest(targets);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
@@ -33,8 +33,8 @@ std::vector<std::string> instruction_sets() {
 }
 
 std::string instruction_set() {
-  // Highway asks the processor each time, unless targets are allowed by name; under a hypervisor that takes
-  // longer than all else that is to be known of a task.
+  // Highway asks the processor each time, unless targets are set by name; under a hypervisor this takes
+  // longer than the rest of a task's description.
   [[maybe_unused]] static const bool is_asked_once = (allow_targets(hwy::SupportedTargets()), true);
   return name_of(hwy::SupportedAndGeneratedTargets().front());
 }

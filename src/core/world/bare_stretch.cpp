@@ -10,7 +10,7 @@ double width(const Stretch& stretch) { return stretch.end - stretch.begin; }
 
 constexpr double droplet = 1;  // diameter [sigma]
 
-/// Between circles whose shadows on the axis do not touch, over the border of the period, too; the widest
+/// Gaps between the projections of circles onto an axis, across the border of the period, too; the widest
 /// first.
 std::vector<Stretch> bare_stretches(std::span<const Obstacle> circles, double Obstacle::*centre,
                                     double period) {
@@ -19,7 +19,7 @@ std::vector<Stretch> bare_stretches(std::span<const Obstacle> circles, double Ob
     shadows.push_back({circle.*centre - circle.radius, circle.*centre + circle.radius});
   std::sort(shadows.begin(), shadows.end(),
             [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
-  // A shadow across the period's end may cover its beginning.
+  // A projection across the period's end may cover its beginning.
   double covered = shadows.front().begin;
   for (const Stretch& shadow : shadows) covered = std::max(covered, shadow.end - period);
   std::vector<Stretch> bare;

@@ -20,7 +20,8 @@ namespace {
 
 using std::numbers::sqrt3;
 constexpr double degree = std::numbers::pi / 180;
-/// Angles of lattices that fit a box differ by more than this, equal ones by rounding only [degrees].
+/// Smallest difference between angles of lattices that fit a box; equal ones differ only by rounding
+/// [degrees].
 constexpr double same_angle = 1e-9;
 constexpr double box_rounding = 1e-9;  // relative
 /// A droplet with this much room around its centre touches nothing, polygons of 64 vertices and more
@@ -36,12 +37,12 @@ double triangular_period(long long u, long long w) {
   return std::sqrt(static_cast<double>(u * u + 3 * w * w)) / ((u - w) % 2 == 0 ? 2 : 1);
 }
 
-/// The longest multiple of a period that is no longer than allowed; 0 if there is none.
+/// The longest allowed multiple of a period; 0 if there is none.
 double multiple(double period, double longest) {
   return period * std::floor(longest * (1 + box_rounding) / period);
 }
 
-/// The lattice of this tilt with the largest periods that are allowed.
+/// The lattice of this tilt with the largest allowed periods.
 CommensurateLattice lattice(const ObstacleParameters& obstacles, int p, int q) {
   const double spacing = obstacles.spacing();
   if (obstacles.lattice == LatticeKind::square)
@@ -60,8 +61,7 @@ CommensurateLattice lattice(const ObstacleParameters& obstacles, int p, int q) {
           portable::atan2(q * tangent_unit(obstacles.lattice), p) / degree};
 }
 
-/// The square one of this angle and box, if there is one: where all that is asked for fits, nothing need be
-/// looked for.
+/// The square lattice of exactly this angle and box, if there is one; then no search is needed.
 std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstacles) {
   const double steps = obstacles.box / obstacles.spacing();
   const auto p = std::lround(steps * portable::cos(obstacles.lattice_angle * degree));
@@ -165,8 +165,8 @@ void for_each_point(const IntegerLattice& integers, Visit visit) {
     }
 }
 
-/// A place in the unit cell around an obstacle at (0, 0), before the turn, in spacings: uniform where a
-/// droplet is free of all obstacles.
+/// A place in the unit cell around an obstacle at (0, 0), before the turn, in spacings: uniform over the
+/// places where a droplet touches no obstacle.
 struct CellPlace {
   double along, across;
 };
@@ -178,8 +178,8 @@ CellPlace free_place(const ObstacleParameters& parameters, const IntegerLattice&
   boost::random::uniform_01<double> uniform;
   const double taken = (parameters.diameter / 2 + free_radius) / (parameters.diameter + parameters.gap);
   const double i_x = lattice.i_x, i_y = lattice.i_y, j_x = lattice.j_x, j_y = lattice.j_y;
-  // Distance of the emptiest place from its three obstacles, of a square 0.707: corners too small to hit do
-  // not count.
+  // Distance of the emptiest place from its three obstacles (square: 0.707); excludes corners too small to
+  // hit.
   const double third = std::min(std::hypot(i_x - j_x, i_y - j_y), std::hypot(i_x + j_x, i_y + j_y));
   const double widest = std::hypot(i_x, i_y) * std::hypot(j_x, j_y) * third / (2 * (i_x * j_y - i_y * j_x));
   const bool has_free_places = taken < 0.69 * std::numbers::sqrt2 * widest;
@@ -207,7 +207,7 @@ std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obs
   if (const auto fitting = lattice_with(obstacles)) return fitting;
   std::optional<CommensurateLattice> nearest;
   const double angle = obstacles.lattice_angle;
-  // The box of square lattices grows with p: of two equally near candidates, the later is the larger.
+  // The box of square lattices grows with p, so of two equally near candidates the later one is the larger.
   for_each_near(obstacles, [&](const CommensurateLattice& candidate) {
     if (!nearest || std::abs(candidate.angle - angle) <= std::abs(nearest->angle - angle) + same_angle)
       nearest = candidate;

@@ -28,7 +28,7 @@ struct CellAxis {
   int num_per_edge;  ///< cells
   int number;        ///< cells in the period
 
-  /// The cell's index by floor(), which may be outside the period.
+  /// The cell's index by floor(), possibly outside the period.
   int index(double place) const { return static_cast<int>(std::floor(place * (num_per_edge / edge))); }
   int index_within(double place) const {
     return std::min(static_cast<int>(place / edge * num_per_edge), number - 1);
@@ -44,7 +44,7 @@ CellAxis rows_of(const Period& period) {
   return {period.across(), num_cells_in(period.across()), num_cells_in(period.across())};
 }
 
-/// Does one of two circles have its centre within the other? Circles with the same centre are a mistake, or
+/// Whether one of two circles has its centre within the other. Circles with the same centre are a mistake, or
 /// one and its own image.
 bool share_a_post(double apart, double first_radius, double second_radius) {
   return apart > 0 && apart < std::max(first_radius, second_radius);
@@ -101,7 +101,7 @@ std::vector<std::uint32_t> ObstacleArray::bin(std::vector<Obstacle>& obstacles) 
   std::partial_sum(cell_start.begin(), cell_start.end(), cell_start.begin());
   std::vector<std::uint32_t> next(cell_start.begin(), cell_start.end() - 1);
   for (std::uint32_t& place : target) place = next[place]++;
-  // Sorts in place: a second copy would be most of the memory that it takes to build an array.
+  // Sorts in place: a second copy would be most of the memory for building an array.
   for (std::size_t i = 0; i < target.size(); ++i)
     while (target[i] != i) {
       const std::uint32_t place = target[i];
@@ -130,8 +130,8 @@ void ObstacleArray::visit_window(const Window& window, Visit visit) const {
       const std::size_t cell = static_cast<std::size_t>(row - image_y * rows.number) * columns.number +
                                (column - image_x * columns.number);
       for (std::uint32_t k = binned_.cell_start[cell]; k < binned_.cell_start[cell + 1]; ++k) {
-        // Subtract the origin first: within the period this is exact, so forces do not depend on where the
-        // droplet is.
+        // Subtracts the origin first: within the period this is exact, so forces do not depend on the
+        // droplet's position.
         const double x = (binned_.obstacles[k].x - window.origin_x) + image_x * period().along();
         const double y = (binned_.obstacles[k].y - window.origin_y) + image_y * period().across();
         const double margin = window.margin + binned_.obstacles[k].radius;
@@ -201,7 +201,7 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
   const bool repeats_across = period().beside == 0;
   const double nearest_image =
       repeats_across ? std::min(period().along(), period().across()) : period().along();
-  // Pairs nearer than the margin are all seen; widen it until the smallest one found is certain.
+  // All pairs nearer than the margin are seen; widens it until the smallest distance is certain.
   double margin = 0.125 * units::droplet_diameter;
   do {
     margin *= 2;
@@ -212,7 +212,7 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
                      if (!repeats_across && (from + y < 0 || from + y >= period().across())) return;
                      const double apart = std::hypot(x, y);
                      const double gap = apart - r - binned_.obstacles[second].radius;
-                     // Circles with the same centre are a mistake, in a post, too.
+                     // Circles with the same centre are a mistake even within a post.
                      const bool is_one_post = post[second] == post[first] && apart < nearest_image / 2 &&
                                               (apart > 0 || second == first);
                      if (!is_one_post && gap < closest.gap)

@@ -28,20 +28,20 @@ HWY_BEFORE_NAMESPACE();
 namespace clog::HWY_NAMESPACE {
 namespace {
 
-// Compiled without fused multiply-adds: the same array with every instruction set.
+// Compiled without fused multiply-adds, so that every instruction set gives the same array.
 
-/// Random sequential addition of discs, surfaces at least a gap apart, in a period.
+/// Random sequential addition of discs with a smallest gap between surfaces, in a period.
 ///
-/// Each arriving disc draws its place and its radius; one that has no room leaves for good. The space it
+/// Each arriving disc draws its place and its radius; one without room is discarded. The space it
 /// draws from has three dimensions: the place, and by how much the radius exceeds the smallest one, its
 /// `excess`. Discs of one size are the flat case, excess 0.
 ///
-/// Discs arrive in squares that may still have room, at first the cells of a grid, as a Poisson process: in
-/// every round independently in every square. They are made square by square, memory walked in order, and
-/// only those that have room among the points of earlier rounds are taken up one after the other, in random
-/// order. After each round squares without room are dropped and the others cut into quarters; a square comes
-/// with a range of excesses, halved too when it is longer than the square is wide. Room means room for the
-/// smallest disc of the range, so nothing that would be accepted is ever left out.
+/// Discs arrive as a Poisson process in squares that may still have room, at first the cells of a grid, in
+/// every round independently in every square. They are made square by square, in order of memory; only those
+/// with room among the points of earlier rounds are then tried in random order. After each round squares
+/// without room are dropped and the others cut into quarters. A square has a range of excesses, which is
+/// halved when it exceeds the square's width. Room means room for the smallest disc of the range, so no
+/// acceptable disc is excluded.
 class SequentialAddition {
  public:
   /// @param distance  between the centres of two of the smallest discs
@@ -123,7 +123,7 @@ class SequentialAddition {
   class Squares {
    public:
     void assign(std::span<const Square> squares, bool have_excess) {
-      // Reuses the same memory: their number falls.
+      // Reuses the same memory, because their number falls.
       places_.clear();
       places_.reserve(squares.size());
       for (const Square& square : squares) places_.push_back({square.x, square.y, square.cell});
@@ -152,7 +152,7 @@ class SequentialAddition {
   int num_rows_;
   int num_columns_;
   double cell_size_;
-  int margin_;  // how many cells further a point within the largest distance can lie
+  int margin_;  // number of cells to the farthest point within the largest distance
   int row_length_;
   bool are_alike_;  // the usual discs, of one size
   /// The points, each from its cell's corner. A cell can hold only one, as its diagonal is not longer than
@@ -244,7 +244,7 @@ class SequentialAddition {
       std::swap(darts_[i], darts_[other(engine_)]);
     }
     for (std::size_t i = 0; i < darts_.size() && num_points_ < target; ++i) {
-      constexpr std::size_t ahead = 8;  // memory is slow where places are random: ask for it early
+      constexpr std::size_t ahead = 8;  // random access is slow, so load early
       if (i + ahead < darts_.size()) prefetch_around(darts_[i + ahead].cell);
       if (has_room(darts_[i])) add_point(darts_[i]);
     }
@@ -302,8 +302,8 @@ class SequentialAddition {
   }
 
   /// Adds the quarters of a square, in each layer of excesses, that are not wholly within the distance of one
-  /// point. Distances are those of has_room() to the last bit where squares have become as small as numbers
-  /// can tell: then a square has room or is left out.
+  /// point. Distances agree with has_room() to the last bit where squares reach the resolution of numbers, so
+  /// such a square has room or is dropped.
   void add_parts(const Square& square) {
     if (is_taken(square.cell)) return;
     if (are_alike_) {

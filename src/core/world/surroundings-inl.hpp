@@ -24,16 +24,16 @@ constexpr double rounding = 1e-5;
 constexpr float nowhere = 1e6;
 
 struct Point {
-  float x, y;  // from the corner of its cell
+  float x, y;  // relative to the corner of its cell
 };
 
-// No function here that takes or returns vectors is ever called: all are inlined.
+// All functions with vector arguments are inlined, never called.
 #pragma GCC diagnostic ignored "-Wpsabi"
 constexpr int lanes = 8;
 using Floats [[gnu::vector_size(lanes * sizeof(float))]] = float;
 using Integers [[gnu::vector_size(lanes * sizeof(float))]] = std::int32_t;
 
-/// The points around a cell whose discs are all of one size. No branch depends on the random pattern of taken
+/// The points around a cell whose discs have one size. No branch depends on the random pattern of taken
 /// cells: mispredicted ones would cost more than the work itself.
 struct Surroundings {
   const Point* cell;
@@ -41,11 +41,11 @@ struct Surroundings {
   float cell_size;
   float distance2;
 
-  /// Cells are this part of the distance or larger: from the lower half of one, a search need not look
-  /// further than two cells down and one up.
+  /// Smallest size of a cell as a fraction of the distance: from the lower half of one, a search covers two
+  /// cells down and one up.
   static constexpr double smallest_cell = 1 / 1.49;
 
-  /// Is a point within the distance of a place in the cell?
+  /// Whether a point is within the distance of a place in the cell.
   bool reach(float place_x, float place_y) const {
     Integers is_near{};
     visit_points(place_x, place_y, [&](const Floats& x, const Floats& y) {
@@ -56,8 +56,8 @@ struct Surroundings {
     return any(is_near) != 0;
   }
 
-  /// The quarters, each of this size, of a square in the cell that lie wholly within the distance of one
-  /// point. One bit each: first along x, then along y.
+  /// Quarters, each of this size, of a square in the cell that lie wholly within the distance of one point.
+  /// One bit each: first along x, then along y.
   std::int32_t cover_quarters(float square_x, float square_y, float size) const {
     const float half = size / 2;
     const auto far2 = [half](const Floats& from_corner) {

@@ -10,7 +10,7 @@ namespace clog {
 
 /// Potential energy and force on a soft disk among obstacles, Cheng et al. Eq. 8:
 /// U_w = sum (E_w/2)(1 - 2d/sigma)^2 over obstacles nearer than d = sigma/2, d from the disk's centre to the
-/// obstacle's surface (negative inside), and over wedges. The force stays finite; on an obstacle's very
+/// obstacle's surface (negative inside), and over wedges. The force stays finite; exactly at an obstacle's
 /// centre it is zero.
 class SpForces {
  public:
@@ -20,7 +20,7 @@ class SpForces {
   void forget_contacts() { listed_ = false; }
   /// Force on a disk at `place` [g rho sigma^2].
   Eigen::Array2d force_at(const Eigen::Array2d& place, const LocalFrame& frame) const;
-  /// Times `scale`, for the loop over steps.
+  /// The same times `scale`, for the loop over steps.
   Eigen::Array2d scaled_force(double scale, const Eigen::Array2d& place, const LocalFrame& frame) const;
   /// force: (f_x, f_y)
   void evaluate(const DropletState& state, Eigen::ArrayXd& force) const;
@@ -42,8 +42,8 @@ class SpForces {
   void visit_wedges(const Eigen::Array2d& place, const LocalFrame& frame, Visit visit) const;
 };
 
-/// Soft disk: one point of mass M with drag -b_inf v; same integrator as DpDroplet, but kept at half steps in
-/// between: what a step waits for is one root, one division and a few sums.
+/// Soft disk: one point of mass M with drag -b_inf v. It has the integrator of DpDroplet, but keeps the state
+/// at half steps in between, so that a step depends on one root, one division and a few sums.
 class SpDroplet final : public Droplet {
  public:
   SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial);

@@ -11,19 +11,19 @@ namespace clog {
 /// A polygon with a longer perimeter has burst [sigma]: it is not integrated any further.
 inline constexpr double burst_perimeter = 1000;
 
-/// A droplet that moves: what a run needs to know of either model.
+/// A moving droplet: the interface of both models for a run.
 class Droplet {
  public:
   virtual ~Droplet() = default;
 
-  /// Integrates the equations of motion over `num_steps` time steps, if need be in more and shorter ones.
+  /// Integrates the equations of motion over `num_steps` time steps, splitting them if needed.
   virtual void advance(int num_steps) = 0;
 
-  /// Forgets everything but what save() saves: contact lists and sums over them are made anew. A droplet
-  /// restored from there moves on exactly as this one does.
+  /// Discards everything but the content of save(): contact lists and sums over them are rebuilt. A droplet
+  /// restored from it then moves exactly like this one.
   virtual void start_afresh() = 0;
   void save(ByteWriter& bytes) const;
-  /// Restores what save() wrote for a droplet with the same parameters and obstacles; starts afresh.
+  /// Restores what save() wrote for a droplet with the same parameters and obstacles.
   void restore(ByteReader& bytes);
 
   /// Sub-steps done so far.
@@ -31,21 +31,21 @@ class Droplet {
   const DropletState& state() const { return state_; }
   /// [g rho sigma^3]
   virtual double kinetic_energy() const = 0;
-  /// Its gravity term is measured from the frame's origin.
+  /// Its gravity term is relative to the frame's origin.
   virtual PotentialEnergy potential_energy() const = 0;
-  /// Centre of mass: of the area where the weight acts on it, otherwise the vertices' mean [sigma], local.
+  /// Centre of mass: of the area if the weight acts on it, otherwise the vertices' mean [sigma], local.
   virtual Eigen::Array2d centre() const { return state_.centre(); }
-  /// The area's centroid, wherever the weight acts [sigma], local.
+  /// The area's centroid, for any `gravity` [sigma], local.
   virtual Eigen::Array2d area_centre() const { return state_.centre(); }
   /// [sqrt(sigma g)]
   virtual Eigen::Array2d centre_velocity() const { return state_.mean_velocity(); }
   /// Area, perimeter; those of the undeformed disk for the soft disk.
   virtual PolygonShape shape() const = 0;
 
-  /// From now on adds up what the drag takes out, which costs a pass over the velocities per step.
+  /// From now on adds up the work against the drag, which costs a pass over the velocities per step.
   void measure_dissipation() { measures_dissipation_ = true; }
   /// Since measure_dissipation() [g rho sigma^3]: energy lost to drag, and work of the springs along the
-  /// interface, which have no energy. By the trapezoidal rule: second order in the time step, as the
+  /// interface, which have no energy. The trapezoidal rule makes it second order in the time step, like the
   /// integrator.
   struct Work {
     double dissipated = 0;

@@ -20,25 +20,23 @@ struct ContactReach {
   bool by_edges;  ///< edges as well as the points that move?
 };
 
-/// What a droplet is. There is one for each Model: a new one is a word of that, a folder beside `polygon` and
-/// `disk` with an object of its own, a line in model.cpp, and what docs/developer/add-a-model.md says
-/// besides.
+/// What a droplet is. There is one for each Model. A new one needs a word of Model, a folder beside `polygon`
+/// and `disk` with an object of its own, a line in model.cpp, and the steps of docs/developer/add-a-model.md.
 struct DropletModel {
-  /// Key of the parameter that says how stiff a droplet is.
+  /// Key of the parameter that is the droplet's stiffness.
   const char* stiffness_key;
 
-  /// Chooses the number of points that move where none is given.
-  /// @param obstacle_diameter  of the smallest obstacle that the droplet can hang over, infinite if there is
-  /// none [sigma]
+  /// Chooses the number of moving points if it is not given. @param obstacle_diameter of the smallest
+  /// obstacle over which the droplet can hang, infinite if there is none [sigma]
   void (*choose_points)(RunParameters& run, double obstacle_diameter);
   /// The width below which the droplet's points do not resolve a passage [sigma].
   double (*narrowest)(const RunParameters& run);
-  /// Replaces automatic values by those that will be used, and refuses what cannot be once they are known.
-  /// @param sharpest_bend  see Scene  @throws Error
+  /// Replaces automatic values by the resulting ones, and refuses values that are then impossible. @param
+  /// sharpest_bend see Scene @throws Error
   void (*resolve)(RunParameters& run, double sharpest_bend);
 
   // For resolved parameters:
-  /// Number of the points that move.
+  /// Number of moving points.
   int (*num_points)(const RunParameters& run);
   /// The droplet without walls and weight, around the origin: all x, then all y [sigma].
   Eigen::ArrayXd (*free_shape)(const RunParameters& run);
@@ -53,10 +51,10 @@ struct DropletModel {
   /// One that moves. The obstacles must outlive it.
   std::unique_ptr<Droplet> (*make)(const RunParameters& run, const ObstacleArray& obstacles,
                                    DropletState initial);
-  /// Where it is about to come to rest, see find_equilibrium().
+  /// The equilibrium that it approaches, see find_equilibrium().
   std::optional<DropletState> (*equilibrium)(const RunParameters& run, const ObstacleArray& obstacles,
                                              const DropletState& state);
-  /// What holds a droplet that has clogged.
+  /// The mechanism that holds a clogged droplet.
   Hold (*hold)(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state);
   /// Width of its thinnest neck; no_neck if it has none that is narrower than `below` [sigma].
   double (*neck)(const DropletState& state, double below);

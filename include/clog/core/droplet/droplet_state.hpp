@@ -11,9 +11,9 @@
 
 namespace clog {
 
-/// Where a droplet's local coordinates sit in the periodic plane: global = image * period + origin + local.
+/// Position of a droplet's local coordinates in the periodic plane: global = image * period + origin + local.
 /// The origin stays inside the first period and follows the droplet in whole units, so coordinates stay of
-/// order one however far the droplet travels, and a droplet one period further on feels bit-identical forces.
+/// order one at any distance, and a droplet one period further on feels the same forces, bit for bit.
 struct LocalFrame {
   Eigen::Array2d period{0, 0};                   ///< along and across the flow [sigma]
   Eigen::Array2d origin{0, 0};                   ///< in the first period [sigma]
@@ -49,18 +49,18 @@ struct LocalFrame {
   }
 };
 
-/// How far points may move until somebody looks again [sigma].
+/// How far points may move until the next check [sigma].
 struct Travel {
   double absolute = 0;
   double relative = 0;  ///< to the mean of the points
 };
-/// Bound on the way in a time [t0]: twice that at the fastest point's present speed plus free fall.
+/// Bound on the distance in a time [t0]: twice that at the fastest point's present speed plus free fall.
 inline double possible_way(double speed, double time) { return 2 * time * (speed + units::gravity * time); }
-/// Contact lists look no farther ahead than this [sigma]: what moves as fast has diverged.
+/// Contact lists extend at most this far ahead [sigma]: anything faster has diverged.
 inline constexpr double widest_skin = 4;
 
-/// Points (the polygon's vertices, or the soft disk's centre) and their velocities. Coordinates are kept
-/// as one array, all x then all y, so that the integrator and the minimiser see plain vectors.
+/// Points (the polygon's vertices, or the soft disk's centre) and their velocities. Coordinates are one
+/// array, all x then all y, so that integrator and minimiser use plain vectors.
 struct DropletState {
   Eigen::ArrayXd position;  ///< 2N, local [sigma]
   Eigen::ArrayXd velocity;  ///< 2N [sqrt(sigma g)]
@@ -102,8 +102,8 @@ struct DropletState {
   }
 
   /// Keeps local coordinates of order one: moves the frame by whole units when the centre has left the unit
-  /// square around the origin. A droplet that has diverged, and may be infinitely far away, stays where it is
-  /// until the next check of its run. Returns the step taken (usually zero).
+  /// square around the origin. A diverged droplet, which may be infinitely far away, stays in its frame until
+  /// the next check of its run. Returns the shift (usually zero).
   Eigen::Array2d recentre() {
     constexpr double diverged = 1e6;  // [sigma]
     const Eigen::Array2d centre_now = centre();

@@ -23,13 +23,13 @@ struct Axes {
   /// interface; empty if this motion is tested like any other. A slide by one edge maps the polygon onto
   /// itself with its vertices renumbered, and does not move the droplet. The energy along it has only
   /// ripples, because corners between edges touch obstacles. So the search tests neither force nor stiffness
-  /// along it. This motion dies out last, and may at present be on top of a ripple.
+  /// along it. This motion is the last to decay, and may be at the top of a ripple now.
   Eigen::VectorXd slide;
 };
 
-/// The forces on a droplet, as the search asks for them.
+/// The forces on a droplet for the search.
 struct EquilibriumForces {
-  /// Brings the contact lists up to date: they are valid while no point moves farther than `travel`.
+  /// Updates the contact lists: they are valid while no point moves farther than `travel`.
   std::function<void(const DropletState& state, const Travel& travel)> update_contacts;
   /// Forces on all points, all x then all y [g rho sigma^2].
   std::function<void(const DropletState& state, Eigen::ArrayXd& force)> evaluate;
@@ -47,14 +47,14 @@ struct EquilibriumForces {
   }
 };
 
-/// The stable static equilibrium next to a droplet that has nearly stopped, where it is about to come to
-/// rest; nothing if there is none, or none that is certain to be the one that the droplet would reach.
+/// The stable static equilibrium that a nearly stopped droplet approaches; nothing if there is none, or if it
+/// is not certain that the droplet would reach it.
 ///
-/// Newton's method on the forces, until nothing is left of them but round-off. The potential energy must be
-/// convex at the beginning, wherever else the search computes the stiffness, and at the end; and no such
-/// place may be farther than `farthest_rest` from the present one: then both are taken to lie in one basin. A
-/// droplet that balances on an obstacle, that could drift aside freely, or that creeps past a place where
-/// there is no equilibrium is refused.
+/// Newton's method on the forces, down to round-off. The potential energy must be convex at the beginning,
+/// wherever else the search computes the stiffness, and at the end, and all these places must be within
+/// `farthest_rest` of the present one: then both are assumed to be in one basin. A droplet that balances on
+/// an obstacle, that could drift aside freely, or that creeps past a place where there is no equilibrium is
+/// refused.
 ///
 /// @param initial  the droplet; its velocities do not count
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial);

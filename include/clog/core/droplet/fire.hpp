@@ -10,14 +10,14 @@
 
 namespace clog {
 
-/// What both ways to a minimum do to all coordinates, compiled for several instruction sets.
+/// The steps of both ways to a minimum on all coordinates, compiled for several instruction sets.
 namespace kernel {
 struct ForceSums {
   double largest;                ///< |f_i|
   double power, speed2, force2;  ///< sum f v, sum v^2, sum f^2
 };
 ForceSums sum_forces(std::ptrdiff_t n, const double* force, const double* velocity);
-/// v = kept v + gain f, but no faster than `fastest` either way; then x += time v.
+/// v = kept v + gain f, limited to `fastest` in either direction; then x += time v.
 struct PointMove {
   double kept, gain, fastest, time;
 };
@@ -39,10 +39,11 @@ struct FireResult {
   double largest_force = 0;
 };
 
-/// Contact lists are brought up to date once in so many iterations, before the forces are asked for.
+/// Contact lists are updated once in this number of iterations, before the forces are computed.
 inline constexpr int iterations_per_update = 3;
 
-/// How far points come from one update to the last forces before the next: max_move bounds each coordinate.
+/// How far points move between an update and the last forces before the next: max_move bounds each
+/// coordinate.
 inline Travel travel_between_updates(const FireOptions& options) {
   const double farthest = (iterations_per_update - 1) * options.max_move * std::numbers::sqrt2;
   return {.absolute = farthest, .relative = 2 * farthest};
@@ -91,8 +92,8 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   return result;
 }
 
-/// Damped motion until it comes to rest, as a droplet would. Slower than FIRE, but it may settle forces that
-/// have no energy, where FIRE, which judges by the work done, goes round in circles.
+/// Damped motion to rest, like a droplet's. Slower than FIRE, but it may settle forces without an energy;
+/// FIRE, which judges by the work done, may cycle there.
 template <class Forces>
 FireResult settle(Forces& forces, DropletState& state, const FireOptions& options, double damping_rate) {
   const double dt = options.largest_step;

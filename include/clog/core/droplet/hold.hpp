@@ -6,7 +6,7 @@
 
 namespace clog {
 
-/// What holds a clogged droplet: obstacles that it hangs over, gaps that it does not get through, or both.
+/// What holds a clogged droplet: obstacles over which it hangs, gaps that it does not pass, or both.
 enum class ClogMechanism { none, wrapped, squeezed, hybrid };
 template <>
 struct Words<ClogMechanism> {
@@ -16,10 +16,10 @@ struct Words<ClogMechanism> {
                                                   {ClogMechanism::hybrid, "hybrid"}};
 };
 
-/// How a polygon at rest lies among obstacles; docs/explanation/clogged.md has the definitions.
+/// Geometry of a polygon at rest among obstacles; docs/explanation/clogged.md has the definitions.
 /// The flow is along +x.
 struct ClogGeometry {
-  /// The share of the obstacles' upstream support that comes from wrapped ones; NaN without support.
+  /// Fraction of the obstacles' upstream support that wrapped ones give; NaN without support.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
   int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
   /// Pairs of obstacles, one at least supporting, between which the interface looks downstream.
@@ -30,11 +30,11 @@ struct ClogGeometry {
   /// NaN without support.
   double mesh_hold = std::numeric_limits<double>::quiet_NaN();
 
-  /// Hybrid when wrapped obstacles and others each give a third of the support.
+  /// Hybrid if wrapped obstacles and others each give a third of the support.
   ClogMechanism mechanism() const;
 };
 
-/// What holds a droplet, and how.
+/// The mechanism and its geometry.
 struct Hold {
   ClogMechanism mechanism = ClogMechanism::none;
   ClogGeometry geometry;  ///< of a polygon

@@ -7,8 +7,8 @@
 
 namespace clog {
 
-/// Climbs from the centre of the period to the nearest place that is farther from all obstacles than its
-/// surroundings [sigma].
+/// Climbs from the centre of the period to the nearest local maximum of the distance to all obstacles
+/// [sigma].
 Eigen::Array2d nearest_void(const ObstacleArray& obstacles);
 
 /// Distance from a point of the first period to the nearest surface of an obstacle or a wedge, at most
@@ -25,15 +25,14 @@ DropletState state_at_rest(const Eigen::ArrayXd& droplet, const Eigen::Array2d& 
 /// Number of obstacles whose centre lies inside the polygon.
 int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 
-/// @throws Error that tells both
+/// @throws Error that names both
 [[noreturn]] void refuse_release(const std::string& reason, const std::string& remedy);
 
-/// Largest force component, without weight and springs, that a droplet may be released with: relative to the
+/// Largest force component, without weight and springs, with which a droplet may be released: relative to the
 /// weight of one vertex (DP), to its own weight (SP).
 inline constexpr double release_force_tolerance = 1e-4;
-/// The same for an interface that springs along it, which have no energy, keep sliding for ever: it goes
-/// round a cycle of 1e-3 sigma, and no force has been seen to exceed 0.01; the droplet as a whole stays where
-/// it is.
+/// The same for an interface that springs along it, which have no energy, keep sliding for ever in a cycle of
+/// 1e-3 sigma; no observed force exceeded 0.01. The droplet as a whole stays in place.
 inline constexpr double release_sliding_tolerance = 0.02;
 
 }  // namespace clog

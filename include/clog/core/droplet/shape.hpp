@@ -6,12 +6,12 @@ namespace clog {
 
 /// The interface that walls meet is the polygon refined once by the four-point rule (Dubuc 1986; Dyn, Gregory
 /// and Levin 1987): the middle of an edge is that of the cubic through its two vertices and their two
-/// neighbours. A chord is off the curve that its ends lie on by l^2/8 times the curvature, half of a refined
-/// edge by a quarter of that. The middle is near (q_i + q_(i+1)) + far (q_(i-1) + q_(i+2)).
+/// neighbours. A chord deviates from the curve through its ends by l^2/8 times the curvature, half of a
+/// refined edge by a quarter of that. The middle is near (q_i + q_(i+1)) + far (q_(i-1) + q_(i+2)).
 inline constexpr double refined_near = 9.0 / 16;
 inline constexpr double refined_far = -1.0 / 16;
 
-/// How far a middle may move where no vertex moves by more than 1.
+/// How far a middle may move if no vertex moves by more than 1.
 inline constexpr double refined_sway = 2 * (refined_near - refined_far);
 
 /// Shape of a closed polygon given as one array, all x then all y, counter-clockwise.
@@ -32,17 +32,16 @@ Eigen::ArrayXd regular_polygon(int num_vertices, double area);
 /// The polygon of vertices and middles in turn, 4N coordinates.
 Eigen::ArrayXd refined(const Eigen::ArrayXd& position);
 
-/// Does the polygon enclose the point? Even-odd rule.
+/// Whether the polygon encloses the point. Even-odd rule.
 bool encloses(const Eigen::ArrayXd& position, double x, double y);
 
 /// Number of pairs of edges without a common vertex that cross each other.
 ///
-/// Edges cross when each has its ends strictly on both sides of the other; edges that only touch do not.
-/// Edges with a common vertex meet there and nowhere else unless they lie exactly on top of each other, which
-/// rounding never leaves; a contour that folds back farther than that crosses in edges that count. Without a
-/// crossing and with a positive area the contour winds once around every point inside it: no pocket of it
-/// encloses negative area. (The converse does not hold, a contour may cross itself and wind twice around a
-/// part of its area.)
+/// Edges cross if each has its ends strictly on both sides of the other; edges that only touch do not.
+/// Edges with a common vertex meet only there, unless they lie exactly on top of each other, which rounding
+/// prevents; a contour that folds back farther has other crossings. Without a crossing and with a positive
+/// area the contour winds once around every point inside it: no pocket of it encloses negative area. (The
+/// converse does not hold, a contour may cross itself and wind twice around a part of its area.)
 int num_self_crossings(const Eigen::ArrayXd& position);
 
 /// Point of the segment from `begin` to `end` that is nearest to a point [sigma].

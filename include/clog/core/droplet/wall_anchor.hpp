@@ -12,20 +12,21 @@
 
 namespace clog {
 
-/// A wall that a droplet meets, in its frame: a circle, or a wedge of the scene.
+/// A wall near a droplet, in its frame: a circle, or a wedge of the scene.
 struct WallPlace {
   double x = 0, y = 0;      ///< centre [sigma]
   double radius = 0;        ///< [sigma]
   Eigen::Index wedge = -1;  ///< number of the wedge; -1: a circle
 
-  /// Is it the same wall? Centres of two lists may differ by rounding, those of two walls by much more.
+  /// Whether it is the same wall. Centres from two lists may differ by rounding, those of two walls by much
+  /// more.
   bool is(const WallPlace& other) const {
     constexpr double rounding = 1e-6;
     return wedge == other.wedge && std::abs(x - other.x) < rounding && std::abs(y - other.y) < rounding;
   }
 };
 
-/// Distance of a point, given from the wall's centre. @param wedges  those of the scene
+/// Distance of a point, relative to the wall's centre. @param wedges those of the scene
 inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> wedges,
                                  const Eigen::Array2d& from_centre) {
   if (wall.wedge >= 0) return distance_to(wedges[static_cast<std::size_t>(wall.wedge)], from_centre);
@@ -33,24 +34,24 @@ inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> w
   return {r - wall.radius, from_centre / r};
 }
 
-/// Where a spring between interface and wall is tied to the wall. It rests there until the wall yields: a
-/// static force, which is conservative in between. It is a part of a droplet's state.
+/// Place on a wall to which a spring ties the interface. It stays there until the wall's limit is exceeded:
+/// in between the force is static and conservative. It belongs to a droplet's state.
 struct WallAnchor {
   Eigen::Index holder;  ///< what the spring holds: a vertex, or the first (0) or last (1) end of an arc
   WallPlace wall;       ///< to which it is tied
   double x, y;      ///< where, from the wall's centre; of an arc's end x is its place along the wall [sigma]
   double slip = 0;  ///< way along the wall from there to what it holds, when the wall was last asked [sigma]
-  /// 1: the wall yields, and the spring's force is that of `slip` wherever it holds on. While an equilibrium
-  /// is searched; a droplet that moves asks its walls at every step.
+  /// 1: the wall yields, and the spring's force is that of `slip` wherever it holds on. Only while an
+  /// equilibrium is searched; a moving droplet updates its anchors at every step.
   Eigen::Index yields = 0;
 
   double slip_of_force(double slip_now) const { return yields != 0 ? slip : slip_now; }
 };
 
-/// Anchors by what they hold. It keeps its memory from one use to the next, so that a step allocates none.
+/// Anchors by the vertices or ends that they hold. It keeps its memory, so that a step allocates none.
 class KnownAnchors {
  public:
-  /// Takes the anchors over and leaves none. @param num_holders  anchors of others are never found
+  /// Adopts the anchors and leaves none. @param num_holders anchors of others are never found
   void take(std::vector<WallAnchor>& anchors, Eigen::Index num_holders) {
     std::swap(anchors_, anchors);
     anchors.clear();
@@ -87,12 +88,12 @@ struct WallYield {
     dissipated += 0.5 * stiffness * anchor.slip * anchor.slip;
     excess = std::max(excess, stiffness * std::abs(anchor.slip));
   }
-  /// What is left of the slip where the wall bears slips from `least` to `most`. The anchor is then to be
-  /// moved by what is lost of it.
+  /// The remaining slip if the wall bears slips from `least` to `most`. The anchor then moves by the
+  /// difference.
   double hold(WallAnchor& anchor, double slip, double least, double most, double stiffness, Purpose purpose) {
     const double held = std::clamp(slip, least, most);
     excess = std::max(excess, stiffness * std::abs(held - anchor.slip_of_force(slip)));
-    // By the trapezoidal rule, as the integrator: the force of before acts on half of the way.
+    // By the trapezoidal rule, like the integrator: the earlier force acts on half of the path.
     dissipated += stiffness * (anchor.slip + held) / 2 * (slip - held);
     anchor.slip = held;
     anchor.yields = purpose == Purpose::equilibrium && held != slip ? 1 : 0;

@@ -8,8 +8,8 @@
 
 namespace clog {
 
-/// Gamma_w/Gamma. If it is not given: minus the mean cosine of the receding and the advancing angle, as if
-/// the wall resisted both motions alike; 1 without angles.
+/// Gamma_w/Gamma. Default: minus the mean cosine of the receding and the advancing angle, as if the wall
+/// resisted both motions alike; 1 without angles.
 inline double wall_tension(const DpParameters& dp) {
   if (dp.wall_tension) return *dp.wall_tension;
   if (!dp.receding_angle || !dp.advancing_angle) return 1;

@@ -9,7 +9,7 @@
 
 namespace clog {
 
-/// To be raised whenever the same parameters begin to give other results: runs of different versions do not
+/// Raise this whenever the same parameters begin to give other results: runs of different versions do not
 /// belong in one table.
 inline constexpr int model_version = 11;
 
@@ -18,8 +18,8 @@ template <>
 struct Words<Model> {
   static constexpr Worded<Model> all[] = {{Model::dp, "dp"}, {Model::sp, "sp"}};
 };
-/// Springs of the edges: to the rest length l0 (the paper), to the current mean edge length, or `along` the
-/// interface only: these spread the vertices evenly, but carry no tension.
+/// Springs of the edges: to the rest length l0 (the paper), to the current mean edge length, or only `along`
+/// the interface: these space the vertices evenly, but carry no tension.
 enum class PerimeterSpring { rest, mean, along };
 template <>
 struct Words<PerimeterSpring> {
@@ -32,14 +32,14 @@ template <>
 struct Words<SelfContact> {
   static constexpr Worded<SelfContact> all[] = {{SelfContact::on, "on"}, {SelfContact::off, "off"}};
 };
-/// Does the friction of a wall also hold the interfaces that lie on the one that touches it?
+/// Whether wall friction also acts through a closed film on the interface above it.
 enum class FilmFriction { off, on };
 template <>
 struct Words<FilmFriction> {
   static constexpr Worded<FilmFriction> all[] = {{FilmFriction::on, "on"}, {FilmFriction::off, "off"}};
 };
 /// Where the droplet's weight and the drag on its mean motion act: shared by the vertices (the paper), or on
-/// the area, as a pressure. Then they have no part along the interface, which would pile up its vertices.
+/// the area, as a pressure. Then they have no component along the interface, which would bunch its vertices.
 enum class Gravity { vertex, area };
 template <>
 struct Words<Gravity> {
@@ -64,8 +64,8 @@ struct Words<ObstacleLayout> {
 };
 /// Lattices by their vectors in units of the pitch, t being the tilt: square, turned by t: (1, 0) and (0, 1);
 /// triangular, turned by t: (1, 0) and (1/2, sqrt(3)/2); rhombic: (1, tan t) and (0, 1), not turned. The last
-/// is the sheared array of deterministic lateral displacement: posts stand one above the other across the
-/// flow, and each such column is shifted by tan t (McGrath et al., Lab Chip 14, 4139 (2014)).
+/// is the sheared array of deterministic lateral displacement: columns of posts across the flow, each shifted
+/// by tan t (McGrath et al., Lab Chip 14, 4139 (2014)).
 enum class LatticeKind { square, triangular, rhombic };
 template <>
 struct Words<LatticeKind> {
@@ -73,8 +73,8 @@ struct Words<LatticeKind> {
                                                 {LatticeKind::triangular, "triangular"},
                                                 {LatticeKind::rhombic, "rhombic"}};
 };
-/// Where a droplet starts among user-supplied circles: in the void nearest to the centre of the array, or to
-/// a place that is drawn from the seed, in the whole array or on a line across the flow.
+/// Start of a droplet among user-supplied circles: in the void nearest to the centre of the array, or near a
+/// place drawn from the seed, in the whole array or on a line across the flow.
 enum class Release { centre, anywhere, entrance };
 template <>
 struct Words<Release> {
@@ -87,8 +87,8 @@ template <>
 struct Words<SideWalls> {
   static constexpr Worded<SideWalls> all[] = {{SideWalls::off, "off"}, {SideWalls::on, "on"}};
 };
-/// What it takes for a droplet to count as clogged: kinetic energy below a threshold, or else, long before
-/// that, proof that a stable equilibrium is at hand (equilibrium.hpp).
+/// When a droplet counts as clogged: kinetic energy below a threshold, or, long before that, proof of a
+/// stable equilibrium nearby (equilibrium.hpp).
 enum class ClogDetection { threshold, certified };
 template <>
 struct Words<ClogDetection> {
@@ -96,14 +96,13 @@ struct Words<ClogDetection> {
                                                   {ClogDetection::threshold, "threshold"}};
 };
 
-/// Lengths that were half a vertex diameter and a vertex diameter of 256 vertices, the published number
-/// [sigma].
+/// Half a vertex diameter and a vertex diameter of 256 vertices, the published number [sigma].
 inline constexpr double published_contact_range = 0.00614;
 inline constexpr double published_vertex_diameter = 0.01227;
 
-/// The tension changes to that of a wetted wall over this many vertex diameters. Over one, the contact angle
-/// is wrong however many vertices there are, and droplets of 128 are up to 5 % too tall; over two to four the
-/// shapes agree.
+/// The tension changes to that of a wetted wall within this many vertex diameters. Within one, the contact
+/// angle is wrong for any number of vertices, and droplets of 128 are up to 5 % too tall; within two to four
+/// the shapes agree.
 inline constexpr double wetting_width = 3;
 
 /// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
@@ -117,12 +116,12 @@ struct DpParameters {
   /// Distance from a wall's surface at which contact begins [sigma]; empty: half a vertex diameter, as
   /// published, which makes every gap narrower by a vertex diameter.
   std::optional<double> contact_range = 0;
-  /// Tension of the interface where it touches a wall, over Gamma: (gamma_so - gamma_sw)/gamma_ow, which is
+  /// Tension of the interface on a wall, divided by Gamma: (gamma_so - gamma_sw)/gamma_ow, which is
   /// -cos of the contact angle (Young). 1: a film of water everywhere, as in the paper's figures. Empty: from
   /// the measured angles, see wall_tension().
   std::optional<double> wall_tension;
   /// Contact angles, of the droplet's fluid, beyond which the end of a wetted arc recedes and advances
-  /// [degrees]; empty: Young's, it is not held. For springs `along` the interface.
+  /// [degrees]; empty: Young's angle, and ends are not held. For springs `along` the interface.
   std::optional<double> receding_angle, advancing_angle;
   double friction = 0;        ///< mu of walls, where springs carry tension
   double yield_traction = 0;  ///< tau_y, that a wall bears per length without any push [g rho sigma]
@@ -130,18 +129,18 @@ struct DpParameters {
   /// Distance below which the interface repels itself: the thickness of a film between two parts of it
   /// [sigma].
   double self_contact_range = published_vertex_diameter;
-  /// Empty: on where there is friction and self-contact.
+  /// Empty: on with friction and self-contact.
   std::optional<FilmFriction> film_friction;
   Gravity gravity = Gravity::area;
-  std::optional<int> vertices;  ///< N_v; empty: automatic
-  /// S, inertial mass over the droplet's mass. Weight and drag remain what they are, so that it only matters
-  /// how soon the droplet's speed follows the forces; steps may be sqrt(S) times as long.
+  std::optional<int> vertices;  ///< N_v; empty: automatic S, inertial mass divided by the droplet's mass.
+                                ///< Weight and drag do not change, so it only matters how soon the droplet's
+                                ///< speed follows the forces; steps may be sqrt(S) times as long.
   double inertia = 1;
   /// A droplet with a thinner neck has broken up [sigma]; 0: none does.
   double break_up_neck = 0;
 };
 
-/// In a narrower one the droplet meets its own periodic image [sigma].
+/// In a narrower box the droplet would touch its own periodic image [sigma].
 inline constexpr double narrowest_period = 5;
 
 /// The rectangle after which an array repeats: square boxes in a row along the flow, or a length of its own.
@@ -152,7 +151,7 @@ struct Period {
   double beside = 0;  ///< empty space beside the box, so that nothing meets images of the other side [sigma]
 
   Period() = default;
-  // A single box is a period; nothing is lost in the conversion.
+  // A single box is a period, so the conversion loses nothing.
   Period(double edge, int number = 1) : box(edge), boxes(number) {}
 
   double along() const { return length > 0 ? length : boxes * box; }
@@ -161,14 +160,14 @@ struct Period {
   bool operator==(const Period&) const = default;
 };
 
-/// How densely a random array is filled.
+/// Density of a random array.
 struct ObstacleDensity {
   std::optional<double> per_area;  ///< obstacles per sigma^2
   std::optional<double> share;     ///< of the mean density of saturated arrays; resolve() makes it per_area
 
-  /// Saturated: obstacles are added until not one more fits.
+  /// Saturated: obstacles are added until no further one fits.
   ObstacleDensity() = default;
-  // The number of obstacles per sigma^2 is the density; nothing is lost in the conversion.
+  // The number of obstacles per sigma^2 is the density, so the conversion loses nothing.
   ObstacleDensity(double number_per_area) : per_area(number_per_area) {}
   static ObstacleDensity share_of_saturated(double share) {
     ObstacleDensity density;
@@ -228,7 +227,7 @@ struct ChannelParameters {
 };
 
 /// Drag on a vertex: -(zeta v + (c - 1) b_inf (v - v_cm))/N_v, zeta = b_inf (1 + (b_0/b_inf)
-/// (sigma/d)^alpha), Cheng et al. Eq. 7 for c = 1. The second part damps changes of shape only.
+/// (sigma/d)^alpha), Cheng et al. Eq. 7 for c = 1. The second term damps changes of shape only.
 struct DragParameters {
   double terminal_speed = 0.03;         ///< V_t [sqrt(sigma g)]; b_inf = M g / V_t
   double near_wall = 0;                 ///< b_0/b_inf; the soft disk has no near-wall drag

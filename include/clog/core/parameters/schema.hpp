@@ -15,11 +15,11 @@
 /// physics.
 namespace clog {
 
-/// The value of a parameter. Nothing: an automatic value, or one that means nothing to the run.
+/// The value of a parameter. Unset: an automatic value, or one without a meaning for the run.
 using ParameterValue = std::variant<std::monostate, double, std::int64_t, std::string>;
 
 /// `number_or_share`: a number, or a share of the largest one, as text like `12.5%`. `file`: the key has the
-/// name of a file, the parameter what stands in it. `text`: a description; results have its checksum.
+/// name of a file, the parameter its content. `text`: a description; results have its checksum.
 enum class ValueKind { number, number_or_share, integer, word, file, text };
 
 /// The purpose of a parameter.
@@ -35,7 +35,7 @@ struct Words<ParameterRole> {
                                                   {ParameterRole::ensemble, "ensemble"}};
 };
 
-/// Runs to which a parameter means something.
+/// Runs to which a parameter applies.
 struct ParameterScope {
   const char* word;    ///< "dp", "lattice", ...
   const char* reason;  ///< why it means nothing to the others
@@ -66,9 +66,9 @@ struct Parameter {
   ParameterRange range;                ///< of numbers
   bool has_own_column;                 ///< otherwise the column tells of others as well
   bool shapes_array;                   ///< do two values of it make two obstacle arrays?
-  /// The column's value where the parameter has no meaning; mostly nothing.
+  /// The column's value for other runs; usually unset.
   ParameterValue elsewhere;
-  /// The value of all runs in files older than the parameter. Nothing: it is not known.
+  /// The value of all runs in files older than the parameter. Unset: unknown.
   ParameterValue before;
 
   ValueKind kind;
@@ -78,17 +78,16 @@ struct Parameter {
   void (*set)(RunParameters&, const ParameterValue&);
 
   bool applies_to(const RunParameters& run) const { return scope->holds(run); }
-  /// Does its value follow from the others in such a run, unless it is given?
+  /// Whether its value follows from the others in such a run, unless it is given.
   bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
 };
 
-/// All parameters, in the order in which they are shown and in which the axes of a plan follow each other:
-/// numbers of tasks depend on it.
+/// All parameters, in the order of their display and of a plan's axes, on which the numbers of tasks depend.
 std::span<const Parameter> parameter_schema();
 /// @throws std::out_of_range if there is none
 const Parameter& parameter(std::string_view key);
 
-/// Refuses numbers beyond their range, and values other than the default where they mean nothing to the run.
+/// Refuses numbers outside their range, and values other than the default that do not apply to the run.
 /// @throws Error naming the key, its value, the reason and a remedy
 void check_each(const RunParameters& run);
 

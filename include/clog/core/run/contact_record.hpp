@@ -11,34 +11,34 @@
 
 namespace clog {
 
-/// Obstacles that a droplet has met on its way.
+/// Obstacles that a droplet has met.
 struct Contacts {
-  /// How often it came to touch one: a circle, a post of several circles, or a wedge. It counts again once
-  /// the droplet has been farther than ContactRecord::parting from it; each period of an array has obstacles
-  /// of its own.
+  /// Number of contacts with a circle, a post of several circles, or a wedge. It counts again after the
+  /// droplet has been farther than ContactRecord::parting away; each period of an array has obstacles of its
+  /// own.
   std::int64_t number = 0;
   double first_distance = std::numeric_limits<double>::quiet_NaN();  ///< at the first; NaN: none [sigma]
 };
 
-/// Finds out at the checks of a run which obstacles push its droplet. A touch that begins and ends between
-/// two checks is not seen: the droplet moves by some thousandths of its diameter in that time.
+/// Detects at the checks of a run which obstacles touch its droplet. A contact that begins and ends between
+/// two checks is missed: the droplet moves by some thousandths of its diameter in that time.
 class ContactRecord {
  public:
-  /// An obstacle that is farther away has been left [sigma].
+  /// An obstacle farther away counts as left [sigma].
   static constexpr double parting = 0.1;
 
-  /// @param reach  of what moves, see DropletModel
+  /// @param reach of the moving points, see DropletModel
   explicit ContactRecord(const ContactReach& reach) : reach_(reach) {}
 
-  /// To be called once per check of a run.
-  /// @param release  displacement from the place of release of the origin of the droplet's frame [sigma]
-  /// @param distance  displacement of the droplet along the flow since release [sigma]
+  /// Call this once per check of a run. @param release displacement from the place of release of the origin
+  /// of the droplet's frame [sigma] @param distance displacement of the droplet along the flow since release
+  /// [sigma]
   void add(const DropletState& state, const ObstacleArray& obstacles, const Eigen::Array2d& release,
            double distance);
   const Contacts& found() const { return contacts_; }
 
   void save(ByteWriter& bytes) const;
-  /// @throws Error if it cannot be what save() wrote
+  /// @throws Error if save() cannot have written it
   void restore(ByteReader& bytes);
 
  private:
@@ -65,9 +65,9 @@ class ContactRecord {
 
   void look_around(const DropletState& state, const ObstacleArray& obstacles, const Eigen::Array2d& lower,
                    const Eigen::Array2d& upper);
-  /// Includes a circle, or a wedge, in what is seen of its obstacle, and takes it out of met_.
+  /// Adds a circle, or a wedge, to the data of its obstacle, and removes it from met_.
   void include(Seen& obstacle, const Place& place, double gap);
-  /// Puts it back into met_ if the droplet touches it, or touched it and has not left.
+  /// Returns it to met_ if the droplet touches it, or touched it and has not left.
   void count(const Seen& obstacle, double distance);
 };
 

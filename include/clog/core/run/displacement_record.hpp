@@ -12,16 +12,15 @@ namespace clog {
 /// and the spacing doubles.
 class DisplacementRecord {
  public:
-  /// To be called once per check of a run, at equal time intervals.
+  /// Call this once per check of a run, at equal time intervals.
   void add(double time, double displacement);
 
-  /// Speed of travel between the end of the transient and the moment after which the droplet comes no farther
-  /// than 0.01 sigma. Not a number when it travelled less than half a diameter in that time, or as
-  /// travel_speed() says.
+  /// Mean speed between the end of the transient and the moment after which the droplet advances by at most
+  /// 0.01 sigma. NaN if it travelled less than half a diameter in that time, or if travel_speed() gives NaN.
   TravelSpeed travel_speed() const;
 
   void save(ByteWriter& bytes) const;
-  /// @throws Error if it cannot be what save() wrote after a check at this time [t0]
+  /// @throws Error if save() cannot have written it after a check at this time [t0]
   void restore(ByteReader& bytes, double time);
 
  private:

@@ -29,21 +29,20 @@ struct Words<RunStatus> {
       {RunStatus::failed, "failed"}};
 };
 
-/// E_k/E_t beyond which the integration has broken down: free fall without drag over a whole box stays below
-/// it.
+/// E_k/E_t above which the integration has failed: free fall without drag over a whole box stays below it.
 inline constexpr double diverged_energy_ratio = 1e8;
-/// Relative error of the area, likewise: compressibility and line tension keep a droplet far within it.
+/// Relative error of the area above which it has failed: compressibility and line tension keep a droplet far
+/// below it.
 inline constexpr double diverged_area_error = 0.5;
 
-/// How far a droplet on a flat wall has sunk since it touched it, under no weight then [sigma]; NaN
-/// elsewhere.
+/// How far a droplet on a flat wall has sunk since it touched it without weight [sigma]; NaN elsewhere.
 struct Sag {
   double centre = std::numeric_limits<double>::quiet_NaN();  ///< delta_s, of the area's centroid
   double top = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The thinnest neck that a droplet has had so far, and where it was then [sigma]; NaN if it had none, or
-/// none was looked for. Once there was one, thinner ones only are looked for.
+/// The thinnest neck of a droplet so far, and where it was then [sigma]; NaN without a neck, or without a
+/// search. After the first one the search is only for thinner ones.
 struct ThinnestNeck {
   double width = std::numeric_limits<double>::quiet_NaN();
   double distance = std::numeric_limits<double>::quiet_NaN();
@@ -72,41 +71,40 @@ struct RunResult {
   std::string message;     ///< why it failed
 };
 
-/// One droplet followed from its release until it clogs, breaks up, passes the end of its way, or its time is
-/// up.
+/// One droplet followed from its release until it clogs, breaks up, passes, or reaches max-time.
 ///
 /// The droplet counts as clogged when E_k/E_t (E_t: kinetic energy at terminal speed) has been below
-/// clog-energy at two checks in a row, not before it had ten relaxation times V_t/g to fall. With
-/// clog-detection=certified it also does as soon as find_equilibrium() knows where it will rest. One with a
-/// neck thinner than break-up-neck has broken up, however close to rest it is; a rest with such a neck is
-/// none. The course of a run depends on its parameters alone, not on how advance() is called, nor on how
-/// clogs are found.
+/// clog-energy at two consecutive checks, after at least ten relaxation times V_t/g. With
+/// clog-detection=certified it also counts as soon as find_equilibrium() finds where it will rest. A droplet
+/// with a neck thinner than break-up-neck has broken up, however close to rest it is; an equilibrium with
+/// such a neck does not count. The course of a run depends on its parameters alone, neither on how advance()
+/// is called nor on how clogs are found.
 class DropletRun {
  public:
-  /// Clogging and the end of the run are looked for, and r(t) is recorded, once in so many steps.
+  /// Clogs and the end of the run are checked, and r(t) is recorded, once in this number of steps.
   static constexpr int steps_per_check = 64;
-  /// A snapshot is taken once in so many steps; a quarter of a second apart for 256 vertices.
+  /// A snapshot is taken once in this number of steps, every quarter of a second for 256 vertices.
   static constexpr std::int64_t steps_per_snapshot = std::int64_t{4096} * steps_per_check;
 
-  /// Released where its scene says. @param run  resolved parameters, here and below
+  /// Released as its scene defines. @param run resolved parameters, here and below
   explicit DropletRun(const RunParameters& run);
-  /// The same between walls that are at hand.
+  /// The same with given walls.
   DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
-  /// @param initial   the droplet at its release
-  /// @param way       displacement along the flow at which the run is over, status `passed` [sigma]
+  /// @param initial the droplet at its release @param way displacement along the flow at which it has
+  /// `passed` [sigma]
   DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
              double way = std::numeric_limits<double>::infinity());
 
-  /// A run restored from a snapshot() goes on bit for bit like the one that it was taken of, since that one,
-  /// too, starts afresh there: contact lists are made anew.
-  /// @param run, obstacles  as in that one
-  /// @throws Error if the bytes are no snapshot of such a run
+  /// A run restored from a snapshot() continues bit for bit like the original, because the original also
+  /// rebuilds its contact lists there. @param run, obstacles as in that one @throws Error if the bytes are
+  /// not a snapshot of such a run
   static DropletRun resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
                            std::span<const std::byte> snapshot);
   /// The last one; empty before the first.
   const std::vector<std::byte>& snapshot() const { return snapshot_; }
 
-  /// Goes on for at most `num_checks` intervals of `steps_per_check` steps. Returns whether the run is over.
+  /// Continues for at most `num_checks` intervals of `steps_per_check` steps. Returns whether the run is
+  /// over.
   bool advance(int num_checks);
 
   /// The run's result so far; status `running` while it is not over.
@@ -119,7 +117,7 @@ class DropletRun {
     return droplet_->state().frame.displacement(local, start_frame_, start_);
   }
   double kinetic_energy_ratio() const;
-  /// The gravity term is measured from the place of release.
+  /// The gravity term is relative to the place of release.
   PotentialEnergy potential_energy() const;
   /// Starts to add up the energy lost to drag, see Droplet::work().
   void measure_dissipation() { droplet_->measure_dissipation(); }

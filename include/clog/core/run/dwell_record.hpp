@@ -8,7 +8,7 @@
 
 namespace clog {
 
-/// A time in which the droplet came no farther than dwell-length; NaN while there is none.
+/// A time in which the droplet advanced by at most dwell-length; NaN if there is none.
 struct Dwell {
   double length = std::numeric_limits<double>::quiet_NaN();    ///< [t0]
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< along the flow, where it began [sigma]
@@ -19,10 +19,10 @@ struct Dwell {
 struct Dwells {
   static constexpr std::size_t most = 8;
 
-  /// The longest of all, the longest of those before it, and so on. Of more than `most` the earliest are
-  /// dropped.
+  /// The longest of all, the longest of those before it, and so on. If there are more than `most`, the
+  /// earliest are dropped.
   std::array<Dwell, most> longest;
-  /// first_longer() knows the first longer dwell for times from this one on; NaN: for no time [t0].
+  /// first_longer() is known for times from this one on; NaN: for no time [t0].
   double known_from = std::numeric_limits<double>::quiet_NaN();
   double last_distance = std::numeric_limits<double>::quiet_NaN();  ///< where the last dwell began [sigma]
   double last_begin = std::numeric_limits<double>::quiet_NaN();     ///< and when [t0]
@@ -33,22 +33,22 @@ struct Dwells {
   void keep(const Dwell& dwell);
 };
 
-/// Follows how far a droplet has come, and finds its dwells. One begins at the release, another whenever the
-/// droplet is found farther than dwell-length from where the last began; that is where and when that one
-/// ends.
+/// Follows a droplet's distance, and finds its dwells. One begins at the release, another whenever the
+/// droplet is farther than dwell-length from where the last began, which ends that one.
 class DwellRecord {
  public:
-  /// Dwells of up to this many times dwell_length/terminal_speed, which a free droplet needs, are not kept.
+  /// Dwells of up to this many times dwell_length/terminal_speed, the time of a free droplet, are not
+  /// recorded.
   static constexpr double shortest = 10;
 
   /// @param dwell_length [sigma]; @param terminal_speed [sqrt(sigma g)]
   DwellRecord(double dwell_length, double terminal_speed);
 
-  /// To be called once per check of a run. @param displacement  along the flow since release [sigma]
+  /// Call this once per check of a run. @param displacement along the flow since release [sigma]
   void add(double time, double displacement);
 
-  /// @param time  of the last check. A dwell that has not ended counts with its length so far; that of a
-  /// clog, which has no end, does not count.
+  /// @param time  of the last check. An unfinished dwell counts with its length so far; that of a clog does
+  /// not count.
   Dwells found(double time, bool has_clogged) const;
 
   void save(ByteWriter& bytes) const { bytes.put(found_); }

@@ -6,7 +6,7 @@
 
 namespace clog {
 
-/// A value, and the place h where the droplet had it [sigma]; NaN while there is none.
+/// A value, and the h at which the droplet had it [sigma]; NaN if there is none.
 struct Extreme {
   double value = std::numeric_limits<double>::quiet_NaN();
   double place = std::numeric_limits<double>::quiet_NaN();
@@ -18,7 +18,7 @@ struct Passage {
   Extreme largest_speed;   ///< along the flow [V_t]
   Extreme smallest_speed;  ///< the same; not of the beginning, when the droplet falls from rest
 
-  /// @param is_falling  has it had the time to come to its speed?
+  /// @param is_falling whether it has had time to reach its speed
   void add(double place, double shape_parameter, double speed, bool is_falling);
   void save(ByteWriter& bytes) const { bytes.put(*this); }
   void restore(ByteReader& bytes) { bytes.get(*this); }

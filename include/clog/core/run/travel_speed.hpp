@@ -7,13 +7,13 @@
 
 namespace clog {
 
-/// A place on the way: r(t).
+/// A point of r(t).
 struct TravelSample {
   double time;          ///< [t0]
   double displacement;  ///< along the flow [sigma]
 };
 
-/// Mean speed of one run, without its beginning; NaN where it is not known.
+/// Mean speed of one run after its transient; NaN if unknown.
 struct TravelSpeed {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -23,23 +23,23 @@ struct TravelSpeed {
   double time = unknown;       ///< that the mean is taken over [t0]
 };
 
-/// Mean of the speed after its transient, (r(t_e) - r(t_b))/(t_e - t_b), t_e the last sample's time. All is
-/// NaN for fewer than 50 intervals, or where the transient is not over in half the time.
-/// @param samples  at evenly spaced times
+/// Mean of the speed after its transient, (r(t_e) - r(t_b))/(t_e - t_b), with t_e the last sample's time. All
+/// are NaN for fewer than 50 intervals, or if the transient takes more than half of the time. @param samples
+/// at evenly spaced times
 TravelSpeed travel_speed(std::span<const TravelSample> samples);
 
-/// How many values at the beginning are better left out of a mean: the multiple of 5 after which the mean of
-/// the rest has the smallest standard error, taking means of 5 values as independent (MSER-5: White,
-/// Simulation 69, 323 (1997)). Only the first half is searched; nothing if the best is at its end, for then
-/// the transient may go on, or for fewer than 50 values.
+/// Number of values at the beginning to exclude from a mean: the multiple of 5 after which the mean of the
+/// rest has the smallest standard error, if means of 5 values are independent (MSER-5: White, Simulation 69,
+/// 323 (1997)). Only the first half is searched; nothing for fewer than 50 values, or if the best is at the
+/// end of that half, because the transient may continue.
 std::optional<std::size_t> transient_length(std::span<const double> values);
 
 /// Standard error of the mean of correlated values, from the scatter of the means of blocks of 1, 2, 4, ...
 /// values (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). Of these estimates, which grow until the
-/// blocks are independent, it is that of the shortest block B with B^3 > 2 n (e_B/e_1)^4, where what is left
-/// of the correlation is as small as the scatter of the estimate (Lee et al., Phys. Rev. E 83, 066706
-/// (2011)). NaN if no block is long enough and fewer than n/2, and for
-/// fewer than 200 values, whose errors would be too small where neighbours are correlated.
+/// blocks are independent, it is that of the shortest block B with B^3 > 2 n (e_B/e_1)^4, where the remaining
+/// correlation is as small as the scatter of the estimate (Lee et al., Phys. Rev. E 83, 066706 (2011)). NaN
+/// if no block is long enough and shorter than n/2, and for fewer than 200 values, whose errors would be too
+/// small for correlated neighbours.
 double blocked_error(std::span<const double> values);
 
 }  // namespace clog

@@ -6,7 +6,7 @@
 
 namespace clog {
 
-/// The result that runs in a scene are made for.
+/// The result of runs in a scene.
 enum class Finding { clogging_length, passage, sag };
 
 /// The source of the walls.
@@ -16,35 +16,35 @@ enum class WallsFrom {
   droplet      ///< where they stand depends on it; they are made at once
 };
 
-/// What a droplet meets, where it starts, and where its way ends. There is one scene for each ObstacleLayout:
-/// a new one is a word of that, a file with a scene of its own, a line in scene.cpp, and what
-/// docs/developer/add-a-scene.md says besides.
+/// Which obstacles a droplet meets, where it starts, and where its path ends. There is one scene for each
+/// ObstacleLayout. A new one needs a word of ObstacleLayout, a file with a scene of its own, a line in
+/// scene.cpp, and the steps of docs/developer/add-a-scene.md.
 struct Scene {
   Finding finding;
   WallsFrom walls_from;
-  /// Is an array random, so that a droplet that has travelled a period meets what it met before?
+  /// Whether an array is random, so that a droplet meets the same obstacles again after a period.
   bool is_random;
-  /// Key of the parameter that says how narrow it is; nullptr without any.
+  /// Key of the parameter for its narrowness; nullptr if there is none.
   const char* gap_key;
 
-  /// Refuses what cannot be, before any automatic value is known: of each parameter alone, check_each() has
-  /// looked at it. @throws Error
+  /// Refuses impossible combinations before automatic values are known; check_each() has checked each
+  /// parameter alone. @throws Error
   void (*check)(const RunParameters& run);
-  /// Replaces what follows from the others, and refuses what cannot be once these are known. @throws Error
+  /// Replaces values that follow from the others, and refuses those that are then impossible. @throws Error
   void (*resolve)(RunParameters& run);
-  /// Diameter of the sharpest bend that the interface is expected to take [sigma].
+  /// Diameter of the sharpest expected bend of the interface [sigma].
   double (*sharpest_bend)(const RunParameters& run);
-  /// Obstacles per area [1/sigma^2]; NaN if there are none, or only the array itself could tell.
+  /// Obstacles per area [1/sigma^2]; NaN without obstacles, or if only the array itself could tell.
   double (*density)(const ObstacleParameters& obstacles);
 
   // For resolved parameters:
   ObstacleArray (*walls)(const RunParameters& run);
   /// A droplet at rest. @throws Error if there is no room for it
   DropletState (*release)(const RunParameters& run, const ObstacleArray& walls);
-  /// Displacement along the flow after which the droplet has passed [sigma]; infinite where it never has.
-  /// @param start  where the centre of mass is released, in the coordinates of the walls [sigma]
+  /// Displacement along the flow after which the droplet has passed [sigma]; infinite if it never has. @param
+  /// start place of release of the centre of mass, in the coordinates of the walls [sigma]
   double (*way)(const RunParameters& run, const Eigen::Array2d& start);
-  /// A place of the walls in the coordinates of the file that these are from; nullptr without a file [sigma].
+  /// Converts a place of the walls to the coordinates of their file; nullptr without a file [sigma].
   Eigen::Array2d (*place_in_file)(const RunParameters& run, const Eigen::Array2d& place) = nullptr;
 };
 

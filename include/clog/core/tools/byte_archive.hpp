@@ -10,8 +10,8 @@
 
 namespace clog {
 
-/// Plain values one after the other, as they lie in memory: for bytes that are read by the same program on
-/// the same kind of machine.
+/// Plain values in sequence with the layout of memory, for bytes that the same program reads on the same kind
+/// of machine.
 class ByteWriter {
  public:
   template <class T>
@@ -41,8 +41,7 @@ class ByteWriter {
   }
 };
 
-/// Reads what a ByteWriter wrote, in the same order.
-/// @throws std::out_of_range when there is less than asked for
+/// Reads what a ByteWriter wrote, in the same order. @throws std::out_of_range at the end of the bytes
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}

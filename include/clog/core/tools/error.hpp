@@ -4,7 +4,7 @@
 
 namespace clog {
 
-/// A fault of the user or of the environment: what is wrong, why, and a remedy, in one line.
+/// An error of the user or the environment: what is wrong, why, and a remedy, in one line.
 /// Programs print it and leave with exit code 2. Our own mistakes are asserts, not Errors.
 class Error : public std::runtime_error {
  public:

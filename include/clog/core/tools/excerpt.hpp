@@ -6,7 +6,7 @@
 
 namespace clog {
 
-/// A word that a message repeats, without what would fill a screen.
+/// A word for a message, shortened if it would fill a screen.
 inline std::string excerpt(std::string_view word) {
   constexpr std::size_t longest = 80;
   return word.size() > longest ? std::string(word.substr(0, longest)) + "..." : std::string(word);

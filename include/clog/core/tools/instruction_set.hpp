@@ -5,14 +5,14 @@
 
 namespace clog {
 
-/// The instruction sets that all kernels were compiled for and this processor has, the widest first: of
-/// avx512, avx2, baseline. (On processors other than x86 the names are those of the Highway library.)
+/// The instruction sets of all kernels that this processor supports, the widest first: of avx512, avx2,
+/// baseline. (On processors other than x86 the names are those of the Highway library.)
 std::vector<std::string> instruction_sets();
-/// The one that is used for droplets made from now on and for their release. Results of two sets differ by
-/// round-off; docs/explanation/numerics.md ("Reproducibility") says what those of one depend on.
+/// The one for droplets made from now on and for their release. Results of two sets differ by round-off
+/// (docs/explanation/numerics.md, "Reproducibility").
 std::string instruction_set();
-/// Pins it; `auto` goes back to the widest. To be called before droplets and threads are made.
-/// @throws Error if this processor has no such set
+/// Pins it; `auto` selects the widest. Call this before droplets and threads are made. @throws Error if this
+/// processor has no such set
 void use_instruction_set(const std::string& name);
 
 }  // namespace clog

@@ -21,7 +21,7 @@ inline std::string shortest(double value) {
   return text;
 }
 
-/// A share as people write it: 0.125 is `12.5%`. Twelve digits spare the text 28.999999999999996%.
+/// A share as people write it: 0.125 is `12.5%`. Twelve digits avoid 28.999999999999996%.
 inline std::string share_text(double share) {
   char digits[32];
   const char* const end =

@@ -2,14 +2,14 @@
 
 #include <cmath>
 
-/// Functions whose last bit does not depend on the processor. Of its functions of doubles glibc has versions
-/// with and without fused multiply-adds and takes what the processor can do; in one result of some thousand
-/// their last bits differ. Of each function of long doubles it has one version. (Square roots, std::hypot and
-/// rounding are the same everywhere as they are.) They are slow: nothing for loops over vertices.
+/// Functions whose last bit does not depend on the processor. glibc has versions of its double functions with
+/// and without fused multiply-adds and uses what the processor supports; in one result of some thousand their
+/// last bits differ. Of its long double functions it has one version. (Square roots, std::hypot and rounding
+/// are the same everywhere as they are.) They are slow: nothing for loops over vertices.
 ///
 /// sin, cos and tan are plain arithmetic. The others are instructions of the x87, which another maker's
-/// processor may round differently in the 64th bit; next to never does that reach the 53 of a double. Use
-/// them for what is rounded or compared afterwards.
+/// processor may round differently in the 64th bit; this almost never affects the 53 bits of a double. Use
+/// them for values that are rounded or compared afterwards.
 namespace clog::portable {
 
 using Wide = long double;

@@ -11,14 +11,13 @@ namespace clog {
 /// 5, 707 (1994)).
 double saturated_density(double diameter, double gap);
 
-/// Obstacles per area that a random array is to have [1/sigma^2]; nothing: as many as fit. A share is that of
-/// the mean density of saturated arrays of these diameters and this gap, whatever the box.
+/// Obstacles per area of a random array [1/sigma^2]; nothing: as many as fit. A share is relative to the mean
+/// density of saturated arrays of these diameters and this gap, for any box.
 std::optional<double> wanted_density(const ObstacleParameters& obstacles);
 
-/// The largest density of a random array that every seed can be relied on to reach [1/sigma^2]: eight
-/// standard deviations below the mean number of obstacles of saturated arrays of this box. In small boxes,
-/// where that is next to nothing, what no saturated array can be without.
-/// @param obstacles  of random layout
+/// The largest density of a random array that every seed can reach [1/sigma^2]: eight standard deviations
+/// below the mean number of obstacles of saturated arrays of this box. In small boxes, where this is almost
+/// zero, the smallest density of any saturated array. @param obstacles of random layout
 double largest_density(const ObstacleParameters& obstacles);
 
 }  // namespace clog

@@ -10,7 +10,7 @@
 
 namespace clog {
 
-/// A lattice that has a rectangle along the flow as a period. It does if its tilt t is rational: tan t = q/p
+/// A lattice with a rectangular period along the flow. It does if its tilt t is rational: tan t = q/p
 /// with integers p and q, of a triangular one sqrt(3) q/p. Then p first - q second is a period along the flow
 /// of the square one, L = a sqrt(p^2 + q^2).
 struct CommensurateLattice {
@@ -21,23 +21,23 @@ struct CommensurateLattice {
   double angle = 0;   ///< t [degrees]
 };
 
-/// How far the tilt of a lattice may be from the one asked for [degrees].
+/// Largest deviation of a lattice's tilt from the requested one [degrees].
 inline constexpr double largest_angle_error = 0.1;
 /// Tilts beyond this one are equal to others by symmetry [degrees].
 double largest_tilt(LatticeKind kind);
 
-/// The lattice nearest to the angle whose periods are no longer than `box` and `length` (0: than `box`), and
-/// no shorter than two spacings and `narrowest_period`; of several as near, the one with the largest box.
-/// Empty if no lattice has such periods.
+/// The lattice nearest to the angle whose periods are at most `box` and `length` (0: `box`), and at least two
+/// spacings and `narrowest_period`; of several equally near, the one with the largest box. Empty if no
+/// lattice has such periods.
 std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles);
 /// The same; empty if its tilt is too far from lattice_angle.
 std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);
 /// The smallest whole-numbered box for which there is one [sigma].
 double box_that_fits(const ObstacleParameters& obstacles);
-/// The nearest lattices on both sides of lattice_angle, as far as there are any.
+/// The nearest lattices on both sides of lattice_angle, if there are any.
 std::vector<CommensurateLattice> neighbouring_lattices(const ObstacleParameters& obstacles);
 
-/// Replaces a given pitch by the gap that it leaves. @throws Error  if it leaves none
+/// Replaces a given pitch by the corresponding gap. @throws Error if there is none
 void use_pitch(ObstacleParameters& obstacles);
 /// Obstacles per area [1/sigma^2].
 double lattice_density(const ObstacleParameters& obstacles);

@@ -19,17 +19,17 @@ struct BinnedObstacles {
   std::span<const std::uint32_t> cell_start;
 };
 
-/// Periodic array of circles in a rectangle, binned into cells of about one droplet diameter so that the
-/// neighbourhood of a droplet is found at a cost that does not depend on the period. There may be wedges as
-/// well, without periodic images.
+/// Periodic array of circles in a rectangle, in cells of about one droplet diameter, so that finding the
+/// neighbourhood of a droplet costs the same for any period. There may also be wedges, without periodic
+/// images.
 class ObstacleArray {
  public:
   /// @param obstacles  centres are wrapped into one period, [0, along) x [0, across)
   /// @throws Error if a centre is not finite or a radius not positive and finite
   ObstacleArray(const Period& period, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges = {});
 
-  /// The same array over memory of another's binned(), a copy of which may come from another process.
-  /// @param memory  keeps it alive
+  /// The same array in another one's binned() memory, possibly copied from another process. @param memory
+  /// keeps it alive
   ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory);
   const BinnedObstacles& binned() const { return binned_; }
   static std::size_t num_cells(const Period& period);
@@ -55,11 +55,11 @@ class ObstacleArray {
     Obstacle first, second;
     double gap;
   };
-  /// The post that each obstacle belongs to: circles of which one has its centre within the other are
-  /// one post, whose outline they make together. A copy of a circle belongs to no post but its own.
+  /// The post of each obstacle: circles of which one has its centre within the other form one post, and
+  /// together its outline. A copy of a circle forms a post of its own.
   std::vector<std::uint32_t> posts() const;
-  /// The pair of two posts with the smallest gap, their images included, but not those beyond side walls. It
-  /// is infinite if there is no pair nearer than a box.
+  /// The two posts with the smallest gap, including their images, but not those beyond side walls. The gap is
+  /// infinite if no pair is nearer than a box.
   Pair closest_pair() const;
   double smallest_gap() const { return closest_pair().gap; }
 
@@ -76,17 +76,17 @@ class ObstacleArray {
   void visit_window(const Window& window, Visit visit) const;
 };
 
-/// The post of each of a few circles, numbered from 0 in the order in which posts first appear: as
-/// ObstacleArray::posts(), but through these circles alone. A post that is continuous only farther away
-/// is several.
+/// The post of each of a few circles, numbered from 0 in the order in which posts first appear: like
+/// ObstacleArray::posts(), but only through these circles. A post that is only connected farther away counts
+/// as several.
 std::vector<int> posts_among(std::span<const Obstacle> circles);
 
 /// A Poisson-disk sample by random sequential addition. Discs arrive one by one, with a diameter uniform in
 /// diameter (1 -+ spread) at a uniform place (periodic), and stay if all earlier surfaces are at least `gap`
-/// away: in a dense mixture small ones are more frequent than among the arriving ones. With a density, stops
-/// at round(density * area) obstacles; without, goes on until not even one of the smallest fits ("saturated",
-/// the jamming limit: discs of diameter + gap cover 0.547 of the plane, Feder, J. Theor. Biol. 87, 237
-/// (1980)). Voids are tracked on a flat quadtree as in Ebeida et al., Comput. Graph. Forum 31, 785 (2012).
+/// away; so dense mixtures contain more small discs than arrive. With a density, stops at round(density *
+/// area) obstacles; without, goes on until not even one of the smallest fits ("saturated", the jamming limit:
+/// discs of diameter + gap cover 0.547 of the plane, Feder, J. Theor. Biol. 87, 237 (1980)). Voids are
+/// tracked on a flat quadtree as in Ebeida et al., Comput. Graph. Forum 31, 785 (2012).
 /// @throws Error if the density exceeds what fits; resolve() lets only densities pass that every seed reaches
 ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
 

@@ -8,16 +8,16 @@
 
 namespace clog {
 
-/// An angle with its cosine and sine, which are slow to find.
+/// An angle with its cosine and sine, which are slow to compute.
 struct Angle {
   double radians, cos, sin;
   Angle(double in_radians)
       : radians(in_radians), cos(portable::cos(in_radians)), sin(portable::sin(in_radians)) {}
 };
 
-/// Convex wall without end: all points within `half_angle` of the axis, seen from the tip, the tip rounded
-/// off by a circle that touches both flanks' parallels and the place of the tip. Half a plane for half_angle
-/// = pi/2. A narrow channel is two of them, tip to tip (Cheng et al., Fig. 1).
+/// Infinite convex wall: all points within `half_angle` of the axis, seen from the tip, rounded by a circle
+/// at the tip. Half a plane for half_angle = pi/2. A narrow channel is two of them, tip to tip (Cheng et al.,
+/// Fig. 1).
 struct Wedge {
   Eigen::Array2d tip{0, 0};                 ///< place in the box [sigma]; wedges have no periodic images
   Eigen::Array2d axis{1, 0};                ///< unit vector from the tip into the wall

@@ -48,8 +48,8 @@ class Search {
   }
 
  private:
-  /// list_along() finds the pairs up to so many vertices apart. Pairs farther apart lie in groups that have
-  /// another group between them; list_far() finds these.
+  /// list_along() finds the pairs at most this many vertices apart. Pairs farther apart are in groups that
+  /// are not neighbours; list_far() finds these.
   static constexpr int last_along = 2 * group_size - 1;
   static_assert(last_along + group_size <= close_vertices_beyond);
 
@@ -58,7 +58,7 @@ class Search {
   std::vector<double>& groups_;
   std::vector<VertexPair>& pairs_;
 
-  /// From vertices to those `ahead` along the contour.
+  /// From each vertex to the one `ahead` along the contour.
   HWY_INLINE V distance2(int i, int ahead) const {
     return square(hn::Sub(load(c_.x + i + ahead), load(c_.x + i)),
                   hn::Sub(load(c_.y + i + ahead), load(c_.y + i)));
@@ -67,7 +67,7 @@ class Search {
   bool excluded_are_long() const { return (c_.exclusion - 1) * c_.longest_edge >= c_.arc; }
 
   /// False only if no pair along the contour is close. Vertices up to 7 apart are all tested. Those 9 apart,
-  /// with a reach longer by one edge, stand for 8 to 10; those 13 apart, longer by two edges, for 11 to 15.
+  /// with a reach longer by one edge, represent 8 to 10; those 13 apart, longer by two edges, 11 to 15.
   bool along_may_meet() const {
     constexpr int last_tested = 7, third = 9, fifth = 13;
     if (c_.exclusion > last_tested || excluded_are_long()) return true;
@@ -85,7 +85,7 @@ class Search {
   }
 
   void list_along() {
-    // Pairs with the contour's other half were met from the other side.
+    // Pairs with the contour's other half were found from the other side.
     const int last = std::min(last_along, c_.n / 2);
     for (int k = excluded_are_long() ? 1 : c_.exclusion; k <= last; ++k) {
       const int end = 2 * k == c_.n ? k : c_.n;
@@ -102,8 +102,8 @@ class Search {
     }
   }
 
-  /// Groups of vertices by circles around them: no point of an arc is farther from the middle of its ends
-  /// than half of the arc.
+  /// Bounding circles of groups of vertices: no point of an arc is farther from the midpoint of its ends than
+  /// half of the arc.
   void list_far() {
     const int num_groups = (c_.n + group_size - 1) / group_size;
     const int stride = num_groups + lanes;
@@ -111,14 +111,14 @@ class Search {
     double *x = groups_.data(), *y = x + stride, *radius = y + stride;
     for (int g = 0; g < num_groups; ++g) {
       const int begin = g * group_size,
-                end = begin + group_size - 1;  // those behind the last repeat the first
+                end = begin + group_size - 1;  // entries beyond the last repeat the first
       x[g] = (c_.x[begin] + c_.x[end]) / 2;
       y[g] = (c_.y[begin] + c_.y[end]) / 2;
       radius[g] = (c_.along[end] - c_.along[begin]) / 2;
     }
     for (int g = 0; g + 2 < num_groups; ++g) {
       const V to_x = all(x[g]), to_y = all(y[g]), own = all(c_.reach + radius[g]);
-      const int end = g == 0 ? num_groups - 1 : num_groups;  // the last one is next to the first
+      const int end = g == 0 ? num_groups - 1 : num_groups;  // the last group is next to the first
       for (int h = g + 2; h < end; h += lanes) {
         const V way = hn::Add(load(radius + h), own);
         const M near =
@@ -131,7 +131,7 @@ class Search {
     }
   }
 
-  /// Lists pairs of two groups, the first of which comes first.
+  /// Lists the pairs of two groups; the first group precedes the second.
   void list_between(int first, int second) {
     const int end = std::min(second + group_size, c_.n);
     for (int i = first; i < first + group_size; i += lanes) {

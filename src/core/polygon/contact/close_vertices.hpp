@@ -4,12 +4,12 @@
 
 #include "clog/core/polygon/contact/self_contacts.hpp"
 
-/// Which parts of a contour are near each other? Compiled for several instruction sets; the same pairs with
-/// each of them.
+/// Finds the parts of a contour that are near each other. Compiled for several instruction sets, all of which
+/// find the same pairs.
 namespace clog::kernel {
 
-/// A closed contour. Arrays repeat it behind its end for `close_vertices_beyond` entries; `along` goes on
-/// there.
+/// A closed contour. Arrays repeat it beyond its end for `close_vertices_beyond` entries, where `along`
+/// continues.
 struct CloseSearch {
   int n;
   const double *x, *y;
@@ -20,8 +20,8 @@ struct CloseSearch {
 };
 inline constexpr int close_vertices_beyond = 24;
 
-/// Finds all pairs of vertices within `reach` that are `exclusion` vertices or more, or `arc` or more, apart
-/// along the contour, each once. @param groups  memory
+/// Finds all pairs of vertices within `reach` that are at least `exclusion` vertices, or at least `arc`,
+/// apart along the contour, each once. @param groups memory
 void find_close_vertices(const CloseSearch& search, std::vector<double>& groups,
                          std::vector<VertexPair>& pairs);
 

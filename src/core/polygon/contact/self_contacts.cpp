@@ -49,8 +49,7 @@ bool SelfContacts::hold(double moved, const Travel& travel) const {
 }
 
 void SelfContacts::renew(const DropletState& state, const Travel& travel) {
-  // Thin enough that neighbours along a straight contour at rest stay out of reach, unless the droplet moves
-  // very fast.
+  // Thin enough to exclude neighbours along a straight contour at rest, unless the droplet moves very fast.
   const double usual_skin = (exclusion_ * rest_edge_ - range_) / 4;
   rebuild(state, std::clamp(2 * travel.relative, usual_skin, widest_skin));
 }
@@ -105,9 +104,9 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
   reference_.tail(WallContacts::edges_per_group).setZero();
   pairs_.clear();
   items_.clear();
-  if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
+  if (!reference_.allFinite()) return;  // the droplet has diverged; the run detects this at its next check
 
-  // The nearest point of an edge within reach lies within half an edge of one of its ends.
+  // The closest point of an edge within reach is at most half an edge from one of its ends.
   const double reach = range_ + 2 * skin_;
   const double longest_edge = measure_edges(x, y, n);
   const double end_reach = reach + 0.5 * longest_edge;

@@ -37,12 +37,12 @@ HWY_INLINE Vectors operator*(V factor, const Vectors& v) {
   return {hn::Mul(factor, v.x), hn::Mul(factor, v.y)};
 }
 
-/// Half edges, from a vertex to the middle of its edge, that meet a circle. NearestOnHalves in
+/// Half edges, from a vertex to the middle of its edge, in contact with a circle. NearestOnHalves in
 /// dp_step_circles-inl.hpp computes the same faster.
 struct Half {
   M touches;
   V length;
-  V to_middle;  ///< share of the push that the middle takes
+  V to_middle;  ///< fraction of the force that the middle takes
   Vectors push;
 
   HWY_INLINE Half(const Vectors& vertex, const Vectors& middle, const Vectors& centre, V reach, V stiffness) {
@@ -70,7 +70,7 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     const auto vertices = [&](int k) { return Vectors{load_at(x + i + k), load_at(y + i + k)}; };
     const Vectors begin = vertices(0), end = vertices(1);
     const Vectors middle = far * vertices(-1) + near * begin + near * end + far * vertices(2);
-    // No point of an edge's halves is farther from one of its vertices than half the way there by way of the
+    // No point of an edge's halves is farther from the vertex than half the length of the path through the
     // middle.
     const V first_way = hn::Sqrt((middle - begin).square()), second_way = hn::Sqrt((middle - end).square());
     const auto may_touch = [&](const Vectors& vertex, V way) {
@@ -86,7 +86,7 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     hn::StoreMaskBits(D(), any, bits);
     touches.touching |= static_cast<unsigned>(bits[0]) << i;
 
-    // Sums in the order of the halves, each its vertex' own share first.
+    // Sums in the order of the halves; each begins with its own vertex.
     const auto if_touches = [](const Half& half, V share) {
       return Vectors{hn::IfThenElseZero(half.touches, hn::Mul(share, half.push.x)),
                      hn::IfThenElseZero(half.touches, hn::Mul(share, half.push.y))};
@@ -103,7 +103,7 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     keep(1, own(first) + by_middle(first, near) + by_middle(second, near));
     keep(2, by_middle(first, near) + own(second) + by_middle(second, near));
     keep(3, by_middle(first, far) + by_middle(second, far));
-    // A half is as long on the wall as it is; the middle belongs to both vertices.
+    // The wetted length of a half is its length; the middle belongs to both vertices.
     const auto wetted = [&](double by_first, double by_second, double* p) {
       hn::Store(hn::Add(hn::IfThenElse(first.touches, hn::Mul(all(by_first), first.length), zero),
                         hn::IfThenElse(second.touches, hn::Mul(all(by_second), second.length), zero)),

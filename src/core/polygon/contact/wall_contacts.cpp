@@ -9,8 +9,8 @@
 namespace clog {
 namespace {
 
-// A droplet moves 0.05 sigma in about 1000 steps: renewals are then too rare to cost anything. A list of
-// possible nearest obstacles grows with the skin, so it gets a thinner one.
+// A droplet moves 0.05 sigma in about 1000 steps, so renewals cost nothing. A list of possible nearest
+// obstacles grows with the skin, so its skin is thinner.
 constexpr double touching_skin = 0.05;
 constexpr double nearest_skin = 0.02;
 
@@ -36,7 +36,7 @@ bool WallContacts::hold(double moved, const Travel& travel) const {
 }
 
 void WallContacts::renew(const DropletState& state, const Travel& travel) {
-  // A fast droplet needs more than the usual skin even to reach the next update.
+  // A fast droplet needs more than the usual skin to reach even the next update.
   const double usual_skin = keep_ == Keep::nearest_to_vertex ? nearest_skin : touching_skin;
   rebuild(state, std::clamp(2 * refined_sway * travel.absolute, usual_skin, widest_skin));
 }
@@ -44,7 +44,7 @@ void WallContacts::renew(const DropletState& state, const Travel& travel) {
 void WallContacts::gather_nearby(const DropletState& state) {
   const auto x = state.x();
   const auto y = state.y();
-  // Middles of edges stick out of the vertices' bounds by an eighth of an edge at most.
+  // Middles of edges exceed the vertices' bounds by at most an eighth of an edge.
   double longest2 = 0;
   for (Eigen::Index i = 0, j = x.size() - 1; i < x.size(); j = i++)
     longest2 = std::max(longest2, (x[i] - x[j]) * (x[i] - x[j]) + (y[i] - y[j]) * (y[i] - y[j]));
@@ -57,7 +57,7 @@ void WallContacts::gather_nearby(const DropletState& state) {
                                range_ + skin_ + std::sqrt(longest2) / 8};
   nearby_.clear();
   array_->gather(window, nearby_);
-  // A wedge's flanks touch vertices first, but its tip can come between two of them.
+  // A wedge's flanks touch vertices first, but its tip may lie between two of them.
   if (keep_ == Keep::touched_by_edge)
     for (const Wedge& wedge : array_->wedges())
       if (!wedge.is_flat()) {
@@ -66,8 +66,8 @@ void WallContacts::gather_nearby(const DropletState& state) {
         nearby_.push_back({centre[0], centre[1], wedge.radius});
       }
   if (keep_ != Keep::nearest_to_vertex) return;
-  // The nearest obstacle may be far away in a sparse array: look as far as a period (a periodic array holds
-  // at least one obstacle there, if it holds any).
+  // In a sparse array the nearest obstacle may be far away, so search up to one period (a periodic array with
+  // obstacles has one there).
   for (window.margin = 0.5; window.margin < 2 * array_->period().along(); window.margin *= 2) {
     nearby_.clear();
     array_->gather(window, nearby_);
@@ -84,7 +84,7 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   reference_.head(2 * num_points_) = state.position;
   reference_.tail(edges_per_group).setZero();
   items_.clear();
-  if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
+  if (!reference_.allFinite()) return;  // the droplet has diverged; the run detects this at its next check
   gather_nearby(state);
   if (keep_ == Keep::touched_by_edge) {
     list_by_edge(refined(state.position));
@@ -99,9 +99,8 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   largest_radius_ = nearby_.empty() ? 0 : largest->radius;
 }
 
-/// Lists the edges of a group that a circle near the group's bounds can touch: an obstacle is in contact
-/// later only if it is within range + skin now.
-/// @param fine  the refined contour, see refined()
+/// Lists the edges of a group that a circle near the group's bounds can touch: an obstacle within range later
+/// is within range + skin now. @param fine the refined contour, see refined()
 void WallContacts::list_by_edge(const Eigen::ArrayXd& fine) {
   constexpr double rounding = 1e-12;
   const int n = static_cast<int>(num_points_);
@@ -139,7 +138,7 @@ void WallContacts::list_by_edge(const Eigen::ArrayXd& fine) {
   }
 }
 
-/// Measures the distances of all vertices from all circles nearby, and from the nearest.
+/// Measures the distances of all vertices to all circles nearby, and to the nearest.
 void WallContacts::measure_distances(const DropletState& state) {
   const auto num_nearby = static_cast<Eigen::Index>(nearby_.size());
   distances_.resize(state.size(), num_nearby);
@@ -152,7 +151,7 @@ void WallContacts::measure_distances(const DropletState& state) {
   }
 }
 
-/// An obstacle is the nearest later only if it is within 2 skins of the nearest now.
+/// An obstacle that is the nearest later is within 2 skins of the nearest now.
 void WallContacts::list_by_vertex(const DropletState& state) {
   measure_distances(state);
   candidates_.resize(num_points_);

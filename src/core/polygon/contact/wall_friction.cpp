@@ -29,7 +29,7 @@ double WallFriction::energy(const DropletState& state) const {
   return energy;
 }
 
-/// hold_group() in dp_step_holds-inl.hpp does the same for circles that meet edges.
+/// hold_group() in dp_step_holds-inl.hpp does the same for circles in contact with edges.
 WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
                                KnownAnchors& known, Eigen::ArrayXd* force) const {
   WallYield yield;
@@ -37,7 +37,7 @@ WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> t
   known.take(state.anchors, state.size());
   for (const WallTouch& touch : touches) {
     const WallFoot& at = touch.foot;
-    if (!(at.gradient > 0)) continue;  // a sharp tip: there is nothing to slip along
+    if (!(at.gradient > 0)) continue;  // a sharp tip has no surface to slip along
     const double bears = coefficient_ * touch.push + traction_ * touch.wetted;
     if (!(bears > 0)) continue;
     WallAnchor* const before = known.find(touch.vertex, touch.wall);

@@ -23,8 +23,8 @@ StiffModes stiff_modes_of_circle(const DpParameters& dp, double wall_stiffness) 
   return stiff_modes(dp, wall_stiffness, circumference, circumference / *dp.vertices);
 }
 
-/// An automatic contact follows the step, and with it what has its stiffness; only the other modes limit it
-/// then.
+/// An automatic contact, and all that has its stiffness, follows the step; so only the other modes limit the
+/// step.
 double largest_step_with_automatic_contact(const DpParameters& dp) {
   const StiffModes modes = stiff_modes_of_circle(dp, 1);
   const double others = modes.sum() - modes.contact - modes.friction;
@@ -43,10 +43,10 @@ std::vector<Rate> polygon_rates(const RunParameters& run) {
           {"wall-stiffness", run.wall_stiffness.value_or(0), modes.contact}};
 }
 
-/// The time step where none is given [t0]. K_a and K_l must be set.
+/// The automatic time step [t0]. K_a and K_l must be set.
 double automatic_time_step(const RunParameters& run, double sharpest_bend) {
   const double drag = drag_time_step(run);
-  constexpr double depth = 0.02;  // of an obstacle in the contact range, over the vertex diameter
+  constexpr double depth = 0.02;  // obstacle plus contact range, divided by the vertex diameter
   const double vertex_mass = run.dp.inertia * units::droplet_mass / *run.dp.vertices;
   if (run.wall_stiffness)
     return rounded_down(
@@ -58,7 +58,7 @@ double automatic_time_step(const RunParameters& run, double sharpest_bend) {
   return rounded_down(std::min({drag, stable, stiff_contact}));
 }
 
-/// The droplet keeps its area under its own line tension.
+/// The droplet keeps its area under its line tension.
 void validate_compression(const DpParameters& dp, bool automatic_area) {
   constexpr double largest = 0.05;
   const double softest_per_tension = 1 / (units::droplet_diameter / 2) / (largest * units::rest_area);
@@ -76,8 +76,7 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
   });
 }
 
-/// N_v l of the longest edges l that a droplet has on an obstacle [sigma], as measured
-/// (docs/explanation/wrapped.md).
+/// N_v l of the longest edges l on an obstacle [sigma], measured (docs/explanation/wrapped.md).
 double length_over_obstacles(const RunParameters& run) {
   // The whole interface, if the mesh is even.
   const double even = std::numbers::pi * units::droplet_diameter + 0.33 / run.dp.line_tension;
@@ -213,8 +212,8 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
         "wall-stiffness={:.3g}) try {:.3g}",
         stiffest_omega_dt, *run.wall_stiffness, 0.99 * largest);
   });
-  // A contact too soft to carry the droplet lets obstacles sink into it: demand that a weight of M g on
-  // the vertices of an eighth of the circumference leaves less than half the contact range.
+  // A contact too soft to carry the droplet lets obstacles sink into it. So a weight of M g on the vertices
+  // of an eighth of the circumference must compress it by less than half the contact range.
   const double softest = units::droplet_mass / (*dp.vertices / 8.0) / (vertex_diameter / 4);
   require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness",
           *run.wall_stiffness, [&] {

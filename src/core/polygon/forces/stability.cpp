@@ -12,7 +12,7 @@ namespace {
 
 /// @param longest  possible step
 int num_steps(double longest, int steps, double time_step) {
-  // The tolerance keeps a step that was chosen as exactly the largest stable one from being split.
+  // The tolerance avoids splitting a step that was chosen as exactly the largest stable one.
   constexpr double tolerance = 1e-9;
   constexpr double most_by_part = 2;
   const double for_one = time_step / longest - tolerance;

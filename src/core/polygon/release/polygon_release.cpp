@@ -21,7 +21,8 @@ namespace {
 
 constexpr double radius = units::droplet_diameter / 2;
 
-/// A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
+/// A polygon smaller than the droplet has a smaller perimeter, so its tension mode is stiffer and its area
+/// mode softer.
 FireOptions fire_options(const RunParameters& run, double perimeter) {
   const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter, perimeter / *run.dp.vertices);
   return {.mass = units::droplet_mass / *run.dp.vertices,
@@ -48,20 +49,19 @@ Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
   return {state_at_rest(regular_polygon(n, area), place, {period.along(), period.across()}), area};
 }
 
-/// The droplet grows with every contact, and its vertices are kept evenly spread, whatever its own interface
-/// is: vertices that run together make the interface too stiff for any step, and obstacles slip between those
-/// that are far apart. Springs along the interface have no energy, so they must be gentle for the minimiser;
-/// under a large tension they must not be, since contact then pulls vertices together at the corners of a
-/// squeezed droplet.
+/// The droplet grows with every contact and evenly spread vertices, whatever its own interface is: bunched
+/// vertices make the interface too stiff for any step, and obstacles slip between distant ones. Springs along
+/// the interface have no energy, so they must be weak for the minimiser; under a large tension they must be
+/// strong, because contact then pulls vertices together at the corners of a squeezed droplet.
 RunParameters with_growing_interface(RunParameters run) {
-  run.dp.inertia = 1;  // it starts at rest, whatever that is
+  run.dp.inertia = 1;  // it starts at rest
   run.dp.perimeter_spring = PerimeterSpring::along;
   run.dp.perimeter_stiffness = 0.01 + 0.03 * run.dp.line_tension;
   run.dp.wall_contact = WallContact::edge;
   run.dp.self_contact = SelfContact::on;
-  run.dp.receding_angle.reset();  // walls hold it from the start of the run on
+  run.dp.receding_angle.reset();  // walls hold it only from the start of the run
   run.dp.advancing_angle.reset();
-  run.dp.gravity = Gravity::vertex;  // without weight: the springs need no reaction on the area yet
+  run.dp.gravity = Gravity::vertex;  // without weight the springs need no reaction on the area
   return run;
 }
 
@@ -78,7 +78,7 @@ DpForces weightless_forces(const RunParameters& run, const ObstacleArray& obstac
 /// Grows the droplet in stages to its full area.
 /// @param area  that it has
 void grow(const RunParameters& growing, double area, DpForces& forces, DropletState& state) {
-  constexpr double growth = 1.02;  // of the area, per stage
+  constexpr double growth = 1.02;  // growth of the area per stage
   RestForces rest_forces(growing, forces);
   while (area < units::rest_area) {
     area = std::min(units::rest_area, area * growth);
@@ -91,7 +91,7 @@ void grow(const RunParameters& growing, double area, DpForces& forces, DropletSt
   }
 }
 
-constexpr double damping_rate = 3;  // near that of the softest modes [1/t0]
+constexpr double damping_rate = 3;  // near the softest modes' frequency [1/t0]
 
 /// Returns whether it does.
 bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpForces& forces,
@@ -99,8 +99,8 @@ bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpFor
   RestForces rest_forces(growing, forces);
   bool rests = minimize_fire(rest_forces, state, options).converged ||
                settle(rest_forces, state, longer, damping_rate).converged;
-  // As the springs along the interface have no energy, what is left of its sliding may go round a small cycle
-  // for ever. Weaker springs drive it less.
+  // Springs along the interface have no energy, so the remaining sliding may follow a small cycle for ever.
+  // Weaker springs drive it less.
   constexpr double weaker = 0.3;
   constexpr int most_weakenings = 4;
   for (int i = 0; i < most_weakenings && !rests; ++i) {
@@ -126,7 +126,7 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   FireOptions longer = options;
   longer.max_iterations = 500000;
   bool rests = comes_to_rest(growing, obstacles, forces, options, longer, state);
-  // Then with its own interface; only springs with a tension of their own begin to act with the run.
+  // Then relaxes with its own interface; springs with a tension of their own start only with the run.
   RunParameters own = run;
   own.dp.inertia = growing.dp.inertia;
   own.dp.receding_angle = growing.dp.receding_angle;

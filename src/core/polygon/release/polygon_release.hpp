@@ -6,10 +6,9 @@
 
 namespace clog {
 
-/// A small circle is put into the void nearest to the centre and grown to full size, relaxing as it grows, so
-/// that no obstacle is ever inside (energy minimisation cannot see an obstacle that touches no vertex).
-/// @param run  resolved
-/// @throws Error if there is no room, or the droplet does not relax
+/// Puts a small circle into the void nearest to the centre and grows it to full size, relaxing it, so that no
+/// obstacle is ever inside (energy minimisation ignores an obstacle that touches no vertex). @param run
+/// resolved @throws Error if there is no room, or the droplet does not relax
 DropletState release_polygon(const RunParameters& run, const ObstacleArray& obstacles);
 
 }  // namespace clog

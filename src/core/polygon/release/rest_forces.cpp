@@ -36,11 +36,11 @@ void RestForces::look(const DropletState& state, const Travel& travel) {
   near_.measure(kernel_, contact_, *forces_, a);
   near_.keep(kernel_, *forces_, refined_sway * way_, 2 * way_);
   plan_.make(near_.walls());
-  kernel_.clear_pushes(n_, a);  // the plan may name other groups than before
+  kernel_.clear_pushes(n_, a);  // the plan may have other groups than before
   wedges_ = wedges_in(state.frame, forces_->wedges());
 }
 
-/// A kick of a droplet at rest, without drag, so long that the change of velocity equals the force.
+/// A kick of a droplet at rest, without drag, in such a time that the change of velocity equals the force.
 void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::StepArrays& a = memory_.arrays();
   memory_.load(state.position, a.position);
@@ -62,8 +62,8 @@ void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   }
 }
 
-/// Gives the vertices velocities: what wetted walls and friction, which no kick contains, would give them.
-/// @param force  memory
+/// Adds the forces of wetted walls and friction, which no kick contains, to the velocities. @param force
+/// memory
 void RestForces::start_from_forces_of_walls(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::StepArrays& a = memory_.arrays();
   const WettedWalls& walls = forces_->wetted_walls();

@@ -10,8 +10,8 @@
 
 namespace clog {
 
-/// The negative gradient of DpForces' energy by the passes of a step, for releases and searches of a rest,
-/// which ask for them thousands of times.
+/// The negative gradient of DpForces' energy, by the passes of a step, because releases and searches for rest
+/// need it thousands of times.
 class RestForces {
  public:
   /// @param run     resolved parameters

@@ -8,7 +8,7 @@
 
 namespace clog {
 
-/// Numbers that begin on a cache line, all zero. @throws std::bad_alloc
+/// Zeroed numbers that begin on a cache line. @throws std::bad_alloc
 inline hwy::AlignedFreeUniquePtr<double[]> aligned_zeros(std::size_t size) {
   auto memory = hwy::AllocateAligned<double>(size);
   if (!memory) throw std::bad_alloc();

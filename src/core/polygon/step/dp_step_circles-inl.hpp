@@ -53,8 +53,8 @@ struct RefinedEdgeVectors {
   }
 };
 
-/// The points of half edges that are nearest to a circle's centre. Half in touch_kernel.cpp computes the
-/// same, slower and with the same bits on all processors; dp_step.test.cpp compares them.
+/// The points of half edges that are closest to a circle's centre. Half in touch_kernel.cpp computes the same
+/// more slowly, with the same bits on all processors; dp_step.test.cpp compares them.
 struct NearestOnHalves {
   V fraction;  ///< of the half edge
   V dx, dy;    ///< from the centre
@@ -74,7 +74,7 @@ struct NearestOnHalves {
   HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
   /// stiffness (reach - distance), where they touch.
   HWY_INLINE Pair push(M touch, V reach, V stiffness) const {
-    // A point on the very centre gets no direction, but no NaN.
+    // A point exactly at the centre gets no direction, but no NaN.
     const V inverse_distance = square_root(hn::Max(distance2, all(1e-300))).inverse;
     const V size = hn::IfThenElseZero(touch, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
     return {hn::Mul(size, dx), hn::Mul(size, dy)};
@@ -89,9 +89,9 @@ struct HalvesAtCircle {
         second(e.middle_x, e.middle_y, e.next_x, e.next_y, x, y, span) {}
 };
 
-/// What `lanes` edges of a window give their vertices. The push on an edge's middle goes to the four vertices
-/// that decide where the middle is: `begin` is for the edge's first vertex, `end` for its second, `far` for
-/// each of the two beyond them.
+/// Forces of `lanes` edges of a window on their vertices. The force on an edge's middle acts on the four
+/// vertices that determine it: `begin` is for the edge's first vertex, `end` for its second, `far` for each
+/// of the two beyond them.
 struct WindowPushes {
   Pair begin, end, far;
 
@@ -112,8 +112,7 @@ struct WindowPushes {
   }
 };
 
-/// Into the arrays of the windows: in place of what is there, or on top of it.
-/// @param p  entry of the first edge in the first array
+/// Stores or adds to the arrays of the windows. @param p entry of the first edge in the first array
 template <bool adds>
 HWY_INLINE void keep_pushes(const WindowPushes& push, M listed, double* p, std::ptrdiff_t stride) {
   for (const V v : {push.begin.x, push.end.x, push.far.x, push.begin.y, push.end.y, push.far.y}) {
@@ -143,9 +142,8 @@ HWY_INLINE bool push_window(const WallWindow& window, V span, V stiffness, const
   return touches;
 }
 
-/// One coordinate of what windows push the vertices from p on.
-/// @param p  what edges' first vertices get; a stride behind it is what their second ones get, then the
-/// others
+/// One coordinate of the windows' forces on the vertices from p on. @param p forces of edges on their first
+/// vertices; a stride later on their second ones, then on the others
 HWY_INLINE V push_on_vertices(const double* p, std::ptrdiff_t stride) {
   const double *end = p + stride, *far = end + stride;
   const V far_before = load(far - lanes), far_here = load(far);
@@ -155,7 +153,7 @@ HWY_INLINE V push_on_vertices(const double* p, std::ptrdiff_t stride) {
   return hn::Add(own, others);
 }
 
-/// Puts together what windows push the vertices of a group.
+/// Adds up the windows' forces on the vertices of a group.
 HWY_INLINE void gather_pushes(int group, const WindowPushArrays& pushes, const ContourPair& push) {
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
     const std::ptrdiff_t i = std::ptrdiff_t{group} * edges_per_group + lane;
@@ -164,9 +162,9 @@ HWY_INLINE void gather_pushes(int group, const WindowPushArrays& pushes, const C
   }
 }
 
-/// Overwrites the pushes of the vertices that windows may push.
+/// Overwrites the forces on the vertices that windows may push.
 void push_off_circles(const WallWindows& given, const Contact& contact, const StepArrays& arrays) {
-  // Copies: what is stored might change the originals.
+  // Copies, because a store might change the originals.
   const WallWindows windows = given;
   const StepArrays a = arrays;
   const V span = all(contact.span), stiffness = all(contact.stiffness);

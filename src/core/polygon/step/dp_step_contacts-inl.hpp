@@ -20,7 +20,7 @@ HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
-/// Every lane to the next one; 0 to the first.
+/// Shifts every lane to the next one, and 0 into the first.
 HWY_INLINE V to_next_lane(V v) {
   alignas(64) constexpr std::int64_t before[8] = {0, 0, 1, 2, 3, 4, 5, 6};
   return hn::IfThenZeroElse(hn::FirstN(D(), 1), hn::TableLookupLanes(v, hn::SetTableIndices(D(), before)));
@@ -34,7 +34,7 @@ struct EdgeVectors {
       : begin(load(a.position, i)), tangent(load(a.tangent, i)), length(load(a.length + i)) {}
 };
 
-/// The points of edges that are nearest to points given, one for each edge.
+/// The points of edges that are closest to given points, one for each edge.
 struct NearestPoints {
   V along;   ///< of their edge
   V dx, dy;  ///< from the points given
@@ -51,14 +51,14 @@ struct NearestPoints {
   HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
 };
 
-/// Pushes on edges, until they are handed to the vertices.
+/// Forces on edges, before they are distributed to the vertices.
 class EdgePushes {
  public:
   HWY_INLINE EdgePushes() : x_(all(0)), y_(all(0)), along_x_(all(0)), along_y_(all(0)) {}
-  /// Pushes edges off their points by stiffness (reach - distance), where they touch. An edge's two vertices
-  /// share it as the nearest point divides the edge.
+  /// Pushes edges off their points by stiffness (reach - distance), where they touch. The closest point
+  /// divides the force between the edge's two vertices.
   HWY_INLINE Pair add(const NearestPoints& nearest, M touch, V reach, V stiffness) {
-    // A point on the very edge gets no direction, but no NaN.
+    // A point exactly on the edge gets no direction, but no NaN.
     const V inverse_distance = square_root(hn::Max(nearest.distance2, all(1e-300))).inverse;
     const V size = hn::IfThenElseZero(touch, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
     const Pair push{hn::Mul(size, nearest.dx), hn::Mul(size, nearest.dy)};
@@ -79,13 +79,13 @@ class EdgePushes {
   V x_, y_, along_x_, along_y_;
 
   static HWY_INLINE void hand_out(V whole, V end, double* p) {
-    // Added in one go: what was just stored elsewhere could not be loaded at once.
+    // Added at once, because data just stored elsewhere could not be loaded immediately.
     store(hn::Add(load(p), hn::Add(hn::Sub(whole, end), to_next_lane(end))), p);
     p[lanes] += hn::ExtractLane(end, lanes - 1);
   }
 };
 
-/// The lanes from the first to the last, twice, and the other way round.
+/// The lanes from the first to the last, twice, and in reverse.
 constexpr auto orders = [] {
   std::array<std::array<std::int64_t, std::size_t{2} * lanes>, 2> order{};
   for (int k = 0; k < 2 * lanes; ++k) {
@@ -108,8 +108,8 @@ class PairedVertices {
   }
   HWY_INLINE const Pair& place() const { return place_; }
 
-  /// What pushes edges pushes their vertices back. Whole aligned vectors are read and written: one that lies
-  /// across two just stored would have to wait until these are in the cache.
+  /// Reaction on the vertices of the force on edges. Reads and writes whole aligned vectors: one across two
+  /// that were just stored would have to wait for the cache.
   HWY_INLINE void push_back(const Pair& push, const StepArrays& a) const {
     const int beyond = first_ & (lanes - 1), aligned = first_ - beyond;
     const auto turned = hn::SetTableIndices(D(), order_ + lanes - beyond);
@@ -129,7 +129,7 @@ class PairedVertices {
   static HWY_INLINE void subtract(V v, double* p) { store(hn::Sub(load(p), v), p); }
 };
 
-/// Edges and vertices push each other off.
+/// Repulsion of edges and vertices.
 void push_off_each_other(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                          const StepArrays& a) {
   const V reach = all(contact.self_range), stiffness = all(contact.stiffness);
@@ -189,7 +189,7 @@ double push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, c
   const StepArrays a = arrays;
   const bool wets = grip.traction > 0;
   clear_pushes(n + edges_per_group - 1, a);
-  // Friction through films needs to know what the droplet's parts push each other.
+  // Friction through films needs the forces of self-contact.
   if (num_self > 0 && grip.film_reach > 0) {
     push_off_each_other(self, num_self, contact, a);
     fold_ends(a.push, n, edges_per_group);
@@ -230,7 +230,7 @@ class WedgeVectors {
     return {dx, dy, across, hn::MulSub(off, cos_, hn::Mul(along, sin_)),
             hn::Lt(hn::MulAdd(off, sin_, hn::Mul(along, cos_)), all(0))};
   }
-  /// Unit vector from the flank that is nearest.
+  /// Unit vector away from the nearest flank.
   HWY_INLINE void flank_normal(const Seen& seen, V& x, V& y) const {
     const V side_cos = hn::IfThenElse(hn::Lt(seen.across, all(0)), hn::Neg(cos_), cos_);
     x = hn::Neg(hn::MulAdd(side_cos, axis_y_, hn::Mul(sin_, axis_x_)));
@@ -266,9 +266,9 @@ void push_off_wedges(int n, const WedgePlace* wedges, std::size_t num_wedges, do
   }
 }
 
-/// v^(-4/3) by way of y = v^(-1/3): a first guess from the bits of a number, which are nearly its logarithm,
-/// then the first terms of (1 - error)^(-1/3), and of the fourth power of that. The guess leaves an error of
-/// at most 0.103, five terms leave 5e-6, three more nothing.
+/// v^(-4/3) from y = v^(-1/3): a first guess from the bits of a number, which are nearly its logarithm, then
+/// the first terms of (1 - error)^(-1/3), and of the fourth power of that. The guess has an error of at most
+/// 0.103, five terms leave 5e-6, three more none.
 inline V power_minus_four_thirds(V v) {
   const hn::RebindToSigned<D> bits;
   const V scaled = hn::MulAdd(hn::ConvertTo(D(), hn::BitCast(bits, v)), all(-1.0 / 3),
@@ -284,7 +284,7 @@ inline V power_minus_four_thirds(V v) {
 
 HWY_INLINE V distance(V squared) { return square_root(hn::Max(squared, all(1e-300))).root; }
 
-/// distances[i] = the distance of vertex i to a wedge, if that is less; but no less than `shortest`.
+/// Lowers distances[i] to the distance of vertex i to a wedge, but not below `shortest`.
 void shrink_to_wedge_distances(int n, const NearWalls& walls, V shortest, const StepArrays& a,
                                const ContourArray& distances) {
   for (const WedgePlace* place = walls.wedges; place != walls.wedges + walls.num_wedges; ++place) {
@@ -313,7 +313,7 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
     while (end != walls.items + walls.num_items && end->group == group) ++end;
     for (int i = group * edges_per_group; i < (group + 1) * edges_per_group; i += lanes) {
       const auto [x, y] = load(a.position, i);
-      // Among equal circles, the nearest has the nearest centre: one root for all.
+      // Among equal circles, the nearest has the nearest centre, so one root is enough.
       V nearest = all(1e300);
       for (const WallContacts::Item* circle = begin; circle != end; ++circle) {
         const V dx = hn::Sub(x, all(circle->x)), dy = hn::Sub(y, all(circle->y));
@@ -325,7 +325,7 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
     }
   }
   shrink_to_wedge_distances(n, walls, shortest, a, a.rate);
-  // Apart from the search, or the processor sees too few of these long chains at once.
+  // Separate from the search, so that the processor overlaps more of these long chains.
   for_vectors(n, [&](int i, auto) CLOG_INLINE {
     const V distance = load(a.rate + i);
     V rise;

@@ -1,4 +1,4 @@
-/// Positions and edges, the second pass, and what is surveyed between steps; part of dp_step_kernel.cpp.
+/// Positions and edges (the second pass) and the survey between steps; part of dp_step_kernel.cpp.
 
 #if defined(CLOG_DP_STEP_DRIFT) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLOG_DP_STEP_DRIFT
@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
-/// Fills the edges, a vector at a time, and adds up what is wanted of them.
+/// Fills the edges, a vector at a time, and adds up the requested sums.
 template <bool with_perimeter, bool with_moments>
 struct EdgeMeasure {
   StepArrays a;
@@ -73,7 +73,7 @@ Survey survey(int n, const double* walls, const double* self, const StepArrays& 
     sum_vy = hn::Add(sum_vy, keep(vy));
     speed2 = hn::Max(speed2, keep(square(vx, vy)));
     perimeter = hn::Add(perimeter, keep(length));
-    // Zero lengths behind the last edge do not count.
+    // Zero lengths beyond the last edge do not count.
     shortest = hn::Min(shortest, hn::IfThenElse(hn::Gt(keep(all(1)), all(0)), length, all(1e300)));
     if (walls != nullptr) {
       const V dx = hn::Sub(x, load_at(walls + i)), dy = hn::Sub(y, load_at(walls + n + i));
@@ -100,7 +100,7 @@ Survey survey(int n, const double* walls, const double* self, const StepArrays& 
           .moved_relative = root_of_largest(relative_moved2)};
 }
 
-/// What acts on all vertices, see Coupling.
+/// Terms that act on all vertices, see Coupling.
 struct CouplingVectors {
   Pair c, a;
   V pressure;
@@ -181,7 +181,7 @@ Sums drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficie
     return to;
   };
   EdgeMeasure<elastic, on_area> edges{a};
-  // Edges a vector behind the vertices they need: then the processor works on both at once.
+  // Edges follow the vertices by one vector, so that the processor works on both at once.
   const Pair first = move(0);
   Pair here = first, next = n > lanes ? move(lanes) : first;
   int i = 0;

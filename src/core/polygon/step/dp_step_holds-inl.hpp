@@ -17,8 +17,8 @@ HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
-/// Adds to each vertex its share of the interface on a circle: of each half edge that touches, three quarters
-/// of the length go to the vertex at its end, one quarter to the other vertex of the edge.
+/// Adds to each vertex its part of the interface on a circle: of each half edge in contact, three quarters of
+/// the length belong to the vertex at its end, one quarter to the other vertex of the edge.
 void add_wetted(const WallWindow& window, V span, const StepArrays& a, const ContourArray& wetted) {
   const V reach = all(window.reach), zero = all(0);
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
@@ -40,8 +40,8 @@ void add_wetted(const WallWindow& window, V span, const StepArrays& a, const Con
   }
 }
 
-/// Edges reach one vertex before the contour and `beyond` vertices behind it: adds what they gave there to
-/// the vertices of the other end.
+/// Edges reach one vertex before the contour and `beyond` vertices after it: adds the forces there to the
+/// vertices of the other end.
 HWY_INLINE void fold_ends(const ContourArray& p, int n, int beyond = 2) {
   p[n - 1] += std::exchange(p[-1], 0);
   for (int i = 0; i < beyond; ++i) p[i] += std::exchange(p[n + i], 0);
@@ -51,10 +51,10 @@ HWY_INLINE void fold_ends(const ContourPair& p, int n, int beyond = 2) {
   fold_ends(p.y, n, beyond);
 }
 
-/// Which vertices a circle holds, and how.
+/// The vertices that a circle holds, and their anchors.
 enum class Films { none, those_of_one_circle, those_of_several };
 
-/// What a circle has to do with the vertices of a vector.
+/// A circle and the vertices of a vector.
 struct CircleAtVertices {
   V normal_x, normal_y;
   V inverse;   ///< of the distance from the centre
@@ -71,10 +71,10 @@ struct CircleAtVertices {
   }
 };
 
-/// Adds to the pushes of a group what one circle pushes and holds there. With films, what is added is kept
-/// apart, until all circles have seen what self-contact pushes. Returns what the wall took. It is
-/// WallFriction::follow() for a vector of vertices; dp_step.test.cpp compares them.
-/// @param pushes  does the circle push vertices of the group by itself?
+/// Adds one circle's normal forces and friction to the forces on a group. With films, the sum is separate
+/// until all circles have read the forces of self-contact. Returns the work that the wall took. It is
+/// WallFriction::follow() for a vector of vertices; dp_step.test.cpp compares them. @param pushes whether the
+/// circle touches vertices of the group
 template <bool wets, Films films, bool pushes = true>
 HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCircles& walls,
                         const WallGrip& grip, const StepArrays& a) {
@@ -90,7 +90,7 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
             push_y = pushes ? load(walls.push.y + i) : all(0);
     const M is_known = lanes_of(static_cast<int>(held_before), lane);
     M touched_or_held = hn::Or(is_known, hn::Or(hn::Ne(push_x, all(0)), hn::Ne(push_y, all(0))));
-    // The nearest point of a half edge may be its end, so that the wall does not push all that it wets.
+    // The closest point of a half edge may be its end, so the wall does not push all that it wets.
     if constexpr (wets && pushes)
       touched_or_held = hn::Or(touched_or_held, hn::Gt(load(walls.wetted + i), all(0)));
     V self_x = all(0), self_y = all(0);
@@ -107,8 +107,8 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
       continue;
     }
     const CircleAtVertices at(circle, i, a);
-    // At the end of a contact, the last middle pulls the vertex beyond it a little towards the wall
-    // (refined_far is negative); that does not count as a push.
+    // At the end of a contact, the last middle pulls the next vertex a little towards the wall (refined_far
+    // is negative); this does not count as a normal force.
     V push = hn::Max(hn::MulAdd(push_x, at.normal_x, hn::Mul(push_y, at.normal_y)), all(0));
     if constexpr (has_films) {
       M counts = hn::Lt(at.distance, all(grip.film_reach));
@@ -122,7 +122,7 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
     if constexpr (wets && pushes) bears = hn::MulAdd(all(grip.traction), load(walls.wetted + i), bears);
     const M touches = hn::Gt(bears, all(0));
 
-    // The wall's point next to the vertex is radius * normal. Slips count along (-normal_y, normal_x).
+    // The wall's point closest to the vertex is radius * normal. Slips count along (-normal_y, normal_x).
     const V anchor_x = load(walls.anchor_x + k), anchor_y = load(walls.anchor_y + k);
     const V slip =
         hn::IfThenElseZero(is_known, hn::MulSub(at.normal_y, anchor_x, hn::Mul(at.normal_x, anchor_y)));
@@ -134,8 +134,8 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
           walls.anchor_x + k);
     store(hn::IfThenElse(rests, anchor_y, hn::MulSub(radius, at.normal_y, hn::Mul(held, at.normal_x))),
           walls.anchor_y + k);
-    // What the wall takes, by the trapezoidal rule of the integrator: the old force acts on half of the way,
-    // the new one on the other half. Where the vertex has left the wall, the spring's energy is lost.
+    // Work on the wall by the integrator's trapezoidal rule: the old force acts on half of the path, the new
+    // one on the other half. If the vertex has left the wall, the spring's energy is lost.
     const V before = load(walls.slip + k);
     const V lost =
         hn::IfThenElse(touches, hn::Mul(hn::Add(before, held), hn::Sub(slip, held)), hn::Mul(before, before));
@@ -158,7 +158,7 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
   return taken;
 }
 
-/// Puts together what one circle pushes the vertices, and what of them lies on it.
+/// Adds up one circle's forces on the vertices and the lengths in contact with it.
 template <bool wets>
 HWY_INLINE void gather_circle(int n, const HoldingCircle& circle, const HoldingCircles& walls, V span,
                               const StepArrays& a) {
@@ -195,7 +195,7 @@ double push_off_and_hold(int n, const HoldingCircles& given, const WallGrip& gri
   return sum(taken);
 }
 
-/// Finds how far the vertices are from the nearest of the circles that push the droplet.
+/// Finds the distances of the vertices from the nearest of the circles that push the droplet.
 void find_nearest(int num_groups, const HoldingCircles& walls, const StepArrays& a) {
   const auto visit = [&](auto what) CLOG_INLINE {
     for (std::size_t c = 0; c < walls.num; ++c)
@@ -210,8 +210,8 @@ void find_nearest(int num_groups, const HoldingCircles& walls, const StepArrays&
   });
 }
 
-/// Adds what circles push and hold to what self-contact pushes.
-/// @param films  of all circles that push the droplet
+/// Adds normal forces and friction of circles to the forces of self-contact. @param films of all circles that
+/// push the droplet
 template <bool wets, Films films>
 double hold_with_films(int n, const HoldingCircles& walls, const WallGrip& grip, V span,
                        const StepArrays& a) {
@@ -240,8 +240,8 @@ double hold_with_films(int n, const HoldingCircles& walls, const WallGrip& grip,
   return sum(taken);
 }
 
-/// The same where friction acts through films, too (see FilmTouches). The pushes are those of self-contact
-/// alone before.
+/// The same if friction also acts through films (see FilmTouches). Before this call the forces are those of
+/// self-contact alone.
 template <bool wets>
 double push_off_and_hold_with_films(int n, const HoldingCircles& given, const WallGrip& grip,
                                     const Contact& contact, const StepArrays& a) {

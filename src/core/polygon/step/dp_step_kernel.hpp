@@ -9,15 +9,15 @@
 
 /// The step of a deformable polygon as two passes over its vertices, written with vector types and compiled
 /// for several instruction sets. Tests compare it with plain loops (polygon/forces/reference_forces.hpp).
-/// In a pass there is no branch per vertex, no call and no allocation; square roots are
-/// Newton iterations where the instruction set has a first guess for them.
+/// A pass has no branch per vertex, no call and no allocation; square roots are Newton iterations if the
+/// instruction set has a first guess for them.
 namespace clog::kernel {
 
-/// Contacts are tested for this many consecutive edges at once, whatever the instruction set.
+/// Number of consecutive edges that are tested for contact at once, for any instruction set.
 inline constexpr int edges_per_group = WallContacts::edges_per_group;
 
 /// An entry for each vertex or edge, the first on a cache line. Valid from [-1] to [n + edges_per_group - 1]:
-/// entries beyond the ends repeat the contour, the passes see to that.
+/// the passes repeat the contour beyond its ends.
 struct ContourArray {
   double* first;
 
@@ -48,7 +48,7 @@ struct Sums {
   double moment_y;
 };
 
-/// A kick is what a force does to a vertex' velocity in half a time step: F below is the force times
+/// A kick is the change of a vertex' velocity by a force in half a time step: F below is the force times
 /// h/(M/N_v).
 struct InterfaceKick {
   double line_tension;  ///< tension where the spring is at length 0
@@ -74,10 +74,10 @@ struct KickCoefficients {
   double half_step;      ///< that of the forces [t0]
   bool keeps_kicked;     ///< is w wanted afterwards?
   /// Of an implicit pressure: K_a half_step^2/(M/N_v), K_a the area stiffness. The half kick that ends a step
-  /// of another length takes that of the step that begins.
+  /// of another length has the value of the step that begins.
   double softening = 0;
 };
-/// Which terms a kick has. The combinations are compiled apart.
+/// The terms of a kick. Each combination is compiled separately.
 struct KickTerms {
   bool elastic;                     ///< springs that carry tension; otherwise those along the interface
   bool on_area;                     ///< weight and mean drag act on the area; they are then coupled
@@ -87,14 +87,14 @@ struct KickTerms {
   double rate;                      ///< [1/t0]
   double relative_rate, area_rate;  ///< at which the mean velocities of vertices and area act [1/t0]
 };
-/// Mean velocities, and what they add to those of the vertices.
+/// Mean velocities, and their contributions to those of the vertices.
 ///
-/// An implicit pressure follows the area that would be reached if its present acceleration lasted for a time
-/// step: A + dt^2 d^2A/dt^2, with the acceleration by all forces on vertices and area, the added pressure
-/// among them, and by the area's drag; the vertices' own drag and the change of the area's gradient are left
-/// out. That is Newmark's method with beta = 1 for this one mode, while all others move by velocity Verlet:
-/// its frequency omega becomes omega/sqrt(1 + (omega dt)^2), stable for every step. Where the area is not
-/// accelerated, at rest and in steady fall, nothing is added.
+/// An implicit pressure follows from the area after a time step with its present acceleration: A + dt^2
+/// d^2A/dt^2, with the acceleration by all forces on vertices and area, including the added pressure, and by
+/// the area's drag. It neglects the vertices' own drag and the change of the area's gradient. This is
+/// Newmark's method with beta = 1 for this one mode, while all others move by velocity Verlet: its frequency
+/// omega becomes omega/sqrt(1 + (omega dt)^2), stable for every step. If the area is not accelerated, at rest
+/// and in steady fall, nothing is added.
 struct Coupling {
   double mean_x = 0, mean_y = 0;  ///< of the vertices
   double area_x = 0, area_y = 0;  ///< of the area's centroid
@@ -108,21 +108,21 @@ struct Power {
   double spreading;           ///< sum F_i v_i of what spreads vertices along the interface, F_i the kick
   double spread_x, spread_y;  ///< sum F_i
 };
-/// A circle and the edges_per_group edges from `first` on, those that may touch it as bits.
+/// A circle and the edges_per_group edges from `first` on; bits mark those that may touch it.
 struct WallWindow {
   double x, y;   ///< of the circle's centre [sigma]
   double reach;  ///< radius + range [sigma]
   int first;
   std::uint8_t edges;
 };
-/// What edges give their vertices, as windows store it: six arrays, of x and then of y what edges give their
-/// first vertex, their second one, and each of the two beyond them. Zero where no window is.
+/// Forces of edges on their vertices as windows store them: six arrays, for x and then y the forces on the
+/// first vertex, on the second one, and on each of the two beyond them. Zero outside the windows.
 struct WindowPushArrays {
   double* first;  ///< entry of edge 0; readable from two groups before to two groups behind the windows
   std::ptrdiff_t stride;
 };
 inline constexpr int num_window_push_arrays = 6;
-/// How circles push the contour off; see WallPlan.
+/// Repulsion by circles; see WallPlan.
 struct WallWindows {
   const WallWindow* all;
   int num_own;  ///< the first of them share no edge with each other
@@ -141,7 +141,7 @@ struct HoldingCircle {
   bool wraps;                  ///< does it push vertices -1, n or n + 1, which are the other end's?
   WindowPushArrays pushes;     ///< of its own
 };
-/// How circles push the contour off and hold it; see WallHold. Every group of vertices that a circle may push
+/// Repulsion and friction of circles; see WallHold. Every group of vertices that a circle may push
 /// has edges_per_group entries of anchor_x, anchor_y, slip, and one of holds.
 struct HoldingCircles {
   const HoldingCircle* all;
@@ -158,7 +158,7 @@ struct HoldingCircles {
   std::uint8_t* touches;  ///< does a circle push the droplet? memory
   bool are_close;         ///< may a vertex be in the film's reach of two circles?
 };
-/// What walls bear, as kicks.
+/// Limits of friction, as kicks.
 struct WallGrip {
   double coefficient;      ///< of friction
   double traction;         ///< for each sigma of wetted length
@@ -171,7 +171,7 @@ struct Contact {
   double span;        ///< of walls; 1: edges, 0: their first vertices alone
   double self_range;  ///< distance below which the interface repels itself [sigma]
 };
-/// What may be nearest to the vertices.
+/// Obstacles that may be nearest to the vertices.
 struct NearWalls {
   const WallContacts::Item* items;  ///< circles, by group
   std::size_t num_items;
@@ -187,7 +187,7 @@ struct NearWallDrag {
   double far_rate;  ///< [1/t0]
 };
 
-/// What the checks between steps need to know.
+/// Results of a survey between steps.
 struct Survey {
   double perimeter, shortest;    ///< of the edges [sigma]
   double speed, relative_speed;  ///< of the fastest vertex, and relative to their mean [sqrt(sigma g)]
@@ -201,13 +201,13 @@ struct StepKernel {
   /// @param walls, self  where vertices were, all x then all y, the latter relative to their mean; may be
   /// null
   Survey (*survey)(int n, const double* walls, const double* self, const StepArrays& arrays);
-  /// How far every edge of every item is from contact, edges_per_group for each; negative where it is in
-  /// contact [sigma]. Returns the least, at most 0.
+  /// Gap between every edge of every item and its contact range, edges_per_group for each; negative in
+  /// contact [sigma]. Returns the smallest, at most 0.
   double (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
                         const StepArrays& arrays, double* gaps);
   /// The edges of one item with a gap of at most `way`, as bits.
   std::uint8_t (*edges_within)(const double* gaps, double way);
-  /// How far every item's nearest pair is from contact.
+  /// Gap of every item's closest pair.
   double (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                       const StepArrays& arrays, double* gaps);
   /// clear_pushes() sets the pushes on all vertices to zero. push() finds those of circles, on the groups of
@@ -215,33 +215,33 @@ struct StepKernel {
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
                const Contact& contact, const StepArrays& arrays);
-  /// As push(), on all groups; circles also hold by friction what they push. Returns the energy that walls
-  /// took, over k_t [sigma^2].
+  /// As push(), on all groups; circles also exert friction. Returns the energy lost to walls, divided by k_t
+  /// [sigma^2].
   double (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
                           const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
                           const StepArrays& arrays);
-  /// Adds the vertices' contact with wedges' surfaces up to `range` [sigma]. Edges
-  /// need not be tested: they meet a wedge's tip first, which is a circle.
+  /// Adds the vertices' contact with wedges' surfaces up to `range` [sigma]. Edges need no test: they meet a
+  /// wedge's tip first, which is a circle.
   void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
                           double stiffness, const StepArrays& arrays);
-  /// rate = far_rate (relative + near_wall (sigma/d)^exponent), d a vertex' distance to the nearest wall; and
-  /// what follows from it for a kick.
+  /// rate = far_rate (relative + near_wall (sigma/d)^exponent), with d a vertex' distance to the nearest
+  /// wall; and the coefficients of a kick that follow from it.
   void (*near_wall_rates)(int n, const NearWalls& walls, const NearWallDrag& drag,
                           const KickCoefficients& coefficients, const StepArrays& arrays);
   /// First pass: forces and velocities.
   Coupling (*kick)(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays);
-  /// Between the passes, if it is wanted: powers at the end of a time step, of which the kick has kept w.
+  /// Between the passes, if requested: powers at the end of a time step, from the w that the kick kept.
   Power (*power)(int n, const KickTerms& terms, const InterfaceKick& interface,
                  const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays);
-  /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges there. Of the sums the perimeter is
-  /// given for elastic droplets only, and moments where forces act on the area.
+  /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges there. Sums include the perimeter
+  /// for elastic droplets only, and moments if forces act on the area.
   Sums (*drift)(int n, const KickTerms& terms, const KickCoefficients& coefficients, const Coupling& coupling,
                 double dt, const StepArrays& arrays);
 };
 
-/// The kernel for these terms, of the widest instruction set of this processor or of the one that
-/// use_instruction_set() asks for.
+/// The kernel for these terms, of the widest instruction set of this processor or of the one in
+/// use_instruction_set().
 StepKernel step_kernel(const KickTerms& terms);
 
 }  // namespace clog::kernel

@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
-/// What the coupled drag needs of a kick, G being 6 a times the centroid's gradient and s = 1/(1 + h r).
+/// Sums for the coupled drag, with G 6 a times the centroid's gradient and s = 1/(1 + h r).
 struct KickSums {
   double force_x, force_y;        ///< kick by the force on the area
   double w_x, w_y;                ///< sum w
@@ -32,9 +32,9 @@ struct KickSums {
 /// force on the vertex and its own drag,
 ///   v_i = w_i + s_i (e V - G_i^T (b V_a - R)),  V = mean v_i,  V_a = sum G_i v_i,
 /// e and b half a step's relative and area rate, R the kick by the force on the area: four linear equations
-/// for V and V_a, of which V is eliminated. They are implicit because the area's part is stiff for a
-/// drawn-out droplet, b sum |G_i|^2 growing with the square of its length and perimeter.
-/// An implicit pressure adds H n_i to the kick, n_i the chord turned outwards:
+/// for V and V_a, of which V is eliminated. They are implicit because the area's part is stiff for an
+/// elongated droplet: b sum |G_i|^2 grows with the square of its length and perimeter. An implicit pressure
+/// adds H n_i to the kick, n_i the chord turned outwards:
 ///   H = -q/(1 + q sum n_j.n_j) (sum n_j.F_j + sum G_j n_j.(R - d V_a)),
 /// q the softening, R - d V_a the force on the area and its drag: the bracket is the area's acceleration.
 template <bool implicit_pressure>
@@ -71,7 +71,7 @@ HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force
     const double ng_x = unit * sums.ng_x, ng_y = unit * sums.ng_y;
     if constexpr (implicit_pressure) {
       outwards += ng_x * kick_x + ng_y * kick_y;
-      // With s the same for all vertices the pressure moves them by s n, which adds up to nothing.
+      // If s is the same for all vertices the pressure moves them by s n, which adds up to zero.
       const double pressed = k.closing_ratio * softening * one_nth * sums.s;
       right_x -= pressed * ng_x * outwards;
       right_y -= pressed * ng_y * outwards;
@@ -109,7 +109,7 @@ struct Corner {
   V length, tx, ty, length_before, tx_before, ty_before;
   V ex, ey, ex_before, ey_before;
 
-  /// In this order, as the compiler may join a product with a sum that follows: the last bits depend on it.
+  /// In this order, because the compiler may fuse a product with the next sum, which changes the last bits.
   HWY_INLINE void multiply() {
     ex = hn::Mul(length, tx);
     ey = hn::Mul(length, ty);
@@ -118,12 +118,12 @@ struct Corner {
   }
 };
 
-/// What pulls and pushes along the interface, the same for all vertices.
+/// Forces along the interface, the same for all vertices.
 struct InterfaceVectors {
   V line_tension, spring, spreading, half_pressure, vertex_weight;
 };
 
-/// How the area's centroid moves with a vertex, times six times the area.
+/// Gradient of the area's centroid with respect to a vertex, times six times the area.
 struct CentroidGradient {
   V xx, xy, yx, yy;
 };
@@ -188,7 +188,7 @@ struct KickVectors {
     gg_yy = hn::MulAdd(sg.yx, g.yx, hn::MulAdd(sg.yy, g.yy, gg_yy));
   }
 
-  /// @param one_s  where s is the same for all vertices, it; it has been left out of the sums
+  /// @param one_s the common s of all vertices, which the sums exclude
   template <bool implicit_pressure>
   HWY_INLINE KickSums total(int n, const AreaForce& force, double one_s) const {
     const auto w = sums(w_x, w_y, spread_x, spread_y);
@@ -230,7 +230,7 @@ struct KickVectors {
 template <bool elastic, bool on_area, bool varying_rate, class Keep>
 HWY_INLINE Pair kick_force(const Corner& c, const Pair& chord, const Pair& push,
                            const InterfaceVectors& along, KickVectors<varying_rate>& total, Keep keep) {
-  // Slow operations come first: the processor does not look far ahead.
+  // Slow operations come first, because the processor does not look far ahead.
   V spread;
   if constexpr (!elastic)
     spread = keep(
@@ -257,7 +257,7 @@ HWY_INLINE Pair kick_force(const Corner& c, const Pair& chord, const Pair& push,
 template <bool elastic, bool coupled, bool on_area, bool varying_rate, bool implicit_pressure>
 Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays) {
-  const StepArrays a = arrays;  // a copy that stores cannot change
+  const StepArrays a = arrays;  // a copy, which stores cannot change
   const InterfaceVectors along{all(interface.line_tension), all(interface.spring), all(interface.spreading),
                                all(interface.half_pressure), all(interface.vertex_weight)};
   const Pair centre{all(3 * force.centre_x), all(3 * force.centre_y)};
@@ -265,7 +265,7 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
   const bool keeps_kicked = coefficients.keeps_kicked;
   const double one_s = varying_rate ? 1 : 1 / (1 + coefficients.h1 * terms.rate);
   const V same_s = all(one_s), same_kept = all(one_s * (1 - coefficients.h2 * terms.rate));
-  KickVectors<varying_rate> total{};  // an aggregate: a constructor would know no instruction set
+  KickVectors<varying_rate> total{};  // an aggregate: a constructor would be compiled for no instruction set
   Corner last;
   last.length = all(a.length[-1]);
   last.tx = all(a.tangent.x[-1]);
@@ -283,7 +283,7 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
     // The chord between the neighbours. Turned outwards it is (y, -x).
     const Pair chord{hn::Add(corner.ex, corner.ex_before), hn::Add(corner.ey, corner.ey_before)};
     const auto [fx, fy] = kick_force<elastic, on_area>(corner, chord, load(a.push, i), along, total, keep);
-    // Where s is the same for all it is left to the end.
+    // A common s is applied at the end.
     const Pair before = load(a.velocity, i);
     const Pair w{hn::MulAdd(closing_ratio, fx, before.x), hn::MulAdd(closing_ratio, fy, before.y)};
     V s = same_s, kept = same_kept;
@@ -311,8 +311,8 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
                                    total.template total<implicit_pressure>(n, force, one_s));
 }
 
-/// Calls make() with the terms that kicks and drifts know when they are compiled: elastic, coupled, on_area,
-/// varying_rate, implicit_pressure. The last is only there for rates that do not vary.
+/// Calls make() with the terms of kicks and drifts as compile-time constants: elastic, coupled, on_area,
+/// varying_rate, implicit_pressure. The last only occurs with constant rates.
 template <class Make>
 auto version(const KickTerms& terms, Make make) {
   constexpr std::true_type yes;

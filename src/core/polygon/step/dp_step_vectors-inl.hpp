@@ -65,8 +65,8 @@ HWY_INLINE std::array<double, 4> sums(V a, V b, V c, V d) {
 #endif
 }
 
-/// The vector that begins `num` entries before p. `before` and `here` are those at p - lanes and p: two cache
-/// lines need not be read again.
+/// The vector that begins `num` entries before p. `before` and `here` are those at p - lanes and p, so that
+/// two cache lines are not read again.
 template <int num>
 HWY_INLINE V shifted_back([[maybe_unused]] const double* p, [[maybe_unused]] V before,
                           [[maybe_unused]] V here) {
@@ -79,7 +79,7 @@ HWY_INLINE V shifted_back([[maybe_unused]] const double* p, [[maybe_unused]] V b
 #endif
 }
 
-/// Every lane from the next one, the last from the first of `next`.
+/// Shifts every lane from the next one, and the first of `next` into the last.
 HWY_INLINE V shifted_forward([[maybe_unused]] V here, V next) {
 #if HWY_TARGET == HWY_AVX3
   const __m512i joined = _mm512_alignr_epi64(_mm512_castpd_si512(next.raw), _mm512_castpd_si512(here.raw), 1);
@@ -112,7 +112,7 @@ HWY_INLINE Root square_root(V v) {
 #endif
 }
 
-/// 1/v to the last bit or two. A division of eight numbers keeps its unit busy for 16 cycles.
+/// 1/v to the last bit or two. A division of eight numbers occupies its unit for 16 cycles.
 HWY_INLINE V reciprocal(V v) {
 #if HWY_TARGET == HWY_AVX3
   // A guess of 14 bits and 1 / (1 - error) = (1 + error) (1 + error^2) (1 + error^4 ...
@@ -128,13 +128,14 @@ HWY_INLINE V reciprocal(V v) {
 /// Towards zero, of numbers that an integer can hold.
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> truncated(V v) {
 #if HWY_TARGET == HWY_AVX3
-  return hn::Vec<hn::RebindToSigned<D>>{_mm512_cvttpd_epi64(v.raw)};  // Highway's looks after all others, too
+  return hn::Vec<hn::RebindToSigned<D>>{
+      _mm512_cvttpd_epi64(v.raw)};  // Highway's also handles all other numbers
 #else
   return hn::ConvertTo(hn::RebindToSigned<D>(), v);
 #endif
 }
 
-/// For the bodies of for_vectors(): one that is not inlined keeps its sums in memory, which is slow.
+/// For the bodies of for_vectors(): otherwise their sums would be in memory, which is slow.
 #undef CLOG_INLINE
 #if defined(__GNUC__)
 #define CLOG_INLINE __attribute__((always_inline))
@@ -142,7 +143,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> truncated(V v) {
 #define CLOG_INLINE
 #endif
 
-/// For a vector that ends before the last vertex or with it.
+/// For a vector that ends at or before the last vertex.
 struct KeepAll {
   HWY_INLINE V operator()(V v) const { return v; }
 };

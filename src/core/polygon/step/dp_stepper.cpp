@@ -27,7 +27,7 @@ kernel::KickTerms with_implicit_pressure(kernel::KickTerms terms) {
   return terms;
 }
 
-/// Surveys are so frequent that vertices cannot move far in between, which keeps the lists short.
+/// Surveys are frequent enough that vertices move little in between, which keeps the lists short.
 int steps_between_surveys(double time_step) {
   constexpr double longest = 0.04;  // [t0]
   int steps = most_steps_per_survey;
@@ -35,8 +35,8 @@ int steps_between_surveys(double time_step) {
   return steps;
 }
 
-/// The pressure may be implicit if the drag on vertices that move relative to their mean damps what that
-/// feeds into the motion of a droplet that swings (docs/notes/2026-11-26-time-step.md).
+/// The pressure may be implicit if the drag on relative motion of vertices damps the energy that it feeds
+/// into a swinging droplet (docs/notes/2026-11-26-time-step.md).
 Pressure most_pressure(const RunParameters& run) {
   constexpr double most_steps = 32;
   const bool is_damped =
@@ -73,7 +73,7 @@ std::int64_t DpStepper::move(DropletState& state, int num_steps, Droplet::Work* 
   load(state);
   for (int done = 0; done < num_steps; done += steps_per_survey_) {
     const kernel::Survey now = survey();
-    // Its contact lists would take all memory. The run sees it at its next check.
+    // Its contact lists would take all memory. The run detects this at its next check.
     if (!(now.perimeter < burst_perimeter)) break;
     const int steps = std::min(steps_per_survey_, num_steps - done);
     prepare_contacts(state, now, steps * run_.time_step.value(), work);
@@ -113,7 +113,8 @@ kernel::Survey DpStepper::survey() const {
                         memory_.arrays());
 }
 
-/// Renews the contact lists if they do not hold for this time, and selects from them what may touch.
+/// Renews the contact lists if they are invalid within this time, and selects from them the possible
+/// contacts.
 void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now, double time,
                                  Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
@@ -127,7 +128,7 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
   rates_.fastest = now.speed;
   kernel_.clear_pushes(n_, a);  // the lists may name other groups than before
   // A contact accelerates the vertices in it, by at most half its depth per step, for a few steps. `travel`
-  // does not include that.
+  // does not include this.
   constexpr double thrown = 4;
   const double unforeseen =
       0.1 * forces_->vertex_diameter() +
@@ -143,8 +144,8 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
   }
 }
 
-/// Leaves the last half kick open: positions are those of the steps' end, velocities those of half a step
-/// before.
+/// Leaves the last half kick open: positions are those at the end of the steps, velocities those half a step
+/// earlier.
 void DpStepper::advance(DropletState& state, const Steps& steps, Droplet::Work* work) {
   open_.pressure = steps.pressure;
   for (int step = 0; step < steps.num; ++step) kick_and_drift(state, 0.5 * steps.length, steps.length, work);
@@ -189,7 +190,7 @@ void DpStepper::kick_and_drift(DropletState& state, double half_step, double dri
     }
     open_.power = now;
   }
-  if (only_closes) std::swap(a.velocity, a.kicked);  // w has no second half kick
+  if (only_closes) std::swap(a.velocity, a.kicked);  // without a second half kick there is no w
   sums_ = kernel.drift(n_, terms_, coefficients, coupling, drift_time, a);
   open_.length = drift_time;
 }
@@ -218,7 +219,7 @@ void DpStepper::push_off_everything(DropletState& state, const kernel::KickCoeff
   const std::vector<kernel::WedgePlace>& wedges = near_.wedges;
   const bool touches = !near_.contacts.walls().empty() || !wedges.empty() || !state.anchors.empty();
   const bool slides = forces_->friction().is_on() && !holds_circles_ && touches;
-  // Whatever these add, to vertices beyond the listed groups too, is gone before the next step.
+  // Additions to vertices, also beyond the listed groups, are cleared before the next step.
   if (!wedges.empty() || forces_->wetted_walls().is_on() || slides || friction_.has_pushed)
     kernel_.clear_pushes(n_, memory_.arrays());
   friction_.has_pushed = slides;
@@ -230,7 +231,7 @@ void DpStepper::push_off_everything(DropletState& state, const kernel::KickCoeff
   if (terms_.varying_rate) renew_rates(coefficients);
 }
 
-/// The near-wall drag, if it is not yet known (see most_steps_per_rate).
+/// Computes the near-wall drag, unless it is still valid (see most_steps_per_rate).
 void DpStepper::renew_rates(const kernel::KickCoefficients& coefficients) {
   if (rates_.steps_left > 0 && coefficients.h1 == rates_.h1 && coefficients.h2 == rates_.h2) {
     --rates_.steps_left;
@@ -272,7 +273,7 @@ void DpStepper::add_wetting(DropletState& state, double impulse, Droplet::Work* 
   }
 }
 
-/// Walls yield where they have to, and hold the vertices by what they bear.
+/// Walls slip where their limits are exceeded, and hold the vertices by the limiting force.
 void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
   const std::vector<WallTouch>& touches =

@@ -16,33 +16,32 @@
 
 namespace clog {
 
-/// Contacts, speeds and stability are surveyed once in at most so many steps.
+/// Contacts, speeds and stability are surveyed at least once in this number of steps.
 inline constexpr int most_steps_per_survey = 32;
-/// The rates of the near-wall drag are kept for at most so many steps, in which no vertex moves by more than
-/// this part of the smallest distance (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
+/// The rates of the near-wall drag are kept for at most this number of steps, in which no vertex moves by
+/// more than this fraction of the smallest distance (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
 inline constexpr double most_steps_per_rate = 4, farthest_way_per_rate = 0.2;
 
-/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls a droplet is its state
-/// and nothing else.
+/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls a droplet is defined by
+/// its state.
 class DpStepper {
  public:
-  /// @param run        resolved parameters
-  /// @param obstacles  must outlive this object
-  /// @param forces     of the same run, whose contact lists are renewed as need be; must outlive this object
+  /// @param run resolved parameters @param obstacles must outlive this object @param forces of the same run,
+  /// whose contact lists are renewed when needed; must outlive this object
   DpStepper(const RunParameters& run, const ObstacleArray& obstacles, DpForces& forces);
 
-  /// Makes the contact lists of a droplet anew.
+  /// Rebuilds the contact lists of a droplet.
   void start_afresh(const DropletState& state);
-  /// Moves a droplet by `num_steps` time steps of the run, in shorter ones where they would not be stable; no
-  /// further if it bursts. Returns the number of steps taken.
-  /// @param work  if not null, what drag and springs do is added to it
+  /// Moves a droplet by `num_steps` time steps of the run, in shorter ones if they would be unstable; stops
+  /// if it bursts. Returns the number of steps taken. @param work if not null, the work of drag and springs
+  /// is added to it
   std::int64_t move(DropletState& state, int num_steps, Droplet::Work* work);
-  /// The same by these steps, whatever the run's time step and the bounds of stability are. What may touch is
-  /// surveyed before each entry. An implicit pressure does not go with near-wall drag.
+  /// The same with these steps, without regard to the run's time step and the bounds of stability. Possible
+  /// contacts are surveyed before each entry. An implicit pressure excludes near-wall drag.
   void move(DropletState& state, std::span<const Steps> all, Droplet::Work* work);
 
  private:
-  /// What may touch the droplet before the next survey.
+  /// Possible contacts of the droplet before the next survey.
   struct Near {
     NearContacts contacts{};
     WallPlan plan;                             // without holds_circles_
@@ -60,7 +59,7 @@ class DpStepper {
     int steps_left = 0;  // with the present rates
     double h1 = 0, h2 = 0;
   };
-  /// The step whose last half kick is to come.
+  /// The step whose last half kick is pending.
   struct OpenStep {
     double length = 0;  // 0: there is none
     Pressure pressure = Pressure::present;
@@ -69,7 +68,7 @@ class DpStepper {
   RunParameters run_;
   DpForces* forces_;
   int n_;
-  bool holds_circles_;  // does friction act, and only at edges that meet circles?
+  bool holds_circles_;  // whether friction acts, and only at edges in contact with circles
   int steps_per_survey_;
   Pressure most_pressure_;
   kernel::KickTerms terms_;
@@ -94,7 +93,7 @@ class DpStepper {
   void renew_rates(const kernel::KickCoefficients& coefficients);
   void add_wetting(DropletState& state, double impulse, Droplet::Work* work);
   void hold_by_friction(DropletState& state, double impulse, Droplet::Work* work);
-  double vertex_mass() const;  // that resists a change of speed
+  double vertex_mass() const;  // mass that resists a change of speed
   Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,
                       const kernel::Coupling& coupling) const;
 };

@@ -7,13 +7,13 @@
 
 namespace clog {
 
-/// The entries of the contact lists that may touch before the next look.
+/// The entries of the contact lists that may touch before the next survey.
 class NearContacts {
  public:
-  /// Measures how far all that is listed is from contact. Returns how deep the deepest contact is [sigma].
+  /// Measures the gaps of all listed entries. Returns the depth of the deepest contact [sigma].
   double measure(const kernel::StepKernel& kernel, const kernel::Contact& contact, const DpForces& forces,
                  const kernel::StepArrays& arrays);
-  /// Keeps what measure() found within these distances from contact [sigma].
+  /// Keeps the entries that measure() found within these distances from contact [sigma].
   void keep(const kernel::StepKernel& kernel, const DpForces& forces, double wall_way, double self_way);
 
   const std::vector<WallContacts::Item>& walls() const { return walls_; }

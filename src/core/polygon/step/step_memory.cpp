@@ -6,7 +6,7 @@
 namespace clog {
 
 StepMemory::StepMemory(int num_vertices) : n_(num_vertices) {
-  // Every array on a cache line, with room for an entry before and a group behind it.
+  // Arrays on cache lines, with room for an entry before and a group after each.
   constexpr int line = 8;
   const int stride = (n_ + line - 1) / line * line + 3 * line;
   memory_ = aligned_zeros(sizeof arrays_ / sizeof(kernel::ContourArray) * static_cast<std::size_t>(stride));
@@ -15,7 +15,7 @@ StepMemory::StepMemory(int num_vertices) : n_(num_vertices) {
   const auto pair = [&]() -> kernel::ContourPair { return {array(), array()}; };
   arrays_ = {pair(), pair(),  pair(),  array(), pair(), pair(), pair(),
              pair(), array(), array(), array(), pair(), pair()};
-  // Edges of the last group that do not exist are divided by as well.
+  // Divisions include the nonexistent edges of the last group.
   std::fill_n(arrays_.length.first, stride - line, 1.0);
 }
 

@@ -9,7 +9,7 @@
 namespace clog {
 namespace {
 
-// Groups before and behind the contour, and those next to them, are read.
+// Groups before and after the contour, and their neighbours, are read.
 constexpr int before = 2, behind = 2;
 
 }  // namespace
@@ -61,7 +61,7 @@ void WallHold::add_groups(kernel::HoldingCircle& circle) {
     const int last = window.first + static_cast<int>(std::bit_width(window.edges)) - 1;
     circle.wraps |= (window.first == 0 && (window.edges & 1) != 0) || last + 2 >= num_vertices_;
   }
-  // What is pushed beyond the ends is the other end's.
+  // Forces beyond the ends belong to the other end.
   if (circle.wraps)
     is_pushed_.front() = is_pushed_[1] = is_pushed_[static_cast<std::size_t>(num_groups_)] =
         is_pushed_.back() = 1;
@@ -71,7 +71,7 @@ void WallHold::add_groups(kernel::HoldingCircle& circle) {
   circle.end_group = circle.end_own_group = static_cast<int>(groups_.size());
 }
 
-/// Finds the groups of vertices that self-contact may push, and whether films of two circles may meet.
+/// Finds the groups of vertices that self-contact may push, and whether films of two circles may overlap.
 void WallHold::find_films(const Near& near) {
   touches_itself_.assign(static_cast<std::size_t>(num_groups_), 0);
   const auto mark = [&](int vertex) {
@@ -128,7 +128,7 @@ void WallHold::clear_pushes() {
             kernel::edges_per_group, 0.0);
 }
 
-/// First arrays of the whole contour, each as long: four for all circles, then those of each circle.
+/// First arrays of the whole contour, of equal length: four for all circles, then those of each circle.
 void WallHold::arrange_memory() {
   const std::size_t stride =
       (static_cast<std::size_t>(num_groups_) + before + behind) * kernel::edges_per_group;
@@ -168,7 +168,7 @@ void WallHold::arrange_anchors() {
   }
 }
 
-/// Returns whether one of the circles can hold it.
+/// Returns whether one of the circles can hold the anchor.
 bool WallHold::take(const WallAnchor& anchor) {
   const auto vertex = static_cast<int>(anchor.holder);
   for (const kernel::HoldingCircle& circle : all_) {

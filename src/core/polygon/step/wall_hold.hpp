@@ -11,29 +11,28 @@
 
 namespace clog {
 
-/// How circles push a contour off and hold it by friction until the next make(): the anchors of a droplet
-/// (see WallFriction), arranged by circle and by groups of vertices. From make() on the anchors are here;
-/// hand_back() copies them into the droplet.
+/// Repulsion and friction of circles until the next make(): the anchors of a droplet (see WallFriction),
+/// arranged by circle and by groups of vertices. After make() the anchors are here; hand_back() copies them
+/// into the droplet.
 class WallHold {
  public:
-  /// What may touch the contour until the next make().
+  /// Possible contacts of the contour until the next make().
   struct Near {
     const std::vector<WallContacts::Item>& walls;  ///< see list_windows()
     const std::vector<SelfContacts::Item>& self;
-    double way;  ///< of any vertex until then [sigma]
+    double way;  ///< largest displacement of any vertex until then [sigma]
   };
 
   /// @param range  distance from a circle's surface at which contact begins [sigma]
   /// @param film_reach  see kernel::WallGrip
   WallHold(int num_vertices, double range, double film_reach);
 
-  /// Takes the anchors over. @param vertices  where they are
-  /// Returns half the sum of the squared slips of those anchors that none of these circles can hold
-  /// [sigma^2].
+  /// Adopts the anchors. @param vertices where they are Returns half the sum of the squared slips of those
+  /// anchors that none of these circles can hold [sigma^2].
   double make(const Near& near, const kernel::ContourPair& vertices, DropletState& droplet);
   /// Copies the anchors into the droplet, if make() was called since forget().
   void hand_back(DropletState& droplet) const;
-  /// Drops the anchors: the next make() takes those of its droplet.
+  /// Discards the anchors: the next make() adopts those of its droplet.
   void forget() { has_anchors_ = false; }
   double film_reach() const { return film_reach_; }  ///< [sigma]
   /// Valid until the next make(), and to be changed by a step.

@@ -15,7 +15,7 @@ constexpr int num_arrays = kernel::num_window_push_arrays;
 
 WallPlan::WallPlan(int num_vertices)
     : num_groups_((num_vertices + kernel::edges_per_group - 1) / kernel::edges_per_group) {
-  // Groups before and behind the contour, and those next to them, are read.
+  // Groups before and after the contour, and their neighbours, are read.
   constexpr int before = 2, behind = 2;
   windows_.pushes.stride = std::ptrdiff_t{before + num_groups_ + behind} * kernel::edges_per_group;
   memory_ = aligned_zeros(num_arrays * static_cast<std::size_t>(windows_.pushes.stride));
@@ -64,7 +64,7 @@ void WallPlan::add(const kernel::WallWindow& window) {
 void WallPlan::find_groups() {
   is_pushed_.assign(static_cast<std::size_t>(num_groups_) + 2, 0);
   for (const kernel::WallWindow& window : all_) mark_pushed_groups(window, is_pushed_);
-  // What edges push beyond one end of the contour is added to the groups at the other end.
+  // Forces beyond one end of the contour are added to the groups at the other end.
   const bool wraps = is_pushed_.front() != 0 || is_pushed_.back() != 0 || is_pushed_[num_groups_] != 0;
   if (wraps) is_pushed_[1] = is_pushed_[num_groups_] = 1;
   groups_.clear();

@@ -9,14 +9,13 @@
 
 namespace clog {
 
-/// How circles push a contour off until the next make(). Each window (see list_windows()) stores what its
-/// edges give their vertices; afterwards these are added up once for each vertex. An edge that may touch two
-/// circles is in two windows: the second adds to what the first has stored.
+/// Repulsion of a contour by circles until the next make(). Each window (see list_windows()) stores the
+/// forces of its edges on their vertices; then these are added up once for each vertex. An edge that may
+/// touch two circles is in two windows: the second adds to the forces of the first.
 class WallPlan {
  public:
   explicit WallPlan(int num_vertices);
-  /// @param near  circles and edges that may touch, one circle after another, each with its groups in their
-  /// order
+  /// @param near circles and edges that may touch, sorted by circle and group
   void make(const std::vector<WallContacts::Item>& near);
   /// Valid until the next make().
   const kernel::WallWindows& windows() const { return windows_; }

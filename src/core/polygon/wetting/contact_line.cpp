@@ -21,8 +21,8 @@ double cosine(double degrees) { return portable::cos(degrees * pi / 180); }
 
 /// The angle from one direction to another, by their cross and dot products.
 double turn_between(double cross, double dot) {
-  // Vertices next to each other see a wall under small angles: terms of the arc tangent's series up to
-  // 0.3^29/29 = 2e-17, for a tenth of the time.
+  // Adjacent vertices see a wall under small angles: terms of the arc tangent's series up to 0.3^29/29 =
+  // 2e-17, in a tenth of the time.
   constexpr double small = 0.3;
   constexpr int last_power = 27;
   if (!(std::abs(cross) < small * dot)) return portable::atan2(cross, dot);
@@ -32,7 +32,7 @@ double turn_between(double cross, double dot) {
   return t * series;
 }
 
-/// From one place along a wall to another: around a circle the shorter way.
+/// Distance along a wall from one place to another; around a circle the shorter one.
 double way(const WallPlace& wall, double from, double to) {
   const double turn = 2 * pi * wall.radius;
   const bool is_short = std::abs(to - from) < turn / 2;
@@ -42,8 +42,8 @@ double way(const WallPlace& wall, double from, double to) {
 /// @param k  from -size to 2 size - 1
 Index around(Index k, Index size) { return k < 0 ? k + size : k < size ? k : k - size; }
 
-/// Up to this distance beyond the contact, over the vertex diameter, a vertex counts as lying on the wall: an
-/// end that is held must not be lost when its vertex hovers or bounces.
+/// Distance beyond the contact, in vertex diameters, up to which a vertex counts as on the wall, so that a
+/// held end is not lost when its vertex hovers or bounces.
 constexpr double hovering = 0.25;
 
 }  // namespace
@@ -53,7 +53,7 @@ bool has_hysteresis(const DpParameters& dp) {
   return dp.receding_angle.value_or(young) < young || dp.advancing_angle.value_or(young) > young;
 }
 
-/// Where a vertex is, seen from a wall.
+/// Position of a vertex relative to a wall.
 struct ContactLine::Beside {
   Eigen::Array2d normal;   // away from the wall
   Eigen::Array2d forward;  // the gradient of the place u, which goes against the sense of the contour
@@ -68,7 +68,7 @@ double place_on(const Wedge& wedge, const Eigen::Array2d& from_centre) {
   const double across = (from_centre * across_axis).sum();
   const double along = (from_centre * wedge.axis).sum();
   const double c = wedge.half_angle.cos, s = wedge.half_angle.sin;
-  // The angle from minus the axis, counter-clockwise around the centre.
+  // The angle from the negative axis, counter-clockwise around the centre.
   if (along * c + std::abs(across) * s < 0) return wedge.radius * portable::atan2(-across, -along);
   const double on_tip = wedge.radius * (pi / 2 - wedge.half_angle.radians);
   return (across < 0 ? 1 : -1) * (on_tip + along * c + std::abs(across) * s);
@@ -155,7 +155,7 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
     return zone.wall.radius * turn_between(from.normal[0] * to.normal[1] - from.normal[1] * to.normal[0],
                                            (from.normal * to.normal).sum());
   };
-  // One end for each wetted vertex from which a sum outwards meets no other.
+  // One end for each wetted vertex whose outward sum contains no other wetted vertex.
   for (Index k = 0; k < num; ++k) {
     if (vertex(k).share < 1) continue;
     for (const Index side : {Index{0}, Index{1}}) {
@@ -165,14 +165,14 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
       while (last - k < num && k - last < num && goes_on() && vertex(last + step).share < 1) last += step;
       if (goes_on() && vertex(last + step).share >= 1) continue;
 
-      // u falls along the contour: outwards is -u at the last end.
+      // u decreases along the contour, so outwards is -u at the last end.
       const double outwards = side == 1 ? -1 : 1;
       End end{zone.wall, side, 0, ends.gradients_.size(), 0};
       Beside here = beside(zone.wall, vertices, vertex(k).vertex);
       double sum = zone.wall.wedge >= 0 ? here.on_wedge
                                         : zone.wall.radius * portable::atan2(here.normal[1], here.normal[0]);
       double way_before = 0;
-      Eigen::Array2d carried = here.forward;  // what u of the present vertex weighs so far
+      Eigen::Array2d carried = here.forward;  // weight of u of the present vertex so far
       for (Index j = k;; j += step) {
         const bool is_last = j == last;
         const Index next = around(vertex(j).vertex + step, n);

@@ -34,7 +34,7 @@ WettedWalls::Forces::Forces(int num_vertices)
       spreading(gradient),
       of_vertices(static_cast<std::size_t>(num_vertices)) {}
 
-/// Forgets what was found before.
+/// Discards earlier results.
 void WettedWalls::Forces::clear() {
   const Eigen::Index n = gradient.size() / 2;
   for (const int i : vertices) {
@@ -103,8 +103,9 @@ void WettedWalls::find_near(const VertexPlaces& vertices, const LocalFrame& fram
 
 /// U_gamma = sum gamma_e l_e, gamma_e = Gamma + (Gamma_wall - Gamma) times the mean share of its two
 /// vertices: the three-tension energy, Cheng et al. Eq. 2, with the tensions of a wetted wall's two sides
-/// taken together. On a smooth interface its gradient has no part along the interface, -d(gamma)/ds from the
-/// edges cancels the pull towards the wall; what a polygon leaves of it is an error of its finite edges.
+/// taken together. On a smooth interface its gradient has no part along the interface, because -d(gamma)/ds
+/// from the edges cancels the pull towards the wall; the part that a polygon has is an error of its finite
+/// edges.
 void WettedWalls::add_tension(const VertexPlaces& vertices, Forces& forces) const {
   const auto n = static_cast<int>(vertices.size);
   const auto of = [&](int i) -> const Forces::Vertex& {
@@ -127,7 +128,7 @@ void WettedWalls::add_tension(const VertexPlaces& vertices, Forces& forces) cons
     const double length_before = edge_before.matrix().norm(), length_after = edge_after.matrix().norm();
     push(i, -extra_tension_ * of(i).share.slope * (length_before + length_after) / 2 * of(i).normal);
     pull_together(before, i, edge_before, length_before);
-    // Otherwise the loop adds this edge when it comes to `after`.
+    // Otherwise the loop adds this edge when it reaches `after`.
     if (!(of(after).share.share > 0)) pull_together(i, after, edge_after, length_after);
   }
 }

@@ -9,7 +9,7 @@
 
 namespace clog {
 
-/// A wall holds interfaces through at most this many films.
+/// Largest number of films through which a wall holds interfaces.
 inline constexpr double most_films = 3;
 /// How far from the surface of a wall friction through films reaches [sigma].
 /// @param wall_range  at which a wall's contact begins  @param self_range  see SelfContacts
@@ -17,7 +17,7 @@ inline double film_reach(double wall_range, double self_range) {
   return wall_range + most_films * self_range;
 }
 
-/// Less than this part of k_c times the range of self-contact is no push through a film: it may be round-off.
+/// Forces below this fraction of k_c times the range of self-contact may be round-off and count as zero.
 inline constexpr double least_film_push = 1e-9;
 
 /// Friction through closed films. An interface that lies on another one feels the wall below by what that one

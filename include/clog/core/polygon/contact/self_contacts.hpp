@@ -43,24 +43,23 @@ class SelfContacts {
   /// Renews the pairs when the shape may change too much on the way to the next update.
   void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
-  /// Do the pairs hold until the next update? Changes nothing.
-  /// @param moved  bound on how far any vertex is from where it was at renew(), relative to the mean of all
-  /// [sigma]
+  /// Whether the pairs are valid until the next update. Changes nothing. @param moved bound on the
+  /// displacement of any vertex since renew(), relative to the mean of all [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
-  /// Where the vertices were then, relative to their mean, all x then all y, and behind them room for a whole
-  /// vector; null: there are no pairs.
+  /// Positions of the vertices at that time, relative to their mean, all x then all y, followed by room for a
+  /// whole vector; null: there are no pairs.
   const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
   const std::vector<Pair>& pairs() const { return pairs_; }
   double range() const { return range_; }
-  /// How many vertices make up three ranges at rest.
+  /// Number of vertices in three ranges at rest.
   int exclusion() const { return exclusion_; }
-  /// Are these vertices so close along the contour that they do not count as contact?
+  /// Whether these vertices are too close along the contour to count as in contact.
   bool are_neighbours(int a, int b) const;
 
   /// The same pairs for vectors: a group of WallContacts::edges_per_group edges and as many consecutive
-  /// vertices. Strands that face each other run in opposite directions, so the last of these vertices is
-  /// paired with the first edge; where a strand is compressed upon itself it is the first.
+  /// vertices. Opposite strands run in opposite directions, so the last of these vertices is paired with the
+  /// first edge; in a strand compressed upon itself it is the first.
   struct Item {
     int edges;           ///< the first of a group
     int vertices;        ///< the first; those from N on are the contour's first
@@ -94,7 +93,7 @@ class SelfContacts {
   void fill_items(const DropletState& state);
 };
 
-/// Nearest point of an edge to a vertex.
+/// Closest point of an edge to a vertex.
 struct EdgeContact {
   double distance;  ///< [sigma]
   double fraction;  ///< the point's place on the edge, 0 at its first vertex, 1 at the next

@@ -9,11 +9,13 @@
 
 namespace clog {
 
-/// The obstacles that matter to each edge, or each vertex, of a polygon until the list has to be renewed.
+/// The obstacles that may touch each edge, or be nearest to each vertex, of a polygon until the list must be
+/// renewed.
 ///
 /// `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
 /// `range` + skin of it; `touched_by_vertex`: the same for vertex i. `nearest_to_vertex`: vertex i lists
-/// every obstacle that could become its nearest. Lists hold while no vertex has moved by more than the skin.
+/// every obstacle that could become its nearest. Lists are valid while no vertex has moved by more than the
+/// skin.
 class WallContacts {
  public:
   enum class Keep { touched_by_edge, touched_by_vertex, nearest_to_vertex };
@@ -21,16 +23,16 @@ class WallContacts {
   /// @param range  largest surface distance at which a wall force acts [sigma]
   WallContacts(const ObstacleArray& array, double range, Keep keep);
 
-  /// Renews the lists when a vertex may leave its skin on the way to the next update.
+  /// Renews the lists if a vertex may leave its skin before the next update.
   void update(const DropletState& state, const Travel& travel);
-  /// Forgets the lists: positions changed by more than a move (a new frame origin, a rescaled polygon).
+  /// Discards the lists: positions changed by more than a move (a new frame origin, a rescaled polygon).
   void invalidate() { reference_.resize(0); }
-  /// Do the lists hold until the next update? Changes nothing.
-  /// @param moved  bound on how far any vertex is from where it was at renew() [sigma]
+  /// Whether the lists are valid until the next update. Changes nothing. @param moved bound on the
+  /// displacement of any vertex since renew() [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
-  /// Where the vertices were then, all x then all y, and behind them room for a whole vector; null: there are
-  /// no lists.
+  /// Positions of the vertices at that time, all x then all y, followed by room for a whole vector; null:
+  /// there are no lists.
   const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
 
   double range() const { return range_; }
@@ -38,9 +40,8 @@ class WallContacts {
   bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
   double largest_radius() const { return largest_radius_; }
 
-  /// The lists by obstacle: circles that some edge (vertex) of a group of `edges_per_group` lists.
-  /// Circles that edges list follow each other, each with its groups in their order; those that vertices list
-  /// come in the groups' order.
+  /// The lists by obstacle: circles in the list of an edge (vertex) of a group of `edges_per_group`.
+  /// Those of edges are sorted by circle, then group; those of vertices by group.
   struct Item {
     double x, y;   ///< centre, relative to the state's frame [sigma]
     double reach;  ///< radius + range [sigma]

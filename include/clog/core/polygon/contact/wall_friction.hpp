@@ -8,16 +8,16 @@
 
 namespace clog {
 
-/// k_t/k_c of the springs between interface and wall over the stiffness of the contact, as is usual for
-/// grains (Silbert et al., Phys. Rev. E 64, 051302 (2001)). Before the wall yields, a vertex then slips by mu
-/// k_c/k_t times the depth of the contact: 7 % of a vertex diameter for mu = 1.
+/// k_t/k_c, stiffness of the springs between interface and wall divided by that of the contact, as is usual
+/// for grains (Silbert et al., Phys. Rev. E 64, 051302 (2001)). A vertex then slips by mu k_c/k_t times the
+/// depth of the contact before the limit: 7 % of a vertex diameter for mu = 1.
 inline constexpr double friction_stiffness_ratio = 2.0 / 7;
 
-/// Dry friction of walls and a yield traction: a spring holds every vertex that a wall pushes to the place
-/// where it touched (Cundall and Strack, Geotechnique 29, 47 (1979)),
-///   U = (k_t/2) |s_i - s*_i|^2,  |f_i| <= mu N_i + tau_y w_i,
-/// s_i the point of the wall next to vertex i, s* the anchor, N_i the wall's push, w_i the wetted length. A
-/// spring that asks for more than the wall bears pulls its anchor along, so that the wall just bears it.
+/// Dry friction of walls and a yield traction: a spring ties every vertex that a wall pushes to the place
+/// where it first touched (Cundall and Strack, Geotechnique 29, 47 (1979)), U = (k_t/2) |s_i - s*_i|^2, |f_i|
+/// <= mu N_i + tau_y w_i, with s_i the wall's closest point to vertex i, s* the anchor, N_i the wall's normal
+/// force, w_i the wetted length. Beyond this limit the spring pulls its anchor along, so that the force is
+/// the limit.
 class WallFriction {
  public:
   /// @param stiffness  k_t [g rho sigma]  @param wedges  must outlive this
@@ -33,10 +33,10 @@ class WallFriction {
   void add_forces(const DropletState& state, Eigen::ArrayXd& force) const;
   /// [g rho sigma^3]
   double energy(const DropletState& state) const;
-  /// Lets walls yield: anchors follow, new touches get one, those of touches that are no more are forgotten.
-  /// @param state  of which the anchors are read and written  @param touches  where the droplet is now
-  /// @param known  memory; what it holds before and after means nothing
-  /// @param force  if not null, the forces of the springs are added: all x, then all y [g rho sigma^2]
+  /// Moves anchors beyond their limits, adds those of new contacts, and removes those of ended ones. @param
+  /// state whose anchors are read and written @param touches where the droplet is now @param known memory
+  /// without a meaning before and after @param force if not null, the forces of the springs are added: all x,
+  /// then all y [g rho sigma^2]
   WallYield follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
                    KnownAnchors& known, Eigen::ArrayXd* force = nullptr) const;
 

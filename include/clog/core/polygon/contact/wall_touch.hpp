@@ -8,16 +8,16 @@
 
 namespace clog {
 
-/// The point of a wall next to a vertex, from the wall's centre; it moves along `along` by `gradient` times
-/// as much as the vertex.
+/// The wall's closest point to a vertex, relative to the wall's centre; it moves along `along` by `gradient`
+/// times as much as the vertex.
 struct WallFoot {
   Eigen::Array2d point, along;
   double gradient;
 };
-/// @param wedges  of the scene  @param from_centre  of the wall, to the vertex
+/// @param wedges of the scene @param from_centre vector from the wall to the vertex
 WallFoot foot_on(const WallPlace& wall, std::span<const Wedge> wedges, const Eigen::Array2d& from_centre);
 
-/// A vertex that a wall pushes, by itself or through closed films.
+/// A vertex that a wall pushes, directly or through closed films.
 struct WallTouch {
   int vertex;
   WallPlace wall;

@@ -20,18 +20,18 @@ class WallTouches {
   /// @param run  resolved parameters  @param obstacles  must outlive this
   WallTouches(const RunParameters& run, const ObstacleArray& obstacles);
 
-  /// @param circles  all that may touch  @param self  for friction through films  @return valid until the
-  /// next call
+  /// @param circles all possible contacts @param self for friction through films @return valid until the next
+  /// call
   const std::vector<WallTouch>& find(const Contour& contour, const LocalFrame& frame,
                                      std::span<const WallContacts::Item> circles, const SelfContacts& self);
   const std::vector<WallTouch>& find(const DropletState& state, std::span<const WallContacts::Item> circles,
                                      const SelfContacts& self);
 
-  /// Memory for the queries of what walls hold.
+  /// Memory for these queries.
   KnownAnchors& known_anchors() { return known_anchors_; }
 
  private:
-  /// What is known so far of a vertex and a wall.
+  /// A vertex and a wall, so far.
   struct Part {
     int vertex;
     WallPlace wall;

@@ -4,40 +4,38 @@
 
 namespace clog {
 
-/// Gamma from which on a droplet sags by less than a hundredth of its diameter under its own weight: a larger
-/// one changes where it clogs by some hundredths of a diameter, and costs more.
+/// Gamma above which a droplet sags by less than a hundredth of its diameter under its weight: a larger one
+/// moves clogs by some hundredths of a diameter, and costs more.
 inline constexpr double nearly_rigid_tension = 30;
 
-/// N_v where none is given. The corners of a polygon that hangs over an obstacle can hold up to x^2/16 of the
+/// The automatic N_v. The corners of a polygon that hangs over an obstacle can hold up to x^2/16 of the
 /// weight: x = l/R', where l is the length of the edges on the obstacle, and R' the radius at which they lie.
-/// N_v is so large that the longest edges to be expected hold half a percent, but 128 at least and 1024 at
-/// most.
-/// @param obstacle_diameter  of the smallest obstacle that the droplet can hang over, infinite if there is
-/// none [sigma]
+/// N_v limits this to half a percent for the longest expected edges, and is between 128 and 1024. @param
+/// obstacle_diameter of the smallest obstacle over which the droplet can hang, infinite if there is none
+/// [sigma]
 int automatic_vertices(const RunParameters& run, double obstacle_diameter);
 
 /// The published range of contact [sigma].
 double half_vertex_diameter(const DpParameters& dp);
 
-/// K_l where none is given [g rho sigma]: a fraction of Gamma for springs to the rest length; 1 for those to
-/// the mean length; 0.003/V_t for those along the interface, which even out vertices at a rate of (2 pi)^2
-/// K_l V_t/M = 0.15/t0. Stiffer springs of the last kind were seen to flutter at weak drag, since their
-/// force derives from no potential energy.
+/// The automatic K_l [g rho sigma]: a fraction of Gamma for springs to the rest length; 1 for those to the
+/// mean length; 0.003/V_t for those along the interface, which even out vertices at a rate of (2 pi)^2 K_l
+/// V_t/M = 0.15/t0. Stiffer springs of the last kind fluttered at weak drag, because their force derives from
+/// no potential energy.
 double automatic_perimeter_stiffness(const RunParameters& run);
 
-/// Largest pressure difference to be expected across the interface of a droplet held by obstacles [g rho
-/// sigma]: that of its own curvature, of the sharpest bend (see Scene), and of a column of liquid one
-/// diameter tall.
+/// Largest expected pressure difference across the interface of a droplet held by obstacles [g rho sigma]:
+/// that of its own curvature, of the sharpest bend (see Scene), and of a column of liquid one diameter tall.
 double expected_pressure(const RunParameters& run, double sharpest_bend);
 
-/// K_a where none is given [g rho / sigma]: so large that the expected pressure changes the area by two
-/// thousandths, but at most the published 1e4. Soft droplets need less, and would need more steps with more.
+/// The automatic K_a [g rho / sigma]: the expected pressure changes the area by two thousandths, but it is at
+/// most the published 1e4. Soft droplets need less, and more would need more steps.
 double automatic_area_stiffness(const RunParameters& run, double sharpest_bend);
 
 /// DropletModel::resolve of the polygon. The automatic step resolves the drag's relaxation time five or ten
-/// times; every stiff mode of a circle stays within auto_step_margin of its bound (stability.hpp), and an
-/// automatic contact, whose stiffness goes with the step, is so stiff that the expected pressure pushes an
-/// obstacle into the interface by a fiftieth of a vertex diameter. Rounded down to two digits.
+/// times. Every stiff mode of a circle stays within auto_step_margin of its bound (stability.hpp), and the
+/// expected pressure overlaps an automatic contact, whose stiffness depends on the step, by a fiftieth of a
+/// vertex diameter. Rounded down to two digits.
 void resolve_polygon(RunParameters& run, double sharpest_bend);
 
 }  // namespace clog

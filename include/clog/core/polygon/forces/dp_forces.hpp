@@ -24,35 +24,34 @@ struct InterfaceTerms {
   double vertex_weight;  ///< M g / N_v along +x
 };
 
-/// Potential energy of a deformable polygon among obstacles, and what the passes of a step (DpStepper,
-/// RestForces) need for its negative gradient.
-/// Contacts act through lists: update_contacts() must have been called, and since then nothing may have
-/// travelled farther than it was told.
+/// Potential energy of a deformable polygon among obstacles, and the data for its negative gradient in the
+/// passes of a step (DpStepper, RestForces). Contacts use lists: update_contacts() must have been called, and
+/// no point may have moved farther than its argument since then.
 class DpForces {
  public:
   /// @param run  resolved parameters (see resolve())
   DpForces(const RunParameters& run, const ObstacleArray& obstacles);
 
-  /// @param travel  bound on the way until the next call
+  /// @param travel bound on the displacement until the next call
   void update_contacts(const DropletState& state, const Travel& travel);
-  /// Would update_contacts() leave the lists as they are? Also false if only the state can tell.
-  /// @param moved           bound on the way of any vertex since walls() were renewed [sigma]
-  /// @param moved_relative  the same, relative to their mean, since self_contacts() were renewed [sigma]
+  /// Whether update_contacts() would leave the lists unchanged. Also false if only the state can tell. @param
+  /// moved bound on the displacement of any vertex since walls() were renewed [sigma] @param moved_relative
+  /// the same, relative to their mean, since self_contacts() were renewed [sigma]
   bool contacts_hold(double moved, double moved_relative, const Travel& travel) const;
-  /// Are there contact lists that nobody has invalidated?
+  /// Whether there are valid contact lists.
   bool has_contact_lists() const {
     return walls_.reference() != nullptr &&
            (dp_.self_contact == SelfContact::off || self_.reference() != nullptr);
   }
-  /// Forgets the lists of obstacles. To be called when a shift of the frame has changed local coordinates.
+  /// Discards the lists of obstacles. Call this when a shift of the frame has changed local coordinates.
   void forget_contacts();
-  /// Forgets the pairs of self-contact, too, which a shift does not change.
+  /// Also discards the pairs of self-contact, which a shift does not change.
   void forget_all_contacts();
 
   PotentialEnergy energy(const DropletState& state) const;
 
-  /// Deepest overlap of the interface with a wall's contact range [sigma]: of its edges or of its vertices,
-  /// as the contact counts them.
+  /// Deepest overlap of the interface with a wall's contact range [sigma], of edges or vertices according to
+  /// `wall-contact`.
   double deepest_overlap(const DropletState& state) const;
   /// Distance from an obstacle's surface at which contact begins [sigma].
   double contact_range() const { return walls_.range(); }
@@ -67,8 +66,8 @@ class DpForces {
   const SelfContacts& self_contacts() const { return self_; }
   const std::vector<Wedge>& wedges() const { return obstacles_->wedges(); }
   const WallFriction& friction() const { return friction_; }
-  /// Lets walls yield to friction's springs or to those of the contact line, see WallFriction::follow().
-  /// @param circles  all that may touch
+  /// Moves the anchors of friction or of the contact line beyond their limits, see WallFriction::follow().
+  /// @param circles all possible contacts
   WallYield let_walls_yield(DropletState& state, WallTouches& touches,
                             std::span<const WallContacts::Item> circles, Purpose purpose) const;
   bool has_anchors() const { return friction_.is_on() || wetted_walls_.hold_ends(); }

@@ -5,7 +5,7 @@
 namespace clog {
 
 /// Upper bounds on omega^2 [1/t0^2] of the stiff modes of a polygon with the given perimeter [sigma].
-/// Velocity Verlet holds a harmonic mode while omega dt < 2; the bounds are those of a chain of masses M/N_v.
+/// Velocity Verlet is stable for omega dt < 2; the bounds are those of a chain of masses M/N_v.
 struct StiffModes {
   double contact = 0;  ///< wall contact of one vertex, through both its edges if those count: 2 k_c N_v/M
   /// Two strands against each other, each vertex between two edges and each edge between two vertices: 8 k_c
@@ -24,25 +24,24 @@ struct StiffModes {
 };
 
 /// (omega dt)^2 of the contact mode for the automatic E_w: keeps overlaps near 1e-2 vertex diameters for
-/// Gamma <= 1 and settles without chatter (contact is one-sided, so the linear bound of 4 is far too
-/// generous).
+/// Gamma <= 1 and settles without chatter (contact is one-sided, so the linear bound of 4 is much too large).
 inline constexpr double auto_contact_omega_dt2 = 0.5;
-/// Largest (omega dt)^2 of the contact alone and of all modes together that we accept; above these,
-/// stopped droplets were seen to chatter instead of coming to rest.
+/// Largest accepted (omega dt)^2 of the contact alone and of all modes together; above these, stopped
+/// droplets chattered instead of resting.
 inline constexpr double max_contact_omega_dt2 = 1.0;
 inline constexpr double max_total_omega_dt2 = 3.0;
-/// The same for a droplet that touches itself as well. It is larger, because self-contact is rare, and softer
+/// The same for a droplet in contact with itself. It is larger, because self-contact is rare, and softer
 /// than StiffModes::self_contact assumes.
 inline constexpr double max_total_with_self_omega_dt2 = 3.9;
 /// The area mode is anharmonic in the perimeter; it gets its own bound. With 1.25, three times as many
 /// droplets without drag diverged (docs/notes/2026-11-26-time-step.md).
 inline constexpr double max_area_omega_dt2 = 1.0;
 
-/// The share of every bound that the modes of a circle take with the automatic step.
+/// Fraction of every bound that the modes of a circle use with the automatic step.
 inline constexpr double auto_step_margin = 0.8;
 
 /// Modes of a resolved parameter set (see resolve()) at the given perimeter and shortest edge [sigma].
-/// Vertices nearer to each other than a hundredth of the mean edge count as that far apart.
+/// Vertices nearer than a hundredth of the mean edge count as that far apart.
 StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double perimeter, double shortest_edge);
 
 /// Largest time step [t0] that keeps every bound above.
@@ -50,7 +49,7 @@ double largest_stable_step(const StiffModes& modes);
 /// The same with an implicit pressure (see Pressure).
 double largest_step_with_implicit_pressure(const StiffModes& modes);
 
-/// A droplet that needs more for one has burst; the run is given up at its next check.
+/// A droplet that needs more for one has burst; the run ends at its next check.
 inline constexpr int most_substeps = 1000;
 
 enum class Pressure {
@@ -65,10 +64,10 @@ struct Steps {
   double length;
   Pressure pressure = Pressure::present;
 };
-/// The fewest steps that go as far as `steps` time steps and keep every bound: as many if these keep the
-/// bounds themselves, at most most_substeps times as many. Up to twice as many it is as many as needed, above
-/// that, where shapes are far from the regular polygons of the bounds, a multiple of `steps`.
-/// @param most  Pressure::implicit: the pressure may be implicit if this saves steps
+/// The fewest steps that cover `steps` time steps and keep every bound: at least as many, at most
+/// most_substeps times as many. Up to twice as many the number is exact; above that, where shapes are far
+/// from the regular polygons of the bounds, it is a multiple of `steps`. @param most Pressure::implicit: the
+/// pressure may be implicit if this saves steps
 Steps stable_steps(const StiffModes& modes, int steps, double time_step, Pressure most);
 
 }  // namespace clog

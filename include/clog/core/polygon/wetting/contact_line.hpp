@@ -13,10 +13,10 @@
 
 namespace clog {
 
-/// Do contact angles differ from Young's?
+/// Whether contact angles differ from Young's.
 bool has_hysteresis(const DpParameters& dp);
 
-/// How far the tension has changed to that of a wetted wall, and its derivative by the distance [1/sigma].
+/// Wetted fraction, from 0 to 1, and its derivative with respect to the distance [1/sigma].
 struct WettedShare {
   double share, slope;
 };
@@ -27,10 +27,10 @@ inline WettedShare wetted_share(double distance, double contact_range, double wi
   return {t * t * t * (10 + t * (6 * t - 15)), -30 * t * t * (1 - t) * (1 - t) / width};
 }
 
-/// k_p over Gamma and the vertex diameter, of the springs that hold the ends of wetted arcs. Before the wall
-/// yields, an end then slips by half a vertex diameter times the difference of the angles' cosines.
+/// k_p in units of Gamma per vertex diameter, of the springs that hold the ends of wetted arcs. An end then
+/// slips by half a vertex diameter times the difference of the angles' cosines before the limit.
 inline constexpr double pinning_stiffness = 2;
-/// Bound on the sum of squares of an end's gradient: shares of the last vertices, and their distances.
+/// Bound on the squared norm of an end's gradient: fractions of the last vertices, and their distances.
 inline constexpr double pinning_gradient2 = 1.5;
 
 /// The vertices of a droplet.
@@ -43,14 +43,12 @@ struct VertexPlaces {
       : size(num_vertices), x(all_x), y(all_y) {}
 };
 
-/// Contact-angle hysteresis. The end of a wetted arc is at
-///   q = u_m + sum share_e (u_e' - u_e)
-/// along the wall, u the wall's own coordinate, summed over the edges e from a wetted vertex m outwards,
-/// share_e their share of wetting; counted positive outwards. Where the interface is smooth, the gradient of
-/// q is normal to it, so that q does not depend on which vertices are there. A spring holds it,
-///   U = (k_p/2) (q - q*)^2,  -Gamma (cos Y - cos A) <= f <= Gamma (cos R - cos Y),
-/// Y, A, R Young's, the advancing and the receding angle. A spring that asks for more than the wall bears
-/// pulls its anchor q* along, so that the wall just bears it.
+/// Contact-angle hysteresis. The end of a wetted arc is at q = u_m + sum share_e (u_e' - u_e) along the wall,
+/// with u the coordinate along the wall, summed over the edges e from a wetted vertex m outwards, share_e
+/// their wetted fraction; positive outwards. Where the interface is smooth, the gradient of q is normal to
+/// it, so q does not depend on the positions of vertices. A spring holds it, U = (k_p/2) (q - q*)^2, -Gamma
+/// (cos Y - cos A) <= f <= Gamma (cos R - cos Y), with Y, A, R Young's, the advancing and the receding angle.
+/// Beyond these limits the spring pulls its anchor q* along, so that the force is the limit.
 class ContactLine {
  public:
   /// @param run  resolved parameters  @param wedges  must outlive this
@@ -70,8 +68,7 @@ class ContactLine {
     Eigen::Array2d by_place;
   };
   class Ends;
-  /// @param circles  all that may be wetted, by vertex
-  /// @param ends     what is found; its memory is used again
+  /// @param circles all that may be wetted, by vertex @param ends the result; its memory is reused
   void find_ends(const VertexPlaces& vertices, const LocalFrame& frame,
                  std::span<const WallContacts::Item> circles, Ends& ends) const;
 
@@ -79,9 +76,9 @@ class ContactLine {
   void add_forces(std::span<const WallAnchor> anchors, const Ends& ends, Eigen::ArrayXd& force) const;
   /// [g rho sigma^3]
   double energy(std::span<const WallAnchor> anchors, const Ends& ends) const;
-  /// Lets walls yield: anchors follow. An end keeps the nearest anchor of its wall and side; new ends get one
-  /// of their own, and the anchors of ends that are no more are forgotten. Afterwards there is one anchor for
-  /// each end, in their order.
+  /// Moves anchors beyond their limits. An end keeps the nearest anchor of its wall and side; new ends get
+  /// one of their own, and anchors of vanished ends are removed. Afterwards there is one anchor for each end,
+  /// in their order.
   WallYield follow(std::vector<WallAnchor>& anchors, const Ends& ends, Purpose purpose) const;
 
  private:

@@ -13,8 +13,8 @@
 namespace clog {
 
 /// Walls whose tension differs from that of the interface, and walls that hold the ends of wetted arcs. The
-/// tension changes from Gamma, far from a wall, to that of the wetted wall where contact begins: a smooth
-/// step, so that the energy and the force are continuous, and wide enough for the edges to follow its bend.
+/// tension changes from Gamma, far from a wall, to that of the wetted wall where contact begins, by a smooth
+/// step, so that energy and force are continuous, wide enough for the edges to resolve it.
 class WettedWalls {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this
@@ -23,11 +23,11 @@ class WettedWalls {
   bool is_on() const { return extra_tension_ != 0 || line_.is_on(); }
   bool hold_ends() const { return line_.is_on(); }
 
-  /// Lists of the obstacles near the vertices, kept only where walls are wetted; see WallContacts.
+  /// Lists of the obstacles near the vertices, only for wetted walls; see WallContacts.
   WallContacts& lists() { return lists_; }
   const WallContacts& lists() const { return lists_; }
 
-  /// Forces on the vertices, and memory that finding them needs. All x, then all y [g rho sigma^2].
+  /// Forces on the vertices, and memory to find them. All x, then all y [g rho sigma^2].
   struct Forces {
     Eigen::ArrayXd gradient;  ///< minus the gradient of the energy
     /// Cancels the part of `gradient` along the interface if springs carry no tension (`along`), otherwise 0.
@@ -36,7 +36,7 @@ class WettedWalls {
     std::vector<int> vertices;  ///< on all others both forces are 0
     ContactLine::Ends ends;     ///< of wetted arcs
 
-    /// The net force of `spreading`. The liquid takes it: weight on the area is reduced by it.
+    /// The net force of `spreading`. It acts on the liquid: weight on the area is reduced by it.
     Eigen::Array2d net_spreading{0, 0};
 
     explicit Forces(int num_vertices);
@@ -58,10 +58,10 @@ class WettedWalls {
   /// Finds the forces and the ends.
   void find_forces(const VertexPlaces& vertices, const LocalFrame& frame, std::span<const WallAnchor> anchors,
                    Forces& forces) const;
-  /// The same of a droplet that moves: walls yield first.
+  /// The same for a moving droplet: anchors move first.
   WallYield follow_and_find_forces(const VertexPlaces& vertices, const LocalFrame& frame,
                                    std::vector<WallAnchor>& anchors, Forces& forces) const;
-  /// Lets walls yield, see ContactLine::follow().
+  /// Moves anchors beyond their limits, see ContactLine::follow().
   WallYield follow(DropletState& state, Purpose purpose) const;
 
   /// Energies of the difference of tensions, and of the springs that hold ends [g rho sigma^3].
