@@ -19,15 +19,14 @@ SLACK = 1e-9
 
 class Geometry(unittest.TestCase):
     def test_pairs_are_found_across_the_borders_and_once(self):
-        circles = np.array([[0.1, 0.1], [9.6, 4.8], [5, 2.5], [5, 3.4]])
-        ways = np.concatenate(list(prediction.pairs_of(circles, width=5, length=10, nearest=1.3)))
-        np.testing.assert_allclose(sorted(map(tuple, np.abs(ways))), [(0, 0.9), (0.5, 0.3)], atol=SLACK)
+        circles = np.array([[0.1, 0.1, 0.3], [9.6, 4.8, 0.3], [5, 2.5, 0.3], [5, 3.9, 0.6]])
+        ways = np.concatenate(list(prediction.pairs_of(circles, width=5, length=10)))
+        np.testing.assert_allclose(sorted(map(tuple, np.abs(ways))), [(0, 1.4, 0.45), (0.5, 0.3, 0.3)], atol=SLACK)
 
     def test_a_pair_of_all_directions_is_as_wide_as_its_mean_projection(self):
         held = [True] * round(90 / prediction.ANGLE_STEP)
-        _, mean = prediction.capture_widths(0.4, 0.3, held)
-        self.assertAlmostEqual(mean, 0.7 * 2 / math.pi, delta=SLACK)
-        self.assertEqual(prediction.capture_widths(0.4, 0.3, [False] * 5)[1], 0)
+        self.assertAlmostEqual(prediction.mean_cosine(held), 2 / math.pi, delta=SLACK)
+        self.assertEqual(prediction.mean_cosine([False] * 5), 0)
 
     def test_a_rigid_disc_rests_on_two_obstacles_up_to_the_angle_at_which_it_stands_over_the_lower(self):
         for gap, diameter in [(0.2, 0.3), (0.7, 0.3), (0.5, 0.9)]:

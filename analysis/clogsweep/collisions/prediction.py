@@ -17,43 +17,52 @@ from .collision import BOX, FALL
 
 GAP_STEP = 0.04  # of pairs that are tried [sigma]: a twentieth of the range in which they can hold a droplet
 ANGLE_STEP = 3  # [degrees]
+DIAMETER_STEP = 0.1  # of the mean diameter of a pair [sigma]
+EXIT = 6  # behind the obstacles: farther than droplets hang [sigma]
+LONGEST_FALL = 90  # at terminal speed, before a droplet that creeps on an obstacle counts as free [sigma]
+OFFSET_PRECISION, OFFSET_STEPS = 0.0005, 6  # of the half-width within which one obstacle holds a droplet [sigma]; of a search
 SPEED = 0.03  # terminal speed by default [sqrt(sigma g)]
 SMALLEST_LENGTH = 4  # [sigma]: shorter ones were too long by a third and more
 SOFTEST = 1  # line tension: at 0.5 up to 42 % of all clogs hang on three obstacles, at 0.3 85 % (docs/explanation/predicted.md)
 ARRAYS, ARRAY_BOX = 4, 60  # of random arrays, pairs of so many are counted
 
 # The keys of the array. All other keys belong to the droplet; `obstacle-diameter` belongs to both.
-OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacles", "lattice-angle", "box", "boxes")
-REFUSED = {"seeds": "arrays and pairs have seeds of their own here", "max-time": "nothing runs in the array", "release": "nothing runs in the array",
-           "obstacle-diameter-spread": "pairs are of obstacles alike"}
+OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacles", "lattice", "pitch", "lattice-angle", "box",
+             "boxes", "length")
+REFUSED = {"seeds": "arrays and pairs have seeds of their own here", "max-time": "nothing runs in the array", "release": "nothing runs in the array"}
+
+
+Circles = Sequence[tuple[float, float, float]]  # x along the flow, y across it, diameter [sigma]
 
 
 @dataclasses.dataclass(frozen=True)
 class Array:
     """Neighbours in an array: pairs of obstacles that a free droplet does not fit through."""
 
-    diameter: float  # of all obstacles [sigma]
     area: float  # of the array [sigma^2]
+    diameters: Numbers  # mean of the two obstacles, of each pair [sigma]
     separations: Numbers  # of the centres, of each pair [sigma]
     angles: Numbers  # between their line and the horizontal, which is across the flow, 0 to 90 [degrees]
     is_isotropic: bool  # of no direction, as random arrays are
 
 
-def pairs_of(circles: Numbers, width: float, length: float, nearest: float) -> Iterator[Numbers]:
-    """Ways from each obstacle to those behind it in the list that are less than `nearest` away, in an array that repeats.
+def pairs_of(circles: Numbers, width: float, length: float) -> Iterator[Numbers]:
+    """Pairs of each obstacle and those behind it in the list that a droplet does not fit through freely, in an array that repeats.
 
-    @param circles  n x 2, x and y [sigma]; @param width  period across the flow, y; @param length  along it, x
-    @return arrays of m x 2
+    @param circles  n x 3, x, y and diameter [sigma]; @param width  period across the flow, y; @param length  along it, x
+    @return arrays of m x 3: way from the first to the second, mean diameter
     """
     period = np.array([length, width])
     for index, circle in enumerate(circles):
-        ways = circles[index + 1:] - circle
+        ways = circles[index + 1:, :2] - circle[:2]
         ways -= period * np.round(ways / period)
-        yield ways[np.hypot(ways[:, 0], ways[:, 1]) < nearest]
+        diameters = (circles[index + 1:, 2] + circle[2]) / 2
+        near = np.hypot(ways[:, 0], ways[:, 1]) < 1 + diameters
+        yield np.column_stack([ways, diameters])[near]
 
 
-class Pairs:
-    """Droplets that fall onto the middle of two obstacles."""
+class Droplets:
+    """Droplets that fall onto one or two obstacles."""
 
     def __init__(self, clogsweep: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> None:
         """@param keys  of clogsweep, those of the droplet"""
@@ -62,39 +71,51 @@ class Pairs:
             speed = float(keys.get("terminal-speed", SPEED))
         except ValueError:
             raise UserError(f"invalid terminal-speed={keys['terminal-speed']} (must be a number); try {SPEED}") from None
-        self.keys = {"max-time": f"{4 * FALL / speed:g}"} | keys  # four times the way of a free droplet to the pair
+        # Soft droplets creep on an obstacle; those that pass end at the exit.
+        self.keys = {"max-time": f"{LONGEST_FALL / speed:g}", "exit": f"{BOX / 2 + FALL + EXIT:g}"} | keys
 
-    def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
-        """Which pairs hold it. @param angles  of the pairs [degrees]. @return for each line tension, an entry per angle"""
-        files = [self.folder / f"{index}.csv" for index in range(len(angles))]
-        for file, angle in zip(files, angles):
-            half_x, half_y = ((gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos))
-            x, y = BOX / 2 + FALL + half_x, BOX / 2
-            file.write_text(f"x,y,diameter\n{x - half_x},{y - half_y},{diameter}\n{x + half_x},{y + half_y},{diameter}\n", encoding="utf-8")
-        sweep = self.folder / "pairs.h5"
+    def caught(self, arrays: Sequence[Circles], keys: dict[str, str] | None = None) -> dict[float, list[bool]]:
+        """Which obstacles hold it. @param arrays  of each droplet; the places start FALL below its release. @return for each line tension, one per array"""
+        files = [self.folder / f"{index}.csv" for index in range(len(arrays))]
+        for file, circles in zip(files, arrays):
+            lines = [f"{BOX / 2 + FALL + x},{BOX / 2 + y},{diameter}\n" for x, y, diameter in circles]
+            file.write_text("x,y,diameter\n" + "".join(lines), encoding="utf-8")
+        sweep = self.folder / "caught.h5"
         programs.run_program(self.clogsweep, "obstacles=" + ",".join(map(str, files)), f"box={BOX}", "seeds=1",
-                             *(f"{key}={value}" for key, value in self.keys.items()), "--output", sweep, "--quiet")
+                             *(f"{key}={value}" for key, value in (self.keys | (keys or {})).items()), "--output", sweep, "--quiet")
         with stored.opened(sweep) as stored_sweep:
             rows, names = stored_sweep["runs"][:], stored.circle_files(stored_sweep)
         sweep.unlink()
         found: dict[float, list[bool]] = {}
         for row in rows:
             index = int(pathlib.Path(names[stored.text(row["obstacles"])]).stem)
-            found.setdefault(float(row["line_tension"]), [False] * len(angles))[index] = row["status"] == b"clogged"
+            found.setdefault(float(row["line_tension"]), [False] * len(arrays))[index] = row["status"] == b"clogged"
         return found
 
+    def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
+        """Which pairs hold one that falls onto their middle. @param angles  of the pairs [degrees]"""
+        halves = [[(gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos)] for angle in angles]
+        return self.caught([[(0, -y, diameter), (2 * x, y, diameter)] for x, y in halves])
 
-def capture_widths(gap: float, diameter: float, held: Sequence[bool]) -> tuple[Numbers, float]:
-    """The width across the flow within which a pair stops a droplet [sigma].
+    def half_width(self, diameter: float, tension: float) -> float:
+        """Largest offset from the centre of one obstacle at which it holds the droplet [sigma], 0 if below OFFSET_PRECISION."""
+        low, high = 0.0, (1 + diameter) / 2
+        while high - low > max(OFFSET_PRECISION, low / OFFSET_STEPS**2):
+            offsets = [low + (high - low) * step / OFFSET_STEPS for step in range(OFFSET_STEPS + 1)]
+            caught = self.caught([[(0, offset, diameter)] for offset in offsets[1:-1]], {"line-tension": f"{tension:g}"})[tension]
+            first_free = caught.index(False) if False in caught else len(caught)
+            low, high = offsets[first_free:first_free + 2]
+        return (low + high) / 2 if low > 0 else 0
 
-    It is what both centres are apart across the flow, if the pair holds it, and otherwise nothing: a droplet that
-    arrives beside it slides off outwards.
+
+def mean_cosine(held: Sequence[bool]) -> float:
+    """Mean of cos(angle) over all directions, 0 where a pair does not hold the droplet.
+
+    A pair that holds it catches what arrives between its centres; a droplet that arrives beside them slides off outwards.
     @param held  for angles in the middles of steps of ANGLE_STEP
-    @return one for each of those angles, over the cosine of the pair's own; and the mean of all directions
     """
     edges = np.radians(ANGLE_STEP * np.arange(len(held) + 1))
-    apart = (gap + diameter) * np.array(held, dtype=float)
-    return apart, float(np.sum(apart * np.diff(np.sin(edges))) / (math.pi / 2))
+    return float(np.sum(np.diff(np.sin(edges))[np.array(held, dtype=bool)]) / (math.pi / 2))
 
 
 def largest_angle(gap: float, diameter: float) -> float:
@@ -102,26 +123,34 @@ def largest_angle(gap: float, diameter: float) -> float:
     return math.degrees(math.asin(min(1.0, (gap + diameter) / (1 + diameter))))
 
 
-def predict(pairs: Pairs, array: Array) -> Iterator[tuple[float, float]]:
+def predict(droplets: Droplets, array: Array) -> Iterator[tuple[float, float]]:
     """@return line tension, and clogging length [sigma], infinite where no pair holds a droplet"""
     caught: dict[float, float] = {}
-    gaps = array.separations - array.diameter
-    cells = np.floor(gaps / GAP_STEP).astype(int)
-    for cell in np.unique(cells):
-        gap = GAP_STEP * (cell + 0.5)
-        num_angles = math.ceil(largest_angle(min(1, gap + GAP_STEP / 2), array.diameter) / ANGLE_STEP)
-        here = cells == cell
+    cells = np.floor((array.separations - array.diameters) / GAP_STEP).astype(int)
+    sizes = np.round(array.diameters / DIAMETER_STEP).astype(int)
+    for cell, size in sorted(set(zip(cells.tolist(), sizes.tolist()))):
+        here = (cells == cell) & (sizes == size)
+        gap, diameter = GAP_STEP * (cell + 0.5), float(np.mean(array.diameters[here]))
+        num_angles = math.ceil(largest_angle(min(1, gap + GAP_STEP / 2), diameter) / ANGLE_STEP)
         angle_cells = np.floor(array.angles[here] / ANGLE_STEP).astype(int)
-        can_hold = angle_cells < num_angles
-        for tension, held in pairs.held(gap, array.diameter, [ANGLE_STEP * (index + 0.5) for index in range(num_angles)]).items():
-            widths, mean_width = capture_widths(gap, array.diameter, held)
+        across = array.separations[here] * np.cos(np.radians(array.angles[here]))
+        for tension, held in droplets.held(gap, diameter, [ANGLE_STEP * (index + 0.5) for index in range(num_angles)]).items():
             if array.is_isotropic:
-                total = mean_width * np.count_nonzero(here)
+                total = mean_cosine(held) * np.sum(array.separations[here])
             else:
-                total = np.sum(widths[angle_cells[can_hold]] * np.cos(np.radians(array.angles[here][can_hold])))
+                total = np.sum(across[np.isin(angle_cells, np.flatnonzero(held))])
             caught[tension] = caught.get(tension, 0) + float(total)
     for tension, width in sorted(caught.items()):
         yield tension, array.area / width if width > 0 else math.inf
+
+
+def one_in_three(array: Array) -> float:
+    """Clogging length if one gap in three stops the droplet: a pair on which a rigid disc rests, as wide as its centres are apart across the flow [sigma]."""
+    steepest = array.separations / (1 + array.diameters)  # sine of the largest angle
+    angles = np.radians(array.angles)
+    cosines = steepest * 2 / math.pi if array.is_isotropic else np.cos(angles) * (np.sin(angles) < steepest)
+    gaps = float(np.sum(array.separations * cosines))
+    return 3 * array.area / gaps if gaps > 0 else math.inf
 
 
 def doubts_of(tension: float, length: float) -> list[str]:
@@ -143,13 +172,10 @@ def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]
         run.unlink()
         circles = np.loadtxt(circle_file, delimiter=",", skiprows=1, ndmin=2, encoding="utf-8")
         circle_file.unlink()
-        diameter = float(circles[0, 2])
-        if not np.allclose(circles[:, 2], diameter):
-            raise UserError("obstacles differ in diameter; a length can be predicted of obstacles alike only")
-        width, length = float(row["box"]), float(row["box"] * row["boxes"])
+        width, length = float(row["box"]), float(row["length"] if row["length"] > 0 else row["box"] * row["boxes"])
         area += width * length
-        ways += pairs_of(circles[:, :2], width, length, 1 + diameter)
-    along, across = np.abs(np.concatenate(ways)).T
+        ways += pairs_of(circles, width, length)
+    along, across, diameters = np.abs(np.concatenate(ways)).T
     if along.size == 0:
         raise UserError("no two obstacles are less than a droplet apart; no droplet clogs between them")
-    return Array(diameter, area, np.hypot(along, across), np.degrees(np.arctan2(along, across)), not is_own)
+    return Array(area, diameters, np.hypot(along, across), np.degrees(np.arctan2(along, across)), not is_own)

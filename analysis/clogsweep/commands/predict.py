@@ -42,9 +42,11 @@ def body() -> int:
     with tempfile.TemporaryDirectory(prefix="clogsweep-predict-") as name:
         folder = pathlib.Path(name)
         array = prediction.read_array(folder_of_programs / "clogrun", folder, of_array)
-        pairs = prediction.Pairs(folder_of_programs / "clogsweep", folder, of_droplet)
-        found = list(prediction.predict(pairs, array))
-    print("line_tension,clogging_length,doubts")
+        droplets = prediction.Droplets(folder_of_programs / "clogsweep", folder, of_droplet)
+        found = list(prediction.predict(droplets, array))
+    rule = prediction.one_in_three(array)
+    print("line_tension,clogging_length,one_gap_in_three,doubts")
     for tension, length in found:
-        print(f"{tension:g}", f"{length:.4g}" if math.isfinite(length) else "", " ".join(prediction.doubts_of(tension, length)), sep=",")
+        print(f"{tension:g}", *(f"{number:.4g}" if math.isfinite(number) else "" for number in (length, rule)),
+              " ".join(prediction.doubts_of(tension, length)), sep=",")
     return 0
