@@ -1,4 +1,4 @@
-"""Clogging lengths from pairs of obstacles: which pairs hold a droplet, and how many of them an array has.
+"""Clogging lengths from droplets that fall onto one or two obstacles: which of these hold it, and how many of them an array has.
 
 docs/explanation/predicted.md has the law and where it holds.
 """
@@ -20,7 +20,7 @@ ANGLE_STEP = 3  # [degrees]
 DIAMETER_STEP = 0.1  # of the mean diameter of a pair [sigma]
 EXIT = 6  # behind the obstacles: farther than droplets hang [sigma]
 LONGEST_FALL = 90  # at terminal speed, before a droplet that creeps on an obstacle counts as free [sigma]
-OFFSET_PRECISION, OFFSET_STEPS = 0.0005, 6  # of the half-width within which one obstacle holds a droplet [sigma]; of a search
+OFFSET_PRECISION, OFFSET_STEPS = 0.0001, 6  # of the half-width within which one obstacle holds a droplet [sigma]; of a search
 SPEED = 0.03  # terminal speed by default [sqrt(sigma g)]
 SMALLEST_LENGTH = 4  # [sigma]: shorter ones were too long by a third and more
 SOFTEST = 1  # line tension: at 0.5 up to 42 % of all clogs hang on three obstacles, at 0.3 85 % (docs/explanation/predicted.md)
@@ -37,9 +37,11 @@ Circles = Sequence[tuple[float, float, float]]  # x along the flow, y across it,
 
 @dataclasses.dataclass(frozen=True)
 class Array:
-    """Neighbours in an array: pairs of obstacles that a free droplet does not fit through."""
+    """Obstacles of an array, and its neighbours: pairs of obstacles that a free droplet does not fit through."""
 
-    area: float  # of the array [sigma^2]
+    area: float  # [sigma^2]
+    obstacles: int
+    mean_diameter: float  # of the obstacles [sigma]
     diameters: Numbers  # mean of the two obstacles, of each pair [sigma]
     separations: Numbers  # of the centres, of each pair [sigma]
     angles: Numbers  # between their line and the horizontal, which is across the flow, 0 to 90 [degrees]
@@ -74,36 +76,40 @@ class Droplets:
         # Soft droplets creep on an obstacle; those that pass end at the exit.
         self.keys = {"max-time": f"{LONGEST_FALL / speed:g}", "exit": f"{BOX / 2 + FALL + EXIT:g}"} | keys
 
-    def caught(self, arrays: Sequence[Circles], keys: dict[str, str] | None = None) -> dict[float, list[bool]]:
-        """Which obstacles hold it. @param arrays  of each droplet; the places start FALL below its release. @return for each line tension, one per array"""
+    def ends(self, arrays: Sequence[Circles], tension: float | None = None) -> dict[float, list[bytes]]:
+        """What holds it. @param arrays  of each droplet, from FALL below its release on; @param tension  if not all of the keys
+        @return for each line tension, a word per array: wrapped, squeezed and so on, or none
+        """
         files = [self.folder / f"{index}.csv" for index in range(len(arrays))]
         for file, circles in zip(files, arrays):
             lines = [f"{BOX / 2 + FALL + x},{BOX / 2 + y},{diameter}\n" for x, y, diameter in circles]
             file.write_text("x,y,diameter\n" + "".join(lines), encoding="utf-8")
         sweep = self.folder / "caught.h5"
+        keys = self.keys if tension is None else self.keys | {"line-tension": str(tension)}
         programs.run_program(self.clogsweep, "obstacles=" + ",".join(map(str, files)), f"box={BOX}", "seeds=1",
-                             *(f"{key}={value}" for key, value in (self.keys | (keys or {})).items()), "--output", sweep, "--quiet")
+                             *(f"{key}={value}" for key, value in keys.items()), "--output", sweep, "--quiet")
         with stored.opened(sweep) as stored_sweep:
             rows, names = stored_sweep["runs"][:], stored.circle_files(stored_sweep)
         sweep.unlink()
-        found: dict[float, list[bool]] = {}
+        found: dict[float, list[bytes]] = {}
         for row in rows:
             index = int(pathlib.Path(names[stored.text(row["obstacles"])]).stem)
-            found.setdefault(float(row["line_tension"]), [False] * len(arrays))[index] = row["status"] == b"clogged"
+            found.setdefault(float(row["line_tension"]), [b"none"] * len(arrays))[index] = row["mechanism"]
         return found
 
     def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
-        """Which pairs hold one that falls onto their middle. @param angles  of the pairs [degrees]"""
+        """Which pairs stop one that falls onto their middle, other than by one obstacle as it wraps. @param angles  of the pairs [degrees]"""
         halves = [[(gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos)] for angle in angles]
-        return self.caught([[(0, -y, diameter), (2 * x, y, diameter)] for x, y in halves])
+        ends = self.ends([[(0, -y, diameter), (2 * x, y, diameter)] for x, y in halves])
+        return {tension: [end not in (b"none", b"wrapped") for end in words] for tension, words in ends.items()}
 
     def half_width(self, diameter: float, tension: float) -> float:
         """Largest offset from the centre of one obstacle at which it holds the droplet [sigma], 0 if below OFFSET_PRECISION."""
         low, high = 0.0, (1 + diameter) / 2
         while high - low > max(OFFSET_PRECISION, low / OFFSET_STEPS**2):
             offsets = [low + (high - low) * step / OFFSET_STEPS for step in range(OFFSET_STEPS + 1)]
-            caught = self.caught([[(0, offset, diameter)] for offset in offsets[1:-1]], {"line-tension": f"{tension:g}"})[tension]
-            first_free = caught.index(False) if False in caught else len(caught)
+            ends = self.ends([[(0, offset, diameter)] for offset in offsets[1:-1]], tension)[tension]
+            first_free = ends.index(b"none") if b"none" in ends else len(ends)
             low, high = offsets[first_free:first_free + 2]
         return (low + high) / 2 if low > 0 else 0
 
@@ -123,9 +129,10 @@ def largest_angle(gap: float, diameter: float) -> float:
     return math.degrees(math.asin(min(1.0, (gap + diameter) / (1 + diameter))))
 
 
-def predict(droplets: Droplets, array: Array) -> Iterator[tuple[float, float]]:
-    """@return line tension, and clogging length [sigma], infinite where no pair holds a droplet"""
-    caught: dict[float, float] = {}
+def predict(droplets: Droplets, array: Array) -> Iterator[tuple[float, float, float]]:
+    """@return line tension, and clogs per length on pairs and on single obstacles [1/sigma]"""
+    beside = (1 + array.mean_diameter) / 2
+    caught = dict.fromkeys(droplets.ends([[(0, beside, array.mean_diameter)]]), 0.0)
     cells = np.floor((array.separations - array.diameters) / GAP_STEP).astype(int)
     sizes = np.round(array.diameters / DIAMETER_STEP).astype(int)
     for cell, size in sorted(set(zip(cells.tolist(), sizes.tolist()))):
@@ -139,18 +146,17 @@ def predict(droplets: Droplets, array: Array) -> Iterator[tuple[float, float]]:
                 total = mean_cosine(held) * np.sum(array.separations[here])
             else:
                 total = np.sum(across[np.isin(angle_cells, np.flatnonzero(held))])
-            caught[tension] = caught.get(tension, 0) + float(total)
+            caught[tension] += float(total)
     for tension, width in sorted(caught.items()):
-        yield tension, array.area / width if width > 0 else math.inf
+        yield tension, width / array.area, 2 * droplets.half_width(array.mean_diameter, tension) * array.obstacles / array.area
 
 
-def one_in_three(array: Array) -> float:
-    """Clogging length if one gap in three stops the droplet: a pair on which a rigid disc rests, as wide as its centres are apart across the flow [sigma]."""
+def one_gap_in_three(array: Array) -> float:
+    """Clogs per length if one gap in three stops the droplet: a pair on which a rigid disc rests, as wide as its centres are apart across the flow [1/sigma]."""
     steepest = array.separations / (1 + array.diameters)  # sine of the largest angle
     angles = np.radians(array.angles)
     cosines = steepest * 2 / math.pi if array.is_isotropic else np.cos(angles) * (np.sin(angles) < steepest)
-    gaps = float(np.sum(array.separations * cosines))
-    return 3 * array.area / gaps if gaps > 0 else math.inf
+    return float(np.sum(array.separations * cosines)) / 3 / array.area
 
 
 def doubts_of(tension: float, length: float) -> list[str]:
@@ -164,7 +170,7 @@ def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]
     is_own = keys.get("obstacle-layout", "random") != "random" or "obstacles" in keys
     keys = keys if is_own else {"box": str(ARRAY_BOX)} | keys
     ways: list[Numbers] = []
-    area = 0.0
+    area, sizes = 0.0, []
     for seed in range(1, 2 if is_own else ARRAYS + 1):
         programs.run_program(clogrun, "array", *(f"{key}={value}" for key, value in keys.items()), f"seeds={seed}", "vertices=64", "max-time=1",
                              "--output", run, "--write-obstacles", circle_file)
@@ -174,8 +180,7 @@ def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]
         circle_file.unlink()
         width, length = float(row["box"]), float(row["length"] if row["length"] > 0 else row["box"] * row["boxes"])
         area += width * length
+        sizes += circles[:, 2].tolist()
         ways += pairs_of(circles, width, length)
     along, across, diameters = np.abs(np.concatenate(ways)).T
-    if along.size == 0:
-        raise UserError("no two obstacles are less than a droplet apart; no droplet clogs between them")
-    return Array(area, diameters, np.hypot(along, across), np.degrees(np.arctan2(along, across)), not is_own)
+    return Array(area, len(sizes), float(np.mean(sizes)), diameters, np.hypot(along, across), np.degrees(np.arctan2(along, across)), not is_own)

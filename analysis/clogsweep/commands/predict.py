@@ -44,9 +44,9 @@ def body() -> int:
         array = prediction.read_array(folder_of_programs / "clogrun", folder, of_array)
         droplets = prediction.Droplets(folder_of_programs / "clogsweep", folder, of_droplet)
         found = list(prediction.predict(droplets, array))
-    rule = prediction.one_in_three(array)
-    print("line_tension,clogging_length,one_gap_in_three,doubts")
-    for tension, length in found:
-        print(f"{tension:g}", *(f"{number:.4g}" if math.isfinite(number) else "" for number in (length, rule)),
-              " ".join(prediction.doubts_of(tension, length)), sep=",")
+    print("line_tension,clogging_length,squeezed,wrapped,one_gap_in_three,doubts")
+    for tension, squeezed, wrapped in found:
+        lengths = [1 / rate if rate > 0 else math.inf for rate in (squeezed + wrapped, squeezed, wrapped, prediction.one_gap_in_three(array))]
+        print(f"{tension:g}", *(f"{length:.4g}" if math.isfinite(length) else "" for length in lengths),
+              " ".join(prediction.doubts_of(tension, lengths[0])), sep=",")
     return 0
