@@ -7,6 +7,7 @@ import dataclasses
 import math
 import pathlib
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -78,7 +79,7 @@ class Droplets:
 
     def ends(self, arrays: Sequence[Circles], tension: float | None = None) -> dict[float, list[bytes]]:
         """What holds it. @param arrays  of each droplet, from FALL below its release on; @param tension  if not all of the keys
-        @return for each line tension, a word per array: wrapped, squeezed and so on, or none
+        @return for each line tension, a word per array: wrapped, squeezed and so on, empty if it passed
         """
         files = [self.folder / f"{index}.csv" for index in range(len(arrays))]
         for file, circles in zip(files, arrays):
@@ -94,14 +95,14 @@ class Droplets:
         found: dict[float, list[bytes]] = {}
         for row in rows:
             index = int(pathlib.Path(names[stored.text(row["obstacles"])]).stem)
-            found.setdefault(float(row["line_tension"]), [b"none"] * len(arrays))[index] = row["mechanism"]
+            found.setdefault(float(row["line_tension"]), [b""] * len(arrays))[index] = row["mechanism"] if row["status"] == b"clogged" else b""
         return found
 
     def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
-        """Which pairs stop one that falls onto their middle, other than by one obstacle as it wraps. @param angles  of the pairs [degrees]"""
+        """Which pairs stop one that falls onto their middle, not one of them alone. @param angles  of the pairs [degrees]"""
         halves = [[(gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos)] for angle in angles]
         ends = self.ends([[(0, -y, diameter), (2 * x, y, diameter)] for x, y in halves])
-        return {tension: [end not in (b"none", b"wrapped") for end in words] for tension, words in ends.items()}
+        return {tension: [end in (b"squeezed", b"hybrid") for end in words] for tension, words in ends.items()}
 
     def half_width(self, diameter: float, tension: float) -> float:
         """Largest offset from the centre of one obstacle at which it holds the droplet [sigma], 0 if below OFFSET_PRECISION."""
@@ -109,7 +110,7 @@ class Droplets:
         while high - low > max(OFFSET_PRECISION, low / OFFSET_STEPS**2):
             offsets = [low + (high - low) * step / OFFSET_STEPS for step in range(OFFSET_STEPS + 1)]
             ends = self.ends([[(0, offset, diameter)] for offset in offsets[1:-1]], tension)[tension]
-            first_free = ends.index(b"none") if b"none" in ends else len(ends)
+            first_free = ends.index(b"") if b"" in ends else len(ends)
             low, high = offsets[first_free:first_free + 2]
         return (low + high) / 2 if low > 0 else 0
 
@@ -129,8 +130,20 @@ def largest_angle(gap: float, diameter: float) -> float:
     return math.degrees(math.asin(min(1.0, (gap + diameter) / (1 + diameter))))
 
 
-def predict(droplets: Droplets, array: Array) -> Iterator[tuple[float, float, float]]:
-    """@return line tension, and clogs per length on pairs and on single obstacles [1/sigma]"""
+class Prediction(NamedTuple):
+    """Clogging lengths, infinite where nothing holds the droplet [sigma]."""
+
+    tension: float
+    length: float
+    squeezed: float  # by pairs alone
+    wrapped: float  # by single obstacles alone
+
+
+def length_of(rate: float) -> float:
+    return 1 / rate if rate > 0 else math.inf
+
+
+def predict(droplets: Droplets, array: Array) -> Iterator[Prediction]:
     beside = (1 + array.mean_diameter) / 2
     caught = dict.fromkeys(droplets.ends([[(0, beside, array.mean_diameter)]]), 0.0)
     cells = np.floor((array.separations - array.diameters) / GAP_STEP).astype(int)
@@ -148,15 +161,16 @@ def predict(droplets: Droplets, array: Array) -> Iterator[tuple[float, float, fl
                 total = np.sum(across[np.isin(angle_cells, np.flatnonzero(held))])
             caught[tension] += float(total)
     for tension, width in sorted(caught.items()):
-        yield tension, width / array.area, 2 * droplets.half_width(array.mean_diameter, tension) * array.obstacles / array.area
+        rates = width / array.area, 2 * droplets.half_width(array.mean_diameter, tension) * array.obstacles / array.area
+        yield Prediction(tension, length_of(sum(rates)), *map(length_of, rates))
 
 
 def one_gap_in_three(array: Array) -> float:
-    """Clogs per length if one gap in three stops the droplet: a pair on which a rigid disc rests, as wide as its centres are apart across the flow [1/sigma]."""
+    """Clogging length if one gap in three stops the droplet: a pair on which a rigid disc rests, as wide as its centres are apart across the flow [sigma]."""
     steepest = array.separations / (1 + array.diameters)  # sine of the largest angle
     angles = np.radians(array.angles)
     cosines = steepest * 2 / math.pi if array.is_isotropic else np.cos(angles) * (np.sin(angles) < steepest)
-    return float(np.sum(array.separations * cosines)) / 3 / array.area
+    return length_of(float(np.sum(array.separations * cosines)) / 3 / array.area)
 
 
 def doubts_of(tension: float, length: float) -> list[str]:
