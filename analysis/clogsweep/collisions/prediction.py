@@ -165,14 +165,6 @@ def predict(droplets: Droplets, array: Array) -> Iterator[Prediction]:
         yield Prediction(tension, length_of(sum(rates)), *map(length_of, rates))
 
 
-def one_gap_in_three(array: Array) -> float:
-    """Clogging length if one gap in three stops the droplet: a pair on which a rigid disc rests, as wide as its centres are apart across the flow [sigma]."""
-    steepest = array.separations / (1 + array.diameters)  # sine of the largest angle
-    angles = np.radians(array.angles)
-    cosines = steepest * 2 / math.pi if array.is_isotropic else np.cos(angles) * (np.sin(angles) < steepest)
-    return length_of(float(np.sum(array.separations * cosines)) / 3 / array.area)
-
-
 def doubts_of(tension: float, length: float) -> list[str]:
     """Why a predicted length may be wrong by more than a tenth; words of docs/explanation/predicted.md."""
     return [word for word, holds in (("soft", tension < SOFTEST), ("crowded", length < SMALLEST_LENGTH)) if holds]

@@ -53,10 +53,9 @@ def body() -> int:
         array = prediction.read_array(folder_of_programs / "clogrun", folder, of_array)
         droplets = prediction.Droplets(folder_of_programs / "clogsweep", folder, of_droplet)
         found = list(prediction.predict(droplets, array))
-    print("line_tension,clogging_length,squeezed,wrapped,one_gap_in_three,doubts")
+    print("line_tension,clogging_length,squeezed,wrapped,doubts")
     for one in found:
-        lengths = (*one[1:], prediction.one_gap_in_three(array))
-        print(f"{one.tension:g}", *(f"{length:.4g}" if math.isfinite(length) else "" for length in lengths),
+        print(f"{one.tension:g}", *(f"{length:.4g}" if math.isfinite(length) else "" for length in one[1:]),
               " ".join(prediction.doubts_of(one.tension, one.length)), sep=",")
     if arguments.output:
         fit = fits.told(folder_of_programs / "clogfit", arguments.measured) if arguments.measured else {"groups": [], "confidence": 0.95}
