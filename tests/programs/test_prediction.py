@@ -19,15 +19,14 @@ SLACK = 1e-9
 
 class Geometry(unittest.TestCase):
     def test_pairs_are_found_across_the_borders_and_once(self):
-        circles = np.array([[0.1, 0.1], [9.6, 4.8], [5, 2.5], [5, 3.4]])
-        ways = np.concatenate(list(prediction.pairs_of(circles, width=5, length=10, nearest=1.3)))
-        np.testing.assert_allclose(sorted(map(tuple, np.abs(ways))), [(0, 0.9), (0.5, 0.3)], atol=SLACK)
+        circles = np.array([[0.1, 0.1, 0.3], [9.6, 4.8, 0.3], [5, 2.5, 0.3], [5, 3.9, 0.6]])
+        ways = np.concatenate(list(prediction.pairs_of(circles, width=5, length=10)))
+        np.testing.assert_allclose(sorted(map(tuple, np.abs(ways))), [(0, 1.4, 0.45), (0.5, 0.3, 0.3)], atol=SLACK)
 
     def test_a_pair_of_all_directions_is_as_wide_as_its_mean_projection(self):
         held = [True] * round(90 / prediction.ANGLE_STEP)
-        _, mean = prediction.capture_widths(0.4, 0.3, held)
-        self.assertAlmostEqual(mean, 0.7 * 2 / math.pi, delta=SLACK)
-        self.assertEqual(prediction.capture_widths(0.4, 0.3, [False] * 5)[1], 0)
+        self.assertAlmostEqual(prediction.mean_cosine(held), 2 / math.pi, delta=SLACK)
+        self.assertEqual(prediction.mean_cosine([False] * 5), 0)
 
     def test_a_rigid_disc_rests_on_two_obstacles_up_to_the_angle_at_which_it_stands_over_the_lower(self):
         for gap, diameter in [(0.2, 0.3), (0.7, 0.3), (0.5, 0.9)]:
@@ -39,6 +38,14 @@ class Geometry(unittest.TestCase):
             self.assertAlmostEqual(disc[0], lower[0], delta=SLACK)
             self.assertAlmostEqual(math.hypot(*(disc - lower)), reach, delta=SLACK)
         self.assertEqual(prediction.largest_angle(1, 0.3), 90)
+
+    def test_the_width_within_which_one_obstacle_holds_a_droplet_is_found(self):
+        droplets = prediction.Droplets(BIN / "clogsweep", pathlib.Path("."), {})
+        for edge in (0, 0.0007, 0.0569, 0.3):
+            def ends(arrays, tension, edge=edge):
+                return {tension: [b"wrapped" if offset <= edge else b"" for (_, offset, _), in arrays]}
+            with mock.patch.object(droplets, "ends", ends):
+                self.assertAlmostEqual(droplets.half_width(0.3, 0.1), edge, delta=max(prediction.OFFSET_PRECISION, edge / 36))
 
     def test_lengths_that_may_be_wrong_are_doubted(self):
         self.assertEqual(prediction.doubts_of(1.09, 25), [])
@@ -56,7 +63,7 @@ class Predicted(Analysis):
 
     def predict(self, *words):
         head, *lines = self.draw("predict", "--programs", BIN, "vertices=64", *words).stdout.splitlines()
-        self.assertEqual(head, "line_tension,clogging_length,doubts")
+        self.assertEqual(head, "line_tension,clogging_length,squeezed,wrapped,doubts")
         return [line.split(",") for line in lines]
 
     def test_a_droplet_is_stopped_between_the_middles_of_two_obstacles_and_nowhere_else(self):
@@ -72,33 +79,46 @@ class Predicted(Analysis):
         self.assertEqual(ends, dict(zip(files, offsets.values())))
 
     def test_a_pair_across_the_flow_catches_on_its_whole_width(self):
-        self.pair("pair.csv", 0)
-        (tension, length, doubts), = self.predict("obstacles=pair.csv", "box=20", "line-tension=3")
-        self.assertEqual((tension, doubts), ("3", ""))
-        self.assertAlmostEqual(float(length), 20 * 20 / 0.8, delta=0.1)
+        for diameters, apart in [((0.3, 0.3), 0.8), ((0.3, 0.5), 0.9)]:
+            self.write("pair.csv", "x,y,diameter\n" + "".join(f"13,{10 + side * apart / 2},{diameter}\n" for side, diameter in zip((-1, 1), diameters)))
+            (tension, length, squeezed, wrapped, doubts), = self.predict("obstacles=pair.csv", "box=20", "line-tension=3")
+            self.assertEqual((tension, length, wrapped, doubts), ("3", squeezed, "", ""))
+            self.assertAlmostEqual(float(length), 20 * 20 / apart, delta=0.1)
+
+    def test_a_soft_droplet_hangs_on_one_obstacle(self):
+        self.write("post.csv", "x,y,diameter\n13,10,0.3\n")
+        soft = ("preset=elastic", "friction=0.3", "vertices=64", "inertia=4", "line-tension=0.1")
+        (_, length, squeezed, wrapped, _), = self.predict("obstacles=post.csv", "box=20", *soft)
+        self.assertEqual((length, squeezed), (wrapped, ""))
+        half_width = 20 * 20 / float(wrapped) / 2
+        files = [f"{sign}.csv" for sign in (-1, 1)]
+        for sign, file in zip((-1, 1), files):
+            self.write(file, f"x,y,diameter\n47,{10 - half_width * (1 + 0.05 * sign)},0.3\n")
+        self.succeed("clogsweep", "obstacles=" + ",".join(files), "box=20", "boxes=4", *soft, "max-time=2000", "--output", "p.h5")
+        rows = table(self.folder / "p.h5")
+        self.assertEqual(sorted(rows.status), ["clogged", "flowing"])
 
     def test_a_tilted_pair_catches_on_its_projection(self):
         self.pair("pair.csv", 20)
         soft, stiff = self.predict("obstacles=pair.csv", "box=20", "line-tension=0.1,3")
-        self.assertEqual(soft, ["0.1", "", "soft"])
+        self.assertEqual(soft, ["0.1", "", "", "", "soft"])
         self.assertAlmostEqual(float(stiff[1]), 20 * 20 / 0.8 / math.cos(math.radians(20)), delta=0.1)
 
     def test_an_allocation_of_several_tasks_is_no_hindrance(self):
         self.pair("pair.csv", 80)
         with mock.patch.dict(os.environ, {"SLURM_NTASKS": "8"}):
-            self.assertEqual(self.predict("obstacles=pair.csv", "box=20", "line-tension=3"), [["3", "", ""]])
+            self.assertEqual(self.predict("obstacles=pair.csv", "box=20", "line-tension=3"), [["3", "", "", "", ""]])
             thrown = collision.Collisions(BIN / "clogsweep", self.folder, {"vertices": "64"})
             self.assertEqual(thrown.break_up(0.3, [0.5]), [False])
 
     def test_a_pair_along_the_flow_catches_nothing(self):
         self.pair("pair.csv", 80)
-        self.assertEqual(self.predict("obstacles=pair.csv", "box=20", "line-tension=3"), [["3", "", ""]])
+        self.assertEqual(self.predict("obstacles=pair.csv", "box=20", "line-tension=3"), [["3", "", "", "", ""]])
 
     def test_what_it_cannot_use_is_refused(self):
-        self.write("two.csv", "x,y,diameter\n5,5,0.3\n5,5.8,0.4\n")
-        self.write("far.csv", "x,y,diameter\n5,5,0.3\n")
-        for words, said in [(["seeds=1..5"], "seeds"), (["obstacle-gap=0.2,0.3"], "one value"), (["obstacles=two.csv", "box=10"], "differ in diameter"),
-                            (["terminal-speed=x"], "terminal-speed"), (["obstacles=far.csv", "box=10"], "no two obstacles"), (["frobnicate=1", "obstacles=two.csv"], "")]:
+        self.write("two.csv", "x,y,diameter\n5,5,0.3\n5,5.8,0.3\n")
+        for words, said in [(["seeds=1..5"], "seeds"), (["obstacle-gap=0.2,0.3"], "one value"), (["release=anywhere"], "release"),
+                            (["terminal-speed=x"], "terminal-speed"), (["frobnicate=1", "obstacles=two.csv"], "")]:
             self.refuse_analysis("predict", "--programs", BIN, *words, words=[said])
         self.assertEqual(sorted(path.name for path in pathlib.Path(self.folder).glob("*.h5")), [])
 

@@ -1,4 +1,4 @@
-"""Clogging lengths from pairs of obstacles: which pairs hold a droplet, and how many of them an array has.
+"""Clogging lengths from droplets that fall onto one or two obstacles: which of these hold it, and how many of them an array has.
 
 docs/explanation/predicted.md has the law and where it holds.
 """
@@ -7,6 +7,7 @@ import dataclasses
 import math
 import pathlib
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,43 +18,54 @@ from .collision import BOX, FALL
 
 GAP_STEP = 0.04  # of pairs that are tried [sigma]: a twentieth of the range in which they can hold a droplet
 ANGLE_STEP = 3  # [degrees]
+DIAMETER_STEP = 0.1  # of the mean diameter of a pair [sigma]
+EXIT = 6  # behind the obstacles: farther than droplets hang [sigma]
+LONGEST_FALL = 90  # at terminal speed, before a droplet that creeps on an obstacle counts as free [sigma]
+OFFSET_PRECISION, OFFSET_STEPS = 0.0001, 6  # of the half-width within which one obstacle holds a droplet [sigma]; of a search
 SPEED = 0.03  # terminal speed by default [sqrt(sigma g)]
 SMALLEST_LENGTH = 4  # [sigma]: shorter ones were too long by a third and more
 SOFTEST = 1  # line tension: at 0.5 up to 42 % of all clogs hang on three obstacles, at 0.3 85 % (docs/explanation/predicted.md)
 ARRAYS, ARRAY_BOX = 4, 60  # of random arrays, pairs of so many are counted
 
 # The keys of the array. All other keys belong to the droplet; `obstacle-diameter` belongs to both.
-OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacles", "lattice-angle", "box", "boxes")
-REFUSED = {"seeds": "arrays and pairs have seeds of their own here", "max-time": "nothing runs in the array", "release": "nothing runs in the array",
-           "obstacle-diameter-spread": "pairs are of obstacles alike"}
+OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacles", "lattice", "pitch", "lattice-angle", "box",
+             "boxes", "length")
+REFUSED = {"seeds": "arrays and pairs have seeds of their own here", "max-time": "nothing runs in the array", "release": "nothing runs in the array"}
+
+
+Circles = Sequence[tuple[float, float, float]]  # x along the flow, y across it, diameter [sigma]
 
 
 @dataclasses.dataclass(frozen=True)
 class Array:
-    """Neighbours in an array: pairs of obstacles that a free droplet does not fit through."""
+    """Obstacles of an array, and its neighbours: pairs of obstacles that a free droplet does not fit through."""
 
-    diameter: float  # of all obstacles [sigma]
-    area: float  # of the array [sigma^2]
+    area: float  # [sigma^2]
+    obstacles: int
+    mean_diameter: float  # of the obstacles [sigma]
+    diameters: Numbers  # mean of the two obstacles, of each pair [sigma]
     separations: Numbers  # of the centres, of each pair [sigma]
     angles: Numbers  # between their line and the horizontal, which is across the flow, 0 to 90 [degrees]
     is_isotropic: bool  # of no direction, as random arrays are
 
 
-def pairs_of(circles: Numbers, width: float, length: float, nearest: float) -> Iterator[Numbers]:
-    """Ways from each obstacle to those behind it in the list that are less than `nearest` away, in an array that repeats.
+def pairs_of(circles: Numbers, width: float, length: float) -> Iterator[Numbers]:
+    """Pairs of each obstacle and those behind it in the list that a droplet does not fit through freely, in an array that repeats.
 
-    @param circles  n x 2, x and y [sigma]; @param width  period across the flow, y; @param length  along it, x
-    @return arrays of m x 2
+    @param circles  n x 3, x, y and diameter [sigma]; @param width  period across the flow, y; @param length  along it, x
+    @return arrays of m x 3: way from the first to the second, mean diameter
     """
     period = np.array([length, width])
     for index, circle in enumerate(circles):
-        ways = circles[index + 1:] - circle
+        ways = circles[index + 1:, :2] - circle[:2]
         ways -= period * np.round(ways / period)
-        yield ways[np.hypot(ways[:, 0], ways[:, 1]) < nearest]
+        diameters = (circles[index + 1:, 2] + circle[2]) / 2
+        near = np.hypot(ways[:, 0], ways[:, 1]) < 1 + diameters
+        yield np.column_stack([ways, diameters])[near]
 
 
-class Pairs:
-    """Droplets that fall onto the middle of two obstacles."""
+class Droplets:
+    """Droplets that fall onto one or two obstacles."""
 
     def __init__(self, clogsweep: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> None:
         """@param keys  of clogsweep, those of the droplet"""
@@ -62,39 +74,55 @@ class Pairs:
             speed = float(keys.get("terminal-speed", SPEED))
         except ValueError:
             raise UserError(f"invalid terminal-speed={keys['terminal-speed']} (must be a number); try {SPEED}") from None
-        self.keys = {"max-time": f"{4 * FALL / speed:g}"} | keys  # four times the way of a free droplet to the pair
+        # Soft droplets creep on an obstacle; those that pass end at the exit.
+        self.keys = {"max-time": f"{LONGEST_FALL / speed:g}", "exit": f"{BOX / 2 + FALL + EXIT:g}"} | keys
 
-    def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
-        """Which pairs hold it. @param angles  of the pairs [degrees]. @return for each line tension, an entry per angle"""
-        files = [self.folder / f"{index}.csv" for index in range(len(angles))]
-        for file, angle in zip(files, angles):
-            half_x, half_y = ((gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos))
-            x, y = BOX / 2 + FALL + half_x, BOX / 2
-            file.write_text(f"x,y,diameter\n{x - half_x},{y - half_y},{diameter}\n{x + half_x},{y + half_y},{diameter}\n", encoding="utf-8")
-        sweep = self.folder / "pairs.h5"
+    def ends(self, arrays: Sequence[Circles], tension: float | None = None) -> dict[float, list[bytes]]:
+        """What holds it. @param arrays  of each droplet, from FALL below its release on; @param tension  if not all of the keys
+        @return for each line tension, a word per array: wrapped, squeezed and so on, empty if it passed
+        """
+        files = [self.folder / f"{index}.csv" for index in range(len(arrays))]
+        for file, circles in zip(files, arrays):
+            lines = [f"{BOX / 2 + FALL + x},{BOX / 2 + y},{diameter}\n" for x, y, diameter in circles]
+            file.write_text("x,y,diameter\n" + "".join(lines), encoding="utf-8")
+        sweep = self.folder / "caught.h5"
+        keys = self.keys if tension is None else self.keys | {"line-tension": str(tension)}
         programs.run_program(self.clogsweep, "obstacles=" + ",".join(map(str, files)), f"box={BOX}", "seeds=1",
-                             *(f"{key}={value}" for key, value in self.keys.items()), "--output", sweep, "--quiet")
+                             *(f"{key}={value}" for key, value in keys.items()), "--output", sweep, "--quiet")
         with stored.opened(sweep) as stored_sweep:
             rows, names = stored_sweep["runs"][:], stored.circle_files(stored_sweep)
         sweep.unlink()
-        found: dict[float, list[bool]] = {}
+        found: dict[float, list[bytes]] = {}
         for row in rows:
             index = int(pathlib.Path(names[stored.text(row["obstacles"])]).stem)
-            found.setdefault(float(row["line_tension"]), [False] * len(angles))[index] = row["status"] == b"clogged"
+            found.setdefault(float(row["line_tension"]), [b""] * len(arrays))[index] = row["mechanism"] if row["status"] == b"clogged" else b""
         return found
 
+    def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
+        """Which pairs stop one that falls onto their middle, not one of them alone. @param angles  of the pairs [degrees]"""
+        halves = [[(gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos)] for angle in angles]
+        ends = self.ends([[(0, -y, diameter), (2 * x, y, diameter)] for x, y in halves])
+        return {tension: [end in (b"squeezed", b"hybrid") for end in words] for tension, words in ends.items()}
 
-def capture_widths(gap: float, diameter: float, held: Sequence[bool]) -> tuple[Numbers, float]:
-    """The width across the flow within which a pair stops a droplet [sigma].
+    def half_width(self, diameter: float, tension: float) -> float:
+        """Largest offset from the centre of one obstacle at which it holds the droplet [sigma], 0 if below OFFSET_PRECISION."""
+        low, high = 0.0, (1 + diameter) / 2
+        while high - low > max(OFFSET_PRECISION, low / OFFSET_STEPS**2):
+            offsets = [low + (high - low) * step / OFFSET_STEPS for step in range(OFFSET_STEPS + 1)]
+            ends = self.ends([[(0, offset, diameter)] for offset in offsets[1:-1]], tension)[tension]
+            first_free = ends.index(b"") if b"" in ends else len(ends)
+            low, high = offsets[first_free:first_free + 2]
+        return (low + high) / 2 if low > 0 else 0
 
-    It is what both centres are apart across the flow, if the pair holds it, and otherwise nothing: a droplet that
-    arrives beside it slides off outwards.
+
+def mean_cosine(held: Sequence[bool]) -> float:
+    """Mean of cos(angle) over all directions, 0 where a pair does not hold the droplet.
+
+    A pair that holds it catches what arrives between its centres; a droplet that arrives beside them slides off outwards.
     @param held  for angles in the middles of steps of ANGLE_STEP
-    @return one for each of those angles, over the cosine of the pair's own; and the mean of all directions
     """
     edges = np.radians(ANGLE_STEP * np.arange(len(held) + 1))
-    apart = (gap + diameter) * np.array(held, dtype=float)
-    return apart, float(np.sum(apart * np.diff(np.sin(edges))) / (math.pi / 2))
+    return float(np.sum(np.diff(np.sin(edges))[np.array(held, dtype=bool)]) / (math.pi / 2))
 
 
 def largest_angle(gap: float, diameter: float) -> float:
@@ -102,26 +130,39 @@ def largest_angle(gap: float, diameter: float) -> float:
     return math.degrees(math.asin(min(1.0, (gap + diameter) / (1 + diameter))))
 
 
-def predict(pairs: Pairs, array: Array) -> Iterator[tuple[float, float]]:
-    """@return line tension, and clogging length [sigma], infinite where no pair holds a droplet"""
-    caught: dict[float, float] = {}
-    gaps = array.separations - array.diameter
-    cells = np.floor(gaps / GAP_STEP).astype(int)
-    for cell in np.unique(cells):
-        gap = GAP_STEP * (cell + 0.5)
-        num_angles = math.ceil(largest_angle(min(1, gap + GAP_STEP / 2), array.diameter) / ANGLE_STEP)
-        here = cells == cell
+class Prediction(NamedTuple):
+    """Clogging lengths, infinite where nothing holds the droplet [sigma]."""
+
+    tension: float
+    length: float
+    squeezed: float  # by pairs alone
+    wrapped: float  # by single obstacles alone
+
+
+def length_of(rate: float) -> float:
+    return 1 / rate if rate > 0 else math.inf
+
+
+def predict(droplets: Droplets, array: Array) -> Iterator[Prediction]:
+    beside = (1 + array.mean_diameter) / 2
+    caught = dict.fromkeys(droplets.ends([[(0, beside, array.mean_diameter)]]), 0.0)
+    cells = np.floor((array.separations - array.diameters) / GAP_STEP).astype(int)
+    sizes = np.round(array.diameters / DIAMETER_STEP).astype(int)
+    for cell, size in sorted(set(zip(cells.tolist(), sizes.tolist()))):
+        here = (cells == cell) & (sizes == size)
+        gap, diameter = GAP_STEP * (cell + 0.5), float(np.mean(array.diameters[here]))
+        num_angles = math.ceil(largest_angle(min(1, gap + GAP_STEP / 2), diameter) / ANGLE_STEP)
         angle_cells = np.floor(array.angles[here] / ANGLE_STEP).astype(int)
-        can_hold = angle_cells < num_angles
-        for tension, held in pairs.held(gap, array.diameter, [ANGLE_STEP * (index + 0.5) for index in range(num_angles)]).items():
-            widths, mean_width = capture_widths(gap, array.diameter, held)
+        across = array.separations[here] * np.cos(np.radians(array.angles[here]))
+        for tension, held in droplets.held(gap, diameter, [ANGLE_STEP * (index + 0.5) for index in range(num_angles)]).items():
             if array.is_isotropic:
-                total = mean_width * np.count_nonzero(here)
+                total = mean_cosine(held) * np.sum(array.separations[here])
             else:
-                total = np.sum(widths[angle_cells[can_hold]] * np.cos(np.radians(array.angles[here][can_hold])))
-            caught[tension] = caught.get(tension, 0) + float(total)
+                total = np.sum(across[np.isin(angle_cells, np.flatnonzero(held))])
+            caught[tension] += float(total)
     for tension, width in sorted(caught.items()):
-        yield tension, array.area / width if width > 0 else math.inf
+        rates = width / array.area, 2 * droplets.half_width(array.mean_diameter, tension) * array.obstacles / array.area
+        yield Prediction(tension, length_of(sum(rates)), *map(length_of, rates))
 
 
 def doubts_of(tension: float, length: float) -> list[str]:
@@ -135,7 +176,7 @@ def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]
     is_own = keys.get("obstacle-layout", "random") != "random" or "obstacles" in keys
     keys = keys if is_own else {"box": str(ARRAY_BOX)} | keys
     ways: list[Numbers] = []
-    area = 0.0
+    area, sizes = 0.0, []
     for seed in range(1, 2 if is_own else ARRAYS + 1):
         programs.run_program(clogrun, "array", *(f"{key}={value}" for key, value in keys.items()), f"seeds={seed}", "vertices=64", "max-time=1",
                              "--output", run, "--write-obstacles", circle_file)
@@ -143,13 +184,9 @@ def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]
         run.unlink()
         circles = np.loadtxt(circle_file, delimiter=",", skiprows=1, ndmin=2, encoding="utf-8")
         circle_file.unlink()
-        diameter = float(circles[0, 2])
-        if not np.allclose(circles[:, 2], diameter):
-            raise UserError("obstacles differ in diameter; a length can be predicted of obstacles alike only")
-        width, length = float(row["box"]), float(row["box"] * row["boxes"])
+        width, length = float(row["box"]), float(row["length"] if row["length"] > 0 else row["box"] * row["boxes"])
         area += width * length
-        ways += pairs_of(circles[:, :2], width, length, 1 + diameter)
-    along, across = np.abs(np.concatenate(ways)).T
-    if along.size == 0:
-        raise UserError("no two obstacles are less than a droplet apart; no droplet clogs between them")
-    return Array(diameter, area, np.hypot(along, across), np.degrees(np.arctan2(along, across)), not is_own)
+        sizes += circles[:, 2].tolist()
+        ways += pairs_of(circles, width, length)
+    along, across, diameters = np.abs(np.concatenate(ways)).T
+    return Array(area, len(sizes), float(np.mean(sizes)), diameters, np.hypot(along, across), np.degrees(np.arctan2(along, across)), not is_own)

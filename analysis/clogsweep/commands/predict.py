@@ -1,12 +1,14 @@
-"""Predicts the clogging length of stiff droplets in an array in which none has run, from droplets that fall onto two obstacles.
+"""Predicts clogging lengths in an array in which no droplet has run, from droplets that fall onto one or two obstacles.
 
     python3 -m clogsweep predict obstacle-gap=0.3 obstacle-density=0.3 line-tension=1,3
     python3 -m clogsweep predict obstacles=posts.csv box=20 line-tension=2
+    python3 -m clogsweep predict preset=elastic friction=0.05 line-tension=0.05,0.07,0.1,0.5,1,3 --output curve --with sweep.h5
 
-KEY=VALUE are keys of clogsweep. Pairs of obstacles of all gaps and directions are tried, one droplet each, some ten
-seconds for a line tension; then the pairs of the array that hold a droplet are counted. Prints the clogging length as
-CSV, with the reasons to doubt it: soft (line tension below 1: many droplets hang on three obstacles and more; up to a
-fifth off at 0.5, ten times too long at 0.3), crowded (below 4 sigma: too long, other obstacles come between). docs/explanation/predicted.md says how far it holds.
+KEY=VALUE are keys of clogsweep. Pairs of obstacles of all gaps and directions are tried, one droplet each, and the
+offset at which one obstacle no longer holds a wrapped droplet is searched, half a minute for a stiff line tension; then
+the obstacles and pairs of the array are counted. Prints lengths as CSV, with the reasons to doubt them: soft (line
+tension below 1: clogs on three obstacles and more are not predicted), crowded (below 4 sigma: too long, other obstacles
+come between). docs/explanation/predicted.md says how far it holds.
 """
 
 import argparse
@@ -14,8 +16,11 @@ import math
 import pathlib
 import tempfile
 
+from .. import style
 from ..collisions import prediction
-from ..reading import programs
+from ..drawing import predicted
+from ..reading import fits, programs
+from ..tools import outputs
 from ..tools.errors import UserError
 from . import command_line
 
@@ -23,6 +28,8 @@ from . import command_line
 def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
     parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep, line-tension with a list if you like")
+    command_line.add_output(parser, "name of a picture; .png and .pdf are made", ".png", ".pdf")
+    parser.add_argument("--with", dest="measured", metavar="SWEEP", type=pathlib.Path, help="file of clogsweep --output, whose lengths are drawn, too")
     programs.add_option(parser)
     return parser.parse_args()
 
@@ -36,15 +43,21 @@ def body() -> int:
     for key, value in keys.items():
         if key not in ("line-tension", "obstacles") and ("," in value or ".." in value or "(" in value):
             raise UserError(f"invalid {key}={value} (only line-tension takes a list here); give one value")
+    if arguments.output:
+        outputs.refuse_unwritable_picture(arguments.output)
     folder_of_programs = programs.programs_in(arguments.programs)
     of_array = {key: keys[key] for key in (*prediction.OF_ARRAYS, "obstacle-diameter") if key in keys}
     of_droplet = {key: value for key, value in keys.items() if key not in of_array}
     with tempfile.TemporaryDirectory(prefix="clogsweep-predict-") as name:
         folder = pathlib.Path(name)
         array = prediction.read_array(folder_of_programs / "clogrun", folder, of_array)
-        pairs = prediction.Pairs(folder_of_programs / "clogsweep", folder, of_droplet)
-        found = list(prediction.predict(pairs, array))
-    print("line_tension,clogging_length,doubts")
-    for tension, length in found:
-        print(f"{tension:g}", f"{length:.4g}" if math.isfinite(length) else "", " ".join(prediction.doubts_of(tension, length)), sep=",")
+        droplets = prediction.Droplets(folder_of_programs / "clogsweep", folder, of_droplet)
+        found = list(prediction.predict(droplets, array))
+    print("line_tension,clogging_length,squeezed,wrapped,doubts")
+    for one in found:
+        print(f"{one.tension:g}", *(f"{length:.4g}" if math.isfinite(length) else "" for length in one[1:]),
+              " ".join(prediction.doubts_of(one.tension, one.length)), sep=",")
+    if arguments.output:
+        fit = fits.told(folder_of_programs / "clogfit", arguments.measured) if arguments.measured else {"groups": [], "confidence": 0.95}
+        style.Picture(predicted.draw(found, fit["groups"], fit["confidence"])).save(arguments.output)
     return 0

@@ -1,0 +1,29 @@
+"""Predicted clogging lengths against line tension: of pairs of obstacles, of single ones, and of both; measured ones beside them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from .. import style
+from ..collisions.prediction import Prediction
+from ..labels import AXES
+from ..tools.hints import Group
+from .lengths import draw_lengths, length_notes
+
+
+def draw(found: Sequence[Prediction], measured: Sequence[Group], confidence: float) -> Figure:
+    """@param measured  groups of a sweep, of the same array"""
+    figure, axes = style.subplots(figsize=(6.8, 5.0))
+    tensions = [one.tension for one in found]
+    for label, name, line in (("both", "length", "-"), ("squeezed, by two obstacles", "squeezed", "--"), ("wrapped, by one obstacle", "wrapped", ":")):
+        lengths = np.array([getattr(one, name) for one in found])
+        axes.plot(tensions, np.where(np.isfinite(lengths), lengths, np.nan), line, marker=".", color=style.COLOURS[0 if line == "-" else 1],
+                  label=f"predicted: {label}", zorder=2 if line == "-" else 3)
+    style.logarithmic_abscissa(axes, tensions)
+    if measured:
+        draw_lengths(axes, [group["line_tension"] for group in measured], measured, 2, "measured", linestyle="none")
+    style.logarithmic_ordinate(axes)
+    axes.set_xlabel(AXES["line_tension"])
+    style.finish(axes, AXES["length"], "", length_notes(measured, confidence, [axes]) if measured else [], measured)
+    return figure
