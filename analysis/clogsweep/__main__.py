@@ -9,6 +9,7 @@ import sys
 
 from .commands import command_line
 from .tools.errors import UserError
+from .tools.texts import did_you_mean
 
 COMMANDS = {
     "figures": "a figure of the article from runs of our own",
@@ -52,7 +53,7 @@ def choose() -> int:
         print(usage())
         return 0
     if command not in COMMANDS:
-        raise UserError(f"unknown command: {command}; python3 -m clogsweep --help lists them")
+        raise UserError(f"unknown command: {command}{did_you_mean(command, COMMANDS) or '; python3 -m clogsweep --help lists them'}")
     command_line.speak_as(f"python3 -m clogsweep {command}")
     sys.argv[1:] = words
     return become(command)

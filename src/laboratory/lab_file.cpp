@@ -32,11 +32,13 @@ const std::map<std::string, std::string>& known_keys() {
   return keys;
 }
 
-std::string names_of_keys() {
+[[noreturn]] void refuse_key(const std::string& key, int line) {
   std::vector<std::string> names;
   names.reserve(known_keys().size());
   for (const auto& [name, units] : known_keys()) names.push_back(name);
-  return joined(names);
+  const std::string near = sweep::did_you_mean(key, names);
+  throw Error(fmt::format("line {}: unknown key '{}'{} (known: {})", line, excerpt(key),
+                          near.empty() ? "" : "; did you mean " + near + '?', joined(names)));
 }
 
 Entries entries_of(const std::string& text) {
@@ -52,9 +54,7 @@ Entries entries_of(const std::string& text) {
       if (equals == std::string::npos)
         throw Error(fmt::format("line {}: '{}' is not key = value", number, excerpt(words)));
       const std::string key = console::trimmed(words.substr(0, equals));
-      if (!known_keys().contains(key))
-        throw Error(
-            fmt::format("line {}: unknown key '{}' (known: {})", number, excerpt(key), names_of_keys()));
+      if (!known_keys().contains(key)) refuse_key(key, number);
       if (!entries.emplace(key, console::trimmed(words.substr(equals + 1))).second)
         throw Error(fmt::format("line {}: {} stands there twice", number, key));
     }

@@ -17,6 +17,7 @@
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/results/distance_table.hpp"
 #include "clog/results/group_table.hpp"
 #include "clog/results/merger.hpp"
 #include "clog/results/stored_sweep.hpp"
@@ -114,10 +115,14 @@ int clogfit(int argc, const char* const* argv) {
   const double from_distance = line.has("from-distance") ? line.get_positive("from-distance") : 0;
   const double dwell =
       line.has("dwell") ? line.get_positive("dwell") : std::numeric_limits<double>::infinity();
-  for (const std::string& path : paths)
+  for (const std::string& path : paths) {
+    if (results::is_distance_table(path))
+      throw Error(
+          fmt::format("cannot read {0} (not a sweep); clogfit lengths {0} fits measured distances", path));
     if (path.find('=') != std::string::npos && !std::filesystem::exists(path))
       throw Error(fmt::format(
           "no place for '{}' (clogfit reads files; clogsweep select takes some rows of one)", path));
+  }
   const store::SweepFile sweep = results::read_together(paths);
   if (sweep.rows.empty()) throw Error(joined(paths) + " has no runs yet; let the sweep finish some first");
   if (line.has("dwell") && !results::has_clogging_length(sweep.rows.front()))

@@ -1,5 +1,7 @@
 #include "clogfit_lengths.hpp"
 
+#include <fmt/core.h>
+
 #include <iostream>
 #include <optional>
 #include <string>
@@ -7,6 +9,7 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/results/distance_table.hpp"
 #include "laboratory_option.hpp"
 
@@ -44,7 +47,10 @@ int clogfit_lengths(int argc, const char* const* argv) {
   if (!cli::parse_command(line, argc, argv)) return console::exit_success;
   const std::string format = line.get_word("format", {"text", "csv", "json"});
   const double confidence = line.get_share("confidence");
-  const results::DistanceTable table = results::read_distances(line.require("file"));
+  const std::string path = line.require("file");
+  if (path.ends_with(".h5"))
+    throw Error(fmt::format("cannot read {0} (a table of distances is CSV); clogfit {0} fits a sweep", path));
+  const results::DistanceTable table = results::read_distances(path);
   const std::optional<double> sigma_mm = sigma_in_mm(line, {});
   std::cout << (format == "csv"    ? results::lengths_csv(table, confidence, sigma_mm)
                 : format == "json" ? results::lengths_json(table, confidence, sigma_mm)

@@ -97,7 +97,10 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
                                      const std::vector<std::string>& words) {
   if (item.empty()) throw Error("has an empty value");
   if (std::find(words.begin(), words.end(), item) != words.end()) return {std::string(item)};
-  if (kind == ValueKind::word) refuse(item, "is not one of " + joined(words));
+  if (kind == ValueKind::word) {
+    const std::string near = did_you_mean(item, words);
+    refuse(item, "is not one of " + joined(words) + (near.empty() ? "" : "; did you mean " + near + '?'));
+  }
   if (kind == ValueKind::file || kind == ValueKind::text) return {std::string(item)};
   if (item.starts_with("lin(") || item.starts_with("log(")) return expand_spaced(item, kind);
   if (const auto dots = item.find(".."); dots != std::string_view::npos) {

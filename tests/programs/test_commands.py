@@ -17,6 +17,9 @@ class Meant(ProgramTest):
             with self.subTest(program=program, words=words):
                 self.refuse(program, *words, words=[f"unknown command '{words[0]}'; did you mean {meant}?"])
 
+    def test_a_misspelt_word_of_a_key_is_answered_with_the_one_meant(self):
+        self.refuse("clogsweep", "preset=robst", "--output", "s.h5", words=["invalid preset=robst", "elastic, literal; did you mean robust?"])
+
     def test_a_file_of_a_command_s_name_is_a_file(self):
         self.write("drug", "")
         self.refuse("clogfit", "drug", words=["cannot read drug"])

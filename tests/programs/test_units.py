@@ -170,9 +170,7 @@ class Units(ProgramTest):
         files = self.sweeps_of_two_droplets()
         self.check_two_droplets(*files)
         told = self.succeed("clogfit", *files).stdout
-        self.assertIn("diameter = 0.8 mm", told)
-        self.assertIn("diameter = 1.2 mm", told)
-        self.assertNotIn("diameter = 0.8 mm; ", told)  # the other parts are the same
+        self.assertRegex(told, r"diameter/mm .*\n *1.2 .*\n *0.8 ")
         self.succeed("clogsweep", "merge", *files, "--output", "both.h5")
         self.check_two_droplets("both.h5")
         self.succeed("clogsweep", "verify", "both.h5")
@@ -248,7 +246,8 @@ class Units(ProgramTest):
             ("diameter = 3.5\nangle = 28 deg\n", ["lab.cfg", "diameter=3.5", "has no unit"]),
             ("diameter = 3.5 mm\nangle = 128 deg\n", ["beyond 90 degrees"]),
             ("diameter = 3.5 mm\nangle = -1 deg\n", ["must be positive"]),
-            ("diameter = 3.5 mm\nangle = 28 deg\ncolour = red\n", ["line 3", "unknown key 'colour'"]),
+            ("diameter = 3.5 mm\nangle = 28 deg\ncolour = red\n", ["line 3", "unknown key 'colour' (known: "]),
+            ("diameter = 3.5 mm\nangel = 28 deg\n", ["line 2", "unknown key 'angel'; did you mean angle?"]),
             ("diameter = 3.5 mm\ndiameter = 3.6 mm\n", ["line 2", "twice"]),
             ("diameter\n", ["line 1", "not key = value"]),
             ("diameter = 3.5 mm\nangle = 28 deg\ndensity = 1 g/ml\nouter-density = 1 g/ml\n", ["nothing drives"]),

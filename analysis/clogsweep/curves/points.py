@@ -18,6 +18,7 @@ import numpy as np
 from ..reading import stored
 from ..tools.errors import UserError
 from ..tools.hints import Column, Group, Numbers, Records
+from ..tools.texts import did_you_mean
 
 FEWEST_VALUES = 4  # of the key, through which a curve is shown: two or three leave its shape to the prior
 FEWEST_CLOGGING = 3  # of these with a clog: bounds alone do not tell the shape
@@ -83,12 +84,10 @@ def find_keys(fit: Fit, names: Sequence[str] = ()) -> list[Column]:
 
 def refuse_key(name: str, fit: Fit) -> Column:
     """@throws UserError  that names the key that was probably meant"""
-    import difflib
-
     known = [column["key"] for column in fit["columns"] if "key" in column]
-    near = difflib.get_close_matches(name.replace("_", "-"), known, 1)
-    if name.replace("_", "-") not in known and near:
-        raise UserError(f"unknown key: {name}; did you mean {near[0]}?")
+    hint = did_you_mean(name.replace("_", "-"), known)
+    if name.replace("_", "-") not in known and hint:
+        raise UserError(f"unknown key: {name}{hint}")
     raise UserError(f"invalid --key={name} (is not a number of the physics that the sweep gives)")
 
 

@@ -1,5 +1,8 @@
 """Text from outside, such as names of files, attributes and words of a table: what terminals, pages and pictures show of it."""
 
+import difflib
+from collections.abc import Iterable
+
 
 def escaped(letter: str) -> str:
     """A byte that is not UTF-8 reaches Python as a lone surrogate."""
@@ -14,3 +17,9 @@ def printable(text: object, kept: str = "") -> str:
 def literal(text: object) -> str:
     """The same for matplotlib, to which text between two dollars is a formula."""
     return printable(text, "\n").replace("$", r"\$")
+
+
+def did_you_mean(word: str, names: Iterable[str]) -> str:
+    """The end of a message about a mistyped word; empty if no name is near."""
+    near = difflib.get_close_matches(word, names, 1)
+    return f"; did you mean {near[0]}?" if near else ""
