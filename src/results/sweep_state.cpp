@@ -259,7 +259,7 @@ void SweepState::begin_publication() {
   const bool has_journal = journal_.is_there();
   if (!has_journal) {
     if (!journal_.make_anew(place_)) rescue();
-    rewrite_journal(Records::all);
+    journal_.rewrite(entries());
   }
   journal_.begin();
   if (activity_)
@@ -289,7 +289,7 @@ void SweepState::end_publication() {
 
 /// Writes the table under another name, to keep the foreign file in its place.
 void SweepState::rescue() {
-  if (journal_.is_there()) rewrite_journal(Records::all);
+  if (journal_.is_there()) journal_.rewrite(entries());
   int number = 1;
   const auto rescued = [&] { return place_.beside(fmt::format(".rescued{}", number)); };
   while (!publish_to(rescued(), "", entries(), provenance_)) ++number;
@@ -299,14 +299,7 @@ void SweepState::rescue() {
       path_, rescued().path()));
 }
 
-void SweepState::rewrite_journal(Records records) {
-  std::vector<const Entry*> needed = entries();
-  if (records == Records::of_unfinished_runs)
-    std::erase_if(needed, [this](const Entry* entry) { return is_over(entry->row); });
-  journal_.rewrite(needed);
-}
-
-/// The table has the results before this place of the journal; later records stay.
+/// For when the table has the results before this place of the journal; later records stay.
 void SweepState::prepare_journal(const std::vector<const Entry*>& all, std::uint64_t place) {
   std::deque<Entry> unfinished;
   std::vector<const Entry*> needed;
@@ -325,7 +318,8 @@ std::string SweepState::finish() {
       std::ssize(all) - std::ssize(other_runs_) >= num_wanted_ &&
       std::ranges::all_of(all, [this](const Entry* entry) { return is_over(entry->row); });
   if (!is_complete) {
-    rewrite_journal(Records::of_unfinished_runs);
+    prepare_journal(all, journal_.num_bytes());
+    journal_.replace();
     return "";
   }
   const std::error_code reason = journal_.remove();

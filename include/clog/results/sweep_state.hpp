@@ -139,9 +139,6 @@ class SweepState {
   void begin_publication();
   void end_publication();
   [[noreturn]] void rescue();
-  enum class Records { of_unfinished_runs, all };
-  /// @param records  that the journal keeps: all, unless the table has every finished run
-  void rewrite_journal(Records records);
   void prepare_journal(const std::vector<const Entry*>& all, std::uint64_t place);
 };
 
