@@ -1,6 +1,6 @@
 """Clogging lengths from pairs of obstacles: which pairs hold a droplet, and how many of them an array has.
 
-docs/explanation/predicted.md has the law and where it holds.
+docs/explanation/predicted.md has the law and its limits.
 """
 
 import dataclasses
@@ -30,7 +30,7 @@ REFUSED = {"seeds": "arrays and pairs have seeds of their own here", "max-time":
 
 @dataclasses.dataclass(frozen=True)
 class Array:
-    """Neighbours in an array: pairs of obstacles that a free droplet does not fit through."""
+    """Neighbours in an array: pairs of obstacles with gaps too narrow for a free droplet."""
 
     diameter: float  # of all obstacles [sigma]
     area: float  # of the array [sigma^2]
@@ -40,7 +40,7 @@ class Array:
 
 
 def pairs_of(circles: Numbers, width: float, length: float, nearest: float) -> Iterator[Numbers]:
-    """Ways from each obstacle to those behind it in the list that are less than `nearest` away, in an array that repeats.
+    """Vectors from each obstacle to later ones in the list that are less than `nearest` away, in an array that repeats.
 
     @param circles  n x 2, x and y [sigma]; @param width  period across the flow, y; @param length  along it, x
     @return arrays of m x 2
@@ -62,10 +62,11 @@ class Pairs:
             speed = float(keys.get("terminal-speed", SPEED))
         except ValueError:
             raise UserError(f"invalid terminal-speed={keys['terminal-speed']} (must be a number); try {SPEED}") from None
-        self.keys = {"max-time": f"{4 * FALL / speed:g}"} | keys  # four times the way of a free droplet to the pair
+        self.keys = {"max-time": f"{4 * FALL / speed:g}"} | keys  # four times the duration of a free fall to the pair
 
     def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
-        """Which pairs hold it. @param angles  of the pairs [degrees]. @return for each line tension, an entry per angle"""
+        """Which pairs hold it. @param angles  of the pairs [degrees]. @return for each line tension, an entry per
+        angle"""
         files = [self.folder / f"{index}.csv" for index in range(len(angles))]
         for file, angle in zip(files, angles):
             half_x, half_y = ((gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos))
@@ -87,10 +88,9 @@ class Pairs:
 def capture_widths(gap: float, diameter: float, held: Sequence[bool]) -> tuple[Numbers, float]:
     """The width across the flow within which a pair stops a droplet [sigma].
 
-    It is what both centres are apart across the flow, if the pair holds it, and otherwise nothing: a droplet that
-    arrives beside it slides off outwards.
-    @param held  for angles in the middles of steps of ANGLE_STEP
-    @return one for each of those angles, over the cosine of the pair's own; and the mean of all directions
+    It is the distance of both centres across the flow if the pair holds the droplet, and otherwise zero, because a
+    droplet that arrives beside it slides off outwards. @param held  for angles in the middles of steps of ANGLE_STEP
+    @return one for each of those angles, divided by the cosine of the pair's own; and the mean of all directions
     """
     edges = np.radians(ANGLE_STEP * np.arange(len(held) + 1))
     apart = (gap + diameter) * np.array(held, dtype=float)
@@ -98,7 +98,8 @@ def capture_widths(gap: float, diameter: float, held: Sequence[bool]) -> tuple[N
 
 
 def largest_angle(gap: float, diameter: float) -> float:
-    """Largest angle at which a rigid disc rests on two obstacles [degrees]: its centre lies above the line between theirs."""
+    """Largest angle at which a rigid disc rests on two obstacles [degrees]: its centre is above the line between
+    theirs."""
     return math.degrees(math.asin(min(1.0, (gap + diameter) / (1 + diameter))))
 
 
@@ -125,7 +126,7 @@ def predict(pairs: Pairs, array: Array) -> Iterator[tuple[float, float]]:
 
 
 def doubts_of(tension: float, length: float) -> list[str]:
-    """Why a predicted length may be wrong by more than a tenth; words of docs/explanation/predicted.md."""
+    """Reasons why a predicted length may be wrong by more than a tenth; words of docs/explanation/predicted.md."""
     return [word for word, holds in (("soft", tension < SOFTEST), ("crowded", length < SMALLEST_LENGTH)) if holds]
 
 

@@ -1,12 +1,13 @@
-"""Predicts the clogging length of stiff droplets in an array in which none has run, from droplets that fall onto two obstacles.
+"""Predicts the clogging length of stiff droplets in an array from droplets that fall onto two obstacles.
 
     python3 -m clogsweep predict obstacle-gap=0.3 obstacle-density=0.3 line-tension=1,3
     python3 -m clogsweep predict obstacles=posts.csv box=20 line-tension=2
 
-KEY=VALUE are keys of clogsweep. Pairs of obstacles of all gaps and directions are tried, one droplet each, some ten
-seconds for a line tension; then the pairs of the array that hold a droplet are counted. Prints the clogging length as
-CSV, with the reasons to doubt it: soft (line tension below 1: many droplets hang on three obstacles and more; up to a
-fifth off at 0.5, ten times too long at 0.3), crowded (below 4 sigma: too long, other obstacles come between). docs/explanation/predicted.md says how far it holds.
+KEY=VALUE are keys of clogsweep. It tries pairs of obstacles of all gaps and directions, one droplet each, in some ten
+seconds for a line tension; then it counts the pairs of the array that hold a droplet. Prints the clogging length as
+CSV, with reasons to doubt it: soft (line tension below 1: many droplets hang on three or more obstacles; up to a fifth
+off at 0.5, ten times too long at 0.3), crowded (below 4 sigma: too long, because other obstacles are in between).
+docs/explanation/predicted.md has the limits.
 """
 
 import argparse
@@ -22,7 +23,7 @@ from . import command_line
 
 def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep, line-tension with a list if you like")
+    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep; line-tension may be a list")
     programs.add_option(parser)
     return parser.parse_args()
 

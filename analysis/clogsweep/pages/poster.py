@@ -1,4 +1,4 @@
-"""A poster of a sweep: one page with its curves, some of its droplets, and where the numbers came from."""
+"""A poster of a sweep: one page with its curves, some of its droplets, and the origin of its numbers."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
 
 
 def of_laboratory(groups: Groups) -> str:
-    """A line that says what the model's units are there; nothing without one."""
+    """A line with the model's units there; nothing without a laboratory."""
     lab = groups.laboratory
     if not lab:
         return ""
