@@ -117,7 +117,7 @@ struct Led {
   }
 };
 
-/// Stands for no exit code: the sweep starts.
+/// Returned instead of an exit code if the sweep starts.
 constexpr int go_on = -1;
 
 int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::IsolatedJobs& isolated, int argc,

@@ -34,7 +34,7 @@ Judge = Callable[..., Finding]
 class Statement:
     where: str
     text: str
-    figures: tuple[str, ...]  # whose sweeps it is judged from
+    figures: tuple[str, ...]  # figures whose sweeps judge it
     judge: Judge
     reasons: Mapping[str, str] = dataclasses.field(default_factory=dict)  # by verdict
 

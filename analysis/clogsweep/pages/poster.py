@@ -143,5 +143,5 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path, *options: object) -> Figure:
         title, words = f"{curve.heading(groups).capitalize().removesuffix(' per distance')} vs {abscissa}", {"flowing": "still going"}
         rows = of_lengths(groups.with_lengths(sweep), sweep, folder / "clogrun")
     head = f"{groups.caption()}\n{of_laboratory(groups)}{counted(stored.read_table(sweep, folder), words)}"
-    groups.tells_what_all_share = False  # the head does, panels need not
+    groups.tells_what_all_share = False  # the head has them, so panels need none
     return page(title, head, rows, literal(cut(stored.source(about))))
