@@ -19,6 +19,6 @@ class BuildWithJobs(build_py):
             shutil.copy(source, copy)
 
 
-# Builds elsewhere: nothing is left in the source tree, and no file of an earlier build gets into the package.
+# Builds elsewhere, so that nothing remains in the source tree, and no file of an earlier build gets into the package.
 with tempfile.TemporaryDirectory(prefix="clogsweep_build_") as scratch:
     setup(cmdclass={"build_py": BuildWithJobs}, options={"build": {"build_base": scratch}, "egg_info": {"egg_base": scratch}})

@@ -7,7 +7,7 @@
     sweep.fit().curve()       # draws itself in a notebook
     clogsweep.units("lab.cfg")  # what the model's units are in a laboratory
 
-Nothing is fitted or simulated here: the programs are asked.
+The programs do all fits and simulations.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from __future__ import annotations
 import importlib
 import os
 
-TYPE_CHECKING = False  # type checkers take it for true; `typing` takes longer to load than this module
+TYPE_CHECKING = False  # true for type checkers; importing `typing` takes longer than this module
 if TYPE_CHECKING:
     from typing import Any
 
@@ -37,14 +37,14 @@ _MODULES = {"Clog": "drawing.clogs", "Clogs": "drawing.clogs", "Damaged": "tools
 
 
 def __getattr__(name: str) -> Any:
-    """Loads what is named, and with it the libraries that a machine may lack, when it is asked for."""
+    """Loads a name, and the libraries that it needs, on first use."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__} has no attribute {name}")
     return getattr(_loaded(_MODULES[name]), name)
 
 
 def _loaded(module: str) -> Any:
-    """A module of this package. @throws ImportError  that says in one line what the machine lacks"""
+    """A module of this package. @throws ImportError that names in one line what the machine lacks"""
     try:
         return importlib.import_module(f".{module}", __name__)
     except ImportError as error:
@@ -60,9 +60,9 @@ def __dir__() -> list[str]:
 def open(path: str | os.PathLike[str] | list[str | os.PathLike[str]], programs: str | os.PathLike[str] | None = None) -> Sweep | Run:
     """A file of clogsweep, or of clogrun; a list of several files of clogsweep is read as one sweep, that of `clogsweep merge`.
 
-    @param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module
-    @throws UserError  if it is neither; Damaged  if anything in it is not as it was written
-    @throws ImportError  if this python3 lacks a module
+    @param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module @throws
+    UserError if it is another file; Damaged if it is not as it was written @throws ImportError if this python3 lacks a
+    module
     """
     run, stored, sweep = (_loaded(module) for module in ("results.run", "reading.stored", "results.sweep"))
     if isinstance(path, list):

@@ -1,4 +1,4 @@
-"""Pictures, films and pages of what clogsweep and clogrun wrote.
+"""Pictures, films and pages of the results of clogsweep and clogrun.
 
     python3 -m clogsweep COMMAND ...
     python3 -m clogsweep COMMAND --help

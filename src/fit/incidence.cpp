@@ -23,7 +23,7 @@ struct VarianceSums {
   double own = 0;
   double h = 0, F_h = 0;
 
-  /// @param before P before these ends @param F after them
+  /// @param before  P before these ends @param F  after them
   void add(double before, double F, const Ends& ends) {
     // If all end here, F no longer grows, and (F - F_s)^2 g stays zero.
     if (ends.all < ends.at_risk) {

@@ -50,19 +50,20 @@ confidence interval and the mean speed with its standard error.
   clogfit curve sweep.h5                       a smooth curve through the lengths, its peak, where it crosses a length
   clogfit report sweep.h5 --output page.html   curves, doubts, example clogs, table, provenance on one page
 
-Runs that did not clog count as censored at the distance they reached. Where no run clogged, lambda is a lower
-bound. Letters in the last column name what may spoil a length. The mean speed is in units of the terminal speed, its
-error comes from the scatter between runs. For lattices, lateral/r is the lateral displacement per distance travelled, the
-tangent of the migration angle, positive towards +y; along rows is its ratio to the tangent of the rows: 1 for droplets
-that follow them (bump mode), 0 for those that go straight on (zigzag). --row-angle gives these columns to other arrays. csv and json have more: intervals by profile likelihood, the
-published least squares (biased), Weibull's shape with its p-value, capillary numbers; json also P(r).
+Runs that did not clog count as censored at the distance they reached. If no run clogged, lambda is a lower bound.
+Letters in the last column are doubts about a length. The mean speed is in units of the terminal speed; its error comes
+from the scatter between runs. For lattices, lateral/r is the lateral displacement per distance travelled, the tangent
+of the migration angle, positive towards +y; along rows is its ratio to the tangent of the rows: 1 for droplets that
+follow them (bump mode), 0 for those that go straight on (zigzag). --row-angle adds these columns for other arrays. csv
+and json have more: intervals by profile likelihood, the published least squares (biased), Weibull's shape with its
+p-value, capillary numbers; json also P(r).
 
-Runs of the same seed met the same obstacles in every row with the same array, so the errors of such rows are
-correlated: overlapping intervals do not mean that they agree. clogfit compare uses this, and pairs runs by seed.
+In rows with the same array, runs of the same seed met the same obstacles, so the errors of these rows are correlated,
+and overlapping intervals do not mean that they agree. clogfit compare pairs runs by seed.
 
 An experiment calls a droplet clogged if it has not moved for a waiting time. --dwell applies this rule: a droplet that
-advanced no farther than dwell-length (0.05 sigma by default) for longer than this time counts as clogged where it first
-did so, even if it moved on.
+advanced by at most dwell-length (0.05 sigma by default) for longer than this time counts as clogged where it first did
+so, even if it moved on.
 )";
 
 /// Runs python3 -m clogsweep COMMAND, which calls these programs for numbers.
@@ -93,20 +94,17 @@ int clogfit(int argc, const char* const* argv) {
   line.words("file", "sweep files")
       .option("format", "text, csv or json", "text")
       .option("confidence", "of the intervals", "0.95")
-      .flag("all-parameters",
-            "in the text, also list the parameters that all runs share with their default values")
+      .flag("all-parameters", "also list parameters that have their defaults in all runs")
       .option("from-distance",
-              "count lambda from this distance on; runs that ended before are left out [sigma]")
+              "count lambda from this distance on; runs that ended before are excluded [sigma]")
       .option("lab",
               "file that describes the laboratory, see clogfit units: lengths, speeds and times in its "
               "units, too")
       .option("pool",
               "max-time, boxes or both, with a comma between: join groups that differ in these keys only")
-      .option(
-          "lines",
-          "x1,x2,...: lines across a device that droplets pass, in place of the rows of its posts [sigma]")
+      .option("lines", "x1,x2,...: lines across a device instead of the rows of its posts [sigma]")
       .option("row-angle", "tilt of the rows of user-supplied circles from the flow towards +y [degrees]")
-      .option("dwell", "droplets that have not moved for so long count as clogged [t0]");
+      .option("dwell", "droplets that rest for this time count as clogged [t0]");
   line.add_commands(cli::names_of(clogfit_commands));
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
   const std::vector<std::string> paths = line.require_all("file");

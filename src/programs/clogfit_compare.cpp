@@ -22,19 +22,17 @@ namespace clog::programs {
 namespace {
 
 constexpr const char* compare_usage =
-    R"(clogfit compare says how many times longer the clogging lengths of one sweep are than those
-of another.
+    R"(clogfit compare prints the ratios of the clogging lengths of sweeps.
 
   clogfit compare robust.h5 elastic.h5
   clogfit compare sweep.h5 --by friction
   clogfit compare robust.h5 elastic.h5 --picture ratio.png
   clogfit compare own.csv sweep.h5 --lab lab.cfg      measured distances (see clogfit lengths) and simulated ones
 
-Every file is compared with the first, or every value of the key --by with the smallest, wherever all else that varies
-is the same. Runs of the same seed met the same obstacles: where their lengths rise and fall together, the interval comes
-from these pairs and is narrower than that of two independent lengths. It comes from the numbers of clogs alone where
-fewer than ten pairs differ, where no correlation is certain, and where --by changes the array itself, so that equal
-seeds have no obstacles in common.
+Every file is compared with the first, or every value of the key --by with the smallest, for equal values of all other
+parameters. Runs of the same seed met the same obstacles. If their lengths are correlated, the interval comes from these
+pairs and is narrower than that of two independent lengths. It comes from the numbers of clogs if fewer than ten pairs
+differ, if the correlation is uncertain, or if --by changes the array, so that equal seeds share no obstacles.
 )";
 
 std::vector<results::Side> sides(const cli::CommandLine& line, const std::vector<std::string>& paths) {
@@ -82,9 +80,8 @@ int clogfit_compare(int argc, const char* const* argv) {
   cli::CommandLine line("clogfit compare", compare_usage);
   line.words("file", "sweep files")
       .option("by", "key whose values are compared with each other")
-      .option(
-          "within",
-          "clogs of a pair so near to each other are at the same place (half an obstacle spacing) [sigma]")
+      .option("within",
+              "clogs of a pair within this distance are at the same place (half an obstacle spacing) [sigma]")
       .option("format", "text, csv or json", "text")
       .option("picture", "name of a picture to draw; .png and .pdf are made")
       .option("lab",

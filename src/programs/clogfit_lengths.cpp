@@ -25,7 +25,7 @@ does from a sweep: maximum likelihood for censored distances, chi-squared interv
   clogfit lengths distances.csv --format csv > table.csv
   clogfit compare distances.csv sweep.h5 --lab lab.cfg   beside simulated ones
 
-The first line of the table names its columns, each line that follows is one droplet:
+The first line of the table names its columns, each further line is one droplet:
 
   distance [mm],clogged,wall
   41.5,1,glass

@@ -48,11 +48,11 @@ lab.cfg has lines key = value:
   thickness = 0.4 mm          of the cell
   tension-ratio = 0.3         Gamma of the model over Gamma_exp (likewise)
 
-diameter and angle are needed, and may be lists: 0.8 mm, 1.2 mm. speed is then one value for each droplet, or that of
-speed-diameter and speed-angle (the first of each list), scaled with sin(angle) and diameter to the power of
-speed-exponent (0). Gamma_exp = gamma/(g_exp rho sigma^2) is of an interface in three dimensions; the model has
-two, in which the droplets of the article move like the measured ones with 0.3 of it. Run clogfit calibrate to
-find the ratio of your droplet.
+diameter and angle are required, and may be lists: 0.8 mm, 1.2 mm. speed is then a list, one value for each droplet, or
+the speed at speed-diameter and speed-angle (the first of each list), which is scaled with sin(angle) and diameter to the
+power of speed-exponent (0). Gamma_exp = gamma/(g_exp rho sigma^2) belongs to three dimensions. In the model, which has
+two, the droplets of the article move like the measured ones with 0.3 Gamma_exp. clogfit calibrate finds this ratio for
+your droplet.
 )";
 
 constexpr double milli = 1e-3;

@@ -25,7 +25,7 @@ namespace {
 using namespace clog;
 using namespace clog::programs;
 
-constexpr const char* clogrun_usage = R"(clogrun follows one droplet and writes what happens to it.
+constexpr const char* clogrun_usage = R"(clogrun follows one droplet and records its motion.
 
   clogrun array --output run.h5 line-tension=0.3 obstacle-gap=0.35 seeds=7
   clogrun array --output run.h5 obstacles=mine.csv box=60 --polygon-interval 1
@@ -49,7 +49,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
   else
     line.option("file", "replay: file of clogsweep")
         .option("task", "replay: the row's number, column `task`");
-  line.flag("to-rest", "replay: until the droplet rests, not only until it is proved that it will")
+  line.flag("to-rest", "replay: continue until the droplet rests, not only until this is proved")
       .option("output", "HDF5 file to create")
       .option("lab",
               "file that describes the laboratory, see clogfit units: gives terminal-speed and line-tension "

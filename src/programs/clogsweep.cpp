@@ -48,18 +48,18 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 
   mpirun -np 4 clogsweep --config sweep.cfg --output sweep.h5 line-tension=0.2,1,5
   clogsweep --config sweep.cfg --dry-run
-  clogsweep status sweep.h5         how far it is: lambda, <v_g>, time left; also while it runs
+  clogsweep status sweep.h5         progress: lambda, <v_g>, time left; also while it runs
   clogsweep verify sweep.h5         is the file undamaged?
   clogsweep salvage sweep.h5 --output whole.h5     copies the undamaged rows of a damaged file
   clogsweep replay sweep.h5 TASK    runs a task again: the same bits?
   clogsweep merge a.h5 b.h5 --output c.h5          one file of several
   clogsweep select sweep.h5 'line_tension>1' --output stiff.h5     some rows of a file
-  mpirun -np 4 clogsweep doctor     will a sweep started like this go well here?
+  mpirun -np 4 clogsweep doctor     problems of a sweep started like this?
 
 The same command resumes a stopped or killed sweep.
 )";
 
-/// @param growing if the sweep adds runs automatically
+/// @param growing  if the sweep adds runs automatically
 store::Provenance provenance(const cli::CommandLine& line,
                              const std::optional<results::GrowingSweep>& growing, int num_ranks) {
   store::Provenance all = cli::origin(line);
@@ -120,7 +120,7 @@ struct Led {
   }
 };
 
-/// Stands for no exit code: the sweep starts.
+/// Returned instead of an exit code if the sweep starts.
 constexpr int go_on = -1;
 
 int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::IsolatedJobs& isolated, int argc,

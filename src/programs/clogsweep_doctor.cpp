@@ -18,7 +18,7 @@ using diagnostics::RankFacts;
 
 constexpr const char* doctor_name = "clogsweep doctor";
 constexpr const char* doctor_usage =
-    R"(clogsweep doctor looks for what spoils sweeps on this machine, and says what helps.
+    R"(clogsweep doctor checks this machine for problems of sweeps, and prints remedies.
 
   clogsweep doctor
   mpirun -np 4 clogsweep doctor --output results/sweep.h5    as the sweep will be started, on 4 cores

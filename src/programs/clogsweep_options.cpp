@@ -178,7 +178,7 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
   commands.emplace_back("doctor");
   line.add_commands(std::move(commands));
   line.explain_surplus_words(
-      "--output names the file of a sweep, and clogsweep status FILE tells how far it is");
+      "--output names the file of a sweep, and clogsweep status FILE prints its progress");
   if (!cli::parse_command(
           line, argc, argv,
           {{"MPI", scheduler::Communicator::library_version()}, {"HDF5", store::library_version()}}))

@@ -16,14 +16,13 @@ namespace clog::programs {
 
 int clogsweep_select(int argc, const char* const* argv) {
   cli::CommandLine line("clogsweep select",
-                        R"(clogsweep select takes the rows that hold to conditions into a new sweep file.
+                        R"(clogsweep select copies the rows that fulfil all conditions to a new sweep file.
 
   clogsweep select sweep.h5 'line_tension>=0.5' --output stiff.h5
   clogsweep select sweep.h5 preset=robust,elastic 'seed<=10' --output some.h5
 
-A condition is a column, one of = != < <= > >=, and a value; = and != take a list. Rows must meet all conditions. The
-new file holds a sweep of just these runs. Select by parameters if you mean to fit: a selection by results is no fair
-sample.
+A condition is a column, one of = != < <= > >=, and a value; = and != take a list. The new file is
+a sweep of these runs. To fit, select by parameters: rows selected by their results are not a fair sample.
 )");
   line.word("file", "sweep file").option("output", "HDF5 file to make").words("where", "condition");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;

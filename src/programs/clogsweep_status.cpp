@@ -26,14 +26,14 @@ using results::Status;
 namespace {
 
 constexpr const char* status_usage =
-    R"(clogsweep status says how far a sweep is, while it runs or afterwards.
+    R"(clogsweep status prints the progress of a sweep, while it runs or afterwards.
 
   clogsweep status sweep.h5
   clogsweep status sweep.h5 --watch
   clogsweep status sweep.h5 --follow --format json
 
-Clogging lengths count runs in progress as not clogged so far, at the distance they have reached: finished runs alone
-would give too short ones, since runs that clog early finish first.
+Clogging lengths count runs in progress as not clogged so far, at their present distance: finished runs alone would
+give too short lengths, because runs that clog early finish first.
 )";
 
 constexpr const char* clear_screen = "\x1b[H\x1b[2J";
@@ -82,7 +82,7 @@ int clogsweep_status(int argc, const char* const* argv) {
             "with --format json: a line for every start, end, new attempt and round, until the sweep ends")
       .option("format", "text or json", "text")
       .option("confidence", "of the intervals", "0.95")
-      .flag("all-parameters", "in the text, also name parameters that have their default values in all runs");
+      .flag("all-parameters", "also list parameters that have their defaults in all runs");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
   const std::string format = line.get_word("format", {"text", "json"});
   const double confidence = line.get_share("confidence");

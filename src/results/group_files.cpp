@@ -35,7 +35,7 @@ Json scale_json(const LaboratoryScale& scale) {
           {"tension_mN_per_m_of_gamma_1", json_of(Value(scale.tension))}};
 }
 
-/// @param with_laboratory whether any of the groups has one
+/// @param with_laboratory  whether any of the groups has one
 std::vector<Field> all_fields(const Group& group, bool with_laboratory) {
   std::vector<Field> fields;
   const std::vector<Value> values = parameter_values(group.first_row);

@@ -188,7 +188,7 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
   }
 }
 
-/// Fits the runs from their first obstacle on. @param runs intact, and counted
+/// Fits the runs from their first obstacle on. @param runs  intact, and counted
 struct Meetings {
   std::vector<fit::Observation> from_first;  ///< of the runs that met one
   std::int64_t num_contacts = 0;

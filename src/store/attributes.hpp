@@ -17,7 +17,7 @@ namespace clog::store {
 
 using NamedCheckSum = std::pair<std::string, std::uint32_t>;
 
-/// @param table the list's entry about the table. @throws LibraryError
+/// @param table  the list's entry about the table. @throws LibraryError
 void write_attributes(hid_t file, const NamedCheckSum& table, const Provenance& attributes);
 
 /// An attribute's text; if it is damaged, the candidate that matches its checksum.

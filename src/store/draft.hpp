@@ -13,8 +13,8 @@
 /// Files that appear complete: written under a temporary name, saved to disk, then renamed.
 namespace clog::store {
 
-/// Removes the drafts of this path that killed processes left behind. @param mark beginning of every draft of
-/// this kind
+/// Removes the drafts of this path that killed processes left behind. @param mark  beginning of every draft
+/// of this kind
 void remove_stale_drafts(const OutputPath& place, std::string_view mark);
 
 /// An incomplete file beside its target, under an unused name. It is locked while it is open, or until
@@ -22,7 +22,7 @@ void remove_stale_drafts(const OutputPath& place, std::string_view mark);
 /// removes it. Other files with such a name stay.
 class Draft {
  public:
-  /// @param mark see remove_stale_drafts(); written first @throws Error if no file can be made there
+  /// @param mark  see remove_stale_drafts(); written first @throws Error if no file can be made there
   Draft(OutputPath place, std::string_view mark);
   Draft(Draft&&) = delete;
   /// Removes it, unless it has been published.

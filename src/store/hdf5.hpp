@@ -50,8 +50,8 @@ using Group = Handle<H5Gclose>;
 /// with the file open must not make a write fail; they also fail on many cluster file systems).
 void prepare_library();
 
-/// The library keeps what it reads and writes in memory, and may crash without it. @param purpose as in "read
-/// sweep.h5"; @param size of the file [bytes] @throws Error if there is not enough
+/// The library keeps what it reads and writes in memory, and may crash without it. @param purpose  as in
+/// "read sweep.h5"; @param size  of the file [bytes] @throws Error if there is not enough
 void require_memory_of_file(const std::string& purpose, std::size_t size, int copies = 2);
 
 /// The library failed in memory.
@@ -61,7 +61,7 @@ class LibraryError : public std::runtime_error {
 };
 
 /// Builds a file of the earliest format in memory, writes it as a draft with a seal at its end and publishes
-/// it: see Draft::publish(). @param fill may throw LibraryError. @throws Error naming the path
+/// it: see Draft::publish(). @param fill  may throw LibraryError. @throws Error naming the path
 std::optional<std::string> write_whole(const OutputPath& place, const std::string& stamp,
                                        const std::function<void(hid_t file)>& fill);
 

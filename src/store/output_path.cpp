@@ -158,7 +158,8 @@ std::error_code OutputPath::replace(const std::string& stamp, const OutputPath& 
       return occupied;
     }
     if (is_unsupported(reason)) return this->stamp() == stamp ? other.rename_to(*this, 0) : occupied;
-    if (reason != std::errc::no_such_file_or_directory) return reason;  // not removed in this moment
+    if (reason != std::errc::no_such_file_or_directory)
+      return reason;  // otherwise somebody removed it meanwhile
   }
   const std::error_code reason = other.rename_to(*this, RENAME_NOREPLACE);
   if (!is_unsupported(reason)) return reason;

@@ -25,7 +25,7 @@ class RowLayout {
   std::size_t size() const { return size_; }
   /// Writes name and meaning of each column to the table's attributes.
   void describe(hid_t table) const;
-  /// Missing columns are unknown. @param packed size() bytes
+  /// Missing columns are unknown. @param packed  size() bytes
   sweep::UnpackedRow unpack(const std::byte* packed) const;
 
  private:

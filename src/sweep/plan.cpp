@@ -24,7 +24,7 @@ namespace {
 constexpr std::int64_t largest_sweep = 100'000'000;
 
 /// What a check of one branch of the settings returns. If one value of a list like 0,3 is refused, the
-/// message asks whether 0.3 was meant. @param where beginning of the message
+/// message asks whether 0.3 was meant. @param where  beginning of the message
 template <class Check>
 auto checked(const Settings& branch, const std::string& where, const Check& check) try {
   return check();

@@ -136,7 +136,7 @@ std::string dwell_begin_fault(const RunRow& row, const std::string& column, doub
   return "";
 }
 
-/// @param next the longer dwell; the run's end if there is none
+/// @param next  the longer dwell; the run's end if there is none
 std::string dwell_fault(const RunRow& row, const std::string& column, const Dwell& dwell, const Dwell& next) {
   if (std::string fault = dwell_begin_fault(row, column, dwell.distance, dwell.begin); !fault.empty())
     return fault;

@@ -52,7 +52,7 @@ std::string untested_vertices(const DpParameters& dp) {
   return fmt::format("vertices={} (tested from {} to {})", *dp.vertices, fewest_vertices, most_vertices);
 }
 
-/// @param hold friction or yield traction of walls
+/// @param hold  friction or yield traction of walls
 std::string untested_hold(const char* key, double hold, double most, const char* unit) {
   if (hold <= most) return "";
   return fmt::format("{}={} (tested up to {}{})", key, shortest(hold), shortest(most), unit);

@@ -26,7 +26,7 @@ void record_interrupted(const DropletRun& run, RunRow& row) {
 }
 
 /// From the snapshot, if a run with these parameters can have written it. Otherwise (it may be of another
-/// version) the run restarts, with the same result. @param row of the run, without results
+/// version) the run restarts, with the same result. @param row  of the run, without results
 DropletRun start(const RunParameters& run, RunRow row, std::span<const std::byte> snapshot,
                  ObstacleArrays& arrays) {
   const std::shared_ptr<const ObstacleArray> obstacles = arrays.get(run);

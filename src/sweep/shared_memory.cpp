@@ -44,7 +44,7 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
   return true;
 }
 
-/// Visits files that processes of this user have open, by /proc, until told to stop. @param link where the
+/// Visits files that processes of this user have open, by /proc, until told to stop. @param link  where the
 /// entry of such a file leads
 void visit_open_files(const fs::path& link, const std::function<bool(const fs::path&)>& visit) {
   // An unreadable process belongs to another user, or has just ended.

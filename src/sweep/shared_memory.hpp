@@ -18,7 +18,7 @@ class SharedMemory {
   /// Memory that a process, perhaps this one, holds under the name; nullptr if there is none, or it is not
   /// accessible.
   static std::shared_ptr<const SharedMemory> find(const std::string& name);
-  /// Makes it of consecutive pieces; nullptr if the system has no such memory, or no more. @param name up to
+  /// Makes it of consecutive pieces; nullptr if the system has no such memory, or no more. @param name  up to
   /// 200 characters
   static std::shared_ptr<const SharedMemory> publish(const std::string& name,
                                                      std::span<const std::span<const std::byte>> pieces);

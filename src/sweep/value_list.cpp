@@ -120,7 +120,7 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
   return {shortest(to_number(item))};
 }
 
-/// @param rest what follows the number at the beginning of the text
+/// @param rest  what follows the number at the beginning of the text
 [[noreturn]] void refuse_number(std::string_view text, std::string_view rest, const std::string& why) {
   constexpr std::string_view no_unit = ".+-*/0123456789";
   rest = trimmed(rest);

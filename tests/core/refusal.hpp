@@ -20,7 +20,7 @@ inline std::string refusal_of(const RunParameters& run) {
   return "";
 }
 
-/// In one line that has these words.
+/// Expects one line with these words.
 inline void expect_refused(const RunParameters& run, std::string_view words) {
   const std::string message = refusal_of(run);
   EXPECT_NE(message.find(words), std::string::npos) << words << "\nis not in\n" << message;

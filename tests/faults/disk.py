@@ -1,4 +1,4 @@
-"""The disk is full, a file may grow no more, or memory runs out, at a random moment."""
+"""At a random moment the disk is full, a file reaches its size limit, or memory runs out."""
 
 import contextlib
 import os
@@ -18,7 +18,7 @@ LOADER_GAVE_UP = 127  # libraries did not find room, and the program did not beg
 def limit_files(size):
     """Limits the size of files: writes beyond it fail, as on a full disk."""
     def prepare():
-        os.environ["UCX_TLS"] = "self,tcp"  # MPICH's shared memory is of files, too
+        os.environ["UCX_TLS"] = "self,tcp"  # MPICH's shared memory consists of files, too
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
     return prepare
 

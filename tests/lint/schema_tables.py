@@ -54,7 +54,7 @@ def columns(schema):
         meaning += f" [{column['unit']}]" if column["unit"] else ""
         names, _ = rows.setdefault(re.sub(r"\d+", "", meaning), ([], meaning))
         names.append(name)
-    yield from textwrap.wrap("Columns with the value of the [key](keys.md) of the same name, with `_` for `-`, in its unit: " + ", ".join(named) + ".", 120)
+    yield from textwrap.wrap("These columns have the name (with `_` for `-`), the value and the unit of a [key](keys.md): " + ", ".join(named) + ".", 120)
     yield ""
     for (name, *others), meaning in rows.values():
         yield from definition(name, meaning + ("; likewise " if others else "") + ", ".join(others))

@@ -117,7 +117,7 @@ RunRow row_in(ObstacleLayout layout) {
   return job.row();
 }
 
-/// One to which the column means something.
+/// A run to which the column applies.
 const RunRow& row_with(const Column& column) {
   static const RunRow rows[] = {clogged(), row_in(ObstacleLayout::channel), row_in(ObstacleLayout::wall),
                                 row_in(ObstacleLayout::file)};

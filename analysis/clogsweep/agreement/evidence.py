@@ -16,17 +16,17 @@ LEAST_LINEARITY = 0.99
 
 
 def bounds(group: Group) -> tuple[float, float]:
-    """The confidence interval of a clogging length, open above where no run clogged."""
+    """The confidence interval of a clogging length, without an upper end if no run clogged."""
     return group["clogging_length_lower"], math.inf if group["clogging_length_upper"] is None else group["clogging_length_upper"]
 
 
 def shorter(first: Group, second: Group) -> bool:
-    """Is the first clogging length clearly shorter?"""
+    """Whether the first clogging length is clearly shorter."""
     return bounds(first)[1] < bounds(second)[0]
 
 
 def slower(first: Group, second: Group) -> bool:
-    """Is the first mean speed clearly lower?"""
+    """Whether the first mean speed is clearly lower."""
     error = math.hypot(first["relative_speed_error"] or 0.0, second["relative_speed_error"] or 0.0)
     return second["relative_speed"] - first["relative_speed"] > 2 * error
 
@@ -50,7 +50,7 @@ def curves(groups: Iterable[Group], parameter: str) -> dict[Any, list[Group]]:
 
 
 def rises(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bool:
-    """Is any point clearly below a later one?"""
+    """Whether any point is clearly below a later one."""
     return any(is_less(curve[i], curve[j]) for i in range(len(curve)) for j in range(i + 1, len(curve)))
 
 
@@ -64,7 +64,7 @@ def trend(is_as_published: bool, is_opposite: bool) -> str:
 
 
 def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callable[[Group, Group], bool], said: Callable[[Group], str]) -> Finding:
-    """Do curves of soft disks, by their gaps, fall with E_w?"""
+    """Whether curves of soft disks, by their gaps, fall with E_w."""
     ordered = {gap: sorted(curve, key=lambda group: group["wall_stiffness"]) for gap, curve in found.items()}
     return Finding(overall([trend(falls(curve, is_less), rises(curve, is_less)) for curve in ordered.values()]),
                    "; ".join(f"gap {gap:g}: {said(curve[0])} at {curve[0]['wall_stiffness']:g}, {said(curve[-1])} at {curve[-1]['wall_stiffness']:g}"
@@ -72,7 +72,7 @@ def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callabl
 
 
 def overall(verdicts: Sequence[str]) -> str:
-    """One verdict for several curves: theirs if all are alike, `qualitatively` if only some of those known agree."""
+    """One verdict for several curves: theirs if all are equal, `qualitatively` if only some of those known agree."""
     known = set(verdicts) - {NOT_KNOWN}
     if not known:
         return NOT_KNOWN

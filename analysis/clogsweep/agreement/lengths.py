@@ -20,7 +20,7 @@ CONFIDENCE = 0.95
 
 
 def peak(curve: Sequence[Group]) -> Group | None:
-    """The highest of the points that lie clearly above one on their left and one on their right."""
+    """The highest of the points that are clearly above one on their left and one on their right."""
     found = [point for i, point in enumerate(curve)
              if any(shorter(other, point) for other in curve[:i]) and any(shorter(other, point) for other in curve[i + 1:])]
     return max(found, key=dilute.known_length) if found else None
@@ -53,7 +53,8 @@ def peak_draws(curve: Sequence[Group], seed: int) -> tuple[features.Peak, Number
 @statement_of_walls("4.2, figure 6c", "the peak moves to larger Γ as gaps widen",
                     does_not_agree="there is no peak, or it moves the other way", not_known="fewer than two curves have a peak, or the sign of the slope is uncertain")
 def peak_moves(groups: list[Group]) -> Finding:
-    """By the share of posterior draws in which the regression of log Gamma_peak on the gap has a slope of zero or less."""
+    """By the fraction of posterior draws in which the regression of log Gamma_peak on the gap has a slope of zero or
+    less."""
     by_gap = curves([group for group in groups if group["total_distance"]], "obstacle_gap")
     found = {gap: peak_draws(curve, seed) for seed, (gap, curve) in enumerate(by_gap.items(), 1)
              if sum(group["clogs"] > 0 for group in curve) >= points.FEWEST_CLOGGING}
@@ -110,7 +111,8 @@ def neighbours_support(shop: Workshop, family: Family) -> Finding:
 
 
 def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) -> Finding:
-    """Is lambda longer in the widest gap than in the narrowest at every abscissa beyond one? Where no run clogged nothing is known."""
+    """Whether lambda is longer in the widest gap than in the narrowest at every abscissa beyond one. Points without
+    clogs do not count."""
     verdicts, words = {}, []
     for place, members in curves(groups, abscissa).items():
         members = sorted(members, key=lambda group: group["obstacle_gap"])
@@ -134,7 +136,7 @@ def longer_in_wide_gaps(groups: list[Group]) -> Finding:
 
 @statement_of_walls("4, text", "at intermediate Γ droplets flow continuously", in_kind="not in every gap, or also at small Γ", does_not_agree="some clog at every Γ")
 def flows_between(groups: list[Group]) -> Finding:
-    """Is there a line tension at which none clogs, between others at which some do?"""
+    """Whether no droplet clogs at a line tension between others at which some do."""
     verdicts, words = [], []
     for gap, curve in curves(groups, "obstacle_gap").items():
         free = [i for i, point in enumerate(curve) if point["clogs"] == 0]
@@ -209,7 +211,7 @@ def is_exponential(shop: Workshop) -> Finding:
 
 @statement("appendix C, figure C1", "E_k of a droplet that clogs decays exponentially to the threshold", "C1")
 def energy_decays(shop: Workshop) -> Finding:
-    """On the last ten decades."""
+    """Over the last ten decades."""
     run = arrays.energies(shop)[0.3]
     if run.word("status") != "clogged":
         return Finding(DOES_NOT, f"the droplet is {run.word('status')}")
@@ -219,7 +221,7 @@ def energy_decays(shop: Workshop) -> Finding:
     return Finding(AGREES if r_squared >= LEAST_LINEARITY else DOES_NOT, f"R² = {r_squared:.4f} of ln E_k over {np.log10(energy[tail].max() / energy[tail].min()):.0f} decades")
 
 
-# Figure 7: soft disks, and both models over the sag
+# Figure 7: soft disks, and both models vs the sag
 
 statement("4.2, figure 7a", "λ of soft disks falls monotonically with E_w", "7a", not_known="too few clogs")(
     lambda shop: fall_with_stiffness(curves(shop.sweep("clogging-sp"), "obstacle_gap"), shorter, length_of))
@@ -236,8 +238,8 @@ def over_the_sag(shop: Workshop, config: str, groups: Sequence[Group]) -> list[t
 
 
 def compared(shop: Workshop, family: Family, is_beyond: bool) -> Finding:
-    """Polygons and disks of the same sag on one side of APART are alike if their intervals overlap, or if they differ by less than ALIKE.
-    Lower bounds count as lengths."""
+    """Polygons and disks of the same sag on one side of APART agree if their intervals overlap, or if they differ by
+    less than ALIKE. Lower bounds count as lengths."""
     disks = over_the_sag(shop, "clogging-sp", shop.sweep("clogging-sp"))
     logs = [math.log(sag) for sag, _ in disks]
 

@@ -1,4 +1,5 @@
-"""Section 4.1, appendices A and B: channels, where nothing is random and runs have no intervals; and what was measured."""
+"""Section 4.1, appendices A and B: channels, where nothing is random and runs have no intervals; and measured
+quantities."""
 
 import math
 from typing import Any
@@ -42,7 +43,8 @@ def slowest_before(way: Any) -> float:
 
 
 def top_behind(way: Any) -> Any:
-    """The fastest moment behind the orifice, where the published droplets overshoot, or None if the droplet does not pass."""
+    """The fastest moment behind the orifice, where the published droplets overshoot, or None if the droplet does not
+    pass."""
     behind = way[(way["h"] > 0) & (way["h"] < 0.6)]
     return behind[np.argmax(behind["speed_ratio"])] if way["h"][-1] > 0.6 else None
 
@@ -96,7 +98,7 @@ def drag_exponent(shop: Workshop) -> Finding:
 @statement("appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on", "B1",
            in_kind="smooth only from a finer mesh on", does_not_agree="ripples do not stop to shrink")
 def profiles_are_smooth(shop: Workshop) -> Finding:
-    """Smooth is a mesh whose ripples, and those of all finer ones, are within a tenth of the finest one's."""
+    """A mesh is smooth if its ripples, and those of all finer ones, are within a tenth of the finest one's."""
     noise = {count: roughness(run.table) for count, run in channels.meshes(shop).items()}
     counts = sorted(noise)
     rough = [count for count in counts if noise[count] > 1.1 * noise[counts[-1]]]

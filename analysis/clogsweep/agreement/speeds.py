@@ -18,7 +18,7 @@ def speed_curves(shop: Workshop, config: str, parameter: str, abscissa: str) -> 
 
 
 def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Finding:
-    """Does the mean speed rise monotonically with Gamma?"""
+    """Whether the mean speed rises monotonically with Gamma."""
     verdicts, words = [], []
     for value, curve in speed_curves(shop, config, parameter, "line_tension").items():
         verdicts.append(trend(rises(curve, slower), falls(curve, slower)))

@@ -1,6 +1,6 @@
-"""The statements of the article, and how each is judged.
+"""The statements of the article, and the judgement of each.
 
-A statement knows where the article makes it, what it says, and how to judge it from the sweeps behind the figures. The
+A statement has its place in the article, its text, and a function that judges it from the sweeps of the figures. The
 verdict is computed. Only the reason for a verdict other than `agrees` is written by hand.
 """
 
@@ -19,7 +19,8 @@ DOES_NOT, NOT_KNOWN, NOT_RUN = "does not agree", "not known", "not run"
 
 @dataclasses.dataclass(frozen=True)
 class Finding:
-    """The result of this program. @param value  in words, with numbers and their intervals; @param variants  the same of other models"""
+    """The result of this program. @param value  in words, with numbers and their intervals; @param variants  the same for
+    other models"""
 
     verdict: str
     value: str
@@ -33,7 +34,7 @@ Judge = Callable[..., Finding]
 class Statement:
     where: str
     text: str
-    figures: tuple[str, ...]  # whose sweeps it is judged from
+    figures: tuple[str, ...]  # figures whose sweeps judge it
     judge: Judge
     reasons: Mapping[str, str] = dataclasses.field(default_factory=dict)  # by verdict
 
@@ -66,7 +67,8 @@ def tried(judge: Judge, *arguments: Any) -> Finding:
 
 
 def with_variants(found: Mapping[Family, Finding]) -> Finding:
-    """The finding of the first family, the nearest to the published model. If it does not agree, the verdict says what makes another agree."""
+    """The finding of the first family, which is nearest to the published model. If it does not agree, the verdict names
+    what makes another agree."""
     (_, nearest), *others = found.items()
     verdict = nearest.verdict
     if verdict in (DOES_NOT, NOT_KNOWN):
@@ -86,7 +88,7 @@ def statement_of_families(where: str, text: str, figure: str = "6c", families: S
 
 
 def statement_of_walls(where: str, text: str, figure: str = "6c", families: Sequence[Family] = FAMILIES, **reasons: str) -> Callable[[Judge], Judge]:
-    """The same of the family's groups, in the order of gap, then line tension."""
+    """The family's groups, sorted by gap, then line tension."""
     def register(judge: Judge) -> Judge:
         def of_family(shop: Workshop, family: Family) -> Finding:
             return judge(sorted(family.of(shop.sweep(family.config)), key=lambda group: (group["obstacle_gap"], group["line_tension"])))
@@ -104,7 +106,7 @@ class Judged:
 
     @property
     def reason(self) -> str:
-        """Why, and what was tried if the verdict is not known or no agreement."""
+        """The reason and the attempts, if the verdict is not known or no agreement."""
         figures = ", ".join(self.statement.figures) if self.finding.verdict in (DOES_NOT, NOT_KNOWN) else ""
         return "; ".join(filter(None, [self.statement.reasons.get(self.finding.verdict), figures and f"tried: runs of figure {figures}"]))
 
@@ -115,7 +117,7 @@ def judge(shop: Workshop, one: Statement) -> Judged:
 
 
 def judge_all(shop: Workshop) -> tuple[list[Judged], int]:
-    """@param shop  that runs nothing. @return  also the model version. @throws UserError  if its sweeps are of several"""
+    """@param shop  that runs nothing. @return also the model version. @throws UserError if its sweeps have several"""
     return [judge(shop, one) for one in STATEMENTS], the_version(shop.model_versions())
 
 

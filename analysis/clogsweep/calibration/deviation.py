@@ -1,4 +1,4 @@
-"""How far a simulated passage is from a measured one (Cheng et al., Delta_v and Delta_A)."""
+"""Deviation of a simulated passage from a measured one (Cheng et al., Delta_v and Delta_A)."""
 
 import math
 
@@ -7,22 +7,23 @@ import numpy as np
 from ..tools.hints import Numbers
 from .profiles import Profile, at
 
-# Relative deviation of a frame that the simulated droplet never came to, and the largest of any other.
+# Relative deviation of a frame that the simulated droplet never reached, and the largest of any other.
 NEVER_REACHED = 10
-# Fewer successive residuals say nothing about their correlation.
+# Fewer successive residuals do not determine their correlation.
 FEWEST_CORRELATED = 8
 
 
 def speed_residuals(measured: Profile, simulated: Profile) -> tuple[Numbers, int]:
-    """v_measured/v_simulated - 1 of each frame, and the number of frames that the simulated droplet never came to.
+    """v_measured/v_simulated - 1 of each frame, and the number of frames that the simulated droplet never reached.
 
-    Such a frame counts 10, and 10 more for each missing diameter, which gives a search among droplets that clog a direction.
+    Such a frame counts 10, and 10 more for each missing diameter, which gives a direction to a search among droplets
+    that clog.
     """
     speed = at(simulated, measured.h).speed
     never = np.isnan(speed)
     with np.errstate(all="ignore"):
         found = np.clip(measured.speed / speed - 1, -NEVER_REACHED, NEVER_REACHED)
-    found[~(speed > 0)] = NEVER_REACHED  # it stands still, or is pushed back
+    found[~(speed > 0)] = NEVER_REACHED  # it rests, or is pushed back
     found[never] += NEVER_REACHED * np.maximum(0, measured.h - max(simulated.h))[never]
     return found, int(never.sum())
 

@@ -1,4 +1,4 @@
-"""What the laboratory says about a droplet between tilted plates, asked of `clogfit units`."""
+"""A laboratory's droplet between tilted plates, from `clogfit units`."""
 
 import json
 import pathlib
@@ -10,12 +10,12 @@ from ..results import laboratory
 from ..tools.errors import ProgramFailed, UserError
 from .profiles import Scales
 
-# What clogfit units needs, but a command may do without.
+# Quantities that clogfit units needs, but a command may lack.
 UNKNOWN = {"diameter": "1 mm", "angle": "90 deg"}
 
 
 def quantities(given: Mapping[str, str | None], folder: pathlib.Path) -> tuple[dict[str, Any], Scales]:
-    """The answer of clogfit units, and what columns in laboratory units are divided by.
+    """The answer of clogfit units, and the divisors of columns in laboratory units.
 
     @param given  quantities by the names of a lab file, None if unknown. @throws UserError  naming the option
     """
@@ -28,6 +28,6 @@ def quantities(given: Mapping[str, str | None], folder: pathlib.Path) -> tuple[d
 
 
 def print_json(answer: Mapping[str, Any], document: Mapping[str, Any]) -> None:
-    """With the version of the programs before it. NaN and infinity become null."""
+    """Adds the version of the programs in front. NaN and infinity become null."""
     text = json.dumps({"version": answer["version"], "git_describe": answer["git_describe"], **document})
     print(json.dumps(json.loads(text, parse_constant=lambda _: None), indent=2))

@@ -15,14 +15,14 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
 FEWEST_FRAMES = 3
-# A simulated passage that is calibrated is seen as by a camera, up to this distance from the orifice [sigma].
+# A simulated passage that is calibrated is cut like a camera's, at this distance from the orifice [sigma].
 FARTHEST_FRAME = 1.5
 FRAMES_PER_DIAMETER = 20
 METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "\u00b5m": 1e-6, "\u03bcm": 1e-6}  # as clogfit units; Unicode has two signs for micro
 
 
 class Profile(NamedTuple):
-    """A droplet in a channel, frame by frame; arrays of equal length. Of a simulation in the order of time."""
+    """A droplet in a channel, frame by frame; arrays of equal length. A simulation is in the order of time."""
 
     h: Numbers  # of the centre of mass from the orifice, positive downstream [sigma]
     speed: Numbers  # along the flow [v_t]
@@ -30,14 +30,15 @@ class Profile(NamedTuple):
 
 
 class Scales(NamedTuple):
-    """What columns in laboratory units are divided by [m, m/s]; 0 if unknown."""
+    """Divisors of columns in laboratory units [m, m/s]; 0 if unknown."""
 
     diameter: float = 0
     speed: float = 0
 
 
 class Channel(NamedTuple):
-    """What a passage depends on besides the droplet. The names are those of columns, and with hyphens those of keys."""
+    """The conditions of a passage besides the droplet. The names are those of columns, and with hyphens those of
+    keys."""
 
     orifice: float
     wedge_angle: float
@@ -61,7 +62,7 @@ def read_text(path: str) -> str:
 
 
 def factor(header: str, reduced: str, scale: float, option: str) -> float:
-    """What to multiply a column with, such as h [mm]. @param reduced  the unit that needs no scale: sigma or v_t"""
+    """Factor of a column, such as h [mm]. @param reduced  the unit that needs no scale: sigma or v_t"""
     unit = header.partition("[")[2].partition("]")[0].strip()
     if unit == reduced:
         return 1
@@ -124,7 +125,7 @@ def read_run(path: str) -> tuple[Profile, np.void]:
 
 
 def at(profile: Profile, h: Numbers) -> Profile:
-    """The droplet where it first comes to each h, interpolated linearly; NaN where it never comes."""
+    """The droplet where it first reaches each h, interpolated linearly; NaN where it never does."""
     first = profile.h >= np.maximum.accumulate(profile.h)
     return Profile(h, *(np.interp(h, profile.h[first], values[first], left=math.nan, right=math.nan) for values in profile[1:]))
 
@@ -138,7 +139,8 @@ def read_profile(path: str, scales: Scales = Scales()) -> tuple[Profile, np.void
 
 
 def read_trial(path: str, scales: Scales = Scales()) -> tuple[Profile, Channel | None]:
-    """A passage to compare simulations with, and its channel if clogrun wrote it. @throws UserError  also for a droplet that did not pass"""
+    """A passage to compare simulations with, and its channel if clogrun wrote it. @throws UserError also if the droplet
+    did not pass"""
     profile, row = read_profile(path, scales)
     if row is None:
         return profile, None

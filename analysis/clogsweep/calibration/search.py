@@ -1,8 +1,9 @@
 """Searches the line tension and the near-wall drag of the simulation that is closest to a measured passage.
 
-Close to a line tension at which the droplet clogs, Delta_v has several minima, each a percent wide. The search begins on a
-coarse grid, descends from its best points by the simplex method, brackets the line tension at which droplets clog,
-descends again from distances to it that double, and ends with Gauss-Newton steps until these and another simplex gain nothing.
+Close to a line tension at which the droplet clogs, Delta_v has several minima, each a percent wide. The search begins
+on a coarse grid and descends from its best points by the simplex method. It brackets the line tension at which droplets
+clog, descends again from doubling distances to it, and ends with Gauss-Newton steps until these and another simplex
+gain nothing.
 """
 
 import itertools
@@ -68,13 +69,13 @@ class Calibration(NamedTuple):
     speed_correlation: float
     shape_correlation: float
     converged: bool
-    clogging_tension: float  # from which on droplets do not come to all frames; NaN if all do, or none
+    clogging_tension: float  # from which on droplets do not reach all frames; NaN if all do, or none
     simulations: int
     warnings: list[str]
 
 
 class Linearised(NamedTuple):
-    """Least squares at a place as if the residuals were linear there."""
+    """Least squares with residuals linearised at a place."""
 
     step: Numbers  # to the minimum
     errors: Numbers
@@ -110,7 +111,8 @@ class Search:
         return self.attempt(found.x * scale), found.success
 
     def linearise_over(self, place: Numbers, step: Numbers) -> Linearised | None:
-        """By differences over a step. None if the droplet clogs a step away, or if the frames do not determine both."""
+        """Finite differences over a step. None if the droplet clogs a step away, or if the frames do not determine
+        both."""
         below = np.maximum(place - step, [-math.inf, 0])
         beside = [(place[0] + step[0], place[1]), (below[0], place[1]), (place[0], place[1] + step[1]), (place[0], below[1])]
         here, stiffer, softer, slower, faster = every = self.attempts([place, *beside])
@@ -124,14 +126,15 @@ class Search:
         return Linearised(-np.linalg.lstsq(slopes, here.residuals, rcond=None)[0], np.sqrt(variance * np.diag(np.linalg.inv(information))))
 
     def linearise(self, place: Place) -> Linearised | None:
-        """Over steps so short that the droplet passes on both sides, and then as long as the errors."""
+        """First with steps so short that the droplet passes on both sides, then with steps as long as the errors."""
         step = LONGEST_STEP
         while (found := self.linearise_over(np.array(place), step)) is None and np.all(step > 2 * SHORTEST_STEP):
             step = step / 2
         return found and self.linearise_over(np.array(place), np.clip(found.errors, SHORTEST_STEP, step))
 
     def polish(self, best: Attempt) -> tuple[Attempt, bool]:
-        """Gauss-Newton steps; where these gain nothing, a new simplex, since the last one may have collapsed on a slope."""
+        """Gauss-Newton steps, then a new simplex if these gain nothing, because the last one may have collapsed on a
+        slope."""
         for _ in range(MOST_ROUNDS):
             before = best.delta
             if around := self.linearise(best.place):
@@ -158,7 +161,7 @@ class Search:
         return passing, clogging
 
     def run(self) -> tuple[Attempt, bool, float]:
-        """@return the best, whether the search converged, and Gamma from which on droplets clog, or NaN"""
+        """@return the best, whether the search converged, and the Gamma from which on droplets clog, or NaN"""
         grid = self.attempts(list(itertools.product(GRID_TENSIONS, GRID_DRAGS)))
         minima = in_parallel(lambda start: self.descend(start, (0.4, max(0.3 * start[1], 0.03)), (0.01, 0.002), 40)[0], starts(grid))
         drag = nearest(minima).place[1]
@@ -170,7 +173,7 @@ class Search:
 
 
 def in_parallel(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
-    """Waits in a thread for each; simulations have a core each."""
+    """One waiting thread for each; simulations have a core each."""
     with ThreadPoolExecutor(max_workers=len(items)) as threads:
         return list(threads.map(function, items))
 
@@ -190,13 +193,14 @@ def starts(attempts: Sequence[Attempt]) -> list[tuple[float, float]]:
 def warnings(best: Attempt, found: Calibration) -> list[str]:
     """What spoils a result."""
     num_frames, log_tension, drag = len(best.residuals), *best.place
-    # Independent noise exceeds it once in seven hundred trials. If residuals are no noise, something else than Gamma and b_0 differs.
+    # Independent noise exceeds it once in seven hundred trials. If residuals are systematic, something other than
+    # Gamma and b_0 differs.
     largest = 3 / math.sqrt(num_frames)
     shapes = [(name, measure) for name, measure, delta in (("speeds", found.speed_correlation, found.delta_v), ("shapes", found.shape_correlation, found.delta_a))
               if measure > largest and delta > MESH][:1]
     every = [
         (not found.converged, "the search did not converge: another place may have a smaller Delta_v"),
-        # A drag of 0 hides nothing better.
+        # A drag of 0 cannot be lowered further.
         (not LOWER[0] + 0.01 < log_tension < UPPER[0] - 0.01 or drag > 0.99 * UPPER[1],
          "the best is at the end of what was searched, and may lie beyond"),
         (best.num_never_reached > 0, f"no simulated droplet comes to {best.num_never_reached} of the frames: look at --orifice, at the units and at h"),

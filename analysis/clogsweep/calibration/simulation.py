@@ -22,7 +22,7 @@ Simulation = Callable[[float, float], Profile]  # of line tension and near-wall 
 APPROACH = 0.5
 # The start has to be clear of the wedges.
 USUAL_START = -2.0
-# A droplet of 1/30 of its terminal speed on average still passes.
+# A droplet that moves at 1/30 of its terminal speed on average still passes.
 SLOWEST = 30
 # Below 64 steps: clogrun has no more samples than one for so many.
 SAMPLE_INTERVAL = 1e-9

@@ -16,7 +16,7 @@ INTERRUPTED = 75
 
 
 class Progress:
-    """May be told of simulations from several threads."""
+    """Several threads may report simulations."""
 
     def __init__(self, num_trials: int) -> None:
         self.best = [(math.inf, 0.0, 0.0)] * num_trials  # Delta_v, Gamma, b_0/b_inf

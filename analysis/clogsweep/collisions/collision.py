@@ -1,4 +1,4 @@
-"""Which droplets break up on a single obstacle: up to which line tension, by how far off its centre they fall."""
+"""Break-up of droplets on a single obstacle: the largest line tension, vs the offset from its centre."""
 
 import math
 import pathlib
@@ -32,7 +32,7 @@ class Collisions:
 
     def __init__(self, clogsweep: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> None:
         self.clogsweep, self.folder, self.keys = clogsweep, folder, KEYS | keys
-        # A droplet that hangs on until it has had the time to fall four times the way has not broken up.
+        # A droplet that hangs for four times the duration of its fall has not broken up.
         self.keys.setdefault("max-time", f"{4 * FALL / float(self.keys['terminal-speed']):g}")
 
     def break_up(self, offset: float, tensions: Sequence[float]) -> list[bool]:
@@ -46,7 +46,7 @@ class Collisions:
         return [end == b"broken" for end in ends]
 
     def threshold(self, offset: float) -> Threshold:
-        """@return the two that it lies between; None beyond TENSIONS"""
+        """@return the bracket; None beyond TENSIONS"""
         low, high = TENSIONS
         while high / low > 1 + PRECISION:
             tensions = [low * (high / low)**(step / STEPS) for step in range(STEPS + 1)]

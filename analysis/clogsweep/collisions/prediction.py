@@ -1,6 +1,6 @@
 """Clogging lengths from droplets that fall onto one or two obstacles: which of these hold it, and how many of them an array has.
 
-docs/explanation/predicted.md has the law and where it holds.
+docs/explanation/predicted.md has the law and its limits.
 """
 
 import dataclasses
@@ -126,7 +126,8 @@ def mean_cosine(held: Sequence[bool]) -> float:
 
 
 def largest_angle(gap: float, diameter: float) -> float:
-    """Largest angle at which a rigid disc rests on two obstacles [degrees]: its centre lies above the line between theirs."""
+    """Largest angle at which a rigid disc rests on two obstacles [degrees]: its centre is above the line between
+    theirs."""
     return math.degrees(math.asin(min(1.0, (gap + diameter) / (1 + diameter))))
 
 
@@ -166,7 +167,7 @@ def predict(droplets: Droplets, array: Array) -> Iterator[Prediction]:
 
 
 def doubts_of(tension: float, length: float) -> list[str]:
-    """Why a predicted length may be wrong by more than a tenth; words of docs/explanation/predicted.md."""
+    """Reasons why a predicted length may be wrong by more than a tenth; words of docs/explanation/predicted.md."""
     return [word for word, holds in (("soft", tension < SOFTEST), ("crowded", length < SMALLEST_LENGTH)) if holds]
 
 

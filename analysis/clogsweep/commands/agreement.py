@@ -1,4 +1,4 @@
-"""Compares the statements of the article with the results of this program, one by one.
+"""Compares each statement of the article with the results of this program.
 
     python3 -m clogsweep agreement
     python3 -m clogsweep agreement --run --format csv

@@ -13,8 +13,8 @@ quantities.
 
 Keys of the droplet and its channel (clogrun channel --help) are given as KEY=VALUE or as options.
 
-Errors (+-) come from the scatter of a trial's frames about the best run, treated as independent noise. They do not
-contain errors of the model or its mesh: for frames without noise they are too small.
+Errors (+-) come from the scatter of a trial's frames about the best run, treated as independent noise. They exclude
+errors of the model or its mesh, so without noise they are too small.
 """
 
 import argparse
@@ -52,7 +52,7 @@ def options() -> command_line.Parser:
 
 
 def split(words: Sequence[str]) -> tuple[list[str], list[str]]:
-    """@return words for the parser, and keys for clogrun channel, which may stand anywhere and also be options"""
+    """@return words for the parser, and keys for clogrun channel, in any order and also as options"""
     own: list[str] = []
     keys: list[str] = []
     rest = iter(words)
@@ -83,7 +83,7 @@ def refuse_contradictions(arguments: argparse.Namespace, names: set[str]) -> Non
 
 
 def refuse_other_channel(file: str, stored: Channel | None, simulated: Channel, names: set[str]) -> None:
-    """Gamma depends on the channel, of which a measured passage does not say which it was."""
+    """Gamma depends on the channel, which a measured passage does not contain."""
     if stored is None and "orifice" not in names:
         raise UserError("missing orifice (the line tension that is found depends on the channel) give its width in droplet diameters, "
                         "e.g. orifice=0.8, and wedge-angle, tip-radius unless they are those of --help")
@@ -147,7 +147,7 @@ def body() -> int:
 
     found = trials.calibrate(clogrun, keys, arguments.profiles, measured)
     mean = means(found)
-    if arguments.other:  # Gamma goes with 1/(sigma^2 g)
+    if arguments.other:  # Gamma is proportional to 1/(sigma^2 g)
         weight, other_weight = (answer["diameter_mm"] ** 2 * answer["gravity_m_per_s2"] for answer in (lab, other))
         in_lab["line_tension_scaled"] = mean["line_tension"] * weight / other_weight
     if arguments.format == "json":

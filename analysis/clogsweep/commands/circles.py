@@ -1,14 +1,16 @@
-"""Makes a file of circles of a drawing of a device: DXF, GDSII, SVG, or a picture in black and white (a mask, a micrograph).
+"""Makes a file of circles from a drawing of a device: DXF, GDSII, SVG, or a picture in black and white (a mask, a
+micrograph).
 
     python3 -m clogsweep circles mask.gds --droplet 200um --output posts
     python3 -m clogsweep circles scan.png --pixel 2.5um --droplet 200um --output posts
     clogsweep obstacles=posts.csv box=... length=...      # as the command prints it
 
-posts.csv has the posts in micrometres, and the droplet's diameter. posts.png shows what was understood: look at it before
-you run anything. An outline that holds everything else is the edge of the device; of a picture it is its own edge. Lines
-that close are outlines. Flat outlines and lines along the sides are walls; other lines are red. Round posts are circles.
-Others, such as triangles, are red in the picture, and nothing is written unless --as-rows replaces each by rows of
-overlapping circles along its outline, or --as-circles by a circle of the same area.
+posts.csv has the posts in micrometres, and the droplet's diameter. posts.png shows how the drawing was interpreted:
+look at it before you run anything. An outline that contains everything else is the edge of the device; without one it
+is a box around the posts. Lines that meet are joined into outlines. Flat outlines and lines along the sides are walls;
+other lines are red. Round posts are circles. Other shapes, such as triangles, are red in the picture, and nothing is
+written unless --as-rows replaces each by rows of overlapping circles along its outline, or --as-circles by a circle of
+the same area.
 """
 
 import argparse
@@ -35,13 +37,13 @@ def options() -> argparse.Namespace:
     command_line.add_output(parser, "name of the files: .csv, .png and .pdf are made", ".csv", ".png", ".pdf", required=True)
     parser.add_argument("--droplet", required=True, help="diameter of the droplet with its unit, such as 200um")
     scale = parser.add_mutually_exclusive_group()
-    scale.add_argument("--unit", choices=shapes.METRES, help="of a drawing that does not say it")
+    scale.add_argument("--unit", choices=shapes.METRES, help="of a drawing that states none")
     scale.add_argument("--pixel", help="size of a pixel of a picture with its unit, such as 2.5um")
     parser.add_argument("--layer", help="of a DXF or GDSII file; without it all count")
     parser.add_argument("--posts", choices=("dark", "bright"), help="of a picture (dark, unless border and most of it are dark)")
     parser.add_argument("--region", type=region_of, help="x0,y0,x1,y1: only this part, in the unit and coordinates that the drawing program shows")
-    parser.add_argument("--flow", choices=TURNS, default="right", help="where it goes in the drawing (right)")
-    parser.add_argument("--tolerance", type=command_line.between(0.001, 0.5, "a part of the radius"), default=0.04, help="largest deviation of a post from a circle, as a part of its radius (0.04)")
+    parser.add_argument("--flow", choices=TURNS, default="right", help="its direction in the drawing (right)")
+    parser.add_argument("--tolerance", type=command_line.between(0.001, 0.5, "a part of the radius"), default=0.04, help="largest deviation of a post from a circle, as a fraction of its radius (0.04)")
     others = parser.add_mutually_exclusive_group()
     others.add_argument("--as-rows", action="store_true", help="replace other posts by rows of circles along their outlines")
     others.add_argument("--as-circles", action="store_true", help="replace other posts by circles of the same area")
@@ -83,7 +85,7 @@ def refuse_other_unit(arguments: argparse.Namespace, drawing: shapes.Drawing, me
 
 
 def remedy_of_unit(arguments: argparse.Namespace) -> str:
-    """What to do if lengths are wrong."""
+    """The remedy for wrong lengths."""
     if arguments.pixel or arguments.unit:
         return f"check {'--pixel' if arguments.pixel else '--unit'}"
     return "correct the unit in the drawing (of DXF $INSUNITS)"
@@ -94,13 +96,13 @@ def unit_in_words(arguments: argparse.Namespace, drawing: shapes.Drawing) -> str
 
 
 def call_of(device: shapes.Device, output: pathlib.Path) -> str:
-    """The command that starts a sweep of it."""
+    """The command that starts a sweep of the device."""
     return (f"clogsweep obstacles={output}.csv box={device.width:.6g} length={device.length:.6g} side-walls=on "
             f"release=entrance exit={device.length:.6g} ...")
 
 
 def told(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> list[str]:
-    """Describes in words what was read from the drawing."""
+    """Describes the content of the drawing."""
     edge = "the region" if drawing.frame and not drawing.is_picture else "its own edge" if device.has_frame else "between its walls" if len(device.walls) == 2 else "no edge is drawn"
     micrometres = device.droplet_micrometres
     words = [f"{rounded.counted(device.num_posts(), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
@@ -131,7 +133,7 @@ def summary(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> st
 
 
 def skipped(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
-    """Describes what of the drawing is not used, and what to do about it."""
+    """Describes the unused parts of the drawing, with remedies."""
     counts = collections.Counter(drawing.skipped)
     counts.update(kind for kind, _ in device.lines)
     if not counts:
@@ -143,7 +145,7 @@ def skipped(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
 
 
 def in_rows(device: shapes.Device, radius: float) -> tuple[shapes.Device, list[str]]:
-    """@return the device with rows of circles, and how near they come to the outlines, in words"""
+    """@return the device with rows of circles, and their deviation from the outlines, in words"""
     number = len(device.others)
     found = rows.as_rows(device, radius)
     micrometres = device.droplet_micrometres

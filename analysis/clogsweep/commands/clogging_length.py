@@ -6,8 +6,8 @@ lateral displacement per distance against the angle of their rows.
     clogfit sweep.h5 --format json | python3 -m clogsweep clogging-length /dev/stdin --output clogging-length     # its points
 
 Every length comes from clogfit. Bars are its confidence intervals; smooth lines with bands are the curves of clogfit
-curve, for which the command has to have the sweep itself. Markers show by what most droplets clogged; a hollow marker is a length that clogfit doubts, the picture says why; a triangle
-pointing up is a lower bound where no run clogged.
+curve, which need the sweep itself. Markers show the mechanism of most clogs; a hollow marker is a length with a doubt,
+which the picture explains; a triangle pointing up is a lower bound, because no run clogged.
 """
 
 import argparse

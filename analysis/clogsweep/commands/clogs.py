@@ -1,11 +1,11 @@
-"""Draws the clogged droplets of a sweep on one sheet, with what holds each of them.
+"""Draws the clogged droplets of a sweep on one sheet, with the mechanism of each.
 
     clogsweep --output sweep.h5 line-tension=0.2,0.3,1 seeds=1..10
     python3 -m clogsweep clogs sweep.h5                  # sweep-clogs.png, sweep-clogs.pdf
 
-Runs the clogged rows again until they rest (clogrun; an outline is in no table). The flow goes to the right. Touched
-obstacles are blue, arcs of contact red, the droplet's convex hull dashed. Titles say by what and how far away it
-clogged, how many obstacles it wraps and which part of its support they bear, and how many gaps and contacts it has.
+Replays the clogged rows until they rest (clogrun), because no table contains outlines. The flow is to the right.
+Touched obstacles are blue, arcs of contact red, the droplet's convex hull dashed. Titles give mechanism and distance,
+the number of wrapped obstacles with their fraction of the support, and the numbers of gaps and contacts.
 """
 
 import argparse
@@ -16,7 +16,7 @@ from .command_line import save, sweep_to_draw, tasks, whole
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--most", type=whole(1), default=30, help="draw so many clogs at most, the first (%(default)s)")
+    parser.add_argument("--most", type=whole(1), default=30, help="draw at most this number of clogs, the first ones (%(default)s)")
     parser.add_argument("--tasks", type=tasks, help="only these, e.g. 3,17,40")
     parser.add_argument("--mechanism", choices=clogs.MECHANISMS, help="only these")
     parser.add_argument("--jobs", type=whole(1), default=2, help="runs at a time (%(default)s)")

@@ -1,13 +1,14 @@
-"""Finds and draws which droplets break up on a single obstacle: up to which line tension, by how far off its centre they fall.
+"""Finds and draws the largest line tension at which droplets break up on a single obstacle, for each offset from its
+centre.
 
     python3 -m clogsweep collision --output collision                     # collision.png, collision.pdf; the numbers as CSV
     python3 -m clogsweep collision --output fine vertices=512 break-up-neck=0.05 --offsets 0,0.1,0.3
 
-For each offset a droplet falls onto a circle of 0.3 sigma, in sweeps over the line tension that close in on the largest
-at which it breaks up. KEY=VALUE are keys of clogsweep for all of them. The symmetry S of a collision is the area of the
-droplet on one side of the vertical line through the obstacle over that on the other, at most 1; the capillary number Ca
-is weight over tension, pi/(4 Gamma). On the right: the share of droplets that break up if all offsets at which they
-touch the obstacle are as likely.
+For each offset droplets fall onto a circle of 0.3 sigma, in sweeps over the line tension that bracket the largest at
+which they break up. KEY=VALUE are keys of clogsweep for all of them. The symmetry S of a collision is the droplet's
+area on one side of the vertical line through the obstacle divided by that on the other, at most 1; the capillary number
+Ca is weight divided by tension, pi/(4 Gamma). On the right: the fraction of droplets that break up if all offsets with
+contact are equally likely.
 """
 
 import argparse

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 USER_FAULT = 2
 INTERRUPTED = 75
-WITHOUT_READER = 141  # as a shell reports a process that SIGPIPE ended
+WITHOUT_READER = 141  # the code that a shell reports after SIGPIPE
 
 
 _own_name = ""
@@ -62,7 +62,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def whole(least: int) -> Callable[[str], int]:
-    """Type of an option: a whole number that is not less."""
+    """Type of an option: a whole number that is not smaller."""
     def number(word: str) -> int:
         if not word.lstrip("+-").isdecimal() or int(word) < least:
             raise argparse.ArgumentTypeError(f"invalid value: {word} (must be a whole number, {least} or more)")
@@ -101,7 +101,7 @@ def key_and_value(word: str) -> tuple[str, str]:
 
 
 def add_output(parser: argparse.ArgumentParser, meaning: str, *endings: str, required: bool = False) -> None:
-    """--output of a command. @param endings  such as ".png", that it gives its files itself: a name may have them or not"""
+    """--output of a command. @param endings  such as ".png", that it adds itself: a name may have them or not"""
     def without_ending(word: str) -> pathlib.Path:
         path = pathlib.Path(word)
         return path.with_suffix("") if path.suffix in endings else path
@@ -110,7 +110,7 @@ def add_output(parser: argparse.ArgumentParser, meaning: str, *endings: str, req
 
 
 def beside(source: pathlib.Path, ending: str) -> pathlib.Path:
-    """The name of what is made of a file where --output gives none, such as sweep-clogs of sweep.h5."""
+    """The default name of a result without --output, such as sweep-clogs of sweep.h5."""
     if source.exists() and not source.is_file():
         raise UserError(f"no name for what is made of {source}; give --output")
     return source.with_name(f"{source.stem}-{ending}")
@@ -155,7 +155,7 @@ def add_width(parser: argparse.ArgumentParser) -> None:
 
 
 def save(picture: Picture, arguments: argparse.Namespace) -> int:
-    """@param arguments  with output, perhaps with width. @return exit code 0"""
+    """@param arguments  with output, possibly with width. @return exit code 0"""
     if width := getattr(arguments, "width", None):
         picture.for_journal(width)
     tell("\n".join(filter(None, [f"{picture.save(arguments.output)} (and .pdf)", picture.caption])))
@@ -176,7 +176,7 @@ def quieten_libraries() -> None:
 
 @contextlib.contextmanager
 def needs_modules() -> Iterator[None]:
-    """Guards a block that loads modules which a machine may lack."""
+    """Guards a block that loads modules which may be missing."""
     quieten_libraries()
     try:
         yield
@@ -185,12 +185,12 @@ def needs_modules() -> Iterator[None]:
 
 
 def tell(text: object) -> None:
-    """Prints lines with names from outside, which may hold what turns a terminal's colours."""
+    """Prints lines with foreign names, which may contain a terminal's control sequences."""
     print(printable(text, "\n"))
 
 
 def _give_up(stream: TextIO) -> None:
-    """Python writes the rest of a stream at its exit, and exits with 120 if that fails."""
+    """At exit Python writes the rest of a stream, and returns 120 if that fails."""
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, stream.fileno())
     os.close(null)
@@ -199,7 +199,7 @@ def _give_up(stream: TextIO) -> None:
 def _refuse(reason: object) -> int:
     try:
         print(printable(f"{name()}: {' '.join(str(reason).split())}"), file=sys.stderr, flush=True)
-    except OSError:  # its reader may have gone
+    except OSError:  # its reader may have closed it
         if sys.stderr is not None:
             _give_up(sys.stderr)
     return USER_FAULT
@@ -207,7 +207,7 @@ def _refuse(reason: object) -> int:
 
 @contextlib.contextmanager
 def _whole_output() -> Iterator[None]:
-    """Writes what was printed at its end, so that a full disk is an error of the block."""
+    """Writes everything printed before the block ends, so that a full disk is an error of the block."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         # A locale may lack letters. With PYTHONUNBUFFERED each print() would fail, not the end.
         sys.stdout.reconfigure(errors="backslashreplace", write_through=False)
@@ -217,7 +217,7 @@ def _whole_output() -> Iterator[None]:
         if sys.stdout is not None:
             try:
                 sys.stdout.flush()
-            except BrokenPipeError:  # its reader wants no more
+            except BrokenPipeError:  # its reader closed it
                 _give_up(sys.stdout)
                 raise
             except OSError as error:
@@ -226,7 +226,7 @@ def _whole_output() -> Iterator[None]:
 
 
 def run(body: Callable[[], int]) -> int:
-    """@param body  what the command does, returns its exit code. @return the exit code"""
+    """@param body  the command, which returns its exit code. @return the exit code"""
     try:
         with _whole_output():
             return body()

@@ -1,11 +1,11 @@
-"""Draws how many times longer the clogging lengths of one sweep are than those of another.
+"""Draws the ratios of the clogging lengths of sweeps.
 
     python3 -m clogsweep compare robust.h5 elastic.h5                # robust-compare.png, robust-compare.pdf
     python3 -m clogsweep compare sweep.h5 --by friction
 
 Every number comes from clogfit compare, and its options are the same; `clogfit compare --picture NAME` draws this, too.
-Bars are its confidence intervals. A filled marker has one from pairs of the same seed, a hollow one from the numbers of
-clogs alone.
+Bars are its confidence intervals. A filled marker has an interval from pairs of the same seed, a hollow one from the
+numbers of clogs alone.
 """
 
 import json

@@ -1,12 +1,12 @@
-"""Draws the critical angle of lattices, up to which droplets follow the rows, against line tension or what else varies.
+"""Draws the critical angle of lattices, up to which droplets follow the rows, vs line tension or another parameter.
 
     python3 -m clogsweep critical-angle lattice.h5                           # lattice-critical-angle.png, .pdf
     python3 -m clogsweep critical-angle lattice.h5 --format csv > angles.csv # a table
     python3 -m clogsweep critical-angle angles.csv                           # the same picture from the table
 
-The sweep has several angles for every set of parameters, as refine lattice-angle --until critical-angle=0.5 chooses them. The
-table has a line for each set: the parameters that vary, the largest angle at which droplets follow the rows, the smallest at
-which some leave them, and the number of runs.
+The sweep has several angles for every set of parameters, for instance from refine lattice-angle --until
+critical-angle=0.5. The table has a line for each set: the parameters that vary, the largest angle at which droplets
+follow the rows, the smallest at which some leave them, and the number of runs.
 """
 
 import argparse

@@ -1,19 +1,19 @@
-"""A smooth curve through the clogging lengths of a sweep, as a function of a key that it varies (or of two): how long lambda
-is anywhere between, where it is highest and where it crosses a given length, all with intervals.
+"""Fits a smooth curve through the clogging lengths of a sweep, as a function of one or two keys that it varies: its
+values between, its peak, and where it crosses a given length, all with intervals.
 
     clogfit curve sweep.h5                       # is python3 -m clogsweep curve
     clogfit curve sweep.h5 --key line-tension --crossing 10,100
     clogfit curve sweep.h5 --key line-tension,friction --format csv > surface.csv
     clogfit curve monday.h5 tuesday.h5           # several files as one sweep
 
-Runs that travelled a distance S together and clogged d times are a Poisson count with exposure, so points without a clog
-inform the curve as bounds. log lambda is a Gaussian process over the logarithm of the key. The other physical keys tell
-curves apart. A curve needs four values of the key, three of them with clogs; points in no curve are listed with the reason.
-csv and json have the whole curve, at 97 places (25 x 25 with two keys), and those of each mechanism; peaks is a CSV table
-of the peaks alone.
+Runs that travelled a distance S together and clogged d times are a Poisson count with exposure, so points without a
+clog inform the curve as bounds. log lambda is a Gaussian process over the logarithm of the key. The other physical keys
+separate curves. A curve needs four values of the key, three of them with clogs; points in no curve are listed with the
+reason. csv and json have the whole curve, at 97 places (25 x 25 with two keys), and those of each mechanism; peaks is a
+CSV table of the peaks alone.
 
 Runs of the same seed met the same obstacles at every value of a key that does not change the array. Then the errors of
-the points are correlated, but the band takes them for independent. Seeds of their own at each value avoid this.
+the points are correlated, but the band assumes that they are independent. Different seeds at each value avoid this.
 """
 
 import argparse
@@ -36,7 +36,7 @@ def crossed_lengths(word: str) -> list[float]:
 def body() -> int:
     parser = command_line.Parser(__doc__)
     parser.add_argument("file", type=pathlib.Path, nargs="*", help="sweep files, fitted as one sweep")
-    parser.add_argument("--key", default="", help="that the curve is drawn over, or two with a comma between")
+    parser.add_argument("--key", default="", help="of the abscissa, or two separated by a comma")
     parser.add_argument("--crossing", type=crossed_lengths, default=[], help="lengths that the curve may cross [sigma; mm for droplets of several sizes]")
     parser.add_argument("--format", default="text", help="text, csv, json or peaks")
     for name, meaning in (("confidence", "of the intervals (0.95)"), ("from-distance", "see clogfit --help [sigma]"), ("dwell", "see clogfit --help [t0]"),

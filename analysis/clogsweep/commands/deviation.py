@@ -1,10 +1,10 @@
-"""Prints Delta_v and Delta_A of a measured passage through a channel from simulated ones, as JSON:
-the relative root-mean-square deviations of speed and shape.
+"""Prints Delta_v and Delta_A, the relative root-mean-square deviations of speed and shape of a measured passage through
+a channel from simulated ones, as JSON.
 
   clogfit deviation measured.csv simulated1.csv simulated2.csv
 
-All are CSV files with the header h [sigma], v [v_t], A, or written by clogrun channel. Simulated frames are in the order
-of time and interpolated to the measured h.
+All are CSV files with the header h [sigma], v [v_t], A, or written by clogrun channel. Simulated frames are in the
+order of time and interpolated to the measured h.
 """
 
 from ..calibration import deviation, laboratory, profiles

@@ -1,12 +1,12 @@
-"""Draws the circles of a sweep as one device: where droplets were released, where they clogged and by what, ways of some.
+"""Draws the circles of a sweep as one device: releases, clogs by mechanism, some paths.
 
     clogsweep obstacles=posts.csv box=8 length=20 side-walls=on release=entrance exit=20 seeds=1..20 --output sweep.h5
     python3 -m clogsweep device sweep.h5                 # sweep-device.png, sweep-device.pdf
 
-Each parameter set, such as each line tension, has a panel; of more than six, six are shown, and clogsweep select makes a
-sweep of the others. The lines are ways of runs from the shortest way to the longest, which are replayed (clogrun). The
-colour of a place is the share of such runs whose droplet passed over it. The strip below tells which share of the droplets
-came past each place along the flow. All lengths are in droplet diameters, places are those of the file.
+Each parameter set, such as each line tension, has one of at most six panels; clogsweep select makes a sweep of the
+others. The lines are paths of replayed runs (clogrun), from the shortest to the longest. Colours show the fraction of
+such runs whose droplet passed over a place. The strip below shows the fraction of the droplets that passed each place
+along the flow. All lengths are in droplet diameters, coordinates are those of the file.
 """
 
 import argparse

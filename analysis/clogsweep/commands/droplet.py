@@ -1,17 +1,17 @@
-"""Draws a droplet among obstacles: several moments of one run in one picture, or a film of it.
+"""Draws a droplet among obstacles: several moments of one run in one picture, or a film.
 
     clogrun array --output run.h5 --polygon-interval 5 line-tension=0.3 seeds=4
     python3 -m clogsweep droplet run.h5 --output droplet
     python3 -m clogsweep droplet run.h5 --output droplet --film --colour speed
 
-The flow goes to the right. In a picture the last outline is filled; earlier ones are thin, evenly spaced along the way,
-coloured by time. A film is DROPLET.mp4 if ffmpeg is there, otherwise DROPLET.gif; a name that ends in .mp4 or .gif asks
-for that film, and a film that is there is never replaced. --pictures makes numbered pictures in the folder DROPLET-frames.
-The camera follows the droplet, the way of its centre is a line, and r(t) grows in a corner. The outline has the colour of
-its speed; with --colour mechanism the last frame has that of how the droplet clogged.
+The flow is to the right. In a picture the last outline is filled; earlier ones are thin, evenly spaced along the path,
+coloured by time. A film is DROPLET.mp4 with ffmpeg, otherwise DROPLET.gif; a name that ends in .mp4 or .gif selects the
+format, and an existing film is never replaced. --pictures makes numbered pictures in the folder DROPLET-frames. The
+camera follows the droplet, a line shows the path of its centre, and a corner shows r(t). The outline is coloured by its
+speed; with --colour mechanism the last frame shows the mechanism of the clog.
 
-A film has --most-frames at most. A longer run is thinned; if the droplet moved more than half its width between frames
-then, the film shows the end of the run alone.
+A film has at most --most-frames. A longer run skips frames; if the droplet would move more than half its width between
+frames, the film shows only the end of the run.
 """
 
 import argparse

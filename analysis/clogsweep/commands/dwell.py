@@ -1,11 +1,11 @@
-"""Draws the clogging length against the time after which a droplet that has not moved counts as clogged.
+"""Draws the clogging length vs the waiting time after which a resting droplet counts as clogged.
 
     python3 -m clogsweep dwell sweep.h5        # sweep-dwell.png, sweep-dwell.pdf
 
-An experiment calls a droplet clogged that it has not seen move for a while, though it might move on; the longer the while,
-the longer the length. A curve for each group of runs; every number comes from clogfit --dwell, nothing is fitted here.
-The first time is the shortest of which all rows know who stood for longer, the last is the length of the runs, and the
-length there is that of clogs alone. Bars are confidence intervals; a triangle is a lower bound where no run clogged.
+An experiment calls a droplet clogged that has not moved for a waiting time, although it might move on; the longer the
+time, the longer the length. One curve for each group of runs, from clogfit --dwell. The first time is the shortest for
+which all rows record the dwells, the last is the duration of the runs, with the length of clogs alone. Bars are
+confidence intervals; a triangle is a lower bound where no run clogged.
 """
 
 from ..drawing import dwell

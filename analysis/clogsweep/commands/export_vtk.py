@@ -1,13 +1,13 @@
-"""Writes a run for ParaView: the droplet's outline over time, and what it moves among.
+"""Writes a run for ParaView: the droplet's outline against time, and the obstacles around it.
 
     clogrun array --output run.h5 --polygon-interval 5 line-tension=0.3 seeds=4
     python3 -m clogsweep export-vtk run.h5 --output run
     paraview run.pvd
 
-Makes RUN.pvd, which names every frame with its time, the frames in the folder RUN-vtk, and RUN-obstacles.vtp, to be opened beside it:
-discs and walls (of diameter 0), cut off five diameters from the droplet's way. All are VTK's XML PolyData, as text. An outline
-is the interface that walls meet, vertices and middles of edges in turn. Frames have its points' speed, and, as field data, the columns of
-the trajectory at that time. Units are those of docs/reference/files.md.
+Makes RUN.pvd, which lists every frame with its time, the frames in the folder RUN-vtk, and RUN-obstacles.vtp with discs
+and walls (of diameter 0) within five diameters of the droplet's path. All are VTK's XML PolyData, as text. An outline
+is the refined interface, in which vertices and midpoints of edges alternate. Frames have its points' speed, and, as
+field data, the columns of the trajectory at that time. Units are those of docs/reference/files.md.
 """
 
 import pathlib

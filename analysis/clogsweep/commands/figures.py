@@ -1,11 +1,11 @@
-"""Regenerates a figure of the paper from runs of our own: sweeps, clogfit, picture.
+"""Draws figures of the paper from our own sweeps.
 
     python3 -m clogsweep figures list
     python3 -m clogsweep figures 6c 7c
     python3 -m clogsweep figures all --size full --output results/figures
 
 The same command resumes an interrupted sweep, and never repeats finished runs. Figures that share a sweep run it once.
-Beside FOLDER/SIZE/figure-NAME.png are the same as .pdf, the numbers drawn as .csv, and where they came from as .txt.
+Beside FOLDER/SIZE/figure-NAME.png are the same as .pdf, its numbers as .csv, and their origin as .txt.
 """
 
 import argparse
@@ -26,7 +26,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="reduced: minutes on two cores; full: as published")
     parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="MPI ranks of the sweeps, and runs at a time (2)")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"), help="folder (results/figures)")
-    parser.add_argument("--draw-only", action="store_true", help="run nothing, draw from what is there")
+    parser.add_argument("--draw-only", action="store_true", help="run nothing, draw from existing results")
     parser.add_argument("--profile", type=pathlib.Path, action="append", default=[], metavar="FILE.csv",
                         help="measured passage h [sigma], v [v_t], A to draw in 2, 3 (twice: w = 0.9, 0.7), 4, or to compare with in B2")
     parser.add_argument("--set", action="append", default=[], metavar="[CONFIG:]KEY=VALUE",

@@ -6,9 +6,8 @@
         line-tension=0.03,3 friction=0.01,0.3 --budget 10h -- srun
     python3 -m clogsweep refine lattice-angle --config lattice.cfg --output lattice.h5 --until critical-angle=0.5
 
-The words after -- start clogsweep; without them it runs on one core. The points of all rounds are stored beside the output
-(OUTPUT.refine-*.csv), each round's before it starts. The same command resumes a stopped search; exit codes are those of
-clogsweep.
+The words after -- start clogsweep; without them it runs on one core. The points of a round are stored beside the output
+(OUTPUT.refine-*.csv) before it starts. The same command resumes a stopped search; exit codes are those of clogsweep.
 """
 
 import argparse
@@ -47,7 +46,7 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
                         help="curve=20%%, peak=10%%, crossing=10:5%% or, for a lattice, critical-angle=0.5")
     parser.add_argument("--budget", metavar="H", help="core-hours that all runs may take, e.g. 10h")
     parser.add_argument("--max-hours", type=command_line.between(0, 1e9, "hours"), default=math.inf, metavar="H",
-                        help="stop after so many hours, as after a signal")
+                        help="stop after this number of hours, as after a signal")
     parser.add_argument("--most-seeds", type=command_line.whole(1), metavar="N",
                         help=f"largest number of seeds of a value ({BLOCKS_OF_A_VALUE} times `seeds`)")
     parser.add_argument("--same-seeds", action="store_true", help="all values have the same seeds, not seeds of their own")
@@ -61,7 +60,7 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
 
 
 def numbers(text: str) -> list[float]:
-    """A list of numbers as clogsweep reads it: `0.2,0.3`, `1..50`, `lin(a,b,n)`, `log(a,b,n)`. What is no number is NaN."""
+    """A list of numbers as clogsweep reads it: `0.2,0.3`, `1..50`, `lin(a,b,n)`, `log(a,b,n)`. Other texts are NaN."""
     values: list[float] = []
     for word in map(str.strip, re.split(r",(?![^()]*\))", text)):
         if spaced := SPACED.fullmatch(word):
@@ -145,7 +144,7 @@ def printed_tasks(*command: object) -> str:
 
 
 def _alone() -> dict[str, str]:
-    """In an allocation of several tasks clogsweep takes a single rank for a mistake; here it is meant."""
+    """In an allocation of several tasks clogsweep refuses a single rank; here it is intended."""
     return {name: value for name, value in os.environ.items() if name != "SLURM_NTASKS"}
 
 
@@ -170,7 +169,7 @@ def body() -> int:
 
     with tempfile.TemporaryDirectory(prefix="clogsweep-refine-") as temporary:
         folder = pathlib.Path(temporary)
-        # The same settings and first round have the same rounds, whatever the goal.
+        # The same settings and first round have the same rounds, for any goal.
         content = config + driver.points_text(keys, search.first_round()) + _circles(values["obstacles"])
         name = "refine-" + hashlib.sha256(content.encode(errors="surrogateescape")).hexdigest()[:8]
         beside = folder / name if arguments.dry_run else arguments.output.with_name(f"{arguments.output.name}.{name}")
@@ -203,5 +202,5 @@ def body() -> int:
 
 
 def _circles(name: str) -> str:
-    """What the file of user-supplied circles holds."""
+    """The content of the file of user-supplied circles."""
     return "" if name == "none" else pathlib.Path(name).read_text(encoding="utf-8", errors="surrogateescape")

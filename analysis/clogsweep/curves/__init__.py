@@ -2,7 +2,7 @@
 
 - model: the Gaussian process that is fitted, on numbers alone
 - features: band, peak and crossings of a fitted curve
-- points: which groups of clogfit's table belong to which curve, and why others belong to none
+- points: which groups of clogfit's table belong to a curve, and why others do not
 - answer: the curves of a sweep, as `clogfit curve --format json` prints them
 - table: the same as text and CSV
 """

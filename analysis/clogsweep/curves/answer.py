@@ -22,9 +22,8 @@ CAUSES["broken"] = ("break_up_length", "break_up_length_lower", "break_up_length
 
 def of_sweep(clogfit: pathlib.Path, paths: Sequence[AnyPath], keys: Sequence[str] = (), *options: object,
              crossing: Sequence[float] = ()) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The curves of one or more files as one sweep, and what the model's units are in the laboratory, if it is known.
-    @param keys  see points.find_keys(); @param options  of clogfit
-    @throws UserError; ProgramFailed  with clogfit's reason"""
+    """The curves of one or more files as one sweep, and the model's units in the laboratory, if it is known. @param
+    keys see points.find_keys(); @param options  of clogfit @throws UserError; ProgramFailed with clogfit's reason"""
     fit = fits.told(clogfit, *paths, *options)
     rows = [stored.read_rows(path, clogfit.parent) for path in paths]
     names = [name for name in stored.columns_of(rows[0]) if all(name in stored.columns_of(others) for others in rows)]

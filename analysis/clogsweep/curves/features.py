@@ -1,4 +1,4 @@
-"""What a fitted curve shows: its band, where it is highest, where it crosses a length."""
+"""Features of a fitted curve: its band, its peak, where it crosses a length."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ FIRST_JITTER = 1e-10  # of the largest variance, so that rounding leaves the cov
 
 @dataclasses.dataclass(frozen=True)
 class Peak:
-    """Where a curve is highest. `place` and its interval hold the logarithm of each key; lengths [sigma].
+    """The peak of a curve. `place` and its interval hold the logarithm of each key; lengths [sigma].
 
-    `probability_inside` is the fraction of the curves that the data allow which are highest off the borders of the places.
+    `probability_inside` is the fraction of possible curves whose peak is not at a border of the places.
     """
 
     place: Numbers
@@ -32,7 +32,8 @@ class Peak:
 
 @dataclasses.dataclass(frozen=True)
 class Crossing:
-    """Logarithm of the key at which a curve has a length, and where the band holds it: infinite where it does so at a border."""
+    """Logarithm of the key at which a curve has a length, and its interval from the band: infinite if it extends to a
+    border."""
 
     place: float
     lower: float
@@ -108,13 +109,13 @@ def find_peak(curve: Curve, places: Numbers, confidence: float) -> Peak:
 
 
 def peak_probabilities(curve: Curve) -> Numbers:
-    """The probability that each place is the highest."""
+    """The probability that each place has the peak."""
     return np.bincount(np.argmax(drawn_curves(curve), axis=1), minlength=len(curve.mean)) / NUM_DRAWS
 
 
 def find_crossings(curve: Curve, x: Numbers, length: float, confidence: float) -> list[Crossing]:
-    """Where a curve of one key has a length. Between two places all is a straight line.
-    @param x  logarithms of the key, in increasing order; @param length  [sigma]"""
+    """Where a curve of one key has a length. Between two places the curve is a straight line. @param x  logarithms of
+    the key, in increasing order; @param length  [sigma]"""
     above = curve.mean - np.log(length)
     half = normal_deviate(confidence) * curve.deviation
 
@@ -126,7 +127,7 @@ def find_crossings(curve: Curve, x: Numbers, length: float, confidence: float) -
     for i in np.flatnonzero((above[:-1] < 0) != (above[1:] < 0)):
         is_upward = bool(above[i] < 0)
         before, after = (above + half, above - half) if is_upward else (above - half, above + half)
-        outside_before = np.flatnonzero((before[:i + 1] < 0) == is_upward)  # places left of it whose band lies on the other side
+        outside_before = np.flatnonzero((before[:i + 1] < 0) == is_upward)  # places left of it whose band is on the other side
         outside_after = np.flatnonzero((after[i + 1:] >= 0) == is_upward) + i + 1
         crossings.append(Crossing(zero(above, i), zero(before, outside_before[-1]) if outside_before.size else -np.inf,
                                   zero(after, outside_after[0] - 1) if outside_after.size else np.inf, is_upward))

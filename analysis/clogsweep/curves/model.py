@@ -38,7 +38,7 @@ class Scales:
 
 @dataclasses.dataclass(frozen=True)
 class Points:
-    """What is known: sums over all runs at each place. Points without a clog are bounds, and inform the curve as such.
+    """Data: sums over all runs at each place. Points without a clog are bounds, and inform the curve as such.
 
     `places` has a row for each point and a column for each key, its logarithm; `distances` [sigma].
     @throws ValueError  unless there is a point, and each has a finite place, clogs >= 0 and a positive, finite distance
@@ -57,7 +57,7 @@ class Points:
 
     @property
     def level(self) -> float:
-        """Logarithm of the common clogging length; half a clog where there is none."""
+        """Logarithm of the common clogging length; half a clog if there is none."""
         return float(np.log(self.distances.sum() / max(self.clogs.sum(), 0.5)))
 
 
@@ -149,7 +149,7 @@ def curve_of_scales(points: Points, scales: Scales, places: Numbers) -> Curve:
 
 
 def all_scales(places: Numbers) -> list[Scales]:
-    """Amplitudes and lengths, evenly on a logarithmic scale. A key that has one value has no length."""
+    """Amplitudes and lengths, evenly on a logarithmic scale. A key with one value has no length."""
     ranges = np.ptp(places, axis=0)
     lengths = [[fraction * extent for fraction in RANGE_FRACTIONS] if extent > 0 else [1.0] for extent in ranges]
     return [Scales(amplitude, chosen) for amplitude in AMPLITUDES for chosen in itertools.product(*lengths)]

@@ -1,9 +1,9 @@
-"""Which groups of clogfit's table belong to which curve, and why others belong to none.
+"""Which groups of clogfit's table belong to a curve, and why others do not.
 
-Curves are told apart by what the schema calls physics. A number of the numerics, such as `inertia` or `box`, tells curves
-apart only where the sweep varies it at the same physics: a parameter set may need another box or more time than its
-neighbours. What follows from other parameters (automatic values, the preset's name, the density of a saturated array) never
-does.
+Physical parameters of the schema separate curves. A numerical parameter, such as `inertia` or `box`, separates curves
+only where the sweep varies it at the same physics: a parameter set may need another box or more time than its
+neighbours. Values that follow from other parameters (automatic values, the preset's name, the density of a saturated
+array) never do.
 """
 
 from __future__ import annotations
@@ -48,12 +48,12 @@ def place_of(group: Group, keys: Iterable[Column]) -> list[float]:
 
 
 def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
-    """Does its value follow from others? Not if the sweep gives a list of it."""
+    """Whether its value follows from others. Not if the sweep lists it."""
     return column.get("automatic_in") in ("all", group["model"]) and column["name"] not in fit["lists"]
 
 
 def may_be_key(fit: Fit, column: Column) -> bool:
-    """A number that a user chooses, and that shapes what happens: not one that follows from others."""
+    """A number that a user chooses, and that affects the physics: not one that follows from others."""
     return column.get("parameter_role") == "physics" and column["kind"] != "word" and all(
         group[column["name"]] is not None and not is_automatic(fit, column, group) for group in fit["groups"])
 
@@ -92,7 +92,7 @@ def refuse_key(name: str, fit: Fit) -> Column:
 
 
 def physics_of(fit: Fit, group: Group, keys: Collection[Column]) -> dict[str, Any]:
-    """Values of the physics except the keys, without what follows from others."""
+    """Values of the physical parameters except the keys and what follows from others."""
     values = {column["name"]: group[column["name"]] for column in fit["columns"]
               if column not in keys and column["name"] != "preset" and column.get("parameter_role", "physics") == "physics"
               and not is_automatic(fit, column, group)}
@@ -146,13 +146,13 @@ def told(value: Any) -> str:
 
 
 def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Excluded]]:
-    """The groups of each curve that can be shown, and all others with the reason. `shared` has only what differs."""
+    """The groups of each curve that can be shown, and all others with the reason. `shared` has only the differences."""
     excluded, useful = [], []
     for index, group in enumerate(fit["groups"]):
         if not (group["total_distance"] or 0) > 0:
             excluded.append(Excluded(index, "no run of it has covered any distance"))
         elif group["exit"]:
-            # Its droplets are held at few places, not at random ones: between the values nothing is known.
+            # Few places hold its droplets, so nothing is known between the values.
             excluded.append(Excluded(index, "the array ends at an exit, so its clogs are not at random places"))
         else:
             useful.append(index)
@@ -202,7 +202,7 @@ def seeds_of_groups(fit: Fit, rows: Records) -> list[set[int]]:
 
 
 def have_common_obstacles(members: Members, keys: Iterable[Column], seeds: Sequence[set[int]]) -> bool:
-    """Whether points share seeds, and the obstacles follow from the seed alone: no key shapes the array."""
+    """Whether points share seeds and obstacles: no key shapes the array."""
     if any(key["shapes_array"] for key in keys):
         return False
     own = [seeds[index] for index in members.groups]

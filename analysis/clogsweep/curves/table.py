@@ -34,7 +34,7 @@ def unit_of(answer: dict[str, Any]) -> str:
 
 
 def text(answer: dict[str, Any], crossing: list[float]) -> str:
-    """Peak, crossings and some places of every curve, and what is in none."""
+    """Peak, crossings and some places of every curve, and the points in no curve."""
     keys = answer["keys"]
     lines = [f"lambda vs {' and '.join(keys)}, fitted; {100 * answer['confidence']:g} % intervals"]
     for curve in answer["curves"]:
@@ -101,7 +101,7 @@ def comma_separated(answer: dict[str, Any]) -> str:
 
 
 def peaks(answer: dict[str, Any]) -> str:
-    """A line for every curve: its peak, or none if it may well be highest at a border."""
+    """A line for every curve: its peak, or none if it may be at a border."""
     shared, names = list(answer["curves"][0]["shared"]), [f"{name}{end}" for name in [*answer["keys"], ALL[0]] for end in ("", "_lower", "_upper")]
     found = [(curve["shared"], curve["peak"], curve["peak"]["probability_between_borders"]) for curve in answer["curves"]]
     return _comma_separated([[*shared, *names, "probability_between_borders"], *(

@@ -1,4 +1,4 @@
-"""Areas in a drawing: outlines that are drawn twice, that touch, or of which one is a hole in another."""
+"""Areas in a drawing: outlines that are drawn twice, touch, or are holes in others."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def add(drawing: Drawing, area: Any) -> None:
 
 
 def fill(drawing: Drawing, boundaries: list[Numbers], is_even_odd: bool) -> None:
-    """Adds what a hatch fills. @param is_even_odd  a boundary in another is that of a hole"""
+    """Adds the filled area of a hatch. @param is_even_odd  a boundary in another is that of a hole"""
     boundaries = [corners for corners in boundaries if len(corners) > 2]
     if len(boundaries) == 1:
         drawing.outlines += boundaries
@@ -65,7 +65,7 @@ def fill(drawing: Drawing, boundaries: list[Numbers], is_even_odd: bool) -> None
 
 
 def drop_duplicates(drawing: Drawing) -> None:
-    """Outlines that are drawn twice, and counts them."""
+    """Removes outlines that are drawn twice, and counts them."""
     outlines = drawing.outlines
     step = SAME * max((float(np.abs(outline).max()) for outline in outlines), default=0.0) or 1.0
     kept = {frozenset(map(tuple, np.round(outline / step).astype(np.int64))): outline for outline in outlines}
@@ -74,8 +74,8 @@ def drop_duplicates(drawing: Drawing) -> None:
 
 
 def unite(drawing: Drawing) -> None:
-    """Outlines that touch are one: writers of GDSII cut circles into slices. An outline within another one is not united with
-    it, nor is the edge of the device or a wall."""
+    """Outlines that touch are one: writers of GDSII cut circles into slices. Outlines within others, the edge of the
+    device and walls are not united."""
     outlines = drawing.outlines
     pairs = meeting(outlines)
     if not pairs:
@@ -105,8 +105,8 @@ def unite(drawing: Drawing) -> None:
 
 
 def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
-    """Pairs whose bounding boxes touch, without edges of the device and walls: what is as long as the drawing, and rectangular or as
-    wide as well."""
+    """Pairs whose bounding boxes touch, except edges of the device and walls: outlines as long as the drawing that are
+    rectangular or also as wide."""
     if len(outlines) < 2:
         return []
     lows, highs = (np.array([end(outline, axis=0) for outline in outlines]) for end in (np.min, np.max))
@@ -118,8 +118,8 @@ def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
 
 
 def cut(drawing: Drawing, region: tuple[float, float, float, float], tolerance: float) -> None:
-    """Leaves what is in a region, which becomes the frame: round posts as a whole, and parts of other outlines and of lines.
-    @param region  left, bottom, right, top; @param tolerance  as in fitted_circle()"""
+    """Keeps a region, which becomes the frame: whole round posts, and parts of other outlines and of lines. @param
+    region left, bottom, right, top; @param tolerance  as in fitted_circle()"""
     geometry = library("shapely.geometry", "python3-shapely")
     box = geometry.box(*region)
     number = len(drawing.circles) + len(drawing.outlines) + len(drawing.lines)

@@ -26,7 +26,7 @@ SEGMENTS = 256  # of a circle, where wide lines are curved
 
 
 def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
-    """Circles and closed outlines of the model space, those in blocks, too."""
+    """Circles and closed outlines of the model space, including blocks."""
     ezdxf = library("ezdxf", "python3-ezdxf")
     document = ezdxf.readfile(path)
     found = Drawing([], [], metres_of(document, path), skipped=collections.Counter())
@@ -52,7 +52,8 @@ def metres_of(document: Any, path: pathlib.Path) -> float | None:
 
 
 def visible(entities: Any, layers: Any, parent: str | None, skipped: dict[str, int]) -> Iterator[tuple[Any, str]]:
-    """Entities and their layers, those of blocks in world coordinates. In a block, layer 0 is that of the block's reference.
+    """Entities and their layers, those of blocks in world coordinates. In a block, layer 0 is that of the block's
+    reference.
     @param parent  layer of the block's reference. @throws UserError  if a block is in another file"""
     def count_distorted(part: Any, _: str) -> None:
         skipped[f"{part.dxftype()} in a distorted block"] += 1
@@ -108,7 +109,7 @@ def trace_of(polyline: Any) -> list[Any]:
     """Quadrilaterals that a wide LWPOLYLINE consists of. A DONUT is one, with two arcs."""
     trace, geometry = library("ezdxf.render.trace", "python3-ezdxf"), library("shapely.geometry", "python3-shapely")
     builder = trace.TraceBuilder.from_polyline(polyline, segments=SEGMENTS)
-    faces = builder.faces_wcs(polyline.ocs(), 0.0)  # the elevation is along z, which does not count
+    faces = builder.faces_wcs(polyline.ocs(), 0.0)  # the elevation is along z and does not count
     return [geometry.MultiPoint([(point.x, point.y) for point in face]).convex_hull for face in faces]
 
 

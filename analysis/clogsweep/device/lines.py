@@ -15,7 +15,7 @@ MISSED = 1e-5  # of the size of all lines, by which ends may miss each other
 
 
 def join(drawing: Drawing) -> None:
-    """Moves pieces that close into outlines there; the others remain lines, all of them without shapely."""
+    """Moves pieces that form closed outlines there; the others remain lines, as do all without shapely."""
     pieces = [(kind, piece) for kind, piece in drawing.pieces if np.ptp(piece, axis=0).max() > 0]
     if not pieces:
         return
@@ -41,12 +41,12 @@ def join(drawing: Drawing) -> None:
 
 
 def distinct(shapes: list[Any]) -> list[Any]:
-    """Without lines that are drawn twice."""
+    """Removes lines that are drawn twice."""
     return list({shape.normalize().wkb: shape for shape in shapes}.values())
 
 
 def is_off(outlines: Any, line: Any) -> bool:
-    """Whether most of a line is no part of the outlines."""
+    """Whether most of a line is not part of the outlines."""
     return bool(line.difference(outlines).length > line.length / 2)
 
 

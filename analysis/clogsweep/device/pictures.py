@@ -54,7 +54,7 @@ def read_picture(path: pathlib.Path, posts: str | None) -> Drawing:
 
 
 def are_bright(is_dark: Any) -> bool:
-    """Whether the posts are, on a dark ground. A dark frame around a bright channel is none."""
+    """Whether posts are bright, on a dark ground. A dark frame around a bright channel does not count."""
     border = np.concatenate([is_dark[0], is_dark[-1], is_dark[:, 0], is_dark[:, -1]])
     return bool(border.mean() >= MOST_OF_BORDER and is_dark.mean() > 0.5)
 
@@ -86,8 +86,8 @@ def grey(path: pathlib.Path, tags: dict[int, Any]) -> Numbers:
 
 
 def pixels(path: pathlib.Path, tags: dict[int, Any]) -> tuple[Any, bool]:
-    """Those of a picture, and whether 0 is white. Pillow reads what scikit-image needs another library for: TIFF with LZW or fax
-    compression; it turns 0 to black itself. @throws UserError"""
+    """Those of a picture, and whether 0 is white. Pillow reads what scikit-image needs another library for: TIFF with
+    LZW or fax compression; it turns 0 to black itself. @throws UserError"""
     try:
         return np.asarray(library("skimage.io", "python3-skimage").imread(path)), tags.get(PHOTOMETRIC) == 0
     except ValueError as error:
@@ -110,6 +110,6 @@ def metres_of(path: pathlib.Path, tags: dict[int, Any]) -> float | None:
 
 
 def printed(tags: dict[int, Any]) -> str:
-    """The size of a pixel by the resolution of a TIFF, which is often a printer's."""
+    """The size of a pixel from the resolution of a TIFF, which is often a printer's."""
     metres, number = METRES_IN_TIFF.get(tags.get(RESOLUTION_UNIT, 0), 0.0), float(tags.get(X_RESOLUTION, 0))
     return f" (its resolution would mean {metres / number * 1e6:.6g}um, if that is not a printer's)" if metres and number else ""

@@ -1,4 +1,4 @@
-"""Posts that are not round, as rows of circles along their outline, which overlap and so make a wall without gaps."""
+"""Posts that are not round, as rows of overlapping circles along their outline, which form a wall without gaps."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def shapely(part: str) -> Any:
 
 @dataclasses.dataclass
 class Rows:
-    """What came of the posts, in droplet diameters."""
+    """The resulting posts, in droplet diameters."""
 
     device: Device
     corner: float  # the largest radius of circles in a row
@@ -66,7 +66,7 @@ def valid(polygon: Any) -> Any:
 
 
 def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:
-    """@throws UserError  before rows of so many circles are made that nothing can be done with them"""
+    """@throws UserError before it makes more circles than are usable"""
     number = sum(core.exterior.length / (SPACING * radius) for of_part in all_cores for core, radius in of_part)
     if number > MOST_CIRCLES:
         raise UserError(f"--as-rows needs {number:.2g} circles (at most {MOST_CIRCLES}); give a larger --corner, or check --unit and --droplet")
@@ -87,14 +87,15 @@ def deepest(polygon: Any) -> tuple[Any, float]:
 
 
 def cores(polygon: Any, corner: float) -> list[tuple[Any, float]]:
-    """Where the centres of circles of this radius are that lie within the polygon and touch its outline. A thin polygon gets smaller ones."""
+    """Possible centres of circles of this radius that are within the polygon and touch its outline. A thin polygon gets
+    smaller ones."""
     _, half_width = deepest(polygon)
     radius = min(corner, 0.9 * half_width)
     return [(core, radius) for core in parts(polygon.buffer(-radius))]
 
 
 def of_part(core: Any, polygon: Any, radius: float) -> Numbers:
-    """A row along the edge of a core, and larger circles within, where a droplet would fit."""
+    """A row along the edge of a core, and larger circles in the interior, where a droplet would fit."""
     found = [(x, y, 2 * radius) for x, y in places(core.exterior.simplify(0.01 * radius), SPACING * radius)]
     rest = core
     for _ in range(MOST_FILLERS):

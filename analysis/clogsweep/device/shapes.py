@@ -1,4 +1,4 @@
-"""What a drawing of a device holds: round posts, other outlines, its frame, and the unit of its lengths."""
+"""Content of a drawing of a device: round posts, other outlines, its frame, and its unit of length."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Line = tuple[str, Numbers]  # kind of an object in a drawing, and its points (n,
 
 @dataclasses.dataclass
 class Drawing:
-    """A drawing as a reader finds it. Lengths are in its own unit; y points upwards."""
+    """A drawing as read from its file. Lengths are in its own unit; y points upwards."""
 
     circles: list[tuple[float, float, float]]  # x, y, diameter
     outlines: list[Numbers]  # corners (n, 2); the last one is joined to the first unless the border of a picture cuts it
@@ -109,7 +109,7 @@ class Device:
         return float(gaps.min(initial=np.inf, where=gaps > 0))
 
     def drawn_size(self) -> Numbers:
-        """Length and width of what is drawn: the frame, or else posts and walls without a margin."""
+        """Length and width of the drawing: the frame, or else posts and walls without a margin."""
         if self.has_frame:
             return np.array([self.length, self.width])
         return np.ptp(np.vstack([surroundings(self.circles, self.others), *self.walls]), axis=0)
@@ -154,7 +154,7 @@ def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_pi
 
 
 def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
-    """Points along the edges, evenly: a square's corners alone lie on a circle."""
+    """Evenly spaced points along the edges, because a square's corners alone would be on a circle."""
     ends = np.vstack([outline, outline[:1]]) if is_closed else outline
     ways = np.hypot(*np.diff(ends, axis=0).T)
     places = np.concatenate([[0], np.cumsum(ways)])
@@ -163,8 +163,8 @@ def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
 
 
 def fitted_circle(outline: Numbers, is_closed: bool, tolerance: float) -> tuple[float, float, float] | None:
-    """The circle nearest to an outline by least squares (Kasa's method): x, y, diameter. None if a point deviates
-    by more than `tolerance` times the radius."""
+    """The closest circle to an outline by least squares (Kasa's method): x, y, diameter. None if a point deviates by
+    more than `tolerance` times the radius."""
     points = along_edges(outline, is_closed)
     middle = points.mean(axis=0)
     near = points - middle
@@ -181,8 +181,8 @@ def fitted_circle(outline: Numbers, is_closed: bool, tolerance: float) -> tuple[
 
 
 def edges_among(outlines: list[Numbers], holes: list[Numbers], centres: Numbers) -> tuple[Numbers | None, list[Numbers]]:
-    """The edge of the device, and the outlines that are none: an outline that holds everything else, or a rectangle or hole in it that
-    holds the rest. @param centres  of circles"""
+    """The edge of the device, and the other outlines: an outline that contains everything else, or a rectangle or hole
+    in it that contains the rest. @param centres  of circles"""
     edge: Numbers | None = None
     while (index := holder_among(outlines, centres)) is not None and (edge is None or walls.is_rectangle(outlines[index])):
         edge, outlines = outlines[index], outlines[:index] + outlines[index + 1:]
@@ -193,7 +193,7 @@ def edges_among(outlines: list[Numbers], holes: list[Numbers], centres: Numbers)
 
 
 def holder_among(outlines: list[Numbers], centres: Numbers) -> int | None:
-    """Index of the outline that holds everything else."""
+    """Index of the outline that contains everything else."""
     if len(outlines) + len(centres) < 2:
         return None
     return next((index for index, outline in enumerate(outlines) if holds(outline, [*outlines, centres])), None)
@@ -206,7 +206,7 @@ def holds(outline: Numbers, others: list[Numbers]) -> bool:
 
 
 def distinct(circles: Numbers) -> Numbers:
-    """Without circles that are drawn twice, which may differ by what curves lose in a drawing."""
+    """Removes circles that are drawn twice, which may differ by the inaccuracy of curves in a drawing."""
     kept: list[int] = []
     for index in np.argsort(circles[:, 0], kind="stable"):
         near = np.array(kept[-WINDOW:], dtype=int)
@@ -216,8 +216,8 @@ def distinct(circles: Numbers) -> Numbers:
 
 
 def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float, turns: int) -> Device:
-    """@param metres  in a unit of the drawing; @param droplet  its diameter [m]; @param turns  by 90 degrees counter-clockwise,
-    until the flow goes along +x. @throws UserError  if nothing is there"""
+    """@param metres  in a unit of the drawing; @param droplet  its diameter [m]; @param turns  by 90 degrees
+    counter-clockwise, until the flow is along +x. @throws UserError for an empty drawing"""
     found, others = list(drawing.circles), []
     outlines = drawing.outlines
     edge: Numbers | None = None

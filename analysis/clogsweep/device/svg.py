@@ -22,12 +22,12 @@ METRES_IN_PIXEL = 25.4e-3 / 96
 LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
 PIECES_OF_CURVE = 64  # of each segment: a quarter of a circle is off by 2e-5 of its radius
 NAMESPACE = "{http://www.w3.org/2000/svg}"
-TEMPLATES = [NAMESPACE + name for name in ("symbol", "marker", "mask")]  # drawn only where something refers to them
+TEMPLATES = [NAMESPACE + name for name in ("symbol", "marker", "mask")]  # drawn only if something refers to them
 LINKS = ("href", "{http://www.w3.org/1999/xlink}href")
 
 
 def read_svg(path: pathlib.Path) -> Drawing:
-    """Circles, and closed outlines with their curves, as far as they are visible."""
+    """Visible circles, and closed outlines with their curves."""
     svgelements = library("svgelements", "python3-svgelements")
     root = ElementTree.parse(path).getroot()
     expand(root, {element.get("id"): element for element in root.iter()}, path)
@@ -65,7 +65,7 @@ def read_svg(path: pathlib.Path) -> Drawing:
 
 
 def transform_length(matrix: Any) -> float:
-    """By which a matrix of the library scales lengths, on average."""
+    """Average factor by which a matrix of the library scales lengths."""
     return float(np.sqrt(abs(matrix.determinant)))
 
 
@@ -75,7 +75,7 @@ def is_painted(colour: Any) -> bool:
 
 
 def invisible(element: Any) -> str:
-    """Why a shape is not seen; empty if it is."""
+    """Why a shape is invisible; empty if it is visible."""
     if element.values.get("visibility") in ("hidden", "collapse"):
         return "hidden"
     if number(element.values.get("opacity", "1")) == 0:
@@ -84,7 +84,7 @@ def invisible(element: Any) -> str:
 
 
 def number(text: Any) -> float:
-    """An opacity; 1 if it is none."""
+    """An opacity; 1 for other texts."""
     try:
         return float(str(text).rstrip("%"))
     except ValueError:
@@ -92,15 +92,15 @@ def number(text: Any) -> float:
 
 
 def expand(element: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> None:
-    """Replaces each <use> by a group with a copy of what it refers to, before the library would: it drops those that refer to
-    something below them, draws <symbol> where it is defined, and ignores its viewBox."""
+    """Replaces each <use> by a group with a copy of its target, before the library would: it drops references to
+    elements below them, draws <symbol> where it is defined, and ignores its viewBox."""
     element[:] = [group_of(child, by_id, path) if child.tag == NAMESPACE + "use" else child for child in element if child.tag not in TEMPLATES]
     for child in element:
         expand(child, by_id, path)
 
 
 def group_of(use: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> Any:
-    """@throws UserError  if nothing in the file has the name that it refers to"""
+    """@throws UserError if the file lacks the target"""
     link = next((use.get(name) for name in LINKS if use.get(name)), "")
     if link[:1] != "#" or link[1:] not in by_id:
         raise UserError(f"cannot read {path} (<use> refers to '{link[:60]}', which is not in the file); embed it, or unlink clones, in the drawing program")
@@ -116,8 +116,9 @@ def group_of(use: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> Any:
 
 
 class Clips:
-    """What the clip-path of a shape, or of a group around it, leaves. The library ignores them, so each is drawn as shapes of the
-    group that it clips, where they get its transform; attributes that the library hands on tell which shapes they are and clip."""
+    """The part of a shape inside its clip-path, or that of a group around it. The library ignores clips, so each is
+    drawn as shapes of the clipped group, where they get its transform; attributes that the library keeps mark these
+    shapes and what they clip."""
 
     SHAPE, USED = "clip-shape", "clipped-by"
 
@@ -165,7 +166,7 @@ class Clips:
         return name is not None
 
     def cut(self, found: Drawing, values: dict[str, Any], tag: Any, corners: Numbers) -> None:
-        """Adds what the clips leave of an outline or line."""
+        """Adds the visible part of an outline or line."""
         clips = [self._areas[name] for name in values.get(self.USED, "").split()]
         if len(corners) == 0 or all(len(clip) == 1 and walls.is_rectangle(clip[0][:-1]) and holds(clip[0], [corners]) for clip in clips):
             add(found, corners)

@@ -1,4 +1,4 @@
-"""Side walls that a drawing has as long, thin outlines or as lines: no posts, since side-walls=on makes them."""
+"""Side walls that are drawn as long, thin outlines or as lines: side-walls=on replaces them, so they are not posts."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ FLAT = 0.05  # by which a wall's outline may be off a rectangle [sigma]
 
 
 def among(circles: Numbers, outlines: list[Numbers], lines: list[Numbers], length: float) -> tuple[list[Numbers], list[Numbers]]:
-    """The lower and the upper walls among outlines and lines, the nearest to the posts first, all in droplet diameters. None if there
-    would be no other post."""
+    """The lower and the upper walls among outlines and lines, the nearest to the posts first, all in droplet diameters.
+    None if no other post would remain."""
     flat = [candidate for candidate in [*outlines, *lines] if is_wall(candidate, length)]
     posts = np.array([*circles[:, 1], *(outline.mean(axis=0)[1] for outline in outlines if not is_one_of(outline, flat))])
     if len(posts) == 0:
@@ -28,7 +28,7 @@ def is_one_of(outline: Numbers, others: list[Numbers]) -> bool:
 
 
 def is_wall(outline: Numbers, length: float) -> bool:
-    """A flat rectangle along the flow. A wall with teeth is none."""
+    """A flat rectangle along the flow. A wall with teeth is not one."""
     low, high = outline.min(axis=0), outline.max(axis=0)
     along, across = high - low
     if along < SHARE * length or along < SLENDER * across:

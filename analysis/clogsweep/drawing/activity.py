@@ -1,4 +1,4 @@
-"""How many ranks of a sweep were busy over the time of its sessions, and what was lost when they were not."""
+"""How many ranks were busy during the sessions of a sweep, and the time lost by idle ones."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ UNITS = [("s", 1.0, 120.0), ("min", 60.0, 7200.0), ("h", 3600.0, float("inf"))] 
 
 
 def sessions_of(attributes: dict[str, str]) -> list[Session]:
-    """The sessions of a sweep's file in which something ran; files of older programs have none."""
+    """The sessions of a sweep's file in which a task ran; files of older programs have none."""
     lines = attributes.get("activity", "").splitlines()
     return [session for session in map(json.loads, lines) if session["seconds"] > 0 and any(session["busy"])]
 

@@ -1,4 +1,4 @@
-"""Which droplets break up on a single obstacle, against the symmetry of the collision, and how many."""
+"""Break-up of droplets on a single obstacle vs the symmetry of the collision, and its probability."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Clogged droplets of a sweep, replayed until they rest, and what holds each of them."""
+"""Clogged droplets of a sweep, replayed until they rest, and their mechanisms."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ def of_polygons(rows: Records, path: object) -> list[np.void]:
 
 
 def mechanism_of(row: np.void) -> str:
-    """The mechanism by clogfit's name: `other`, if it is none of the three."""
+    """The mechanism by clogfit's name: `other` if it is none of the three."""
     name = stored.text(row["mechanism"])
     return name if name in MECHANISMS else "other"
 
 
 def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: Collection[int] | None, most: int) -> list[np.void]:
-    """@param rows  clogs of the sweep. @throws UserError  where there is none, or not all of the tasks"""
+    """@param rows  clogs of the sweep. @throws UserError if there are none, or not all of the tasks"""
     if not rows:
         raise UserError(f"{path} holds no clogged polygon (soft disks do not count); resume it, or sweep with a longer max-time into another file")
     if mechanism not in (None, *MECHANISMS):
@@ -118,7 +118,7 @@ class Clogs(Sequence[Clog]):
 def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, source: str, row: np.void, folder: str) -> Clog:
     """@throws ProgramFailed"""
     output = pathlib.Path(folder) / f"{row['task']}.h5"
-    # A certified row describes an equilibrium that the run ends before.
+    # A certified row describes an equilibrium, before which the run ends.
     replays.replay(clogrun, sweep, row["task"], output, "--to-rest", "--polygon-interval", "1e9", "--sample-interval", "1e9")
     with stored.opened(output) as file:
         return Clog(row, trajectory.refined(file["polygons"][-1], row), file["obstacles"][:], file["wedges"][:] if "wedges" in file else np.empty((0, 6)), source)
@@ -155,7 +155,7 @@ def distances_to_wedge(polygon: Numbers, wedge: Numbers) -> Numbers:
 
 
 def overlaps(clog: Clog) -> Numbers:
-    """How deep every obstacle, then every wedge (rows), is in the contact of every edge (columns) [sigma]; above 0 they touch."""
+    """Overlap of every obstacle, then every wedge (rows), with every edge (columns) [sigma]; above 0 they touch."""
     surfaces = [distances(clog.polygon, obstacle) for obstacle in clog.obstacles]
     surfaces += [distances_to_wedge(clog.polygon, wedge) for wedge in clog.wedges]
     return clog.row["contact_range"] - np.array(surfaces)
@@ -170,7 +170,7 @@ def title(row: np.void) -> str:
 
 
 def draw(axes: Axes, clog: Clog) -> None:
-    """Draws around the droplet's middle. All panels have one shape: titles over flat ones would leave the sheet."""
+    """Draws around the droplet's middle. All panels have one shape: titles above flat ones would exceed the sheet."""
     polygon = clog.polygon
     low, high = polygon.min(axis=1), polygon.max(axis=1)
     middle, half = (low + high) / 2, (high - low).max() / 2 + 0.3

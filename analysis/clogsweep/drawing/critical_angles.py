@@ -1,4 +1,4 @@
-"""Critical angles of lattices against line tension, or what else varies."""
+"""Critical angles of lattices vs line tension, or another parameter."""
 
 import pandas
 from matplotlib.axes import Axes

@@ -7,7 +7,7 @@ from . import lengths, migration
 
 
 def draw_on(axes: Axes, groups: Groups) -> None:
-    """Draws how far droplets migrate sideways in lattices, and their clogging lengths elsewhere."""
+    """Draws lateral displacement for lattices, and clogging lengths otherwise."""
     (migration if groups.are_lattices else lengths).draw_on(axes, groups)
 
 

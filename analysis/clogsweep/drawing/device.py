@@ -1,4 +1,4 @@
-"""What happened in a device: where droplets of a sweep were released, where they passed, and where they clogged."""
+"""A device: where droplets of a sweep were released, where they passed, and where they clogged."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def panel_label(groups: Groups, member: Group) -> str:
 
 @dataclasses.dataclass
 class Part:
-    """The runs of one parameter set in a device, and the ways of some."""
+    """The runs of one parameter set in a device, and some paths."""
 
     label: str
     place: Place
@@ -117,7 +117,7 @@ def the_place(path: AnyPath, folder: AnyPath | None = None) -> Place:
 
 
 def chosen(rows: Records, number: int) -> list[np.void]:
-    """Runs whose ways are to be shown, evenly among all that are over, from the shortest way to the longest."""
+    """Runs whose paths are shown, evenly among all that are over, from the shortest to the longest."""
     over = np.sort(rows[np.isin(rows["status"], [b"clogged", b"flowing", b"passed", b"broken"])], order=["distance", "task"])
     return evenly(list(over), number)
 
@@ -130,7 +130,7 @@ def evenly(members: list[T], number: int) -> list[T]:
 
 
 def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: int, jobs: int) -> list[Numbers]:
-    """Places of the centre on the way (n, 2), from replayed runs."""
+    """Places of the centre along the path (n, 2), from replayed runs."""
     rows = chosen(place.rows, number)
     if not rows:
         return []
@@ -157,7 +157,7 @@ def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: path
 
 
 def unbroken(points: Numbers, place: Place) -> Numbers:
-    """A way in the device, with a gap wherever it leaves at one side and comes in at the other."""
+    """A path in the device, with a gap wherever it leaves at one side and enters at the other."""
     inside = place.wrapped(points)
     jumps = np.flatnonzero((np.abs(np.diff(inside, axis=0)) > [place.length / 2, place.width / 2]).any(axis=1)) + 1
     return np.insert(inside, jumps, np.nan, axis=0)
@@ -182,7 +182,7 @@ def draw_ends(axes: Axes, place: Place) -> None:
 
 
 def came_past(place: Place) -> tuple[Numbers, Numbers]:
-    """Places along the flow, and the number of droplets that came past each, at least once."""
+    """Places along the flow, and the number of droplets that passed each at least once."""
     cells = np.linspace(0, place.length, 201)
     middles = (cells[1:] + cells[:-1]) / 2
     if place.exit > 0:
@@ -195,7 +195,7 @@ def came_past(place: Place) -> tuple[Numbers, Numbers]:
 
 
 def draw_passages(axes: Axes, parts: Sequence[Part]) -> None:
-    """The droplets that came past each place along the flow, divided by those released."""
+    """The droplets that passed each place along the flow, divided by those released."""
     for number, part in enumerate(parts):
         middles, counts = came_past(part.place)
         axes.step(middles, counts / len(part.place.rows), where="mid", color=colour_of(number, len(parts)), linewidth=1.2, label=part.label)
@@ -211,7 +211,8 @@ def colour_of(number: int, count: int) -> Any:
 
 
 def passages(place: Place, ways: Sequence[Numbers]) -> Numbers:
-    """Share of the droplets that passed over each cell (y, x) of the device, each taken as a disk of its diameter around its centre."""
+    """Fraction of the droplets that passed over each cell (y, x) of the device, each as a disk of its diameter around
+    its centre."""
     rows, columns = (max(1, round(size / CELL)) for size in (place.width, place.length))
     reach = np.arange(-int(0.5 / CELL), int(0.5 / CELL) + 1)
     disk = np.array([(i, j) for i in reach for j in reach if np.hypot(i, j) * CELL < 0.5])
@@ -230,7 +231,7 @@ def passages(place: Place, ways: Sequence[Numbers]) -> Numbers:
 
 
 def along(way: Numbers) -> Numbers:
-    """With further points where two are farther apart than a cell."""
+    """Adds points where two are farther apart than a cell."""
     ways = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))])
     wanted = np.linspace(0, ways[-1], int(ways[-1] / CELL) + 2)
     return np.column_stack([np.interp(wanted, ways, way[:, axis]) for axis in (0, 1)])
@@ -244,7 +245,7 @@ def draw_map(axes: Axes, part: Part) -> AxesImage:
 
 
 def draw_scale(figure: Figure, panels: Sequence[Axes], drawn: AxesImage, parts: Sequence[Part]) -> None:
-    """What the colours of the maps say."""
+    """Explains the colours of the maps."""
     counts = {len(part.mapped) for part in parts if part.mapped}
     most = ("" if len(counts) == 1 else "up to ") + rounded.counted(max(counts), "droplet")
     scale = figure.colorbar(drawn, ax=list(panels), pad=0.01, fraction=0.05)

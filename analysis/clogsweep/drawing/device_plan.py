@@ -1,4 +1,4 @@
-"""A device on paper: posts, edges, the direction of the flow; and what was understood of a drawing."""
+"""A device on paper: posts, edges, the direction of the flow; and the interpretation of a drawing."""
 
 from __future__ import annotations
 
@@ -52,7 +52,8 @@ def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> No
 
 
 def rings_among(circles: Numbers) -> list[Numbers]:
-    """Closed chains of overlapping circles, as centres (n, 2), to be drawn filled: droplets meet the post, not the space inside."""
+    """Closed chains of overlapping circles, as centres (n, 2), drawn filled, because droplets meet the post, not the
+    space inside."""
     def overlap(i: int, j: int) -> bool:
         return bool(np.hypot(*(circles[i, :2] - circles[j, :2])) < max(circles[i, 2], circles[j, 2]) / 2)
 
@@ -67,8 +68,8 @@ def rings_among(circles: Numbers) -> list[Numbers]:
 
 
 def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[Numbers] = ()) -> None:
-    """The edge of the device, and what is beside it. @param beside  lines to be in the picture, too, unless they are farther away
-    than the device is large"""
+    """The edge of the device, and its surroundings. @param beside  lines to include in the picture, unless they are
+    farther away than the size of the device"""
     axes.add_patch(Rectangle((0, 0), length, width, fill=False, edgecolor="0.3", linestyle=line))
     size = np.array([length, width])
     points = np.clip(np.vstack([np.zeros(2), size, *beside]), -size, 2 * size)
@@ -87,7 +88,7 @@ def draw_flow(axes: Axes, points_below: float) -> None:
 
 
 def understood(device: Device, source: str) -> Figure:
-    """Posts grey, what is not round red, the edge dashed. @param source  name of the drawing"""
+    """Posts grey, other shapes red, the edge dashed. @param source  name of the drawing"""
     figure, (axes,) = axes_for(device.length, device.width)
     draw_posts(axes, device.circles)
     for outline in device.others:

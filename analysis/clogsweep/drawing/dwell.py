@@ -1,4 +1,4 @@
-"""The clogging length against the time after which a droplet that has not moved counts as clogged."""
+"""The clogging length vs the waiting time after which a resting droplet counts as clogged."""
 
 from collections.abc import Sequence
 
@@ -23,7 +23,7 @@ def times_of(groups: Groups) -> list[float]:
     first, last = max(known), max(groups.values("max_time"))
     if not 0 < first < last:
         raise UserError(f"cannot draw dwells (they are known from {first:.4g} t0 on, and no run is longer); make max-time longer")
-    # Ends as they are: a first time that is rounded down would be refused.
+    # Exact ends, because a first time that is rounded down would be refused.
     return [first, *np.geomspace(first, last, NUM_TIMES)[1:-1].tolist(), last]
 
 
@@ -48,11 +48,11 @@ def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
 
 
 def add_laboratory(axes: Axes, groups: Groups) -> None:
-    """Second scales in millimetres and seconds, where the sweep or clogfit was given a laboratory."""
+    """Second scales in millimetres and seconds, if the sweep or clogfit has a laboratory."""
     lab = groups.laboratory
     if length := lab.get("length_mm"):
         add_scale(axes, "right", length, LABORATORY["length"])
     speeds = groups.values("terminal_speed")
     if length and (speed := lab.get("speed_mm_per_s")) and len(speeds) == 1:
-        # Overdamped: times scale with the terminal speeds of both.
+        # Motion is overdamped, so times scale with the ratio of the terminal speeds.
         add_scale(axes, "top", speeds.pop() * length / speed, LABORATORY["time"])

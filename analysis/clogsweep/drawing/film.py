@@ -1,4 +1,4 @@
-"""A film of one droplet: the camera follows it, r(t) grows beside it, and the last frame says how it ended."""
+"""A film of one droplet: the camera follows it, r(t) grows beside it, and the last frame shows how it ended."""
 
 import pathlib
 import shutil
@@ -40,8 +40,8 @@ SHADES = 96  # of the first frame and of the colour bar in a palette
 
 
 def chosen_frames(run: trajectory.Trajectory, most: int) -> npt.NDArray[np.int64]:
-    """Every n-th frame, at most `most` of them. If the droplet moves too far in n frames, n is smaller and the film shows
-    only the end of the run."""
+    """Every n-th frame, at most `most` of them. If the droplet moves too far in n frames, n is smaller and the film
+    shows only the end of the run."""
     count = len(run.times)
     way = np.abs(np.diff(trajectory.centroids(run.polygons), axis=0)).sum()
     step = max(1, -(-(count - 1) // max(1, most - 1)))
@@ -56,19 +56,19 @@ def smoothed(values: Numbers, width: int) -> Numbers:
 
 
 class Camera:
-    """Follows the droplet without haste, and steps back from a long one."""
+    """Follows the droplet smoothly, and zooms out for a long one."""
 
     HALF_HEIGHT = 2.0  # at least [sigma]
     LEAD = 0.12  # of the width: more is seen ahead of the droplet than behind it
 
     def __init__(self, polygons: Numbers, frames_of_a_turn: int, aspect: float) -> None:
-        """@param aspect  width over height of what it sees"""
+        """@param aspect  width divided by height of its view"""
         low, high = polygons.min(axis=2), polygons.max(axis=2)
         length, height = (high - low).T
         half_height = np.maximum(self.HALF_HEIGHT, 0.75 * np.maximum(length / aspect, height))
         self._aspect = aspect
         self._middle = np.stack([smoothed(middle, frames_of_a_turn) for middle in ((low + high) / 2).T], axis=1)
-        # Averages the largest nearby, so that it is nowhere too small.
+        # Averages the local maxima, so that it is never too small.
         self._half_height = smoothed(ndimage.maximum_filter1d(half_height, 2 * frames_of_a_turn + 1, mode="nearest"), frames_of_a_turn)
 
     def corners(self, frame: int) -> tuple[Numbers, Numbers]:
@@ -96,14 +96,14 @@ class Layer:
 
 
 def pixels_of(figure: Figure) -> Pixels:
-    """The pixels as drawn so far; further drawing changes them."""
+    """The pixels drawn so far; further drawing changes them."""
     return np.asarray(figure.canvas.buffer_rgba())
 
 
 class Film:
     """One canvas on which a droplet moves from frame to frame.
 
-    Only what moves is drawn for each: all of the figure would take four times as long.
+    Only moving parts are redrawn: the whole figure would take four times as long.
 
     @param colour  "speed": the outline has the colour of its speed; "mechanism": the last frame shows how it clogged
     @param size  of SIZES
@@ -134,7 +134,8 @@ class Film:
         self._separate(inset, arrow)
 
     def _separate(self, inset: list[Artist], arrow: list[Artist]) -> None:
-        """Separates what lies still from what moves. The bar is as long as the droplet is wide: it changes when the camera steps back."""
+        """Separates the static from the moving parts. The bar is as long as the droplet is wide, so it changes when the
+        camera zooms out."""
         under = [*self._axes.patches[:self._num_walls], self._obstacles, self._trail, self._inside, self._outline, self._frame]
         over = [self._course, self._head, self._clock, self._verdict]
         for artist in (*under, *inset, *arrow, *over, self._bar):
@@ -161,7 +162,7 @@ class Film:
         self._speeds = None
         if colour == "speed":
             self._speeds = trajectory.interface_speeds(self._run) / self._run.row["terminal_speed"]
-            # A few fast moments would leave the rest dark.
+            # Otherwise a few fast moments would leave the rest dark.
             self._outline.set_norm(matplotlib.colors.Normalize(0, max(1e-3, np.percentile(self._speeds, 98))))
             self.figure.colorbar(self._outline, cax=self.figure.add_axes((0.92, 0.2, 0.012, 0.6)),
                                  label="speed of the interface $/v_t$")
@@ -170,7 +171,7 @@ class Film:
         self._colour_of_the_end = style.MECHANISM_COLOURS.get(self._run.word("mechanism")) if colour == "mechanism" else None
 
     def _draw_course(self) -> list[Artist]:
-        """@return what lies still of it"""
+        """@return its static parts"""
         table = self._run.table
         paper = self._axes.add_patch(Rectangle((0.69, 0), 0.31, 0.37, transform=self._axes.transAxes, facecolor="white", alpha=0.85))
         inset = self._axes.inset_axes((0.745, 0.1, 0.24, 0.25))
@@ -204,7 +205,7 @@ class Film:
             self._show_time(time, float(np.interp(time, table["time"], table["distance"])))
 
     def pixels(self, index: int) -> Pixels:
-        """A drawn frame, until the next one is."""
+        """A drawn frame, valid until the next one."""
         self.show(index)
         canvas = self.figure.canvas
         self._renew_bar()
@@ -242,7 +243,7 @@ class Film:
             self._inside.set_facecolor(self._colour_of_the_end)
 
     def play(self) -> Iterator[Pixels]:
-        """Draws one frame after the other, and tells how far it is."""
+        """Draws one frame after the other, and reports its progress."""
         for index in progress.shown(range(len(self)), "drawing frame", len(self)):
             yield self.pixels(index)
 
@@ -259,8 +260,8 @@ def size_for(path: pathlib.Path | None) -> str:
 
 
 def path_of(output: pathlib.Path) -> pathlib.Path:
-    """The file that a film goes to: the ending that was asked for, or .mp4 with ffmpeg, .gif otherwise.
-    @throws UserError if it cannot be made, or is there"""
+    """The file of a film: with the requested ending, or .mp4 with ffmpeg, .gif otherwise. @throws UserError if it
+    cannot be made, or exists"""
     outputs.refuse_ending(output, *ENDINGS)
     has_ffmpeg = shutil.which("ffmpeg") is not None
     if output.suffix not in ENDINGS:
@@ -273,7 +274,7 @@ def path_of(output: pathlib.Path) -> pathlib.Path:
 
 
 def write_film(film: Film, path: pathlib.Path, rate: int) -> pathlib.Path:
-    """The path leads to a whole film, or to nothing. @param path  see path_of(). @return the file written"""
+    """The path has a complete film, or nothing. @param path  see path_of(). @return the file written"""
     with outputs.replaced(path) as fresh:
         (write_mp4 if path.suffix == ".mp4" else write_gif)(film, fresh, rate)
     return path
@@ -292,20 +293,21 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
                 process.stdin.write(pixels.data)
             process.stdin.close()
         except BrokenPipeError:
-            pass  # ffmpeg has ended, and says why
+            pass  # ffmpeg has ended, and prints why
         if process.wait() != 0:
             said.seek(0)
             raise UserError(f"cannot write {path.name} (ffmpeg: {' '.join(said.read().decode(errors='replace').split())}); look at the folder and its disk")
 
 
 def palette_of(first: Pixels) -> Image.Image:
-    """One palette for all frames: the colours of the first, shades of the colour bar, greys, and colours that come only at the end."""
+    """One palette for all frames: the colours of the first, shades of the colour bar, greys, and colours that only
+    occur at the end."""
     seen = np.reshape(Image.fromarray(first[..., :3]).quantize(SHADES).getpalette()[:3 * SHADES], (-1, 3)) / 255
     bar = style.VIRIDIS(np.linspace(0, 1, SHADES))[:, :3]
     greys = np.repeat(np.linspace(0, 1, 32), 3).reshape(-1, 3)
     ends = matplotlib.colors.to_rgba_array(list(style.MECHANISM_COLOURS.values()))[:, :3]
     all_ = np.concatenate([seen, bar, greys, ends, 0.25 + 0.75 * ends])
-    # Pillow takes what is nearest to some bits of a colour only: white would become a lighter grey.
+    # Pillow compares only some bits of a colour: white would become a lighter grey.
     is_white = all_.min(axis=1) > 0.97
     palette = Image.new("P", (1, 1))
     palette.putpalette([255, 255, 255, *(255 * all_[~is_white]).round().astype(int).ravel().tolist()])
@@ -326,7 +328,7 @@ def write_pictures(film: Film, output: str) -> pathlib.Path:
     for index, pixels in enumerate(film.play()):
         with outputs.replaced(folder / f"{index:05d}.png") as fresh:
             Image.fromarray(pixels[..., :3]).save(fresh)
-    # Frames left from an earlier, longer run are no part of this one.
+    # Frames of an earlier, longer run do not belong to this one.
     for earlier in folder.glob("[0-9]" * 5 + ".png"):
         if int(earlier.stem) >= len(film):
             earlier.unlink()

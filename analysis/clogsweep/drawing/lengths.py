@@ -1,4 +1,4 @@
-"""Clogging lengths and mean speeds against the parameter that a sweep varies, a curve for each obstacle array."""
+"""Clogging lengths and mean speeds vs the varied parameter, a curve for each obstacle array."""
 
 import functools
 import math
@@ -25,7 +25,7 @@ HOLLOW_MARKERS = {
 
 
 def reasons_for_hollow_marker(group: Group) -> list[str]:
-    """The triangle of a group without clogs already says that they are few."""
+    """The triangle of a group without clogs already shows this."""
     return [doubt for doubt in style.doubts(group) if doubt in HOLLOW_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
 
 
@@ -38,9 +38,8 @@ FITTED_TO_COMMON_OBSTACLES = "_fitted, common obstacles"  # likewise, where poin
 
 
 def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> list[str]:
-    """Explains the bars, hollow markers, triangles and dotted lines of draw_lengths() that occur.
-    @param panels  the axes with the curves
-    @return  lines of text"""
+    """Explains the bars, hollow markers, triangles and dotted lines that draw_lengths() drew. @param panels  the axes
+    with the curves @return lines of text"""
     labels = {line.get_label() for axes in panels for line in axes.lines}
     marks = [f"bars: {100 * confidence:g} % confidence intervals"] if any(group["clogs"] > 0 for group in groups) else []
     if any(group["clogs"] == 0 for group in groups):
@@ -64,18 +63,20 @@ def excluded_notes(groups: Groups) -> list[str]:
 
 
 def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
-    """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given"""
+    """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all groups given to
+    draw_lengths()"""
     style.logarithmic_ordinate(axes)
     style.finish(axes, (LABORATORY if groups.are_in_mm else AXES)["length"], groups.caption(), [*length_notes(drawn, groups.confidence, [axes]), *excluded_notes(groups)], drawn, other)
 
 
 def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
                  size: float = 5.5, unit: str = "") -> None:
-    """Clogging lengths with clogfit's intervals, `linestyle` where it is not that of the index, markers of `size` points, in the `unit` that names of columns end with ("_mm"; sigma). The marker is that of what holds most of the clogs; a hollow one is a
-    length in doubt (HOLLOW_MARKERS), a triangle a lower bound, where no run clogged."""
+    """Clogging lengths with clogfit's intervals, `linestyle` if it is not that of the index, markers of `size` points,
+    in the `unit` at the end of column names ("_mm"; sigma). The marker shows the mechanism of most clogs; a hollow one
+    is a length in doubt (HOLLOW_MARKERS), a triangle a lower bound, because no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
-    # NaN where no run clogged: the line breaks there and continues dotted.
+    # NaN if no run clogged: the line breaks there and continues dotted.
     middle, lower, upper = (f"clogging_length{end}{unit}" for end in ("", "_lower", "_upper"))
     lengths = [math.nan if group["clogs"] == 0 else group[middle] for group in groups]
     bars = [[math.nan if group["clogs"] == 0 else abs(group[middle] - group[end]) for group in groups] for end in (lower, upper)]
@@ -84,7 +85,7 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     axes.errorbar(places, lengths, yerr=bars if has_bars else None, color=colour, linestyle=linestyle or line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
                   gid=style.mark("curve", groups))
     for x, y, group in zip(places, lengths, groups):
-        face = "white" if reasons_for_hollow_marker(group) else "auto"  # the colour that the marker has, also later
+        face = "white" if reasons_for_hollow_marker(group) else "auto"  # the marker's colour, also later
         axes.plot(x, y, color=colour, marker=style.MECHANISM_MARKERS[style.main_mechanism(group)], markerfacecolor=face, markersize=size, zorder=3,
                   gid=style.mark("point", [group]) if group["clogs"] > 0 else None)
     if linestyle != "none" and len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
@@ -96,8 +97,9 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
 
 
 def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, column: str = "relative_speed") -> None:
-    """Mean speeds relative to the terminal speed, with standard errors from the scatter between runs; of one run there is none.
-    @param column  "relative_speed", the mean of runs that went far enough to have a speed, as published; or OF_ALL_RUNS, "lateral_slope" """
+    """Mean speeds relative to the terminal speed, with standard errors from the scatter between runs, if there are
+    several. @param column  "relative_speed", the mean of runs that went far enough to have a speed, as published; or
+    OF_ALL_RUNS, "lateral_slope" """
     points = sorted(((place, group) for place, group in zip(places, groups) if group[column] is not None), key=lambda point: point[0])
     known = [group for _, group in points]
     drawn = axes.errorbar(
@@ -107,7 +109,8 @@ def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], in
 
 
 def speed_column(groups: Iterable[Group]) -> str:
-    """The mean of single runs is that of the fast ones, which came far enough before they clogged. Files without dwells have no other mean."""
+    """The mean of single runs represents fast ones, which went far enough before they clogged. Files without dwells
+    have no other mean."""
     return OF_ALL_RUNS if any(group.get(OF_ALL_RUNS) is not None for group in groups) else "relative_speed"
 
 
@@ -116,7 +119,7 @@ def have_speeds(groups: Collection[Group]) -> bool:
 
 
 def speed_notes(groups: Collection[Group]) -> list[str]:
-    """Says what the points of draw_speeds_on() are."""
+    """Explains the points of draw_speeds_on()."""
     if speed_column(groups) == OF_ALL_RUNS:
         return ["way over time of all runs; bars: standard errors"]
     fewer = any(group["relative_speed_runs"] < group["runs"] for group in groups)
@@ -124,7 +127,8 @@ def speed_notes(groups: Collection[Group]) -> list[str]:
 
 
 def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
-    """A second scale in the units of the laboratory, where the sweep or clogfit was given one. @param ordinate  "length" or "speed" """
+    """A second scale in the units of the laboratory, if the sweep or clogfit has one. @param ordinate  "length" or
+    "speed" """
     if upright := groups.laboratory.get({"length": "length_mm", "speed": "speed_mm_per_s"}[ordinate]):
         add_scale(axes, "right", upright, LABORATORY[ordinate])
     tension = groups.laboratory.get("tension_mN_per_m_of_gamma_1")
@@ -133,7 +137,8 @@ def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
 
 
 def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
-    """A second one at this side, "top" or "right", with other units. The first must be done: a change would undo what ticks are like."""
+    """A second one at this side, "top" or "right", with other units. The first must be complete: a change would undo
+    the ticks."""
     upright = side == "right"
     second = (axes.secondary_yaxis if upright else axes.secondary_xaxis)(side, functions=(lambda value: value * factor, lambda value: value / factor))
     axis = second.yaxis if upright else second.xaxis
@@ -153,7 +158,7 @@ def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> 
 
 
 def places(groups: Groups, members: Sequence[Group], index: int, num_curves: int) -> list[float]:
-    """Shifts a curve's points away from those of the others, so that their bars can be told apart."""
+    """Shifts a curve's points away from those of the others, to separate their bars."""
     values = groups.values(groups.abscissa)
     if groups.is_logarithmic():
         return [group[groups.abscissa] * style.side_by_side(index, num_curves, values) for group in members]
@@ -169,7 +174,7 @@ def draw_abscissa(axes: Axes, groups: Groups) -> None:
 
 
 def draw_fitted(axes: Axes, groups: Groups, members: Sequence[Group], index: int) -> bool:
-    """The smooth curve that is fitted through these groups, with its band. @return whether there is one"""
+    """The smooth fitted curve through these groups, with its band. @return whether there is one"""
     fitted = groups.fitted_curve(members)
     if not fitted:
         return False
@@ -183,7 +188,7 @@ def draw_fitted(axes: Axes, groups: Groups, members: Sequence[Group], index: int
 
 
 def draw_on(axes: Axes, groups: Groups) -> None:
-    """Points with their bars; through them fitted curves, or straight lines where there are none."""
+    """Points with their bars, with fitted curves, or else straight lines."""
     def draw_curve(axes: Axes, places: Sequence[float], members: Sequence[Group], index: int, label: str) -> None:
         is_fitted = draw_fitted(axes, groups, members, index)
         draw_lengths(axes, places, members, index, label, linestyle="none" if is_fitted else None, unit="_mm" if groups.are_in_mm else "")

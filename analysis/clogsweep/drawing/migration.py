@@ -1,4 +1,4 @@
-"""How far droplets in lattices migrate sideways, against what the sweep varies: the angle of the rows, as a rule."""
+"""Lateral displacement of droplets in lattices vs the varied parameter, usually the angle of the rows."""
 
 import functools
 import math
@@ -14,7 +14,8 @@ from . import lengths
 
 
 def draw_rows(axes: Axes, groups: Groups) -> bool:
-    """Lines for a droplet that follows the rows, and for one that goes straight on. @return whether the first is drawn"""
+    """Lines for a droplet that follows the rows, and for one that goes straight on. @return whether the first is
+    drawn"""
     angles = [group["lattice_angle"] for group in groups.members]
     axes.axhline(0, color="0.6", linewidth=0.8, linestyle=":", zorder=1)
     dashed: dict[str, Any] = {"color": "0.6", "linewidth": 0.8, "linestyle": "--", "zorder": 1}
@@ -31,7 +32,7 @@ def draw_rows(axes: Axes, groups: Groups) -> bool:
 
 
 def notes(groups: Groups, has_rows: bool) -> list[str]:
-    """Says what is drawn, and for how many droplets it is not known."""
+    """Explains the picture, and counts the droplets without a value."""
     lines = ["dashed: along the rows; " * has_rows + "dotted: straight on; bars: standard errors"]
     unknown = sum(group["lateral_slope"] is None for group in groups.members)
     return lines + ([f"{unknown} of {len(groups.members)} points: no droplet went half a diameter"] if unknown else [])

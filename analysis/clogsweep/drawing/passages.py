@@ -1,4 +1,4 @@
-"""Results of single droplets: their passage through a channel, or their sag on a wall, against what the sweep varies."""
+"""Results of single droplets: their passage through a channel, or their sag on a wall, vs the varied parameter."""
 
 import dataclasses
 import os
@@ -54,7 +54,7 @@ def kind_of(groups: Groups) -> Kind:
 
 
 def share(kind: Kind, members: Sequence[Group]) -> str:
-    """How many of a curve's droplets came where they should."""
+    """How many of a curve's droplets passed, or rest."""
     return f"{sum(group['status'] == kind.goal for group in members)} of {len(members)} {kind.outcomes[kind.goal]}"
 
 
@@ -84,7 +84,7 @@ def draw_curves(axes: Axes, groups: Groups, column: str) -> None:
 
 
 def shares(groups: Groups, value: Callable[[Any], str]) -> list[tuple[str, str]]:
-    """The same for every curve, after what tells it apart. @param value  puts a parameter's in words"""
+    """The same for every curve, after its label. @param value  formats a parameter's"""
     kind, names = kind_of(groups), groups.curve_parameters()
     return [(", ".join(f"{name.replace('_', ' ')} {value(members[0][name])}" for name in names), share(kind, members)) for _, members in groups.curves()]
 

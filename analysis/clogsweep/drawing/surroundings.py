@@ -1,4 +1,4 @@
-"""A droplet among obstacles and walls, and what guides the eye there."""
+"""A droplet among obstacles and walls, with guides for the eye."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +12,7 @@ from .. import style
 from ..reading.trajectory import Trajectory, wedge_outline
 from ..tools.hints import Numbers, Point
 
-HALO = withStroke(linewidth=3, foreground="white")  # of what may lie over obstacles, and hides none of them
+HALO = withStroke(linewidth=3, foreground="white")  # for what may be drawn over obstacles without hiding them
 
 
 def draw_surroundings(axes: Axes, trajectory: Trajectory, origin: Point = (0.0, 0.0)) -> None:
@@ -35,7 +35,8 @@ def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0)
 
 
 def draw_guides(axes: Axes) -> None:
-    """A bar as long as a droplet is wide, and the direction of the flow. Both stay in their corners when axes are moved."""
+    """A bar as long as a droplet is wide, and the direction of the flow. Both stay in their corners when axes are
+    moved."""
     draw_bar(axes)
     arrow = axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
                           arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})

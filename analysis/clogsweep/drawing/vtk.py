@@ -1,4 +1,5 @@
-"""A run for ParaView: the droplet's outline over time, and what it moves among. All files are VTK's XML PolyData, as text."""
+"""A run for ParaView: the droplet's outline against time, and the obstacles around it. All files are VTK's XML
+PolyData, as text."""
 
 import math
 import pathlib

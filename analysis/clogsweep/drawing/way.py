@@ -1,4 +1,4 @@
-"""The way of one droplet among obstacles: several moments of a run in one picture."""
+"""The path of one droplet among obstacles: several moments of a run in one picture."""
 
 import math
 from collections.abc import Iterable
@@ -16,7 +16,7 @@ from . import surroundings
 
 
 def view(run: trajectory.Trajectory) -> tuple[Numbers, Numbers]:
-    """Corners of what the droplet comes to."""
+    """Bounding box of the droplet's surroundings."""
     return run.polygons.min(axis=(0, 2)) - 0.5, run.polygons.max(axis=(0, 2)) + 0.5
 
 
@@ -37,7 +37,7 @@ def draw(run: trajectory.Trajectory, num_outlines: int) -> Figure:
 
 
 def draw_strips(run: trajectory.Trajectory, num_outlines: int) -> Figure:
-    """A long way from the top to the bottom, from the left to the right."""
+    """A long path from the top to the bottom, from the left to the right."""
     low, high = view(run)
     count = min(math.ceil((high[0] - low[0]) / LONGEST_STRIP), MOST_STRIPS)
     ends = np.linspace(low[0], high[0], count + 1)
@@ -75,7 +75,7 @@ def draw_on(axes: Axes, run: trajectory.Trajectory, num_outlines: int) -> None:
     surroundings.draw_guides(axes)
     axes.set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
     draw_outlines(axes, run, trajectory.along_the_way(run.polygons, num_outlines), origin)
-    # The colour bar is as high as the axes, whose shape is given; by default it would be as high as the figure.
+    # The colour bar is as high as the axes, whose shape is fixed; by default it would be as high as the figure.
     axes.figure.colorbar(time_scale(run), cax=axes.inset_axes((1.01, 0, 0.02, 1)), label=r"$t/t_0$")
 
 
@@ -84,7 +84,7 @@ def time_scale(run: trajectory.Trajectory) -> matplotlib.cm.ScalarMappable:
 
 
 def draw_outlines(axes: Axes, run: trajectory.Trajectory, frames: Iterable[int], origin: Point = (0.0, 0.0)) -> None:
-    """The run's last one is filled."""
+    """The run's last outline is filled."""
     for frame in frames:
         x, y = run.polygons[frame] - np.asarray(origin)[:, None]
         share = run.times[frame] / run.times[-1] if run.times[-1] > 0 else 1.0

@@ -1,5 +1,5 @@
-"""What parameters and axes are called. Names, symbols, units and defaults of the parameters are clogsweep's own; clogfit hands
-them on (`columns` of its JSON)."""
+"""Names of parameters and axes. Names, symbols, units and defaults of the parameters are clogsweep's own; clogfit
+passes them on (`columns` of its JSON)."""
 
 import math
 from collections.abc import Collection
@@ -39,7 +39,7 @@ def tex(unit: str) -> str:
 
 
 def number(value: float | None) -> str:
-    # The density of a saturated mixture is not known beforehand: clogfit has no number for it.
+    # The density of a saturated mixture is unknown in advance: clogfit has no number for it.
     return r"\mathrm{saturated}" if value is None else f"{value:.4g}"
 
 
@@ -51,8 +51,8 @@ def is_number(word: str) -> bool:
 
 
 def symbol(column: Column) -> str:
-    """A parameter's symbol divided by its unit, so that a pure number follows; for words, the name itself.
-    A parameter in AXES is a pure number already."""
+    """A parameter's symbol divided by its unit, which gives a pure number; for words, the name itself. A parameter in
+    AXES is already a pure number."""
     if column["symbol"] and column["name"] in AXES:
         return column["symbol"]
     if not column["symbol"]:

@@ -1,4 +1,4 @@
-"""The groups of runs that clogfit tells of: what varies between them, what to draw them against, and how all this is called."""
+"""The groups of a fit: what varies between them, their abscissa, and all labels."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FINISHED = ("passed", "clogged", "broken", "flowing")
 
 
 class Groups:
-    """Groups of one sweep that hold runs, drawn against one of its parameters."""
+    """Groups of one sweep that have runs, drawn vs one of its parameters."""
 
     def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
         """@param fit  the JSON of clogfit; @param circle_files  see stored.circle_files()"""
@@ -42,7 +42,7 @@ class Groups:
         self._ask_for_curves: Callable[[], dict[str, Any]] = lambda: NO_CURVES  # see fit_curves()
 
     def finished(self, source: object = "the sweep") -> Groups:
-        """@throws UserError  if no run of theirs has finished"""
+        """@throws UserError if none of their runs has finished"""
         if not self.members:
             raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
         return self
@@ -56,8 +56,8 @@ class Groups:
         return self
 
     def fit_curves(self, sweep: AnyPath, folder: pathlib.Path) -> Groups:
-        """The same, whose pictures have smooth curves over the abscissa, where these can be drawn.
-        @param sweep  that was fitted; @param folder  of the programs"""
+        """The same with smooth curves as a function of the abscissa, if these can be fitted. @param sweep  that was
+        fitted; @param folder  of the programs"""
         def ask() -> dict[str, Any]:
             from ..curves import answer, points  # SciPy is slow to load
 
@@ -75,15 +75,15 @@ class Groups:
         return self._ask_for_curves()
 
     def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
-        """The fitted curve through these groups, if there is one. One through the groups of several curves of a picture belongs
-        to that with its first point."""
+        """The fitted curve through these groups, if there is one. One through the groups of several curves of a picture
+        belongs to that with its first point."""
         for curve in self._fitted["curves"]:
             if any(self._told[curve["points"][0]["group"]] is group for group in members):
                 return curve
         return None
 
     def excluded_from_curves(self) -> list[str]:
-        """Points through which no fitted curve goes although there are others, each with the reason."""
+        """Points outside all fitted curves, if there are any curves, each with the reason."""
         if not self._fitted["curves"]:
             return []
         points: dict[str, list[str]] = {}
@@ -106,7 +106,7 @@ class Groups:
         return len(self.values(name)) > 1
 
     def follows(self, name: str, others: Iterable[str]) -> bool:
-        """Is this parameter's value known once the others' are?"""
+        """Whether this parameter's value follows from the others'."""
         return fits.follows(self.members, name, others)
 
     def _choose_abscissa(self) -> str:
@@ -125,7 +125,7 @@ class Groups:
         return self.columns[name]["kind"] != "word"
 
     def _is_automatic(self, name: str) -> bool:
-        """Can its values follow from other parameters? Not if the sweep gives a number or a list for it."""
+        """Whether its values can follow from other parameters. Not if the sweep gives a number or a list for it."""
         fillings = self.values("obstacle_filling")
         if name in ("obstacle_gap", "obstacle_density") and fillings == {"file"}:
             return True  # it follows from the circles and the length of their array
@@ -141,12 +141,12 @@ class Groups:
         return share if share.endswith("%") and is_number(share[:-1]) and self.values("obstacle_filling") == {"density"} else ""
 
     def _is_given_number(self, name: str) -> bool:
-        """Does the config have it as a number? A box is one for lattices, too, which have their own."""
+        """Whether the config has it as a number. A box also for lattices, whose own follows."""
         return name != "box" and is_number(self.settings.get(name.replace("_", "-"), ""))
 
     def curve_parameters(self) -> list[str]:
-        """Names of what tells the curves apart."""
-        # A laboratory and circles say more than what follows from them, such as the place of an exit.
+        """Names of the parameters that separate the curves."""
+        # A laboratory and circles include what follows from them, such as the place of an exit.
         told = [name for name in ("laboratory", "obstacles") if self.varies(name)]
         if self.are_in_mm:
             droplet = [name for name in fits.DROPLETS if self.varies(name) and name != self.abscissa]
@@ -154,7 +154,7 @@ class Groups:
         else:
             told += [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
                      and not self._is_automatic(name) and not (told and self.follows(name, told))]
-        # Words and automatic values that follow from what is told say nothing new. A preset says more than its parts.
+        # Words and automatic values that follow from labelled parameters add nothing. A preset includes its parts.
         rest = [name for name in self.columns if name not in told and name != self.abscissa]
         for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):
             if not self.follows(name, [self.abscissa, *told]):
@@ -170,24 +170,24 @@ class Groups:
         return said(self.columns[name], self.named(name, value))
 
     def named(self, name: str, value: Any) -> Any:
-        """A parameter's value, and for the check sum of circles the name of their file, if it is known."""
+        """A parameter's value; for the checksum of circles the name of their file, if it is known."""
         return self._circle_files.get(value, value) if name == "obstacles" else value
 
     def laboratory_label(self, check_sum: str) -> str:
-        """What distinguishes a laboratory from the others; of a single one all its parts."""
+        """The entries in which a laboratory differs from the others; all entries of a single one."""
         parts = {one: text.split("; ") for one, text in self.laboratories.items()}
         own = [part for part in parts[check_sum] if not all(part in other for other in parts.values())]
         return "; ".join(own or parts[check_sum])
 
     def distinguishing(self) -> list[str]:
-        """Names of the parameters that tell the groups apart. What only one model has, the model tells."""
+        """Names of the parameters in which the groups differ. The model's name covers parameters of one model only."""
         names = [name for name in [self.abscissa, *self.curve_parameters()] if name != "model" and self.varies(name)]
         if not self.varies("model"):
             return names
         return ["model", *(name for name in names if len(self.values(name) - {None}) > 1)]
 
     def row_values(self, member: Group) -> dict[str, Any]:
-        """What the rows of a group have, and no others. A value that clogfit does not know, such as the density of a saturated
+        """Parameters that the rows of a group have. A value unknown to clogfit, such as the density of a saturated
         array, follows from the others; so does one that the model of these runs lacks."""
         values = member.get("in_table", member)
         names = [name for name in self.distinguishing() if name not in fits.DROPLETS] + (["laboratory"] if self.are_in_mm else [])
@@ -199,7 +199,7 @@ class Groups:
         return ", ".join(self.said(name, member[name]) for name in self.distinguishing() if name not in is_lacking)
 
     def abscissa_key(self) -> str:
-        """What a column of the user's own calls the abscissa."""
+        """The name of the abscissa as a column of the user's table."""
         return fits.DROPLETS[self.abscissa]["key"] if self.abscissa in fits.DROPLETS else self.abscissa
 
     def axis_label(self) -> str:

@@ -1,6 +1,7 @@
-"""A figure as a drawing inside a page: its colours follow light and dark, and what stands for groups says so.
+"""A figure as a drawing inside a page: its colours follow light and dark mode, and elements that represent groups are
+marked.
 
-What that is, the drawing functions say themselves, by style.mark().
+The drawing functions mark these by style.mark().
 """
 
 import io
@@ -44,7 +45,7 @@ def mixed(colour: Colour, other: Colour, share: float) -> Colour:
 
 
 def in_the_dark(colour: Colour) -> Colour:
-    """Greys are turned round, from white paper and black ink; other colours get as much lighter as it takes to see them."""
+    """Greys are inverted, from white paper and black ink; other colours are made lighter until they are visible."""
     if len(set(colour)) == 1:
         return mixed(DARK_INK, DARK_PAPER, colour[0] / 255)
     shares = (step / 20 for step in range(21))
@@ -67,8 +68,8 @@ class Charts:
     def draw(self, figure: Figure, caption: str) -> str:
         """@return an element of HTML"""
         out = io.StringIO()
-        # Letters as shapes: fonts of another machine would put those of a formula over each other. A salt of its own
-        # would give what is the same in two charts two names.
+        # Letters as shapes, because fonts of another machine would misplace those of a formula. A salt of its own would
+        # give equal elements of two charts different names.
         with matplotlib.rc_context({"svg.fonttype": "path", "svg.hashsalt": "clogsweep"}):
             figure.savefig(out, format="svg", transparent=True, metadata={"Date": None})
         ElementTree.register_namespace("", SVG)
@@ -86,7 +87,7 @@ class Charts:
         return ElementTree.tostring(root, encoding="unicode")
 
     def colours(self) -> tuple[str, str]:
-        """Declarations of CSS for the colours of what is drawn so far: in the light, in the dark."""
+        """Declarations of CSS for the colours drawn so far, in light and dark mode."""
         def declared(colours: Iterable[tuple[str, Colour]]) -> str:
             return " ".join(f"--c{name}: #{''.join(f'{round(channel):02x}' for channel in colour)};" for name, colour in colours)
 
@@ -94,7 +95,8 @@ class Charts:
         return declared(named.items()), declared((name, in_the_dark(colour)) for name, colour in named.items())
 
     def _rename(self, root: ElementTree.Element) -> None:
-        """Names of colours for colours; no names for what nothing refers to; clips, which may have those of another chart's, get their own."""
+        """Replaces colours by names, removes unused names, and renames clips, which may have the names of another
+        chart's."""
         for node in root.iter():
             node.text = node.tail = None  # line breaks
             if HREF in node.attrib:
@@ -146,7 +148,7 @@ class Charts:
             node.append(inner)
 
     def _point(self, group: str, kind: str, parts: Iterable[ElementTree.Element]) -> ElementTree.Element:
-        """The part that a mouse or the keyboard can choose."""
+        """The part that a mouse or the keyboard can select."""
         label = self._labels[int(group)]
         made = element("g", tabindex="0", role="img", aria_label=label, data_groups=group, **{"class": kind})
         title = element("title")

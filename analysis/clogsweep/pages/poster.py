@@ -1,4 +1,4 @@
-"""A poster of a sweep: one page with its curves, some of its droplets, and where the numbers came from."""
+"""A poster of a sweep: one page with its curves, some of its droplets, and the origin of its numbers."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
 
 
 def of_laboratory(groups: Groups) -> str:
-    """A line that says what the model's units are there; nothing without one."""
+    """A line with the model's units there; nothing without a laboratory."""
     lab = groups.laboratory
     if not lab:
         return ""
@@ -143,5 +143,5 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path, *options: object) -> Figure:
         title, words = f"{curve.heading(groups).capitalize().removesuffix(' per distance')} vs {abscissa}", {"flowing": "still going"}
         rows = of_lengths(groups.with_lengths(sweep), sweep, folder / "clogrun")
     head = f"{groups.caption()}\n{of_laboratory(groups)}{counted(stored.read_table(sweep, folder), words)}"
-    groups.tells_what_all_share = False  # the head does, panels need not
+    groups.tells_what_all_share = False  # the head has them, so panels need none
     return page(title, head, rows, literal(cut(stored.source(about))))

@@ -1,4 +1,4 @@
-"""One page about a sweep: curves, table, example clogs or outlines, doubts, where the numbers came from."""
+"""One page about a sweep: curves, table, example clogs or outlines, doubts, the origin of its numbers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,8 @@ def framed(content: str, caption: str, kind: str = "") -> str:
 
 
 def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """P(r) of one curve's members to their longest ways, each with the exponential of its length if it is known."""
+    """P(r) of one curve's members to their longest distances, each with the exponential of its length if it is
+    known."""
     begin = min(0.01 * (group["clogging_length"] or survival_curve.longest_way(group)) for group in members)
     for group, colour in zip(members, style.VIRIDIS(np.linspace(0, 0.9, len(members)))):
         if group["survival"]:
@@ -57,7 +58,7 @@ def mark_steps(axes: Axes) -> None:
 
 
 def occurring_causes(members: Sequence[Group]) -> list[str]:
-    """Words of clogfit for what ended runs of these groups, in the order of their colours."""
+    """Words of clogfit for the causes that ended runs of these groups, in the order of their colours."""
     return [name for name in style.CAUSE_COLOURS if any(name in group["incidence"] for group in members)]
 
 
@@ -87,12 +88,12 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
 
 
 def with_runs(members: Sequence[Group]) -> list[Group]:
-    """Without groups all of whose droplets met no obstacle."""
+    """Excludes groups all of whose droplets met no obstacle."""
     return [group for group in members if group["runs"]]
 
 
 def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """How the runs of one curve ended, as shares. @param members  see with_runs()"""
+    """How the runs of one curve ended, as fractions. @param members  see with_runs()"""
     ranks, base = np.arange(len(members)), np.zeros(len(members))
     shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
               for name, colour in style.CAUSE_COLOURS.items()}
@@ -120,7 +121,8 @@ def length(group: Group) -> str:
 
 
 def speed(group: Group) -> str:
-    """The speed of all runs, way divided by time; also the mean of single runs, where only some came far enough to have a speed."""
+    """The speed of all runs, distance divided by time; also the mean of single runs, if only some went far enough to
+    have a speed."""
     runs = rounded.counted(group["relative_speed_runs"], "run")
     mean = None if group["relative_speed"] is None else rounded.with_error(group["relative_speed"], group["relative_speed_error"])
     if group.get(lengths.OF_ALL_RUNS) is None:
@@ -131,7 +133,7 @@ def speed(group: Group) -> str:
 
 
 def laboratory_columns(groups: Groups) -> dict[str, str]:
-    """Headings of what a table has in laboratory units, by column."""
+    """Headings of a table's columns in laboratory units."""
     named = {"tension_mN_per_m": "tension [mN/m]", "clogging_length_mm": "&lambda; [mm]", "speed_mm_per_s": "v<sub>g</sub> [mm/s]", "time_to_clog_s": "time to clog [s]"}
     if not any("laboratory_scale" in group for group in groups.members):
         return {}
@@ -165,7 +167,7 @@ def parameters(groups: Groups) -> list[str]:
 
 
 def seeds_of(values: dict[str, Any], rows: pandas.DataFrame) -> str:
-    """@param values  that tell the rows of a group from others"""
+    """@param values  in which the rows of a group differ from others"""
     of_group = rows
     for name, value in values.items():
         of_group = of_group[of_group[name] == value]
@@ -182,7 +184,7 @@ def doubts_of(group: Group, sentences: dict[str, str]) -> str:
 
 
 def table_cell(text: str) -> str:
-    """In HTML. What is in brackets moves to lines of its own in a narrow table."""
+    """In HTML. In a narrow table the part in brackets moves to a line of its own."""
     number, space, rest = text.partition(" (")
     if not rest:
         return f"<td>{html.escape(text)}</td>"
@@ -190,7 +192,7 @@ def table_cell(text: str) -> str:
 
 
 def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequence[str]) -> str:
-    """Every number of the page; what points show of it, and how it is sorted, is in `page.js`.
+    """Every number of the page; `page.js` shows them at points, and sorts them.
 
     @param titles  in HTML; @param lines  cells of each group; @param doubts  of each, in HTML
     """
@@ -234,9 +236,9 @@ def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.Data
 
 
 def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
-    """Clogs to be shown: the typical one of every mechanism, the others spread from the least to the most deformed.
+    """Clogs to show: the typical one of every mechanism, the others spread from the least to the most deformed.
 
-    Those that went a diameter come first: what clogs where it was released tells of its void, not of the array.
+    Those that went a diameter come first: clogs at the release represent its void, not the array.
 
     @param clogs_of_sweep  rows as clogs.of_polygons() gives them
     """
@@ -328,7 +330,7 @@ def label_of_passage(groups: Groups, group: Group) -> str:
 
 
 def of_passages(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
-    """The same of droplets in a channel or on a wall. @param count  outlines to show"""
+    """The same for droplets in a channel or on a wall. @param count  outlines to show"""
     kind = passages.kind_of(groups)
     curves = [framed(charts.draw(style.figure_of(passages.draw_curves, groups, column), name), name) for column, name in passages.drawn_columns(groups).items()]
     with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
@@ -363,7 +365,7 @@ def settings(config: str) -> str:
 
 
 def laboratories_of(groups: Groups) -> list[str]:
-    """What the units of each laboratory are, and its description."""
+    """The units of each laboratory, and its description."""
     lines: dict[str, None] = {}
     for group in groups.members:
         if scale := group.get("laboratory_scale"):
@@ -373,7 +375,7 @@ def laboratories_of(groups: Groups) -> list[str]:
 
 
 def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts, fitted_by: str) -> str:
-    """@param sections  contents by title; @param charts  that they hold; @param fitted_by  version of clogfit"""
+    """@param sections  contents by title; @param charts  in them; @param fitted_by  version of clogfit"""
     def part(ending: str) -> str:
         return pathlib.Path(__file__).with_name(f"page.{ending}").read_text(encoding="utf-8")
 

@@ -53,7 +53,8 @@ def drawing_of(quantity: str) -> Callable[[Axes, Sequence[float], Sequence[Group
 
 
 def finish(axes: Axes, shop: Workshop, config: str, drawn: Sequence[Group], abscissa: str, quantity: str, varied: Sequence[str]) -> None:
-    """Labels of the axes, caption and notes. @param quantity  as of drawing_of(); @param varied  columns that the caption leaves out"""
+    """Labels of the axes, caption and notes. @param quantity  as in drawing_of(); @param varied  columns that the caption
+    excludes"""
     if quantity == "length":
         style.logarithmic_ordinate(axes)
     style.label(axes, AXES[abscissa], AXES[quantity])
@@ -81,7 +82,7 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
 
 
 def enter(name: str, caption: str, config: str, cost: str, *, abscissa: str, parameter: str, quantity: str) -> None:
-    """Enters a figure of curves() into the catalogue."""
+    """Registers a figure of curves() in the catalogue."""
     figure(name, caption, [config], cost)(lambda shop: curves(shop, config, abscissa, parameter, quantity))
 
 
@@ -184,12 +185,12 @@ def sag_picture(shop: Workshop) -> Plate:
 
 # Clogs
 
-CLOGS = "clogging-friction"  # walls with friction hold droplets that wrap, whatever the mesh
+CLOGS = "clogging-friction"  # walls with friction hold droplets that wrap, on any mesh
 
 
 def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pandas.Series]:
-    """A clog of the sweep, replayed with its outline. By squeezing: the stiffest that went at least half a diameter, if any
-    did. By wrapping: the one of median shape, of those that only hang over obstacles, if there are any."""
+    """A clog of the sweep, replayed with its outline. Squeezed: the stiffest that went at least half a diameter, if any
+    did. Wrapped: the one of median shape, of those that only hang over obstacles, if there are any."""
     shop.sweep(CLOGS)
     rows = shop.rows(CLOGS)
     if "mechanism" not in rows or not rows.mechanism.any():
@@ -253,7 +254,7 @@ def two_ways(shop: Workshop) -> Plate:
     for line, mechanism in zip(panels, ["wrapped", "squeezed"]):
         run, row = example(shop, mechanism)
         final = run.polygons[-1].mean(axis=1)
-        # The last diameter and a half of the way.
+        # The last diameter and a half of the path.
         near = np.flatnonzero(np.hypot(*(run.polygons.mean(axis=2) - final).T) > 1.5)
         first = near[-1] + 1 if len(near) else 0
         chosen = first + trajectory.along_the_way(run.polygons[first:], len(line))[-len(line):]
@@ -303,7 +304,7 @@ def kinetic_energy(shop: Workshop) -> Plate:
 
 
 def draw_band(axes: Axes, group: Group) -> None:
-    """The error of P(r), to the longest way."""
+    """The error of P(r), up to the longest distance."""
     steps = group["survival"]
     known = [step for step in steps if step["lower"] is not None]  # not of the last one if no run is left
     end = survival_curve.longest_way(group) if known == steps else steps[-1]["distance"]
@@ -313,7 +314,8 @@ def draw_band(axes: Axes, group: Group) -> None:
 
 
 def lowest_shown(group: Group, end: float) -> float:
-    """The band, the curve and the exponential to the longest way have room above it, those that have come to zero excepted."""
+    """The band, the curve and the exponential up to the longest distance have room above it, except those that have reached
+    zero."""
     lowest = [step[name] for step in group["survival"] for name in ("lower", "probability") if step[name]]
     return 0.7 * min(1.0, *lowest, math.exp(-end / group["clogging_length"]))
 

@@ -24,7 +24,7 @@ def passages(shop: Workshop, name: str, **keys: object) -> list[np.void]:
 
 
 def profiles(shop: Workshop, name: str, outlines: bool = False, **keys: object) -> list[Trajectory]:
-    """The same with h, v and A on the way, and outlines."""
+    """The same with h, v and A along the path, and outlines."""
     rows = passages(shop, name, **keys)
     # Frames a fiftieth of a diameter apart, samples a fifth of that.
     frame = 0.02 / rows[0]["terminal_speed"]
@@ -38,7 +38,7 @@ def parameters(run: Trajectory, orifice: float) -> str:
 
 
 def ending(run: Trajectory) -> str:
-    """A droplet that did not pass is shown as far as it came; its legend says so."""
+    """A droplet that did not pass is shown up to its last position; its legend notes this."""
     return "" if run.word("status") == "passed" else f" (stops at $h = {run.table['h'][-1]:.2f}$)"
 
 
@@ -234,7 +234,7 @@ def near_wall_drag(shop: Workshop) -> Plate:
     alpha, strength = fit["near_wall_exponent"], fit["near_wall_drag"]
     axes.plot(d, d**alpha / strength, color=style.COLOURS[0], linewidth=1,
               label=rf"fit: $\alpha = {alpha:.2f}\pm{fit['near_wall_exponent_error'] or math.nan:.2f}$")
-    # A circle whose vertices feel the drag each: b_0/b_inf times the mean of d_i^-alpha over them.
+    # A circle with drag on each vertex: b_0/b_inf times the mean of d_i^-alpha over them.
     exponent, height = row["near_wall_exponent"], 0.5 * (1 - np.abs(np.sin(np.linspace(0, 2 * np.pi, row["vertices"], endpoint=False))))
     circle = 1 / (row["near_wall_drag"] * np.mean((d[:, None] + height) ** -exponent, axis=1))
     axes.plot(d, circle, ":", color="black", linewidth=1, label="a circle whose every vertex feels it")
@@ -249,7 +249,8 @@ def near_wall_drag(shop: Workshop) -> Plate:
 
 
 def meshes(shop: Workshop) -> dict[int, Trajectory]:
-    """Passages of Fig. B1, by the number of vertices: up to so many times the config's, since the finest run takes most of the time."""
+    """Passages of Fig. B1, by the number of vertices: up to this multiple of the config's, because the finest run takes
+    most of the time."""
     line_tension, most = (1.08, 4) if shop.size == "full" else (0.83, 2)
     counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= most * int(shop.keys("channel")["vertices"])]
     return dict(zip(counts, profiles(shop, "vertices", orifice=0.7, line_tension=line_tension, near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)))

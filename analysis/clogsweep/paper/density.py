@@ -1,4 +1,4 @@
-"""Which density the published arrays had: the article gives one clogging length as a number, and no density."""
+"""The density of the published arrays: the article gives one clogging length as a number, and no density."""
 
 import dataclasses
 import math
@@ -24,9 +24,9 @@ CONFIGS = {"density-robust": "robust", "density-elastic": "elastic", "density-fr
 
 @dataclasses.dataclass(frozen=True)
 class DensityFit:
-    """A parabola through log lambda over log density, and where it has the published length.
+    """A parabola through log lambda as a function of log density, and where it has the published length.
 
-    A length of n clogs is known to a relative error of 1/sqrt(n), which is the error of its logarithm.
+    A length from n clogs has a relative error of 1/sqrt(n), which is the error of its logarithm.
     """
 
     coefficients: np.ndarray[Any, Any]  # highest power first

@@ -1,4 +1,5 @@
-"""Clogging lengths in dilute arrays, the published ones: what walls hold, both models over the sag, and the map."""
+"""Clogging lengths in dilute arrays, the published ones: mechanisms with different walls, both models vs the sag, and
+the map."""
 
 import dataclasses
 import math
@@ -22,7 +23,8 @@ from .captions import describe
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop
 
-# The one clogging length that was published, with its error: Appendix C. The density was not: figure `density` finds it from the length.
+# The one clogging length that was published, with its error: Appendix C. The density was not published: figure
+# `density` finds it from the length.
 PUBLISHED = {"line_tension": 1.09, "obstacle_gap": 0.2, "clogging_length": 24.0, "error": 1.0, "obstacle_density": 0.35}
 ENOUGH_CLOGS = 10  # from which on clogfit asks whether P(r) is exponential
 FINER = (0, (4, 2))
@@ -30,7 +32,7 @@ FINER = (0, (4, 2))
 
 @dataclasses.dataclass(frozen=True)
 class Family:
-    """Curves of one law of walls. A sweep may hold those of several coefficients of friction."""
+    """Curves of one law of walls. A sweep may contain several coefficients of friction."""
 
     config: str
     name: str
@@ -143,19 +145,20 @@ MAPS = [Family("map-robust", "no friction, no corner pinning"), Family("map-fric
 
 
 def is_exponential(group: Group) -> bool | None:
-    """Is Weibull's shape compatible with 1, and lambda more than the release void? None if there are too few clogs to tell."""
+    """Whether Weibull's shape is compatible with 1, and lambda exceeds the release void. None if there are too few
+    clogs to decide."""
     if group["clogs"] < ENOUGH_CLOGS or group["weibull_p_value"] is None:
         return None
     return group["weibull_p_value"] >= 0.05 and "below_spacing" not in style.doubts(group)
 
 
 def known_length(group: Group) -> float:
-    """The clogging length, or its lower bound where no run clogged."""
+    """The clogging length, or its lower bound if no run clogged."""
     return group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"]
 
 
 def density_key(group: Group) -> tuple[bool, float]:
-    """Saturated arrays last, whatever their density at this gap."""
+    """Saturated arrays last, for any density at this gap."""
     return (True, 0.0) if group["obstacle_filling"] == "saturated" else (False, group["obstacle_density"])
 
 

@@ -1,4 +1,4 @@
-"""Figures of the article from runs of our own: sweeps, clogfit, picture."""
+"""Figures of the article from our own runs: sweeps, clogfit, picture."""
 
 import csv
 import datetime
@@ -30,7 +30,7 @@ def output_of(name: str, shop: Workshop) -> pathlib.Path:
 
 
 def refuse_unwritable(name: str, shop: Workshop) -> None:
-    """Before minutes of work, of the four files of write()."""
+    """Checks the four files of write() before minutes of work."""
     output = output_of(name, shop)
     outputs.refuse_unwritable_picture(output, *shop.profiles)
     for ending in ("csv", "txt"):

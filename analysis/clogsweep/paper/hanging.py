@@ -1,4 +1,4 @@
-"""Figures of droplets that hang over obstacles: what holds them, the mesh or a law of walls."""
+"""Figures of droplets that hang over obstacles: whether the mesh or the wall holds them."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -22,12 +22,12 @@ from .workshop import Workshop
 
 # x, y, diameter [sigma]: a droplet falls on it from 7 sigma above, beside its centre by 0.08.
 POST = (47.0, 5.08, 0.3)
-# That touch the post or lie on the interface that does [sigma].
+# Touching the post or the interface on it [sigma].
 NEAR = 0.12
 
 
 def explain(drawing: Figure, shop: Workshop, config: str, groups: Sequence[Group]) -> None:
-    """Above the panels what all points have in common, below them what the marks mean."""
+    """Common parameters of all points above the panels, the meaning of the marks below them."""
     drawing.suptitle(describe(shop.columns(config), groups, ["vertices", "preset"]), fontsize=8, color="0.25")
     style.notes_of_panels(drawing, length_notes(groups, shop.confidence(config), drawing.axes))
 
@@ -79,7 +79,7 @@ def lengths_by_friction(shop: Workshop) -> Plate:
         places = [group["line_tension"] for group in members]
         families = by(members, "friction")
         for index, (friction, family) in enumerate(families):
-            # A colour for every friction; coarser meshes are dashed, finest is whole.
+            # A colour for every friction; coarser meshes are dashed, the finest is solid.
             for vertices, curve in by(family, "vertices"):
                 mesh = meshes.index(vertices)
                 shift = style.side_by_side(index * len(meshes) + mesh, len(families) * len(meshes), places)
@@ -87,7 +87,7 @@ def lengths_by_friction(shop: Workshop) -> Plate:
                 draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index,
                              f"{said(columns['friction'], friction)}, $N_v = {vertices}$", line)
                 data += numbers(curve, f"friction {friction:g}, gap {gap:g}", **of_each(curve, "friction", *HOLDS))
-        of_gap = f"\n{said(columns['obstacle_gap'], gap)}" if len(gaps) > 1 else ""  # one gap stands above all panels
+        of_gap = f"\n{said(columns['obstacle_gap'], gap)}" if len(gaps) > 1 else ""  # a common gap is printed above all panels
         finish(axes, places, members, interface_of(groups[0]["preset"]) + of_gap)
         axes.set_xlabel(AXES["line_tension"])
     panels[0][0].set_ylabel(AXES["length"])

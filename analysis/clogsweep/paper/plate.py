@@ -1,4 +1,4 @@
-"""A finished figure, and the list of all that there are."""
+"""A finished figure, and the list of all figures."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from .workshop import Workshop
 
 CATALOGUE: dict[str, Entry] = {}
-# Presets of the interface, in words; docs/explanation/model.md says what is behind them.
+# Presets of the interface, in words; docs/explanation/model.md defines them.
 INTERFACES = {
     "robust": "preset robust: weight on the liquid",
     "heavy-interface": "preset heavy-interface: weight on the interface",
@@ -45,7 +45,7 @@ class Entry:
 
 
 def figure(name: str, caption: str, configs: Iterable[str], cost: str) -> Callable[[Drawing], Drawing]:
-    """Enters a function into the catalogue. @param cost  time of the reduced size on two cores"""
+    """Adds a function to the catalogue. @param cost  time of the reduced size on two cores"""
 
     def enter(draw: Drawing) -> Drawing:
         CATALOGUE[name] = Entry(name, caption, tuple(configs), cost, draw)

@@ -1,4 +1,4 @@
-"""Runs what a figure needs with clogsweep, clogrun and clogfit, once, and remembers where every number came from."""
+"""Runs the programs for a figure, once, and records the origin of every number."""
 
 from __future__ import annotations
 
@@ -101,11 +101,11 @@ class Workshop:
         return keys
 
     def _arguments(self, name: str, own_keys: dict[str, str]) -> list[str]:
-        """The config and what differs from it: first --set, then the figure's own keys, which have the last word."""
+        """The config and the changes to it: first --set, then the figure's own keys, which override it."""
         in_file = config_keys(self.config(name))
         keys = self.keys(name) | own_keys
         if own_keys.get("obstacle-layout") in ("channel", "wall"):
-            # Nothing is random or periodic in these scenes: such a --set is meant for the others.
+            # Nothing is random or periodic in these scenes, so such a --set is for the others.
             keys = {key: value for key, value in keys.items() if key not in ("seeds", "box")}
         return ["--config", str(self.config(name)), *(f"{key}={value}" for key, value in keys.items() if in_file.get(key) != value)]
 
@@ -120,7 +120,7 @@ class Workshop:
         return self.folder / "sweeps" / f"{name}.h5"
 
     def _complete(self, name: str, arguments: list[str], ranks: int) -> None:
-        """Runs what is missing of a sweep, once."""
+        """Runs the missing part of a sweep, once."""
         file = self.sweep_file(name)
         if self.draw_only and not file.exists():
             raise NotThere(f"{file} is not there; leave out --draw-only, or run clogsweep {shlex.join(arguments)}")
@@ -132,25 +132,25 @@ class Workshop:
         self._note_sweep(name)
 
     def sweep(self, name: str) -> list[Group]:
-        """Runs what is missing of a config's sweep. @return clogfit's groups"""
+        """Runs the missing part of a config's sweep. @return clogfit's groups"""
         self._complete(name, self._arguments(name, {}), self.ranks)
         if name not in self._fits:
             self._fits[name] = json.loads(self._call("clogfit", self.sweep_file(name), "--format", "json"))
         return [group for group in self._fits[name]["groups"] if group["runs"] > 0]
 
     def runs(self, name: str, config: str | None, keys: Mapping[str, object]) -> list[np.void]:
-        """Runs what is missing of a sweep of a figure's own keys.
+        """Runs the missing part of a sweep of a figure's own keys.
 
-        @param config  whose keys hold where these say nothing, or None for the defaults
-        @param keys  a value or a list of them for each, e.g. {"line-tension": [0.3, 1]}
-        @return the rows, in the order of the lists, the last of which goes fastest
+        @param config  whose keys apply where these do not, or None for the defaults @param keys  a value or a list of
+        them for each, e.g. {"line-tension": [0.3, 1]} @return the rows, in the order of the lists, the last of which
+        goes fastest
         """
         lists = {key: [as_text(value) for value in (values if isinstance(values, list) else [values])] for key, values in keys.items()}
         words = {key: ",".join(values) for key, values in lists.items()}
         wanted = list(itertools.product(*lists.values()))
         self._complete(name, self._arguments(config, words) if config else [f"{key}={word}" for key, word in words.items()],
                        min(self.ranks, len(wanted)))
-        # The file may hold others beside them. What has no column is the same in all of them.
+        # The file may contain others. Keys without a column are the same in all of them.
         known = {tuple(in_row(row, key, values[0]) for key, values in lists.items()): row for row in stored.read_rows(self.sweep_file(name), self.programs)}
         if missing := [values for values in wanted if values not in known]:
             which = ", ".join(map("=".join, zip(lists, missing[0])))
@@ -219,7 +219,7 @@ class Workshop:
         return self._model_versions
 
     def take_sources(self) -> list[str]:
-        """Returns the sources of the numbers in the last figure, and forgets them."""
+        """Returns the sources of the numbers in the last figure, and clears them."""
         sources, self._sources = self._sources, []
         return sources
 

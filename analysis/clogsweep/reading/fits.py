@@ -14,22 +14,22 @@ def told(clogfit: pathlib.Path, *words: object) -> dict[str, Any]:
     return json.loads(programs.run_program(clogfit, *words, "--format", "json"))
 
 
-# What tells droplets of one sweep apart in a laboratory.
+# What distinguishes droplets of one sweep in a laboratory.
 DROPLETS: dict[str, dict[str, Any]] = {
     "diameter_mm": {"key": "diameter", "symbol": r"\sigma", "unit": "mm", "meaning": "diameter of the droplet", "label": "diameter {:.4g} mm"},
     "angle_degrees": {"key": "angle", "symbol": r"\theta", "unit": "degrees", "meaning": "tilt of the plates", "label": "tilt {:.4g}°"}}
 
 
 def follows(groups: Collection[Group], name: str, others: Iterable[str]) -> bool:
-    """Is this parameter's value known once the others' are?"""
+    """Whether this parameter's value follows from the others'."""
     known: dict[tuple[Any, ...], Any] = {}
     return all(known.setdefault(tuple(group[o] for o in others), group[name]) == group[name] for group in groups)
 
 
 def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
-    """A fit of droplets in several laboratories with the diameter and the tilt as parameters, and parameters that are lengths
-    in mm: in droplet diameters one array would be another one for each droplet. Any other fit as it is. A group's "in_table" has
-    the values that rows have."""
+    """A fit of droplets in several laboratories, with the diameter and the tilt as parameters, and lengths in mm: in
+    droplet diameters one array would differ between droplets. Any other fit is unchanged. A group's "in_table" has the
+    values of the rows."""
     groups = fit["groups"]
     if "laboratory" in fit or "in_mm" in fit or not groups or not all(group.get("diameter_mm") for group in groups):
         return fit

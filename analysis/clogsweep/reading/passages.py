@@ -17,7 +17,7 @@ READING_SECONDS = 10  # of a processor; a passage has a few thousand samples
 
 
 def is_hdf5(path: str) -> bool:
-    """False for a file that is not there, and for pipes, which may never end."""
+    """False for a missing file, and for pipes, which may never end."""
     return os.path.isfile(path) and h5py.is_hdf5(path)
 
 

@@ -1,4 +1,4 @@
-"""Finds the built programs and what belongs to them, and runs them."""
+"""Finds and runs the built programs."""
 
 import argparse
 import os
@@ -60,7 +60,7 @@ def run_program(program: str | os.PathLike[str], *arguments: object, ranks: int 
 
 
 def warnings_of(program: str | os.PathLike[str], *arguments: object) -> str:
-    """Runs it for what it says on its error stream. @throws ProgramFailed  with its reason"""
+    """Runs it for its output on the error stream. @throws ProgramFailed with its reason"""
     return _outputs(program, *arguments)[1]
 
 
@@ -68,7 +68,7 @@ def _outputs(program: str | os.PathLike[str], *arguments: object, ranks: int = 1
     command = [str(program), *map(str, arguments)]
     environment = dict(os.environ)
     if ranks == 1:
-        # In an allocation of several tasks clogsweep takes a single rank for a mistake; here it is meant.
+        # In an allocation of several tasks clogsweep refuses a single rank; here it is intended.
         environment.pop("SLURM_NTASKS", None)
     else:
         settings = shlex.quote(str(JOBS / "mpi-settings.sh"))

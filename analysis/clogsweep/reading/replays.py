@@ -24,15 +24,15 @@ def replay(clogrun: pathlib.Path, sweep: AnyPath, task: int, output: AnyPath, *o
 
 
 def is_of(known: Trajectory, row: np.void, options: list[str]) -> bool:
-    """Is this trajectory what the row's run gives with these options?"""
+    """Whether this trajectory is that of the row's run with these options."""
     return shlex.split(known.attributes["command_line"])[4:-2] == options and known.row.dtype == row.dtype and all(
         known.row[column].tobytes() == row[column].tobytes() for column in set(stored.columns_of(row)) - CIRCUMSTANCES)
 
 
 def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, folder: AnyPath, options: list[str]) -> Trajectory:
-    """The trajectory of a row, in a file of the folder, which is reused if it holds the same already.
+    """The trajectory of a row, in a file of the folder, which is reused if it contains the same already.
 
-    @param clogrun  the program; None: nothing is to be run
+    @param clogrun  the program; None: run nothing
     """
     file = pathlib.Path(folder) / f"{sweep.stem}-{row['task']}.h5"
     known = trajectory.read(file, needs_frames=False) if file.exists() else None
@@ -48,7 +48,7 @@ def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, fold
 
 def follow_all(clogrun: pathlib.Path | None, sweep: pathlib.Path, rows: Iterable[np.void], folder: AnyPath, jobs: int, samples: float,
                outlines: float | None = None) -> list[Trajectory]:
-    """The same of several rows, some at a time. @param samples, outlines  time between two of them [t0]"""
+    """The same for several rows, some at a time. @param samples, outlines  time between two of them [t0]"""
     options = ["--sample-interval", f"{samples:.3g}", *(["--polygon-interval", f"{outlines:.3g}"] if outlines else [])]
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         return list(pool.map(lambda row: follow(clogrun, sweep, row, folder, options), rows))

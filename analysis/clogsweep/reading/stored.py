@@ -1,4 +1,4 @@
-"""Files of clogsweep and clogrun, opened only if nothing in them is damaged (docs/explanation/survival.md says how that is known)."""
+"""Files of clogsweep and clogrun, opened only if nothing in them is damaged (docs/explanation/survival.md)."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def is_sealed(path: AnyPath) -> bool:
 
 
 def text(value: object) -> str:
-    """A word of a table, or lines of an attribute, as they can be shown: a foreign file may hold any bytes."""
+    """A word of a table, or lines of an attribute, made printable: a foreign file may contain any bytes."""
     return printable(value.decode(errors="surrogateescape") if isinstance(value, bytes) else value, "\n\t")
 
 
@@ -105,8 +105,8 @@ def why_not_open(path: AnyPath, error: OSError) -> str:
 
 @contextlib.contextmanager
 def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None) -> Iterator[h5py.File]:
-    """The file for h5py, read only. @param kind  SWEEP or RUN, if only that will do; @param folder  of the programs.
-    @throws Damaged; UserError if it cannot be read"""
+    """The file for h5py, read only. @param kind  SWEEP or RUN, if only that is acceptable; @param folder  of the
+    programs. @throws Damaged; UserError if it cannot be read"""
     if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
         raise unreadable(path, "not a regular file: a pipe, device or socket", kind)  # which may never end
     try:
@@ -143,8 +143,8 @@ def attributes(file: h5py.File) -> dict[str, str]:
 
 
 def writer(attributes: dict[str, str]) -> str:
-    """Version and commit of the program that wrote a file, in words. Files before 0.2.0 have the commit's hash alone, a salvaged
-    one may lack all."""
+    """Version and commit of the program that wrote a file, in words. Files before 0.2.0 have only the commit's hash, a
+    salvaged one may lack all."""
     commit = attributes.get("git_describe") or attributes.get("git_hash") or "unknown"
     return f"{attributes.get('version', 'of unknown version')}, git {commit}"
 
@@ -156,7 +156,7 @@ def source(attributes: dict[str, str]) -> str:
 
 
 def settings(config: str) -> dict[str, str]:
-    """Keys and values of a config as it is stored: of all keys, `auto` and the like where nothing else was given."""
+    """Keys and values of a stored config: of all keys, `auto` and the like for defaults."""
     pairs = [line.partition(" = ") for line in config.split("\n")]
     of_points = {key for name, _, keys in pairs if name == "point-keys" for key in keys.split()}
     return {key: unescaped(value) for key, equals, value in pairs if equals and key not in of_points}
@@ -173,7 +173,8 @@ def circle_files(file: h5py.File) -> dict[str, str]:
 
 
 def circles(file: h5py.File) -> dict[str, Numbers]:
-    """Circles of one's own by their check sums: x, y, radius; radius 0 stands for half of the row's obstacle_diameter [sigma]."""
+    """User-supplied circles by their checksums: x, y, radius; radius 0 means half of the row's obstacle_diameter
+    [sigma]."""
     return {sum_: np.column_stack([circles[name] for name in ("x", "y", "radius")]) for sum_, circles in file.get("obstacles", {}).items()}
 
 
@@ -195,7 +196,8 @@ def unit(meaning: str) -> str:
 
 
 def read_table(path: AnyPath, folder: AnyPath | None = None) -> pandas.DataFrame:
-    """The same for pandas, with text as text. `attrs` of the table holds the columns' `units` and `meanings`, by name."""
+    """The same for pandas, with text as strings. `attrs` of the table holds the columns' `units` and `meanings`, by
+    name."""
     with opened(path, folder=folder) as file:
         return table_of(file)
 

@@ -16,8 +16,8 @@ POINTS_OF_DISK = 128
 
 @dataclasses.dataclass
 class Trajectory:
-    """Shapes as in docs/reference/files.md; without --polygon-interval there are no frames, obstacles and wedges. The polygons
-    are those that walls meet, see outlines()."""
+    """Shapes as in docs/reference/files.md; without --polygon-interval there are no frames, obstacles and wedges. The
+    polygons are refined, see outlines()."""
 
     path: pathlib.Path
     table: Records
@@ -43,8 +43,8 @@ class Trajectory:
 
 
 def refined(polygons: Numbers, row: np.void) -> Numbers:
-    """Polygons with the middles of their edges, by the four-point rule (docs/explanation/model.md): walls meet these. Those of
-    runs in which walls meet vertices alone stay as they are.
+    """Polygons with the middles of their edges, by the four-point rule (docs/explanation/model.md), which is the
+    interface that walls touch. Polygons of runs with wall-contact=vertex stay unchanged.
 
     @param polygons  (..., 2, N_v) [sigma]
     @return (..., 2, 2 N_v)
@@ -57,7 +57,8 @@ def refined(polygons: Numbers, row: np.void) -> Numbers:
 
 
 def outlines(polygons: Numbers, row: np.void) -> Numbers:
-    """The outline that meets walls: refined polygons, or the circle of a soft disk, whose centre alone is stored."""
+    """The outline that touches walls: refined polygons, or the circle of a soft disk, of which only the centre is
+    stored."""
     if row["model"] != b"sp" or polygons.size == 0:
         return refined(polygons, row)
     angle = np.linspace(0, 2 * np.pi, POINTS_OF_DISK, endpoint=False)
@@ -120,7 +121,7 @@ def end_of(trajectory: Trajectory) -> str:
 
 
 def verdict(trajectory: Trajectory) -> str:
-    """The same with how far it came, for a picture."""
+    """The same with its distance, for a picture."""
     return rf"{literal(end_of(trajectory))} after $r = {trajectory.row['distance']:.2f}\,\sigma$"
 
 
@@ -135,7 +136,7 @@ def centroids(polygons: Numbers) -> Numbers:
 
 
 def along_the_way(polygons: Numbers, number: int) -> npt.NDArray[np.intp]:
-    """Frames evenly spaced along the way, not in time: a clogged droplet stands still for most of its run."""
+    """Frames evenly spaced along the path, not in time: a clogged droplet rests for most of its run."""
     centres = polygons.mean(axis=2)
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(centres, axis=0).T))])
     chosen = np.searchsorted(way, np.linspace(0, way[-1], number)).clip(max=len(polygons) - 1)

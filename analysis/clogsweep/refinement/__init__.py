@@ -1,1 +1,1 @@
-"""Rounds of a sweep: which values and seeds run next is decided from the rows that are there."""
+"""Rounds of a sweep: the existing rows determine which values and seeds run next."""

@@ -1,4 +1,4 @@
-"""Values that a search may try, and the choice of those that tell most for their work."""
+"""Values that a search may try, and the choice of those with the most information for their work."""
 
 import math
 from collections.abc import Sequence
@@ -14,8 +14,8 @@ NEARNESS = 1e-3  # squared share of the range: points that are nearer count alik
 
 
 def preferred_values(given: Sequence[float], most: int) -> list[float]:
-    """Preferred numbers of three figures between the outermost values, and the values given: no more than `most`,
-    or one more than are given. Files of two people thus meet in the same values."""
+    """Preferred numbers of three figures between the outermost values, and the values given: at most `most`, or one
+    more than given. So files of two people have the same values."""
     values = sorted(given)
     for per_decade in SERIES:
         first, last = (round_(per_decade * math.log10(end)) for round_, end in ((math.floor, given[0]), (math.ceil, given[-1])))
@@ -35,7 +35,7 @@ def spread(values: Sequence[float], count: int) -> list[float]:
 
 def expected_runs(sums: pandas.DataFrame, known: Numbers, places: Numbers, log_length: Numbers,
                   max_time: float) -> tuple[Numbers, Numbers]:
-    """Clogs and work to be expected of one run at each place. Speed and work per time are those of points nearby.
+    """Expected clogs and work of one run at each place. Speed and work per time are interpolated from known points.
 
     @param sums  of distance, time and work at the `known` places; @param log_length  of the fitted curve at `places`
     """
@@ -51,11 +51,11 @@ def expected_runs(sums: pandas.DataFrame, known: Numbers, places: Numbers, log_l
 
 def choose_blocks(curve: Curve, clogs: Numbers, work: Numbers, weights: Numbers, most_blocks: Numbers,
                   work_of_round: float, most_work: float) -> Numbers:
-    """How many blocks of seeds each place gets: again and again the place whose block reduces the weighted variance
-    most for its work, until the round has its work.
+    """Number of blocks of seeds for each place: repeatedly adds the block that most reduces the weighted variance per
+    work, until the round has its work.
 
-    The variances fall as if the expected clogs had been seen (rank-one updates); the means stay.
-    @param clogs, work  to be expected of one block at each place; @param most_work  that is never exceeded
+    The variances fall as if the expected clogs were observed (rank-one updates); the means stay.
+    @param clogs, work  expected of one block at each place; @param most_work  upper bound
     """
     covariance = curve.covariance.copy()
     blocks = np.zeros(len(most_blocks), dtype=int)

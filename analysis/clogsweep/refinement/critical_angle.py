@@ -106,13 +106,13 @@ class AngleSearch:
         return sorted(rounded - {round(angle, DECIMALS) for angle in tried})
 
     def _look(self, rows: pandas.DataFrame, members: Membership) -> tuple[pandas.DataFrame, float]:
-        # The box is a period of the lattice: it follows from the angle, and means nothing to the droplet.
+        # The box is a period of the lattice: it follows from the angle and does not affect the droplet.
         runs = members.of_curve(rows, lambda name: name not in FOLLOWING)
         runs = runs[~runs["status"].isin(UNFINISHED)]
         return tried_angles(runs), float(runs["processor_seconds"].sum()) / HOUR
 
     def next_round(self, rows: pandas.DataFrame, members: Membership) -> list[Line]:
-        """The points of the next round; none at the end of the search, whose reason is `end` then."""
+        """The points of the next round; none at the end of the search, whose reason is then `end`."""
         angles, hours = self._look(rows, members)
         lower, upper = bracket(angles)
         found: list[float] = []
@@ -130,7 +130,7 @@ class AngleSearch:
         return [((angle,), None) for angle in found]
 
     def known(self, rows: pandas.DataFrame, members: Membership) -> str:
-        """What the rows say, in one line."""
+        """The result so far, in one line."""
         angles, _ = self._look(rows, members)
         lower, upper = bracket(angles)
         if math.isnan(lower) and math.isnan(upper):
@@ -148,7 +148,7 @@ class AngleSearch:
                                        unknown and f"runs were too short to say at {unknown} (max-time, clogs or failures)"]))
 
     def costs(self, hours_per_run: float) -> list[str]:
-        """What the rounds may cost, for --dry-run. @param hours_per_run  of the first round; NaN: not known"""
+        """Cost of the rounds, for --dry-run. @param hours_per_run  of the first round; NaN: unknown"""
         words = ["this is the first round; each of the others has up to three angles where droplets begin to leave the rows"]
         if math.isfinite(self._budget):
             words.append(f"all rounds: about {self._budget:.2g} core-hours at most (--budget)")

@@ -32,7 +32,7 @@ class Options(NamedTuple):
 
 
 class Known(NamedTuple):
-    """What the rows say at one moment."""
+    """The state of the search at one moment."""
 
     runs: pandas.DataFrame  # sums over the runs of each value, failed ones included
     curve: Curve | None  # at the candidates; None if no run got anywhere
@@ -68,7 +68,7 @@ class CurveSearch:
         return [(values, (self._first_seed + i * step, self._block)) for i, values in enumerate(self._first)]
 
     def next_round(self, rows: pandas.DataFrame, members: Membership) -> list[Line]:
-        """The points of the next round; none at the end of the search, whose reason is `end` then."""
+        """The points of the next round; none at the end of the search, whose reason is then `end`."""
         known, options, block = self._look(rows, members), self._options, self._block
         if known.curve is None:
             self.end = "no run got anywhere"
@@ -112,7 +112,7 @@ class CurveSearch:
         return Known(sums, curve)
 
     def known(self, rows: pandas.DataFrame, members: Membership) -> str:
-        """What the rows say, in one line."""
+        """The result so far, in one line."""
         known = self._look(rows, members)
         words = [self.end] if self.end else []
         if known.curve is None:
@@ -135,7 +135,7 @@ class CurveSearch:
         return "; ".join([*words, f"failed: {', '.join(failures)}"] if failures else words)
 
     def costs(self, hours_per_run: float) -> list[str]:
-        """What the rounds may cost, for --dry-run. @param hours_per_run  of the first round; NaN: not known"""
+        """Cost of the rounds, for --dry-run. @param hours_per_run  of the first round; NaN: unknown"""
         words = ["this is the first round; each of the others is to cost half of all before it"]
         if math.isfinite(self._options.budget):
             words.append(f"all rounds: {self._options.budget:.2g} core-hours at most (--budget)")
@@ -143,7 +143,7 @@ class CurveSearch:
         if goal.kind in ("peak", "crossing"):
             words.append(f"how much {goal} takes is known when its place is, after the first round")
         if goal.kind == "curve":
-            # An error e of log lambda takes 1/e^2 clogs at each of so many places that do not inform each other.
+            # An error e of log lambda takes 1/e^2 clogs at each of this number of independent places.
             error = math.asinh(goal.precision) / features.normal_deviate(goals.CONFIDENCE)
             smooth, rough = 2 / error**2, len(self._first) / error**2
             words.append(f"{goal} takes about {smooth:.0f} clogs of a curve as smooth as a straight line, {rough:.0f} of one "
@@ -153,13 +153,13 @@ class CurveSearch:
 
 
 def _informing(runs: pandas.DataFrame) -> tuple[pandas.DataFrame, Numbers]:
-    """The values whose runs got anywhere, and their places on the curve."""
+    """The values whose runs moved, and their places on the curve."""
     runs = runs[(runs["distance"] > 0) & (runs["time"] > 0)]
     return runs, np.log(np.array(list(runs.index)))
 
 
 def require_bounds(key: str, text: str, values: Sequence[float]) -> None:
-    """@throws UserError  unless these are increasing, positive values, two at least"""
+    """@throws UserError unless these are at least two increasing, positive values"""
     why = ""
     if any(math.isnan(value) for value in values):
         why = "refine needs numbers"

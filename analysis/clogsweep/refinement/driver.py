@@ -1,4 +1,4 @@
-"""Runs clogsweep round by round. A round's points are on the disk before it starts, so that a kill does not change them."""
+"""Runs clogsweep round by round. A round's points are on disk before it starts, so that a kill does not change them."""
 
 import os
 import pathlib
@@ -23,7 +23,7 @@ Line = tuple[Values, tuple[int, int] | None]  # values, the first seed and how m
 
 
 class Search(Protocol):
-    """What decides about the rounds: CurveSearch or AngleSearch."""
+    """What determines the rounds: CurveSearch or AngleSearch."""
 
     keys: Sequence[str]
     candidates: list[Values]
@@ -38,7 +38,7 @@ class Search(Protocol):
 
 
 def number_text(value: float) -> str:
-    """The shortest text that means this number."""
+    """The shortest text for this number."""
     return repr(float(value)).removesuffix(".0")
 
 
@@ -61,8 +61,8 @@ def store(path: pathlib.Path, text: str) -> None:
 
 
 class Launcher:
-    """Starts clogsweep by other words, such as mpirun -np 64. Signals that stop go on to them as SIGUSR1, which mpirun and
-    srun forward while they wait for the ranks; the second one goes on as it is, unless it is a warning."""
+    """Starts clogsweep by other words, such as mpirun -np 64. Forwards a stop signal as SIGUSR1, which mpirun and srun
+    forward while they wait for the ranks; the second one is forwarded unchanged, unless it is a warning."""
 
     def __init__(self, words: Sequence[object]) -> None:
         self._words = list(map(str, words))
@@ -90,7 +90,7 @@ class Launcher:
             self._process.send_signal(signal.SIGUSR1)
         code = self._process.wait()
         self._process = None
-        # A warning may end a launcher by its signal, or with a code of its own, even 0.
+        # After a warning a launcher may end by the signal, or with a code of its own, even 0.
         if self.is_warned() and code not in (FAILED, USER_FAULT):
             return INCOMPLETE
         return 128 - code if code < 0 else code

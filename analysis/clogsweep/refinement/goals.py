@@ -1,4 +1,4 @@
-"""Goals of a search: what is to be known and how well, and how well a fitted curve knows it."""
+"""Goals of a search: the quantity and its precision, and the precision of a fitted curve."""
 
 import math
 from typing import NamedTuple
@@ -73,7 +73,8 @@ def half_width(lower: float, upper: float) -> float:
 
 
 def known_precision(curve: Curve, places: Numbers, goal: Goal) -> float:
-    """How well the goal is known; infinite if nothing is known of it. That of a curve is the root mean square of its band."""
+    """Precision of the goal's quantity; infinite if it is unknown. For a curve it is the root mean square of its
+    band."""
     if goal.kind == "curve":
         return math.sinh(features.normal_deviate(CONFIDENCE) * math.sqrt(float(np.mean(curve.deviation**2))))
     if goal.kind == "peak":

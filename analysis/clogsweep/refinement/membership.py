@@ -1,9 +1,9 @@
-"""Which rows of a file belong to the values that a search asks for.
+"""Which rows of a file belong to the values of a search.
 
-A row stores resolved parameters, not what was asked for: the density of a saturated array follows from the gap, the box
-of a lattice from its angle. So clogsweep itself resolves the values (`--points ... --dry-run` prints the columns in which
-its tasks differ), and a row belongs to a value if it has exactly the parameters that clogsweep gives that value. No column
-is taken for the value of a key, and none decides alone.
+A row stores resolved parameters, not the given ones: the density of a saturated array follows from the gap, the box of
+a lattice from its angle. So clogsweep itself resolves the values (`--points ... --dry-run` prints the columns in which
+its tasks differ), and a row belongs to a value if it has exactly the parameters that clogsweep gives that value. So no
+single column decides.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,8 +20,8 @@ MOST_TASKS = 1000  # that clogsweep prints
 
 
 def tasks_of(printed: str) -> pandas.DataFrame:
-    """The tasks that `clogsweep --dry-run` printed: texts of the columns in which they differ, `-` where there is none.
-    @throws UserError  if it did not print all"""
+    """The tasks that `clogsweep --dry-run` printed: texts of the columns in which they differ, `-` for missing ones.
+    @throws UserError if it did not print all"""
     lines = printed.splitlines()
     names = next((line[2:].split() for line in lines if line.startswith("# task ")), ["task"])
     tasks = pandas.DataFrame([line.split() for line in lines if line[:1].isdecimal()], columns=names, dtype=str)
@@ -49,7 +49,7 @@ class Membership:
         columns = schema["columns"]
         self._names = [column["name"] for column in columns if column["role"] == "parameter"
                        and column.get("parameter_role") != "ensemble" and column["name"] != "preset"]
-        # What may follow from other values: automatic ones, and columns that no key sets.
+        # Columns that may follow from other values: automatic ones, and those that no key sets.
         self._following = {key["column"] for key in schema["keys"] if key["kind"] != "word" and key.get("words")}
         self._following |= {column["name"] for column in columns if "key" not in column}
         self._resolve, self._candidates, self._asked = resolve, list(candidates), set(candidates)
@@ -59,15 +59,15 @@ class Membership:
                             "command of its own, with the same --output")
         self._varying = [name for name in tasks if name in self._names]
         self._tables = [(self._candidates, tasks)]
-        # Columns that hold the values as they were given. Without them the runs of other values cannot be known.
+        # Columns that contain the values as given. Without them the runs of other values cannot be identified.
         self._key_columns = [next(key["column"] for key in schema["keys"] if key["key"] == name) for name in keys]
         self._shows_values = all(
             column in tasks and [float(text) for text in tasks[column].replace("-", "nan")] == [values[i] for values in self._candidates]
             for i, column in enumerate(self._key_columns))
 
     def of_curve(self, rows: pandas.DataFrame, deciding: Callable[[str], bool] = lambda _: True) -> pandas.DataFrame:
-        """The rows that agree with the first run in all parameters in which the candidates do not differ.
-        @param deciding  whether a column decides. @throws UserError  if the file lacks the first run"""
+        """The rows that agree with the first run in all parameters in which the candidates do not differ. @param
+        deciding whether a column decides. @throws UserError if the file lacks the first run"""
         fixed = [name for name in self._names if name not in self._varying and deciding(name)]
         first = rows.loc[rows["task"] == 0, fixed]  # clogsweep numbers the runs of its points first
         if first.empty:
@@ -75,7 +75,7 @@ class Membership:
         return rows.merge(first, on=fixed)
 
     def of_values(self, rows: pandas.DataFrame) -> pandas.DataFrame:
-        """The rows of the candidates and, as far as they are in the file, of other values, with a column `values`."""
+        """The rows of the candidates and of other values in the file, with a column `values`."""
         if self._shows_values:
             near = self.of_curve(rows, lambda name: name not in self._following)
             given = set(near[self._key_columns].itertuples(index=False, name=None)) - self._asked
@@ -92,11 +92,11 @@ class Membership:
         return pandas.concat(found).drop_duplicates("task").sort_values("task")
 
     def _resolve_these(self, new: list[Values]) -> None:
-        """Together with the candidates, so that what all have in common is what the first run has."""
+        """Together with the candidates, so that their common parameters are those of the first run."""
         values = self._candidates + new
         try:
             tasks = self._resolve(values)
-        except UserError:  # clogsweep refuses one of them: its rows are of other settings
+        except UserError:  # clogsweep refuses one of them: its rows have other settings
             tasks = pandas.DataFrame()
         if len(tasks) == len(values):
             self._tables.append((values, tasks))

@@ -26,13 +26,14 @@ HDF5_BEGINNING = b"\x89HDF\r\n\x1a\n"
 class Fit:
     """Clogging lengths and mean speeds, a group for each set of parameters. Nothing is fitted here.
 
-    `groups` is a table with a row for each group, and clogfit's columns: the clogging length and its interval in droplet
-    diameters, how many runs clogged and by what, doubts, all parameters. `units` names the unit of each. Fewer than three
-    runs have no mean speed.
+    `groups` is a table with a row for each group, and clogfit's columns: the clogging length and its interval in
+    droplet diameters, numbers of clogs by mechanism, doubts, all parameters. `units` names the unit of each. Fewer than
+    three runs have no mean speed.
     """
 
     def __init__(self, told: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
-        """@param told  the JSON of clogfit; @param circle_files  see stored.circle_files(). @throws KeyError, TypeError  if it is not"""
+        """@param told  the JSON of clogfit; @param circle_files  see stored.circle_files(). @throws KeyError, TypeError
+        if it is something else"""
         self.told = told
         self.confidence: float = told["confidence"]
         self.units: dict[str, str] = told["units"]
@@ -52,7 +53,7 @@ class Fit:
 
     @property
     def groups(self) -> pandas.DataFrame:
-        """All results of each group that are one number or word; P(r) and incidence are in survival() and `told`."""
+        """All results of each group that are one number or word; survival() and `told` have P(r) and incidence."""
         import pandas
 
         flat = [{name: value for name, value in group.items() if not isinstance(value, list | dict)} for group in self.told["groups"]]
@@ -98,7 +99,7 @@ class Fit:
     def summary(self) -> pandas.DataFrame:
         """The columns of `groups` that vary, lengths and speeds, or the results of a channel or a wall, and doubts."""
         known, columns = self.groups, list(self.known.columns)
-        chosen = {self.known.abscissa, *self.known.curve_parameters()}  # what is automatic follows from these
+        chosen = {self.known.abscissa, *self.known.curve_parameters()}  # automatic values follow from these
         varies = [name for name in columns if name in chosen and known[name].nunique(dropna=False) > 1]
         told = [name for name in (PASSAGE if self.known.are_passages else LENGTHS) if name in known and not known[name].isna().all()]
         return known[[*varies, *(name for name in told if name not in varies)]]

@@ -35,16 +35,16 @@ class Film:
 
 
 class Run:
-    """What ``clogrun --output`` wrote, with ``--polygon-interval``: how a droplet moved and what it looked like.
+    """A file of ``clogrun --output`` with ``--polygon-interval``: the path of a droplet and its outlines.
 
-    - `samples`: table of the way; time [t0], distance [sigma], speed [sqrt(sigma g)], energies, shape parameter
-    - `polygons`: outlines, frames x 2 x points [sigma], at the `times` (frames) [t0]; those that walls meet
+    - `samples`: table of the path; time [t0], distance [sigma], speed [sqrt(sigma g)], energies, shape parameter
+    - `polygons`: refined outlines, frames x 2 x points [sigma], at the `times` (frames) [t0]
     - `obstacles`: circles x 3 (x, y, diameter) [sigma]; `wedges` likewise, docs/reference/files.md
-    - `row`: parameters and outcome, by the names of the columns of a sweep; `attributes`: where the file comes from
+    - `row`: parameters and results, by the names of the columns of a sweep; `attributes`: the origin of the file
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        """@throws UserError  if the file is no run or is damaged"""
+        """@throws UserError if the file is not a run or is damaged"""
         self.path = pathlib.Path(path)
         self.trajectory = trajectory.read(self.path, needs_frames=False)
         self.samples = pandas.DataFrame(self.trajectory.table)
@@ -65,7 +65,7 @@ class Run:
         return Picture(way.draw(self.trajectory, outlines), stored.source(self.attributes))
 
     def film(self, output: str | os.PathLike[str], *, colour: str = "speed", rate: int = 20, most_frames: int = 600, size: str | None = None) -> Film:
-        """Writes a film; one that is there is never replaced.
+        """Writes a film; an existing one is never replaced.
 
         @param output  its file: .mp4 (needs ffmpeg), .gif, or without an ending either of them
         @param colour  "speed" of the interface, or "mechanism": the last frame shows how the droplet clogged

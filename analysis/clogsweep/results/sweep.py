@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Status(dict[str, Any]):
-    """How far a sweep is. Shows itself as a table in a notebook."""
+    """Progress of a sweep. Shows itself as a table in a notebook."""
 
     def _repr_html_(self) -> str:
         import pandas
@@ -33,22 +33,22 @@ class Status(dict[str, Any]):
 
 
 class Sweep:
-    """What ``clogsweep --output`` wrote, finished or still in progress.
+    """A file of ``clogsweep --output``, complete or in progress.
 
     - `rows`: table with a row for each run, as it was when the file was opened; `rows.attrs` holds `units` and
       `meanings` of the columns
     - `attributes`: version, commit, config, command line
 
-    All other methods run the programs on the file as it is at that moment.
+    All other methods run the programs on the present file.
     """
 
     def __init__(self, path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> None:
         """@param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module.
-        @throws UserError  if the file is no sweep or is damaged"""
+        @throws UserError if the file is not a sweep or is damaged"""
         self.path = pathlib.Path(path)
         self._programs = programs
         self._name = ""
-        self._folder: tempfile.TemporaryDirectory[str] | None = None  # of a file that goes with this object
+        self._folder: tempfile.TemporaryDirectory[str] | None = None  # of a file that is removed with this object
         with stored.opened(self.path, stored.SWEEP, programs) as file:
             self._records = file["runs"][:]
             self.rows = stored.table_of(file)
@@ -76,7 +76,8 @@ class Sweep:
         return fit
 
     def fitted_curves(self, *keys: str, crossing: Sequence[float] = ()) -> dict[str, Any]:
-        """Smooth curves through the clogging lengths, with bands, peaks and crossings, as `clogfit curve --format json` says.
+        """Smooth curves through the clogging lengths, with bands, peaks and crossings, from `clogfit curve --format
+        json`.
 
         @param keys  that they go over, one or two; may be left out if only one varies
         @param crossing  lengths that a curve may cross, in droplet diameters
@@ -105,12 +106,12 @@ class Sweep:
         return clogs.run_all(self._program("clogrun"), self.path, rows, jobs)
 
     def device(self, *, ways: int = 3, map: int = 6, jobs: int = 2) -> Picture:
-        """User-supplied circles, with the places where droplets were released, passed and clogged, and where they went: a panel
-        for each of up to six parameter sets.
+        """User-supplied circles, with the places where droplets were released, passed and clogged, and their paths: a
+        panel for each of up to six parameter sets.
 
         @param ways  runs of each panel drawn as lines; @param map  runs of each panel behind its map; all are replayed
-        @param jobs  runs at a time
-        @throws UserError  if the sweep has no user-supplied circles, or those of several devices
+        @param jobs  runs at a time @throws UserError if the sweep has no user-supplied circles, or those of several
+        devices
         """
         from ..drawing import device
         from ..style import Picture
@@ -145,7 +146,7 @@ class Sweep:
                             *(["--lab", lab] if lab is not None else []))
 
     def poster(self, *, lab: str | os.PathLike[str] | None = None) -> Picture:
-        """One page of the sweep to be printed, A3: its curves and some of its droplets.
+        """One printable A3 page of the sweep: its curves and some of its droplets.
 
         @param lab  file that describes the laboratory, whose units are added
         @throws UserError
@@ -157,7 +158,7 @@ class Sweep:
 
     def export(self, output: str | os.PathLike[str]) -> pathlib.Path:
         """Writes `rows` for other programs, with the columns' units: .csv, or .h5 with a dataset for each column.
-        @return the file. @throws UserError  if it is there already"""
+        @return the file. @throws UserError if it exists"""
         path = pathlib.Path(output)
         export.write(self.rows, path, stored.source(self.attributes))
         return path
@@ -172,8 +173,8 @@ class Sweep:
 
 
 def merged(paths: Sequence[str | os.PathLike[str]], folder: str | os.PathLike[str] | None = None) -> Sweep:
-    """Several files as one sweep, which lies in a file of its own as long as it is used. @param folder  of the programs.
-    @throws UserError  if they contradict each other, or are not sweeps"""
+    """Several files as one sweep, in a temporary file. @param folder  of the programs. @throws UserError if they
+    contradict each other, or are not sweeps"""
     if len(paths) < 2:
         raise UserError("a list needs at least two files; give the name of a single file without a list")
     place = tempfile.TemporaryDirectory(prefix="clogsweep-merged-")

@@ -1,4 +1,4 @@
-"""How all figures look: colours, axes, markers, what is written beside a picture; and how one is shown and saved."""
+"""Style of all figures: colours, axes, markers, text beside a picture; and how one is shown and saved."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from ..tools.texts import printable
 from . import journal
 from .journal import NOTES, in_lines as in_lines
 
-# Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
+# Okabe and Ito's palette, safe for colour-blind readers, with a different marker for every curve.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
 MECHANISM_COLOURS = {"wrapped": COLOURS[0], "squeezed": COLOURS[1], "hybrid": COLOURS[2], "other": COLOURS[3]}
@@ -34,10 +34,10 @@ CAUSE_COLOURS = {**MECHANISM_COLOURS, "broken": COLOURS[4]}
 PASSED_COLOUR = "0.62"
 MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
 VIRIDIS = matplotlib.colormaps["viridis"]
-PASSAGES = matplotlib.colormaps["YlOrBr"]  # light where few went; lines and markers stay visible on it
+PASSAGES = matplotlib.colormaps["YlOrBr"]  # light for small fractions; lines and markers stay visible on it
 OBSTACLE = "0.72"
 NOTE_SIZE = 8
-CURVE = "curve "  # the beginning of the name (`gid`) of what belongs to a curve; its label follows
+CURVE = "curve "  # the beginning of the name (`gid`) of a curve's artists; its label follows
 DROPLET = "#D55E00"
 
 
@@ -49,7 +49,7 @@ def new_figure(**options: Any) -> Figure:
 
 
 def subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], **options: Any) -> tuple[Figure, Any]:
-    """A figure laid out by itself, and its axes, as `pyplot`'s."""
+    """A figure with an automatic layout, and its axes, as `pyplot`'s."""
     made = new_figure(figsize=figsize, layout="constrained")
     return made, made.subplots(rows, columns, **options)
 
@@ -63,7 +63,8 @@ def figure_of(draw: Callable[..., None], *what: Any) -> Figure:
 
 
 def curve_style(index: int) -> dict[str, Any]:
-    """A different style for each curve: when colours and markers are used up, lines become dashed, with one more dot each round."""
+    """A different style for each curve: after all colours and markers, lines become dashed, with one more dot each
+    round."""
     round_, which = divmod(index, len(COLOURS))
     line = (0, (6, 2) + (1, 2) * (round_ - 1)) if round_ > 0 else "-"
     return {"color": COLOURS[which], "marker": MARKERS[which], "linestyle": line}
@@ -80,7 +81,7 @@ def curve(axes: Axes, label: str) -> Iterator[None]:
 
 
 def mark(kind: str, groups: Collection[Group]) -> str | None:
-    """The name (`gid`) of what stands for groups of a report (report.write()); elsewhere they have no numbers.
+    """The name (`gid`) of artists that represent groups of a report (report.write()); elsewhere they have no numbers.
     @param kind  point, curve or legend"""
     numbers = [str(group["number"]) for group in groups if "number" in group]
     return f"{kind}-{','.join(numbers)}" if numbers else None
@@ -110,7 +111,7 @@ def width_of(legend: Legend) -> float:
 
 def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs") -> None:
     """Legend of named curves and of the markers that draw_lengths() gave these groups. A long legend is placed
-    beside the axes, and the figure gets wider, once. @param other  what clogs are called that are of no mechanism"""
+    beside the axes, and the figure gets wider, once. @param other  name of clogs without a mechanism"""
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
     for name, marker in MECHANISM_MARKERS.items():
         if name in names:
@@ -131,19 +132,19 @@ def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs
 
 
 def logarithmic_margin(values: Collection[float]) -> float:
-    """Factor by which a logarithmic axis goes on beyond these values."""
+    """Factor by which a logarithmic axis extends beyond these values."""
     return (max(values) / min(values)) ** 0.05 if max(values) > min(values) else 1.3
 
 
 def side_by_side(index: int, num_curves: int, values: Collection[float]) -> float:
-    """Factor on logarithmic abscissae that curves share: moved apart by a percent, or less so that all of them stay off
-    the frame, their bars can be told apart."""
+    """Factor on logarithmic abscissae that curves share: a shift of a percent separates their bars; it is smaller if a
+    curve would reach the frame."""
     outermost = max(num_curves - 1, 1) / 2
     return min(1.012, logarithmic_margin(values) ** (0.7 / outermost)) ** (index - (num_curves - 1) / 2)
 
 
 def far_apart(values: Collection[float]) -> list[float]:
-    """The values whose labels have room side by side on a logarithmic axis."""
+    """The values whose labels fit side by side on a logarithmic axis."""
     ordered = sorted(set(values))
     room = 0.08 * math.log(ordered[-1] / ordered[0])
     kept = ordered[:1]
@@ -154,7 +155,7 @@ def far_apart(values: Collection[float]) -> list[float]:
 
 
 def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
-    """Plain numbers, at the values themselves where they are few or within a decade."""
+    """Plain numbers; at the values themselves if these are few or within a decade."""
     axes.set_xscale("log")
     axis = axes.xaxis
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))
@@ -163,14 +164,14 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
         axis.set_ticks(values, minor=True)
         axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     if values:
-        # Ticks widen an axis without a margin: what is drawn at the last one would lie on the frame.
+        # Ticks would widen an axis without a margin: artists at the last one would be on the frame.
         margin = logarithmic_margin(values)
         axes.set_xlim(min(values) / margin, max(values) * margin)
 
 
 def logarithmic_ordinate(axes: Axes) -> None:
-    """Plain numbers where it has fewer than two decades, at 1, 2 and 5, or at every mark of less than half a decade: powers
-    of ten would be too few."""
+    """Plain numbers if it has fewer than two decades: at 1, 2 and 5, or at every mark of less than half a decade,
+    because powers of ten would be too few."""
     axes.set_yscale("log")
     axis = axes.yaxis
     usual = axis.get_major_formatter()
@@ -187,7 +188,8 @@ def logarithmic_ordinate(axes: Axes) -> None:
 
 
 def plain_logarithmic(axis: Axis, span: float = 1.0) -> None:
-    """Numbers at 1, 2 and 5 of each decade, or at its beginning only. @param span  last number over the first, where it may be large"""
+    """Numbers at 1, 2 and 5 of each decade, or only at its beginning. @param span  last number divided by the first, if
+    it may be large"""
     axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0) if span < 1000 else (1.0,)))
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
@@ -248,7 +250,7 @@ def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None
 
 @contextlib.contextmanager
 def without_warnings() -> Iterator[None]:
-    """What matplotlib warns of while it lays out a figure of ours is nothing that a reader can mend."""
+    """Users cannot fix what matplotlib warns of while it lays out our figures."""
     logger = logging.getLogger("matplotlib")
     level = logger.level
     with warnings.catch_warnings():
@@ -261,9 +263,9 @@ def without_warnings() -> Iterator[None]:
 
 
 class Picture:
-    """Shows itself in a notebook; `figure` is matplotlib's, to be changed at will. `source` says where its numbers come
-    from, and is kept in what is saved: as Description of the .png, as Subject of the .pdf. `caption` is what for_journal()
-    takes from the picture."""
+    """Shows itself in a notebook; `figure` is matplotlib's and may be changed. `source` is the origin of its numbers,
+    saved as Description of the .png and Subject of the .pdf. `caption` is the text that for_journal() removes from the
+    picture."""
 
     def __init__(self, figure: Figure, source: str = "") -> None:
         self.figure = figure
@@ -273,15 +275,16 @@ class Picture:
 
     @property
     def curves(self) -> dict[str, list[Artist]]:
-        """What is drawn of each curve (lines, bars, markers, band), by its label in the legend; that of an only curve is empty."""
+        """The artists of each curve (lines, bars, markers, band), by its label in the legend; that of a single curve is
+        empty."""
         found: dict[str, list[Artist]] = {}
         for artist in self.figure.findobj(lambda artist: (artist.get_gid() or "").startswith(CURVE)):
             found.setdefault(artist.get_gid().removeprefix(CURVE), []).append(artist)
         return found
 
     def for_journal(self, width_cm: float = 8.6, height_cm: float | None = None, *, font_size: float = 8) -> Picture:
-        """Lays the picture out for a column of a journal: text of one size, the legend above the axes, no labels that overlap. To
-        be called last, after changes of the figure. Conditions and notes leave the picture for `caption`.
+        """Lays the picture out for a column of a journal: text of one size, the legend above the axes, no labels that
+        overlap. Call this last, after changes of the figure. Conditions and notes leave the picture for `caption`.
 
         @param width_cm  of the picture
         @param height_cm  likewise; without it the height suits the legend
@@ -301,7 +304,7 @@ class Picture:
         return out.getvalue()
 
     def save(self, output: str | os.PathLike[str]) -> pathlib.Path:
-        """Writes OUTPUT.png and OUTPUT.pdf. @return the first. @throws UserError  if something else is there"""
+        """Writes OUTPUT.png and OUTPUT.pdf. @return the first. @throws UserError if something else exists there"""
         path = pathlib.Path(output)
         if path.suffix in (".png", ".pdf"):
             path = path.with_suffix("")

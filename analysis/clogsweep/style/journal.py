@@ -18,7 +18,7 @@ INCH = 2.54  # [cm]
 
 
 def in_lines(text: str, fits: Callable[[str], bool], between: str = ", ") -> str:
-    """Lines that fit, broken between phrases only, never within a formula."""
+    """Lines that fit, broken only between phrases, never within a formula."""
     lines = []
     for line in re.sub(r"\$.*?\$", lambda formula: formula[0].replace(" ", "\0"), text.strip()).split("\n"):
         first, *others = line.split(between)
@@ -33,7 +33,7 @@ def in_lines(text: str, fits: Callable[[str], bool], between: str = ", ") -> str
 
 
 def fitting(axes: Axes, size: float, pixels: float) -> Callable[[str], bool]:
-    """Does a line of text in letters of `size` points fit into this width?"""
+    """Whether a line of text in letters of `size` points fits into this width."""
     def fits(line: str) -> bool:
         text = axes.figure.text(0, 0, line, fontsize=size)
         width = text.get_window_extent(axes.figure.canvas.get_renderer()).width
@@ -44,7 +44,7 @@ def fitting(axes: Axes, size: float, pixels: float) -> Callable[[str], bool]:
 
 
 def legend_entries(axes: Axes) -> list[tuple[Artist, str]]:
-    """What has a label; what is drawn without data, to explain a mark, comes last."""
+    """Artists with a label; those without data, which explain a mark, come last."""
     entries = [(artist, label) for artist, label in zip(*axes.get_legend_handles_labels()) if label]
     return sorted(entries, key=lambda entry: isinstance(entry[0], Line2D) and not len(entry[0].get_xdata()))
 
@@ -66,7 +66,7 @@ def draw_legend(axes: Axes, size: float) -> float:
 
 
 def hide_overlapping(axis: Axis) -> None:
-    """Hides labels of ticks that overlap others, of minor ticks first."""
+    """Hides overlapping labels of ticks, first those of minor ticks."""
     kept: list[Bbox] = []
     low, high = sorted(axis.get_view_interval())
     for label in [*axis.get_majorticklabels(), *axis.get_minorticklabels()]:

@@ -4,12 +4,12 @@ import sys
 
 
 def lacking(error: ImportError) -> str:
-    """What to say where a machine lacks a module."""
+    """The message for a missing module."""
     return f"cannot start ({error}); {sys.executable} needs h5py, pandas, SciPy, tables and matplotlib: install them, or use another python3"
 
 
 class UserError(Exception):
-    """A fault that the user can fix, in one line: what, why, remedy. Commands end with exit code 2."""
+    """An error that the user can fix, in one line: what, why, remedy. Commands end with exit code 2."""
 
 
 class NotThere(UserError):
@@ -17,7 +17,7 @@ class NotThere(UserError):
 
 
 class ProgramFailed(Exception):
-    """A program of ours said why in one line, and left with this exit code."""
+    """A program of ours printed its error in one line, and ended with this exit code."""
 
     def __init__(self, message: str, exit_code: int) -> None:
         super().__init__(message)

@@ -1,4 +1,4 @@
-"""Names for types that signatures hold again and again."""
+"""Names for frequent types in signatures."""
 
 import os
 from collections.abc import Sequence
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-# Written out in what is public, for help(), and in what has to load without `numpy`.
+# Written out in public functions, for help(), and in modules that must load without `numpy`.
 AnyPath = str | os.PathLike[str]
 
 Column = dict[str, Any]  # a parameter as clogsweep describes it: its name, symbol, unit, default

@@ -1,4 +1,4 @@
-"""Files that are made: where one may be written, what it may replace, and that it does so as a whole."""
+"""Output files: where one may be written, what it may replace, and that it is complete."""
 
 import contextlib
 import os
@@ -9,12 +9,12 @@ from collections.abc import Iterator
 
 from .errors import UserError
 
-# How the files begin that commands here make.
+# First bytes of the files that commands make.
 BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-", "vtk": b"<?xml", "csv": b"# circles of ", "text": b""}
 
 
 def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> None:
-    """To be asked before minutes of work, of a file to be made. An earlier one of its kind is replaced, nothing else.
+    """Checks a file before minutes of work. An earlier one of its kind is replaced, nothing else.
 
     @param kind  of BEGINNINGS; @param inputs  files that the command reads
     """
@@ -35,7 +35,7 @@ def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> N
 
 
 def is_of_kind(path: pathlib.Path, kind: str) -> bool:
-    """Does it begin like files of this kind, or hold nothing yet?"""
+    """Whether it begins like files of this kind, or is empty."""
     with open(path, "rb") as file:
         beginning = file.read(len(BEGINNINGS[kind]))
     return not beginning or beginning == BEGINNINGS[kind]
@@ -43,7 +43,7 @@ def is_of_kind(path: pathlib.Path, kind: str) -> bool:
 
 @contextlib.contextmanager
 def replaced(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
-    """Where to write a file that takes the path's place when the block ends. If the block fails, what was there stays.
+    """Where to write a file that replaces the path when the block ends. If the block fails, what was there stays.
     @throws UserError  if it cannot be written"""
     target = pathlib.Path(path).resolve()  # a link stays, and leads to the new file
     try:
@@ -63,7 +63,7 @@ ENDINGS = (".png", ".pdf", ".mp4", ".gif", ".jpg", ".jpeg", ".svg", ".eps", ".ps
 
 
 def refuse_ending(output: pathlib.Path, *made: str) -> None:
-    """@param made  the endings that there are. @throws UserError  if the name asks for another one"""
+    """@param made  the available endings. @throws UserError if the name has another one"""
     if output.suffix.lower() in ENDINGS and output.suffix not in made:
         raise UserError(f"cannot write {output} (it can only be {' or '.join(made)}); give another ending, or none")
 

@@ -1,4 +1,5 @@
-"""How far a script is, on the standard error: one line that is renewed on a terminal, now and then a new line elsewhere."""
+"""Progress of a script, on the standard error: one line that is renewed on a terminal, a new line now and then
+elsewhere."""
 
 import sys
 import time
@@ -9,7 +10,7 @@ Item = TypeVar("Item")
 
 
 def readable_duration(seconds: float) -> str:
-    """As clogsweep shows it: whole minutes alone would jump."""
+    """As clogsweep shows it, because whole minutes would jump."""
     if seconds < 119.5:
         return f"{seconds:.0f} s"
     whole = round(seconds)
@@ -22,7 +23,7 @@ class StatusLine:
         self.begin = self.last = time.monotonic()
 
     def renew(self, text: Callable[[float], str]) -> None:
-        """Shows a text if it is time to. @param text  of the seconds since the beginning"""
+        """Shows a text if it is time. @param text  of the seconds since the beginning"""
         now = time.monotonic()
         if now - self.last >= (0.2 if self.on_terminal else 10):
             self.last = now
@@ -35,7 +36,7 @@ class StatusLine:
 
 
 def shown(items: Iterable[Item], what: str, total: int) -> Iterator[Item]:
-    """Yields the items and tells after each, if it is time to, how many there have been and how long the rest takes."""
+    """Yields the items and shows after each, if it is time, their number so far and the remaining time."""
     line = StatusLine()
     for number, item in enumerate(items, start=1):
         yield item

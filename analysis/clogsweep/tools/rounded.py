@@ -1,5 +1,5 @@
-"""Numbers as they are printed: counts with their noun, others with as many figures as their uncertainty allows, three
-at least."""
+"""Numbers as they are printed: counts with their noun, others with as many figures as their uncertainty allows, at
+least three."""
 
 import math
 from typing import TypeGuard
@@ -13,12 +13,12 @@ def is_number(value: float | None) -> TypeGuard[float]:
 
 
 def exponent(value: float) -> int:
-    """The first figure's power of ten."""
+    """The power of ten of the first figure."""
     return math.floor(math.log10(abs(value))) if value else 0
 
 
 def plain(value: float | None, figures: int = LEAST_FIGURES) -> str:
-    """@param value  a dash stands for None and for what is not finite"""
+    """@param value  a dash replaces None and values that are not finite"""
     if not is_number(value):
         return "-"
     rounded = float(f"{value:.{figures - 1}e}")
@@ -33,7 +33,7 @@ def counted(number: int, noun: str) -> str:
 
 
 def with_interval(value: float, lower: float, upper: float) -> str:
-    """Such as 223 (102 to 585): two figures of the narrower side of the interval, but three of each number at least."""
+    """Such as 223 (102 to 585): two figures of the narrower side of the interval, but at least three of each number."""
     side = min(value - lower, upper - value)
     figures = exponent(value) - exponent(side) + 2 if side > 0 else LEAST_FIGURES
     figures = min(max(figures, LEAST_FIGURES), MOST_FIGURES)
@@ -41,7 +41,7 @@ def with_interval(value: float, lower: float, upper: float) -> str:
 
 
 def with_error(value: float | None, error: float | None) -> str:
-    """Such as 0.379 ± 0.012: two figures of the error, eight of the value at most."""
+    """Such as 0.379 ± 0.012: two figures of the error, at most eight of the value."""
     if not is_number(value) or not is_number(error) or error <= 0:
         return plain(value)
     decimals = max(0, 1 - exponent(float(f"{error:.1e}")))

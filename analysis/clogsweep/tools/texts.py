@@ -1,4 +1,5 @@
-"""Text from outside, such as names of files, attributes and words of a table: what terminals, pages and pictures show of it."""
+"""Text from outside, such as names of files, attributes and words of a table, made safe for terminals, pages and
+pictures."""
 
 import difflib
 from collections.abc import Iterable
@@ -15,7 +16,7 @@ def printable(text: object, kept: str = "") -> str:
 
 
 def literal(text: object) -> str:
-    """The same for matplotlib, to which text between two dollars is a formula."""
+    """The same for matplotlib, which reads text between two dollars as a formula."""
     return printable(text, "\n").replace("$", r"\$")
 
 

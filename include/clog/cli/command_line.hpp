@@ -26,7 +26,7 @@ class CommandLine {
 
   /// Declares an option without a value; like all declarations, call it before parse().
   CommandLine& flag(const char* name, const char* help);
-  /// Declares an option with a value. @param otherwise its default
+  /// Declares an option with a value. @param otherwise  its default
   CommandLine& option(const char* name, const char* help, const char* otherwise = nullptr);
   /// Declares an option that may be a word without dashes: the first, the second ...
   CommandLine& word(const char* name, const char* help);

@@ -11,7 +11,7 @@ namespace clog::cli {
 /// Reads circles from a text file, one a line: x, y and the diameter [sigma], or columns as the first line
 /// names them; cells are separated by commas, semicolons, tabs or blanks. A line without a diameter means
 /// obstacle-diameter. Lines starting with # are skipped, except `# units=um droplet=200um`, which gives the
-/// units of the following lengths; then every line needs a diameter. @param name of the file, followed by
+/// units of the following lengths; then every line needs a diameter. @param name  of the file, followed by
 /// @0.8mm if the circles are to be scaled to a droplet of 0.8 mm @throws Error naming the line
 OwnCircles read_circles(const std::string& name);
 

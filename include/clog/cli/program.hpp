@@ -29,7 +29,7 @@ std::vector<std::string> names_of(std::span<const Command> commands);
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
 /// Parses the line, and prints the answer to --help or --version. Returns whether there is anything else to
-/// do. @param libraries names and versions, printed after the program's own
+/// do. @param libraries  names and versions, printed after the program's own
 bool parse_command(CommandLine& line, int argc, const char* const* argv, const NamedTexts& libraries = {});
 
 /// Origin of a file: program, version, `git describe` of its sources, compiler, config, command line, time.

@@ -10,8 +10,8 @@ namespace clog::cli {
 /// missing
 std::filesystem::path find_python_module();
 
-/// The process continues as `python3 -m clogsweep`; its exit code is the module's. @param name that the
-/// module uses for itself @param module from find_python_module() @param arguments a command of the module
+/// The process continues as `python3 -m clogsweep`; its exit code is the module's. @param name  that the
+/// module uses for itself @param module  from find_python_module() @param arguments  a command of the module
 /// first @throws Error if it cannot be run
 [[noreturn]] void become_python(const std::string& name, const std::filesystem::path& module,
                                 std::vector<std::string> arguments);

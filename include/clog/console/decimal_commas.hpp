@@ -15,7 +15,7 @@ class DecimalCommas {
   std::string with_point(std::string number);
   /// @throws Error  if each comma so far may separate thousands. @param path  of the table
   void check(const std::string& path) const;
-  /// @throws Error that names an ambiguous number. @param where text before it
+  /// @throws Error that names an ambiguous number. @param where  text before it
   [[noreturn]] static void refuse(std::string_view where, const std::string& number);
 
  private:

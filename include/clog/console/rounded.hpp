@@ -9,7 +9,7 @@ namespace clog::console {
 
 inline constexpr int least_figures = 3;
 
-/// @param value a dash replaces values that are not finite
+/// @param value  a dash replaces values that are not finite
 std::string plain(double value, int figures = least_figures);
 
 struct RoundedInterval {

@@ -11,7 +11,7 @@ struct MeanSpeed {
   double standard_error = 0;  ///< NaN for fewer than two
 };
 
-/// @param speeds one per run, in any unit; NaN (a run too short to have a speed) is excluded
+/// @param speeds  one per run, in any unit; NaN (a run too short to have a speed) is excluded
 MeanSpeed fit_mean_speed(std::span<const double> speeds);
 
 /// Distance and duration of one run, in any units.

@@ -30,8 +30,8 @@ std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs, doub
 /// Is P(r) an exponential? The likelihood ratio against Weibull's law P(r) = exp(-(r/scale)^shape): with
 /// shape above 1 clogging gets likelier on the way, below 1 it was likelier at the beginning (or runs differ
 /// among each other). Distances below a thousandth of their mean count as that, for
-/// Weibull's law knows no zero. The p-value is asymptotic: of exponential data with 50, 10, 5 clogs 5, 6.5,
-/// 11 % have p < 0.05.
+/// Weibull's law knows no zero. The p-value is asymptotic: p < 0.05 occurs in 5, 6.5 and 11 % of exponential
+/// samples of 50, 10 and 5 clogs.
 struct WeibullTest {
   int num_clogs = 0;
   double shape = 0;  ///< NaN for fewer than two clogs at different distances, or infinite ones

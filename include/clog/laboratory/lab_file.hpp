@@ -36,7 +36,7 @@ std::vector<Laboratory> read_laboratories(const std::string& path);
 Laboratory read_laboratory(const std::string& path);
 /// How the terminal speed was scaled, in one line; empty if it was measured.
 std::string law_of_speed(const Laboratory& lab);
-/// @param source name of the text in messages
+/// @param source  name of the text in messages
 Laboratory parse_laboratory(const std::string& text, const std::string& source);
 
 }  // namespace clog::laboratory

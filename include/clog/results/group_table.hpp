@@ -16,7 +16,7 @@ enum class SharedParameters { unusual, all };
 std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared);
 /// All fields of every group.
 std::string to_csv(const std::vector<Group>& groups);
-/// All fields of every group, its P(r), and the origin of the rows. @param provenance of the sweep
+/// All fields of every group, its P(r), and the origin of the rows. @param provenance  of the sweep
 std::string to_json(const std::vector<Group>& groups, double confidence, const store::Provenance& provenance);
 
 }  // namespace clog::results

@@ -165,7 +165,7 @@ std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
 /// Groups rows by everything but the seed, in the order of their parameters. See observation_of(). @param
 /// from_distance distances are measured from here [sigma]: runs that ended earlier are excluded, the others
-/// count with the distance beyond it (left truncation) @param dwell a droplet that rested for longer than
+/// count with the distance beyond it (left truncation) @param dwell  a droplet that rested for longer than
 /// this counts as clogged where it first did so [t0]. A droplet that has neither rested so long nor clogged
 /// is censored where its last dwell began, because the full length of that dwell is unknown. A value of
 /// max-time or more changes nothing.

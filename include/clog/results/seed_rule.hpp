@@ -16,13 +16,13 @@ namespace clog::results {
 /// clogs is inverse sampling; the relative width of the interval depends only on this number).
 class SeedRule {
  public:
-  /// @param precision required half-width of the 95 % interval divided by lambda @param first_seeds,
+  /// @param precision  required half-width of the 95 % interval divided by lambda @param first_seeds,
   /// most_seeds per parameter set, at first and at most
   SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds, std::int64_t most_seeds);
 
   /// Tasks of the next round, once all tasks so far are over; empty at the end. Task s num_groups + g is the
   /// s-th seed of parameter set g. A set that is not precise enough gets as many more seeds as its fraction
-  /// of clogs so far requires, but at most as many as it already has. @param has_clogged whether a finished
+  /// of clogs so far requires, but at most as many as it already has. @param has_clogged  whether a finished
   /// task has clogged
   std::vector<std::int64_t> next_round(const std::function<bool(std::int64_t task)>& has_clogged);
 
@@ -59,7 +59,7 @@ struct GrowingSweep {
   std::int64_t num_first = 0;  ///< tasks to begin with
   SeedRule rule;
 };
-/// @param precision, most_seeds see SeedRule @throws Error if there are too few seeds
+/// @param precision, most_seeds  see SeedRule @throws Error if there are too few seeds
 GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, std::int64_t most_seeds);
 
 }  // namespace clog::results

@@ -9,7 +9,7 @@
 
 namespace clog::scheduler {
 
-/// Prints, before a sweep, which runs are known and which remain. @param may_grow runs may be added later
+/// Prints, before a sweep, which runs are known and which remain. @param may_grow  runs may be added later
 void announce(const std::string& output, const sweep::Plan& plan, const results::SweepState& state,
               bool may_grow, int num_ranks);
 

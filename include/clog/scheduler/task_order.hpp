@@ -28,7 +28,7 @@ class TaskOrder {
   void add(const std::vector<std::int64_t>& tasks);
 
   bool empty() const { return num_left_ == 0; }
-  /// Hands out a task; there must be one. Takes time for every running group. @param now time [s], from any
+  /// Hands out a task; there must be one. Takes time for every running group. @param now  time [s], from any
   /// moment on, the same in all calls
   std::int64_t take(double now);
   void ended(std::int64_t task, double now);

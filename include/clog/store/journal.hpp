@@ -39,7 +39,7 @@ class Journal {
   };
 
   /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, another kind of
-  /// file, or cannot be written. @param table whose mode, owner, group and access list a new one gets
+  /// file, or cannot be written. @param table  whose mode, owner, group and access list a new one gets
   explicit Journal(OutputPath place, const OutputPath* table = nullptr);
   Journal(Journal&&) = delete;
   ~Journal();

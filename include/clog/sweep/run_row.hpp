@@ -107,7 +107,7 @@ inline double cost_seconds(const RunRow& row) {
 /// The parameters, seed included, as bytes: equal for equal runs, wherever they are in a sweep.
 std::string identity(const RunRow& row);
 
-/// The columns of parameters. @param run resolved
+/// The columns of parameters. @param run  resolved
 RunRow describe(const RunParameters& run);
 /// Fills the columns of results.
 void record(const RunResult& result, RunRow& row);

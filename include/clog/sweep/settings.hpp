@@ -56,7 +56,7 @@ class Settings {
   const Shard& shard() const { return shard_; }
 
   /// Calls for each combination of words of each point, with settings that have no points and one value for
-  /// each key of words, so that the runs are the product of the other lists. @param point its place; -1
+  /// each key of words, so that the runs are the product of the other lists. @param point  its place; -1
   /// without points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;
@@ -104,7 +104,7 @@ class Settings {
 };
 
 /// Refuses keys that another key, or the scene, leaves without effect, in addition to those of check_each().
-/// @param settings with one value for each key of words, before parameter sets are made @throws Error
+/// @param settings  with one value for each key of words, before parameter sets are made @throws Error
 void refuse_contradictions(const Settings& settings);
 /// A question about a list that may be a decimal below one; empty for any other.
 std::string possible_decimal(const Key& key, const Settings& settings);

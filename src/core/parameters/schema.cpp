@@ -275,7 +275,7 @@ std::vector<Parameter> array_entries() {
              .symbol = R"(\rho_\mathrm{ob})",
              .unit = "1/sigma^2",
              .meaning = "obstacles per area, or a share of the mean density of saturated arrays; saturated: "
-                        "until no further one fits. Refused if some seed cannot reach it",
+                        "no further obstacle fits. Refused if some seed cannot reach it",
              .scope = &arrays,
              .automatic_in = &arrays,
              .range = {positive, {}},
@@ -312,7 +312,7 @@ std::vector<Parameter> own_circle_entries() {
              .unit = "sigma",
              .meaning =
                  "length of user-supplied circles along the flow, after which they repeat; 0: boxes*box. For "
-                 "triangular and rhombic lattices the largest period along the flow, adjusted as box is",
+                 "triangular and rhombic lattices the largest period along the flow, adjusted like box",
              .role = numerics,
              .scope = &lengths,
              .range = {not_negative, to(1e7, "no droplet gets as far", "use at most 1e7")},

@@ -39,7 +39,7 @@ constexpr double rise_of_a_moving_droplet = 10;
 /// Change this whenever the content of a snapshot changes.
 constexpr std::uint64_t snapshot_kind = 0x636c6f6773000004;
 
-/// Whether a snapshot's frame is possible. @param way largest distance of any droplet of the run [sigma]
+/// Whether a snapshot's frame is possible. @param way  largest distance of any droplet of the run [sigma]
 bool is_in_range(const LocalFrame& frame, const Period& period, double way) {
   return frame.period[0] == period.along() && frame.period[1] == period.across() &&
          (frame.origin >= 0).all() && (frame.origin < frame.period).all() &&

@@ -300,7 +300,7 @@ TEST(DropletRun, KeepsItsContactsShallowAndItsAreaOnTheWay) {
 }
 
 TEST(DropletRun, ADivergedRunIsAResult) {
-  // Unchecked parameters: a soft disk whose contacts no such step resolves.
+  // Unchecked parameters: the step is too long for the contacts of this soft disk.
   RunParameters parameters = small_run();
   parameters.model = Model::sp;
   parameters.wall_stiffness = 1e9;

@@ -26,7 +26,7 @@ struct DropletModel {
   /// Key of the parameter that is the droplet's stiffness.
   const char* stiffness_key;
 
-  /// Chooses the number of moving points if it is not given. @param obstacle_diameter of the smallest
+  /// Chooses the number of moving points if it is not given. @param obstacle_diameter  of the smallest
   /// obstacle over which the droplet can hang, infinite if there is none [sigma]
   void (*choose_points)(RunParameters& run, double obstacle_diameter);
   /// The width below which the droplet's points do not resolve a passage [sigma].

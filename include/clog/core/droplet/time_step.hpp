@@ -20,8 +20,8 @@ double relaxation_time(const RunParameters& run);
 /// increase the drag or springs carry tension [t0].
 double drag_time_step(const RunParameters& run);
 
-/// Uses this automatic step. @param rates in addition to that of the drag @throws Error naming the key of the
-/// fastest rate if the step is too small to be useful
+/// Uses this automatic step. @param rates  in addition to that of the drag @throws Error naming the key of
+/// the fastest rate if the step is too small to be useful
 void choose_time_step(RunParameters& run, double time_step, std::vector<Rate> rates);
 
 /// Checks for every model that max-time and the drag's relaxation time are several steps. @throws Error

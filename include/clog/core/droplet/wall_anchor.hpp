@@ -26,7 +26,7 @@ struct WallPlace {
   }
 };
 
-/// Distance of a point, relative to the wall's centre. @param wedges those of the scene
+/// Distance of a point, relative to the wall's centre. @param wedges  those of the scene
 inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> wedges,
                                  const Eigen::Array2d& from_centre) {
   if (wall.wedge >= 0) return distance_to(wedges[static_cast<std::size_t>(wall.wedge)], from_centre);
@@ -51,7 +51,7 @@ struct WallAnchor {
 /// Anchors by the vertices or ends that they hold. It keeps its memory, so that a step allocates none.
 class KnownAnchors {
  public:
-  /// Adopts the anchors and leaves none. @param num_holders anchors of others are never found
+  /// Adopts the anchors and leaves none. @param num_holders  anchors of others are never found
   void take(std::vector<WallAnchor>& anchors, Eigen::Index num_holders) {
     std::swap(anchors_, anchors);
     anchors.clear();

@@ -27,11 +27,11 @@ class ContactRecord {
   /// An obstacle farther away counts as left [sigma].
   static constexpr double parting = 0.1;
 
-  /// @param reach of the moving points, see DropletModel
+  /// @param reach  of the moving points, see DropletModel
   explicit ContactRecord(const ContactReach& reach) : reach_(reach) {}
 
-  /// Call this once per check of a run. @param release displacement from the place of release of the origin
-  /// of the droplet's frame [sigma] @param distance displacement of the droplet along the flow since release
+  /// Call this once per check of a run. @param release  displacement from the place of release of the origin
+  /// of the droplet's frame [sigma] @param distance  displacement of the droplet along the flow since release
   /// [sigma]
   void add(const DropletState& state, const ObstacleArray& obstacles, const Eigen::Array2d& release,
            double distance);

@@ -86,17 +86,17 @@ class DropletRun {
   /// A snapshot is taken once in this number of steps, every quarter of a second for 256 vertices.
   static constexpr std::int64_t steps_per_snapshot = std::int64_t{4096} * steps_per_check;
 
-  /// Released as its scene defines. @param run resolved parameters, here and below
+  /// Released as its scene defines. @param run  resolved parameters, here and below
   explicit DropletRun(const RunParameters& run);
   /// The same with given walls.
   DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
-  /// @param initial the droplet at its release @param way displacement along the flow at which it has
+  /// @param initial  the droplet at its release @param way  displacement along the flow at which it has
   /// `passed` [sigma]
   DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
              double way = std::numeric_limits<double>::infinity());
 
   /// A run restored from a snapshot() continues bit for bit like the original, because the original also
-  /// rebuilds its contact lists there. @param run, obstacles as in that one @throws Error if the bytes are
+  /// rebuilds its contact lists there. @param run, obstacles  as in that one @throws Error if the bytes are
   /// not a snapshot of such a run
   static DropletRun resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
                            std::span<const std::byte> snapshot);

@@ -41,10 +41,10 @@ class DwellRecord {
   /// recorded.
   static constexpr double shortest = 10;
 
-  /// @param dwell_length [sigma]; @param terminal_speed [sqrt(sigma g)]
+  /// @param dwell_length  [sigma]; @param terminal_speed  [sqrt(sigma g)]
   DwellRecord(double dwell_length, double terminal_speed);
 
-  /// Call this once per check of a run. @param displacement along the flow since release [sigma]
+  /// Call this once per check of a run. @param displacement  along the flow since release [sigma]
   void add(double time, double displacement);
 
   /// @param time  of the last check. An unfinished dwell counts with its length so far; that of a clog does

@@ -18,7 +18,7 @@ struct Passage {
   Extreme largest_speed;   ///< along the flow [V_t]
   Extreme smallest_speed;  ///< the same; not of the beginning, when the droplet falls from rest
 
-  /// @param is_falling whether it has had time to reach its speed
+  /// @param is_falling  whether it has had time to reach its speed
   void add(double place, double shape_parameter, double speed, bool is_falling);
   void save(ByteWriter& bytes) const { bytes.put(*this); }
   void restore(ByteReader& bytes) { bytes.get(*this); }

@@ -17,7 +17,7 @@ std::optional<double> wanted_density(const ObstacleParameters& obstacles);
 
 /// The largest density of a random array that every seed can reach [1/sigma^2]: eight standard deviations
 /// below the mean number of obstacles of saturated arrays of this box. In small boxes, where this is almost
-/// zero, the smallest density of any saturated array. @param obstacles of random layout
+/// zero, the smallest density of any saturated array. @param obstacles  of random layout
 double largest_density(const ObstacleParameters& obstacles);
 
 }  // namespace clog

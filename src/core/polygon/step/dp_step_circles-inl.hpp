@@ -112,7 +112,7 @@ struct WindowPushes {
   }
 };
 
-/// Stores or adds to the arrays of the windows. @param p entry of the first edge in the first array
+/// Stores or adds to the arrays of the windows. @param p  entry of the first edge in the first array
 template <bool adds>
 HWY_INLINE void keep_pushes(const WindowPushes& push, M listed, double* p, std::ptrdiff_t stride) {
   for (const V v : {push.begin.x, push.end.x, push.far.x, push.begin.y, push.end.y, push.far.y}) {
@@ -142,7 +142,7 @@ HWY_INLINE bool push_window(const WallWindow& window, V span, V stiffness, const
   return touches;
 }
 
-/// One coordinate of the windows' forces on the vertices from p on. @param p forces of edges on their first
+/// One coordinate of the windows' forces on the vertices from p on. @param p  forces of edges on their first
 /// vertices; a stride later on their second ones, then on the others
 HWY_INLINE V push_on_vertices(const double* p, std::ptrdiff_t stride) {
   const double *end = p + stride, *far = end + stride;

@@ -26,14 +26,14 @@ inline constexpr double most_steps_per_rate = 4, farthest_way_per_rate = 0.2;
 /// its state.
 class DpStepper {
  public:
-  /// @param run resolved parameters @param obstacles must outlive this object @param forces of the same run,
-  /// whose contact lists are renewed when needed; must outlive this object
+  /// @param run  resolved parameters @param obstacles  must outlive this object @param forces  of the same
+  /// run, whose contact lists are renewed when needed; must outlive this object
   DpStepper(const RunParameters& run, const ObstacleArray& obstacles, DpForces& forces);
 
   /// Rebuilds the contact lists of a droplet.
   void start_afresh(const DropletState& state);
   /// Moves a droplet by `num_steps` time steps of the run, in shorter ones if they would be unstable; stops
-  /// if it bursts. Returns the number of steps taken. @param work if not null, the work of drag and springs
+  /// if it bursts. Returns the number of steps taken. @param work  if not null, the work of drag and springs
   /// is added to it
   std::int64_t move(DropletState& state, int num_steps, Droplet::Work* work);
   /// The same with these steps, without regard to the run's time step and the bounds of stability. Possible

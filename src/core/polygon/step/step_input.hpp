@@ -8,7 +8,7 @@
 /// Parameters of a step that follow from a run and its forces.
 namespace clog {
 
-/// @param far_rate rate of the drag far from walls [1/t0]; 0: no drag
+/// @param far_rate  rate of the drag far from walls [1/t0]; 0: no drag
 kernel::KickTerms kick_terms(const RunParameters& run, double far_rate);
 /// @param impulse  kick of a vertex by a unit force
 kernel::Contact contact_as_kick(const RunParameters& run, const DpForces& forces, double impulse);

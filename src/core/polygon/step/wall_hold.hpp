@@ -27,7 +27,7 @@ class WallHold {
   /// @param film_reach  see kernel::WallGrip
   WallHold(int num_vertices, double range, double film_reach);
 
-  /// Adopts the anchors. @param vertices where they are Returns half the sum of the squared slips of those
+  /// Adopts the anchors. @param vertices  where they are Returns half the sum of the squared slips of those
   /// anchors that none of these circles can hold [sigma^2].
   double make(const Near& near, const kernel::ContourPair& vertices, DropletState& droplet);
   /// Copies the anchors into the droplet, if make() was called since forget().

@@ -15,7 +15,7 @@ namespace clog {
 class WallPlan {
  public:
   explicit WallPlan(int num_vertices);
-  /// @param near circles and edges that may touch, sorted by circle and group
+  /// @param near  circles and edges that may touch, sorted by circle and group
   void make(const std::vector<WallContacts::Item>& near);
   /// Valid until the next make().
   const kernel::WallWindows& windows() const { return windows_; }

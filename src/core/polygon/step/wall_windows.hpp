@@ -10,7 +10,7 @@ namespace clog {
 
 /// Lists windows: a circle and edges_per_group consecutive edges. A window begins at the first edge that may
 /// touch the circle, so that no lane is wasted on edges before it. Every edge of an item is in one window of
-/// its circle. @param near circles and edges that may touch, sorted by circle and group @param num_groups of
+/// its circle. @param near  circles and edges that may touch, sorted by circle and group @param num_groups of
 /// the contour's edges
 void list_windows(const std::vector<WallContacts::Item>& near, int num_groups,
                   std::vector<kernel::WallWindow>& windows);

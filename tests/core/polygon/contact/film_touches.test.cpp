@@ -72,7 +72,7 @@ class Stack {
 };
 
 TEST(FilmTouches, OfAStackBearTogetherWhatTheWallBears) {
-  // Three interfaces: each bears what its own tension presses.
+  // Three interfaces: each bears the normal force of its own tension.
   constexpr double first = 8e-3, second = 1e-3, third = 5e-4;
   const double by_wall = Stack::stiffness * first * Stack::on_arc;
   const std::vector<double> alone = Stack({first}).held();
@@ -134,7 +134,7 @@ class Band {
   }
 
   double hanging() const { return num_hanging_ * pi * radius / on_disc_; }
-  /// A pull at each end of each rope.
+  /// A force pulls at each end of each rope.
   struct Pulls {
     double lower_first, lower_second, upper_first, upper_second;
   };

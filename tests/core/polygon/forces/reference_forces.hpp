@@ -148,8 +148,8 @@ class ReferenceForces : public DpForces {
     const double d = away.matrix().norm() + 1e-300;  // a point on the very centre gets no NaN
     return contact_stiffness() * std::max(0.0, reach - d) / d * away;
   }
-  /// The half's two ends share the push as the nearest point divides it. A middle hands its push to the four
-  /// vertices that decide where it is.
+  /// The half's two ends share the push as the nearest point divides it. The force on a middle acts on the
+  /// four vertices that determine it.
   void push_half_edge(Eigen::ArrayXd& force, int i, bool is_first, const Eigen::Array2d& centre,
                       double reach) const {
     const Eigen::Array2d begin = is_first ? vertex(i) : middle(i), end = is_first ? middle(i) : vertex(i + 1);

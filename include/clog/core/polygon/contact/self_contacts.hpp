@@ -43,7 +43,7 @@ class SelfContacts {
   /// Renews the pairs when the shape may change too much on the way to the next update.
   void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
-  /// Whether the pairs are valid until the next update. Changes nothing. @param moved bound on the
+  /// Whether the pairs are valid until the next update. Changes nothing. @param moved  bound on the
   /// displacement of any vertex since renew(), relative to the mean of all [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);

@@ -27,7 +27,7 @@ class WallContacts {
   void update(const DropletState& state, const Travel& travel);
   /// Discards the lists: positions changed by more than a move (a new frame origin, a rescaled polygon).
   void invalidate() { reference_.resize(0); }
-  /// Whether the lists are valid until the next update. Changes nothing. @param moved bound on the
+  /// Whether the lists are valid until the next update. Changes nothing. @param moved  bound on the
   /// displacement of any vertex since renew() [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);

@@ -32,7 +32,7 @@ class DpForces {
   /// @param run  resolved parameters (see resolve())
   DpForces(const RunParameters& run, const ObstacleArray& obstacles);
 
-  /// @param travel bound on the displacement until the next call
+  /// @param travel  bound on the displacement until the next call
   void update_contacts(const DropletState& state, const Travel& travel);
   /// Whether update_contacts() would leave the lists unchanged. Also false if only the state can tell. @param
   /// moved bound on the displacement of any vertex since walls() were renewed [sigma] @param moved_relative
@@ -67,7 +67,7 @@ class DpForces {
   const std::vector<Wedge>& wedges() const { return obstacles_->wedges(); }
   const WallFriction& friction() const { return friction_; }
   /// Moves the anchors of friction or of the contact line beyond their limits, see WallFriction::follow().
-  /// @param circles all possible contacts
+  /// @param circles  all possible contacts
   WallYield let_walls_yield(DropletState& state, WallTouches& touches,
                             std::span<const WallContacts::Item> circles, Purpose purpose) const;
   bool has_anchors() const { return friction_.is_on() || wetted_walls_.hold_ends(); }

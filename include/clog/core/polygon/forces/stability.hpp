@@ -66,7 +66,7 @@ struct Steps {
 };
 /// The fewest steps that cover `steps` time steps and keep every bound: at least as many, at most
 /// most_substeps times as many. Up to twice as many the number is exact; above that, where shapes are far
-/// from the regular polygons of the bounds, it is a multiple of `steps`. @param most Pressure::implicit: the
+/// from the regular polygons of the bounds, it is a multiple of `steps`. @param most  Pressure::implicit: the
 /// pressure may be implicit if this saves steps
 Steps stable_steps(const StiffModes& modes, int steps, double time_step, Pressure most);
 

@@ -68,7 +68,7 @@ class ContactLine {
     Eigen::Array2d by_place;
   };
   class Ends;
-  /// @param circles all that may be wetted, by vertex @param ends the result; its memory is reused
+  /// @param circles  all that may be wetted, by vertex @param ends  the result; its memory is reused
   void find_ends(const VertexPlaces& vertices, const LocalFrame& frame,
                  std::span<const WallContacts::Item> circles, Ends& ends) const;
 
