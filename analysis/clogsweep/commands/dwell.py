@@ -5,7 +5,7 @@
 An experiment calls a droplet clogged that it has not seen move for a while, though it might move on; the longer the while,
 the longer the length. A curve for each group of runs; every number comes from clogfit --dwell, nothing is fitted here.
 The first time is the shortest of which all rows know who stood for longer, the last is the length of the runs, and the
-length there is that of clogs alone. Bars are confidence intervals; a triangle is a lower bound where no run clogged.
+length there is that of clogs alone. Bars are confidence intervals; an arrow begins at a lower bound, where no run clogged.
 """
 
 from ..drawing import dwell
