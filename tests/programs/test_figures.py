@@ -1,5 +1,6 @@
 import csv
 import html
+import itertools
 import json
 import math
 import os
@@ -9,11 +10,14 @@ import sys
 import unittest
 import unittest.mock
 import xml.etree.ElementTree as xml
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
 import pandas
+import matplotlib
 from matplotlib import image
+from matplotlib.text import Text
 
 import stored_rows
 from drawing import Analysis
@@ -26,7 +30,7 @@ from clogsweep.pages import report
 from clogsweep.reading import programs, stored, trajectory
 from clogsweep.tools import rounded
 from clogsweep.labels.groups import Groups
-from clogsweep.paper import arrays
+from clogsweep.paper import arrays, dilute
 
 # A few seconds for all of them: coarse droplets, short ways.
 TINY = {
@@ -82,6 +86,64 @@ class Survival(unittest.TestCase):
     def test_all_of_it_has_its_place_on_the_scale(self):
         lowest = arrays.lowest_shown({"survival": self.STEPS, "clogging_length": 5.0}, 9.0)
         self.assertLess(lowest, 0.01)
+
+
+class Parts(unittest.TestCase):
+    """Drawn from numbers and outlines that no program computed."""
+
+    def test_the_legend_of_displacements_has_the_order_of_the_curves_at_their_ends(self):
+        def run(end):
+            row = dict.fromkeys(("obstacle_gap", "obstacle_diameter", "terminal_speed", "vertices", "seed"), 1) | {"mean_speed": math.nan}
+            return SimpleNamespace(row=row, table={"time": np.array([0, 1]), "distance": np.array([0, end])}, word=lambda _: "flowing")
+
+        with unittest.mock.patch.object(arrays, "displacements", lambda _: {0.1: run(0.5), 0.2: run(0.9), 0.5: run(0.7)}):
+            axes, = arrays.displacement(None).figure.axes
+        legend = axes.get_legend()
+        self.assertEqual([text.get_text() for text in legend.get_texts()][1:], [rf"$\Gamma = {number}$" for number in (0.2, 0.5, 0.1)])
+        self.assertEqual([text.get_color() for text in legend.get_texts()[1:]], [style.COLOURS[index] for index in (1, 2, 0)])
+
+    def test_clogs_of_figure_5_have_one_scale_with_a_bar(self):
+        circle = np.array([np.cos(np.linspace(0, 6, 40)), np.sin(np.linspace(0, 6, 40))]) / 2
+
+        def example(_, mechanism):
+            outlines = np.array([circle * [[5 if mechanism == "wrapped" else 1], [1]] + [[step / 2], [0]] for step in range(6)])
+            row = SimpleNamespace(line_tension=1, obstacle_gap=0.2, friction=0, seed=1, distance=1, mechanism=mechanism)
+            return SimpleNamespace(polygons=outlines, times=np.arange(6), obstacles=np.empty((0, 3)), wedges=[], word=lambda _: mechanism), row
+
+        with unittest.mock.patch.object(arrays, "example", example):
+            plates = [arrays.two_ways(None), *(arrays.snapshot(None, mechanism) for mechanism in ("wrapped", "squeezed"))]
+        for figure in (plate.figure for plate in plates):
+            figure.canvas.draw()
+            scales = {round(axes.get_window_extent().width / np.ptp(axes.get_xlim()), 3) for axes in figure.axes if axes.axison}
+            self.assertEqual(len(scales), 1)
+            self.assertIn(r"$\sigma$", [text.get_text() for text in figure.findobj(Text)])
+
+    def test_frames_of_the_map_tell_exponential_from_other_distances_and_too_few_clogs(self):
+        axes = style.new_figure().subplots()
+        for place, (clogs_, p_value) in enumerate([(10, 0.5), (10, 0.01), (9, 0.5)]):
+            group = {"clogs": clogs_, "weibull_p_value": p_value, "doubts": None, "clogging_length": 3.0}
+            dilute.draw_cell(axes, place, 0, group, matplotlib.colors.LogNorm(0.1, 10))
+        frames = {round(patch.get_x() + 0.43): patch.get_linestyle() for patch in axes.patches if not patch.get_fill()}
+        self.assertEqual(frames, {0: "-", 1: ":"})
+
+    def test_neighbours_among_curves_have_colours_that_the_eye_tells_apart(self):
+        for number in range(2, len(style.COLOURS) + 1):
+            colours = matplotlib.colors.to_rgba_array(style.shades(number))
+            self.assertGreater(np.abs(np.diff(colours, axis=0)).max(axis=1).min(), 0.3)
+
+    def test_a_legend_stays_off_error_bars(self):
+        # Bars fill all but the lower right, or all; the points alone leave room above them.
+        for lowest in (6, 0):
+            axes = style.new_figure().subplots()
+            right = np.arange(12) > 8
+            axes.errorbar(range(12), np.where(right, 8, 2), yerr=[np.where(right, 8 - lowest, 2), np.where(right, 2, 8)], label="a curve")
+            axes.set_ylim(0, 10)
+            style.legend(axes)
+            axes.figure.canvas.draw()
+            box = axes.get_legend().get_window_extent()
+            bars = axes.containers[0].lines[2][0].get_segments()
+            self.assertFalse([bar for bar in bars if box.overlaps(matplotlib.transforms.Bbox(axes.transData.transform(bar)))])
+            self.assertEqual(axes.get_ylim()[1] > 10, lowest == 0)
 
 
 class Drawn(Analysis):
@@ -290,7 +352,11 @@ class Pictures(Analysis):
         lengths.draw_lengths(axes, [1, 2, 3, 4], groups, 0, "")
         drawn = {line.get_xdata()[0]: (line.get_marker(), line.get_markerfacecolor() == "white") for line in axes.lines
                  if len(line.get_xdata()) == 1 and np.isfinite(line.get_ydata()[0])}
-        self.assertEqual(drawn, {1: ("o", True), 2: ("s", False), 3: ("D", False), 4: ("^", True)})
+        arrow = drawn.pop(4)[0]
+        self.assertEqual(drawn, {1: ("o", True), 2: ("s", False), 3: ("D", False)})
+        # An arrow that begins at the lower bound and rises.
+        self.assertEqual(arrow.vertices[:, 1].min(), 0)
+        self.assertEqual([line.get_ydata().tolist() for line in axes.lines if line.get_marker() is arrow], [[1.0]])
         style.legend(axes, groups)
         self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], ["most clogs wrapped", "most clogs squeezed", "most clogs hybrid"])
 
@@ -302,10 +368,12 @@ class Pictures(Analysis):
             figure.canvas.draw()
             labels = [label for label in axes.get_xticklabels() + axes.get_xticklabels(minor=True) if label.get_text()]
             low, high = axes.get_xlim()
-            places = sorted((box.x0, box.x1) for label in labels if low <= label.get_position()[0] <= high for box in [label.get_window_extent()])
-            self.assertGreater(len(places), 0)
-            self.assertTrue(all(end < begin for (_, end), (begin, _) in zip(places, places[1:])), f"{values}: {places}")
+            boxes = [label.get_window_extent() for label in labels if low <= label.get_position()[0] <= high]
+            self.assertGreater(len(boxes), 0)
+            self.assertFalse([values for one, other in itertools.combinations(boxes, 2) if one.overlaps(other)])
             self.assertTrue(all(float(label.get_text()) > 0 for label in labels))
+            if len(values) < 5:
+                self.assertEqual(sorted(float(label.get_text()) for label in labels), values)
 
     def test_a_logarithmic_ordinate_has_several_labels(self):
         for ends, expected in [((3, 30), ["5", "10", "20"]), ((0.9, 6), ["1", "2", "5"]), ((2.1, 4.9), ["3", "4"]), ((1, 1e4), ["$\\mathdefault{10^{%d}}$" % n for n in (1, 2, 3)])]:
@@ -353,7 +421,7 @@ class Pictures(Analysis):
             """Draws with the notes."""
             axes = style.figure_of(lengths.draw_on, groups).axes[0]
             notes, = [text.get_text() for text in axes.texts if text.get_gid() == style.NOTES]
-            return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"], notes
+            return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white"], notes
 
         groups.members[0]["doubts"] = "censored_by_time"
         places, notes = hollow_places()
@@ -366,7 +434,7 @@ class Pictures(Analysis):
         self.assertEqual(places, [2, 30])
         self.assertIn("hollow: fewer than 5 clogs", notes)
         self.assertIn("incomplete: runs of 1 of 2 points are unfinished or failed", notes)
-        groups.members[0]["clogs"] = 0  # a triangle, which says it
+        groups.members[0]["clogs"] = 0  # an arrow, which says it
         self.assertNotIn("fewer than 5 clogs", hollow_places()[1])
 
     def test_clogs_are_drawn_from_a_sweep(self):

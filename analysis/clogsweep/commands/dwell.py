@@ -5,7 +5,7 @@
 An experiment calls a droplet clogged that has not moved for a waiting time, although it might move on; the longer the
 time, the longer the length. One curve for each group of runs, from clogfit --dwell. The first time is the shortest for
 which all rows record the dwells, the last is the duration of the runs, with the length of clogs alone. Bars are
-confidence intervals; a triangle is a lower bound where no run clogged.
+confidence intervals; an arrow begins at a lower bound where no run clogged.
 """
 
 from ..drawing import dwell

@@ -74,7 +74,7 @@ class Clog:
 
     def picture(self) -> style.Picture:
         figure, axes = style.subplots(figsize=(4.6, 4.6))
-        draw(axes, self)
+        draw(axes, self, view_of([self]))
         axes.set_xlabel(r"$x/\sigma$ from the droplet's middle")
         axes.set_ylabel(r"$y/\sigma$")
         return style.Picture(figure, f"{self.source}\ntask {self.task}")
@@ -169,11 +169,16 @@ def title(row: np.void) -> str:
             f"{wrapped}, {rounded.counted(row['num_gaps'], 'gap')}, {rounded.counted(row['num_arcs'], 'contact')}")
 
 
-def draw(axes: Axes, clog: Clog) -> None:
-    """Draws around the droplet's middle. All panels have one shape: titles above flat ones would exceed the sheet."""
+def view_of(clogs: Sequence[Clog]) -> Numbers:
+    """Width and height with room for each of them and for the guides [sigma]."""
+    width, height = np.max([np.ptp(clog.polygon, axis=1) for clog in clogs], axis=0) + 0.6
+    return np.array([max(width, height / 1.4), max(1.2 * height, 0.5 * width)])
+
+
+def draw(axes: Axes, clog: Clog, view: Numbers, has_guides: bool = True) -> None:
+    """Draws around the droplet's middle. @param view  of view_of()"""
     polygon = clog.polygon
-    low, high = polygon.min(axis=1), polygon.max(axis=1)
-    middle, half = (low + high) / 2, (high - low).max() / 2 + 0.3
+    middle = (polygon.min(axis=1) + polygon.max(axis=1)) / 2
     interface = polygon - middle[:, None]
     axes.fill(*interface, facecolor="#E69F00", edgecolor="black", linewidth=0.6, alpha=0.7)
     corners = scipy.spatial.ConvexHull(interface.T).vertices
@@ -185,22 +190,26 @@ def draw(axes: Axes, clog: Clog) -> None:
         patch.set_color("#0072B2" if len(touches) else "0.85")
         axes.add_patch(patch)
         for edge in touches:
-            axes.plot(*interface[:, [edge, (edge + 1) % interface.shape[1]]], color="#D00000", linewidth=1.8)
-    surroundings.frame_limits(axes, (-half, -1.2 * half), (half, 1.2 * half))  # with room for the guides
+            axes.plot(*interface[:, [edge, (edge + 1) % interface.shape[1]]], color="#D00000", linewidth=2.4, solid_capstyle="butt")
+    surroundings.frame_limits(axes, -view / 2, view / 2)
     axes.locator_params(nbins=5)
-    surroundings.draw_guides(axes)
+    if has_guides:
+        surroundings.draw_guides(axes)
     axes.set_title(title(clog.row), fontsize=8)
 
 
 def sheet(clogs: Sequence[Clog]) -> Figure:
-    across = min(6, len(clogs))
+    """All in one scale, with the guides in the first panel."""
+    view = view_of(clogs)
+    across = min(3 if view[0] > 1.5 * view[1] else 4, len(clogs))
     down = -(-len(clogs) // across)
-    height = 3.9 * down + MARGIN
-    figure, axes = style.subplots(down, across, figsize=(2.8 * across, height), squeeze=False)
+    width = 10 / across if len(clogs) > 1 else 4.6
+    height = (width * view[1] / view[0] + 0.75) * down + MARGIN
+    figure, axes = style.subplots(down, across, figsize=(width * across, height), squeeze=False)
     # Otherwise the titles of the first row leave the sheet.
     figure.get_layout_engine().set(h_pad=0.1, rect=(0, 0, 1, 1 - MARGIN / height))
     for place in axes.flat:
         place.axis("off")
     for place, clog in zip(axes.flat, clogs):
-        draw(place, clog)
+        draw(place, clog, view, has_guides=clog is clogs[0])
     return figure

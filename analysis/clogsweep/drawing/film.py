@@ -13,7 +13,8 @@ import numpy.typing as npt
 from matplotlib.artist import Artist
 from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
 from matplotlib.path import Path
 from PIL import Image
 from scipy import ndimage
@@ -126,22 +127,28 @@ class Film:
         inset = self._draw_course()
         surroundings.draw_guides(self._axes)
         self._bar, = self._axes.artists
-        arrow = list(self._axes.texts)
+        still = [*self._axes.texts, self._draw_legend(colour)]
         self._clock = self.figure.text(width - 0.01, 0.965, "", va="center", ha="right", fontsize=11)
         self._verdict = self._axes.text(0.5, 0.9, "", transform=self._axes.transAxes, ha="center", fontsize=14,
                                         bbox={"facecolor": "white", "edgecolor": "0.5", "alpha": 0.9, "pad": 6})
         self._verdict.set_visible(False)
-        self._separate(inset, arrow)
+        self._separate(inset, still)
 
-    def _separate(self, inset: list[Artist], arrow: list[Artist]) -> None:
+    def _draw_legend(self, colour: str) -> Artist:
+        shown: list[Artist] = [Line2D([], [], color=style.DROPLET, linewidth=1.5, label="path of the centre")]
+        if colour == "mechanism":
+            shown += [Patch(facecolor=face, edgecolor="black", alpha=0.75, label=f"clogged, {name}") for name, face in style.MECHANISM_COLOURS.items()]
+        return self._axes.legend(handles=shown, loc="upper right", fontsize=9, edgecolor="none")
+
+    def _separate(self, inset: list[Artist], still: list[Artist]) -> None:
         """Separates the static from the moving parts. The bar is as long as the droplet is wide, so it changes when the
         camera zooms out."""
         under = [*self._axes.patches[:self._num_walls], self._obstacles, self._trail, self._inside, self._outline, self._frame]
         over = [self._course, self._head, self._clock, self._verdict]
-        for artist in (*under, *inset, *arrow, *over, self._bar):
+        for artist in (*under, *inset, *still, *over, self._bar):
             artist.set_animated(True)
         self._moving_under, self._moving_over = under, over
-        self._layers = [Layer(self.figure, inset), Layer(self.figure, arrow)]
+        self._layers = [Layer(self.figure, inset), Layer(self.figure, still)]
         self._bar_layer, self._bar_width = self._layers[1], 0
         self.figure.canvas.draw()
         self._background = self.figure.canvas.copy_from_bbox(self.figure.bbox)

@@ -25,7 +25,7 @@ HOLLOW_MARKERS = {
 
 
 def reasons_for_hollow_marker(group: Group) -> list[str]:
-    """The triangle of a group without clogs already shows this."""
+    """The arrow of a group without clogs already shows this."""
     return [doubt for doubt in style.doubts(group) if doubt in HOLLOW_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
 
 
@@ -38,12 +38,13 @@ FITTED_TO_COMMON_OBSTACLES = "_fitted, common obstacles"  # likewise, where poin
 
 
 def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> list[str]:
-    """Explains the bars, hollow markers, triangles and dotted lines that draw_lengths() drew. @param panels  the axes
-    with the curves @return lines of text"""
+    """Explains the bars, hollow markers, arrows and dotted lines of draw_lengths() that occur.
+    @param panels  the axes with the curves
+    @return  lines of text"""
     labels = {line.get_label() for axes in panels for line in axes.lines}
     marks = [f"bars: {100 * confidence:g} % confidence intervals"] if any(group["clogs"] > 0 for group in groups) else []
     if any(group["clogs"] == 0 for group in groups):
-        marks.append("triangles: lower bounds (no run clogged)" + (", joined by dotted lines" if THROUGH_BOUNDS in labels else ""))
+        marks.append("arrows: lower bounds (no run clogged)" + (", joined by dotted lines" if THROUGH_BOUNDS in labels else ""))
     if labels & {FITTED, FITTED_TO_COMMON_OBSTACLES}:
         marks.append(f"lines: fitted curves, with {100 * confidence:g} % bands")
     lines = ["; ".join(marks)] if marks else []
@@ -62,18 +63,18 @@ def excluded_notes(groups: Groups) -> list[str]:
     return textwrap.wrap(f"not in a curve: {'; '.join(excluded)}", NOTE_WIDTH) if excluded else []
 
 
-def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
-    """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all groups given to
-    draw_lengths()"""
+def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs", title: str = "") -> None:
+    """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given; @param other, title  see style.legend()"""
     style.logarithmic_ordinate(axes)
-    style.finish(axes, (LABORATORY if groups.are_in_mm else AXES)["length"], groups.caption(), [*length_notes(drawn, groups.confidence, [axes]), *excluded_notes(groups)], drawn, other)
+    style.finish(axes, (LABORATORY if groups.are_in_mm else AXES)["length"], groups.caption(), [*length_notes(drawn, groups.confidence, [axes]), *excluded_notes(groups)], drawn,
+                 other, title)
 
 
 def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
                  size: float = 5.5, unit: str = "") -> None:
     """Clogging lengths with clogfit's intervals, `linestyle` if it is not that of the index, markers of `size` points,
     in the `unit` at the end of column names ("_mm"; sigma). The marker shows the mechanism of most clogs; a hollow one
-    is a length in doubt (HOLLOW_MARKERS), a triangle a lower bound, because no run clogged."""
+    is a length in doubt (HOLLOW_MARKERS), an arrow begins at a lower bound, because no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
     # NaN if no run clogged: the line breaks there and continues dotted.
@@ -92,8 +93,8 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
         through = [group[lower if group["clogs"] == 0 else middle] for group in groups]
         axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1, label=THROUGH_BOUNDS)
     bounds = [(x, group) for x, group in zip(places, groups) if group["clogs"] == 0]
-    axes.plot([x for x, _ in bounds], [group[lower] for _, group in bounds], color=colour, marker="^", markerfacecolor="white",
-              markersize=size + 2.5, linestyle="none", gid=style.mark("point", [group for _, group in bounds]))
+    axes.plot([x for x, _ in bounds], [group[lower] for _, group in bounds], color=colour, marker=style.LOWER_BOUND, markerfacecolor="none",
+              markersize=4.5 * size, linestyle="none", gid=style.mark("point", [group for _, group in bounds]))
 
 
 def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, column: str = "relative_speed") -> None:
@@ -194,7 +195,7 @@ def draw_on(axes: Axes, groups: Groups) -> None:
         draw_lengths(axes, places, members, index, label, linestyle="none" if is_fitted else None, unit="_mm" if groups.are_in_mm else "")
 
     draw_curves(axes, groups, draw_curve)
-    finish_lengths(axes, groups, groups.members)
+    finish_lengths(axes, groups, groups.members, title=groups.legend_title())
     add_laboratory(axes, groups, "length")
 
 
@@ -202,4 +203,4 @@ def draw_speeds_on(axes: Axes, groups: Groups) -> None:
     draw_curves(axes, groups, functools.partial(draw_speeds, column=speed_column(groups.members)))
     add_laboratory(axes, groups, "speed")
     has_points = any(curve.lines[0].get_xdata().size for curve in axes.containers)
-    style.finish(axes, AXES["speed"], groups.caption(), speed_notes(groups.members) if has_points else [])
+    style.finish(axes, AXES["speed"], groups.caption(), speed_notes(groups.members) if has_points else [], title=groups.legend_title())

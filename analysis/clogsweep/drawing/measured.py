@@ -44,7 +44,7 @@ def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: s
             axes.axhspan(lower, upper, color=COLOUR, alpha=0.15, linewidth=0, zorder=0)
             axes.axhline(length, color=COLOUR, linestyle="--", linewidth=1, label=name)
         elif length is None:
-            axes.plot(place, lower, "^", color=COLOUR, markerfacecolor="white", markersize=8, label=name, zorder=ABOVE)
+            axes.plot(place, lower, marker=style.LOWER_BOUND, color=COLOUR, linestyle="none", markersize=25, label=name, zorder=ABOVE)
         else:
             axes.errorbar(place, length, yerr=[[length - lower], [upper - length]], fmt="*", color=COLOUR, markersize=9, capsize=2.5, label=name, zorder=ABOVE)
         drawn = True

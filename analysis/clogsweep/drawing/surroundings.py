@@ -9,7 +9,7 @@ from matplotlib.text import Text
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 from .. import style
-from ..reading.trajectory import Trajectory, wedge_outline
+from ..reading.trajectory import Trajectory, wedge_outline, with_middles
 from ..tools.hints import Numbers, Point
 
 HALO = withStroke(linewidth=3, foreground="white")  # for what may be drawn over obstacles without hiding them
@@ -24,9 +24,10 @@ def draw_surroundings(axes: Axes, trajectory: Trajectory, origin: Point = (0.0, 
 
 
 def draw_droplet(axes: Axes, trajectory: Trajectory, frame: int, origin: Point = (0.0, 0.0)) -> None:
-    """One outline among its surroundings."""
+    """One outline among its surroundings, smooth where they are larger than edges."""
     draw_surroundings(axes, trajectory, origin)
-    axes.fill(*(trajectory.polygons[frame] - np.asarray(origin)[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
+    outline = with_middles(with_middles(trajectory.polygons[frame]))
+    axes.fill(*(outline - np.asarray(origin)[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
 
 
 def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0) -> None:

@@ -30,6 +30,19 @@ LABORATORY = {
 }
 
 
+# What the presets of the interface differ in; docs/explanation/model.md has all of it.
+INTERFACES = {
+    "robust": "constant tension",
+    "heavy-interface": "constant tension, weight on the interface",
+    "elastic": "tension grows with the perimeter",
+    "literal": "published equations",
+}
+
+
+def interface_of(preset: str) -> str:
+    return INTERFACES.get(preset, f"preset {literal(preset)}")
+
+
 def tex(unit: str) -> str:
     """A unit as clogsweep writes it, e.g. g rho sigma^2, for matplotlib: the model's in italics, millimetres upright."""
     unit = unit.replace("mm", r"\mathrm{mm}")

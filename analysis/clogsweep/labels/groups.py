@@ -11,7 +11,7 @@ from ..reading import fits, stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
 from ..tools.texts import literal
-from . import AXES, axis_label, is_number, runs_a_point, said, symbol
+from . import AXES, INTERFACES, axis_label, is_number, runs_a_point, said, symbol
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
 LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # by obstacle_filling
@@ -213,6 +213,10 @@ class Groups:
         return [(", ".join(self.said(name, value) for name, value in zip(names, key)),
                  [group for group in self.members if tuple(group[name] for name in names) == key]) for key in keys]
 
+    def legend_title(self) -> str:
+        """What the numbers in the labels of curves() are called."""
+        return ", ".join(name.replace("_", " ") for name in self.curve_parameters() if self._is_number(name) and name not in fits.DROPLETS)
+
     def is_logarithmic(self) -> bool:
         values = self.values(self.abscissa)
         return None not in values and min(values) > 0 and (self.abscissa in AXES or max(values) > 5 * min(values))
@@ -235,7 +239,8 @@ class Groups:
         if not self.are_passages:
             words.append(runs_a_point(self.members))
         if self.are_polygons and not self.varies("preset"):
-            words.append(f"preset {literal(first['preset'])}")
+            meaning = INTERFACES.get(first["preset"])
+            words.append(f"preset {literal(first['preset'])}" + (f" ({meaning})" if meaning else ""))
         return ", ".join(words)
 
     def _only_circle_file(self) -> dict[str, str]:

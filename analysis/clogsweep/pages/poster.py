@@ -5,6 +5,7 @@ from __future__ import annotations
 import pathlib
 import tempfile
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,9 +39,10 @@ def page(title: str, about: str, rows: Sequence[Row], footer: str) -> Figure:
     """@param about, footer  one line each, or several"""
     figure = style.new_figure(figsize=PAGE, layout="constrained")
     _, body, _ = figure.subfigures(1, 3, width_ratios=[MARGIN, PAGE[0] - 2 * MARGIN, MARGIN])
-    heights = [0.6, *(height for height, _ in rows), 0.25]
+    heights = [0.7, *(height for height, _ in rows), 0.25]
     head, *parts, foot = body.subfigures(len(heights), 1, height_ratios=heights)
     head.text(0.5, 0.72, title, ha="center", va="center", fontsize=26, weight="bold")
+    about = style.in_lines(about, style.fitting(figure, 11, figure.bbox.width - 2 * MARGIN * figure.dpi))
     head.text(0.5, 0.42, about, ha="center", va="top", fontsize=11, color="0.25", linespacing=1.5)
     for part, (_, drawings) in zip(parts, rows):
         for axes, draw in zip(part.subplots(1, len(drawings), squeeze=False)[0], drawings):
@@ -79,45 +81,33 @@ def draw_way(axes: Axes, run: Trajectory) -> None:
 
 
 def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> list[Row]:
-    def clog_drawing(clog: clogs.Clog) -> Draw:
-        return lambda axes: clogs.draw(axes, clog)
-
-    def curve_drawing(draw: Callable[..., None], label: str, members: Sequence[Group]) -> Draw:
-        return lambda axes: draw(axes, groups, label, members)
-
-    first: list[Draw] = [lambda axes: curve.draw_on(axes, groups)]
+    first: list[Draw] = [partial(curve.draw_on, groups=groups)]
     if lengths.have_speeds(groups.members):
-        first.append(lambda axes: lengths.draw_speeds_on(axes, groups))
+        first.append(partial(lengths.draw_speeds_on, groups=groups))
     curves = shown_curves(groups)
-    survivals = [curve_drawing(report.draw_survival, label, members) for label, members in curves if any(group["survival"] for group in members)]
-    ends = [curve_drawing(report.draw_causes, label, counted) for label, members in curves if (counted := report.with_runs(members))]
+    survivals = [partial(report.draw_survival, groups=groups, label=label, members=members) for label, members in curves if any(group["survival"] for group in members)]
+    ends = [partial(report.draw_causes, groups=groups, label=label, members=counted) for label, members in curves if (counted := report.with_runs(members))]
     # With a single curve, both are side by side.
     below: list[Row] = [(1.35, survivals + ends)] if len(curves) == 1 else [(1.35, survivals), (1.0, ends)]
     rows: list[Row] = [(1.6, first), *((height, drawings) for height, drawings in below if drawings)]
     clogged = clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep)
     if clogged:
         again = clogs.run_all(clogrun, sweep, report.examples(clogged, 4), 2)
-        rows.append((1.25, [clog_drawing(clog) for clog in again]))
+        rows.append((1.25, [partial(clogs.draw, clog=clog, view=clogs.view_of(again)) for clog in again]))
         run = run_way(min(clogged, key=lambda row: abs(float(row["distance"]) - WAY)), sweep, clogrun)
-        rows.append((1.0, [lambda axes: draw_way(axes, run)]))
+        rows.append((1.0, [partial(draw_way, run=run)]))
     return rows
 
 
 def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> list[Row]:
-    def outline_drawing(run: Trajectory) -> Draw:
-        def draw(axes: Axes) -> None:
-            passages.draw_outline(axes, groups, run)
-            axes.xaxis.label.set_size(8)  # three are side by side
+    def draw_outline(axes: Axes, run: Trajectory) -> None:
+        passages.draw_outline(axes, groups, run)
+        axes.xaxis.label.set_size(8)  # three are side by side
 
-        return draw
-
-    def column_drawing(column: str) -> Draw:
-        return lambda axes: passages.draw_curves(axes, groups, column)
-
-    rows: list[Row] = [(1.2, [column_drawing(column)]) for column in passages.drawn_columns(groups)]
+    rows: list[Row] = [(1.2, [partial(passages.draw_curves, groups=groups, column=column)]) for column in passages.drawn_columns(groups)]
     with tempfile.TemporaryDirectory(prefix="clogsweep-poster-") as folder:
         runs = passages.followed(passages.examples(stored.read_rows(sweep, clogrun.parent), 3), clogrun, sweep, folder)
-    return [*rows, (1.2, [outline_drawing(run) for run in runs])] if runs else rows
+    return [*rows, (1.2, [partial(draw_outline, run=run) for run in runs])] if runs else rows
 
 
 def of_laboratory(groups: Groups) -> str:

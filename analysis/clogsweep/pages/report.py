@@ -37,7 +37,7 @@ def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Grou
     """P(r) of one curve's members to their longest distances, each with the exponential of its length if it is
     known."""
     begin = min(0.01 * (group["clogging_length"] or survival_curve.longest_way(group)) for group in members)
-    for group, colour in zip(members, style.VIRIDIS(np.linspace(0, 0.9, len(members)))):
+    for group, colour in zip(members, style.shades(len(members))):
         if group["survival"]:
             r = group["clogging_length"] * np.logspace(-2, 1, 100)
             axes.plot(r, np.exp(-r / group["clogging_length"]), color=colour, linewidth=0.8, linestyle="--",
@@ -69,15 +69,15 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
     longest = max(survival_curve.longest_way(group) for group in members)
     begin = 0.5 * min((step["distance"] for group in members for steps in group["incidence"].values() for step in steps if step["distance"] > 0), default=longest)
     for axes, name in zip(all_axes[0], names):
-        for group, colour in zip(members, style.VIRIDIS(np.linspace(0, 0.9, len(members)))):
+        for group, colour in zip(members, style.shades(len(members))):
             steps = group["incidence"].get(name, [])
             way = [begin, *(step["distance"] for step in steps), survival_curve.longest_way(group)]
             share = [0, *(step["probability"] for step in steps)]
             axes.step(way, [*share, share[-1]], where="post", color=colour, linewidth=1.2, label=groups.said(groups.abscissa, group[groups.abscissa]),
                       gid=style.mark("point", [group]))
         axes.set_title(name, fontsize=10)
-        style.logarithmic_abscissa(axes)
         axes.set_xlim(begin, longest)
+        style.logarithmic_abscissa(axes)
         axes.set_ylim(0, 1.02)
         axes.set_xlabel(r"$r/\sigma$")
         style.grid(axes)

@@ -12,11 +12,11 @@ from matplotlib.axes import Axes
 from .. import style
 from ..drawing import surroundings, survival_curve
 from ..drawing.lengths import SPEED_NOTES, draw_lengths, draw_speeds, length_notes
-from ..labels import AXES, said
+from ..labels import AXES, interface_of, said
 from ..reading import stored, trajectory
 from ..tools import rounded
 from ..tools.errors import UserError
-from ..tools.hints import Group
+from ..tools.hints import Group, Numbers
 from .captions import describe
 from .plate import Plate, figure
 from .workshop import Workshop
@@ -45,25 +45,21 @@ def by(groups: Iterable[Group], name: str) -> list[tuple[Any, list[Group]]]:
     return [(value, [group for group in groups if group[name] == value]) for value in sorted({group[name] for group in groups})]
 
 
-def drawing_of(quantity: str) -> Callable[[Axes, Sequence[float], Sequence[Group], int, str], None]:
-    """@param quantity  "length" or "speed" """
-    if quantity == "length":
-        return draw_lengths
-    return draw_speeds
+DRAWINGS: dict[str, Callable[..., None]] = {"length": draw_lengths, "speed": draw_speeds}  # by the quantity
 
 
 def finish(axes: Axes, shop: Workshop, config: str, drawn: Sequence[Group], abscissa: str, quantity: str, varied: Sequence[str]) -> None:
-    """Labels of the axes, caption and notes. @param quantity  as in drawing_of(); @param varied  columns that the caption
-    excludes"""
+    """Legend, labels of the axes, caption and notes. @param quantity  of DRAWINGS; @param varied  columns that the caption leaves out"""
     if quantity == "length":
         style.logarithmic_ordinate(axes)
     style.label(axes, AXES[abscissa], AXES[quantity])
     style.caption(axes, describe(shop.columns(config), drawn, varied))
     style.notes(axes, length_notes(drawn, shop.confidence(config), [axes]) if quantity == "length" else SPEED_NOTES)
+    style.legend(axes, drawn if quantity == "length" else ())
 
 
 def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity: str) -> Plate:
-    """One curve for each value of a parameter. @param quantity  as of drawing_of()"""
+    """One curve for each value of a parameter. @param quantity  of DRAWINGS"""
     groups = shop.sweep(config)
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
@@ -73,10 +69,9 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
         label = said(shop.columns(config)[parameter], value)
         shift = style.side_by_side(index, len(families), places) if places else 1
         members = [group for group in members if group[abscissa] is not None]
-        drawing_of(quantity)(axes, [group[abscissa] * shift for group in members], members, index, label)
+        DRAWINGS[quantity](axes, [group[abscissa] * shift for group in members], members, index, label)
         data += numbers(members, label)
     style.logarithmic_abscissa(axes, places)
-    style.legend(axes, groups if quantity == "length" else ())
     finish(axes, shop, config, groups, abscissa, quantity, [parameter, abscissa])
     return Plate(drawing, data)
 
@@ -128,25 +123,20 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
         if not groups:
             raise UserError(f"sweep {config} has no runs with obstacle-gap={gap}; add it to the list")
         places = sags(shop, config, groups)
-        drawing_of(quantity)(axes, places, groups, index, label)
+        DRAWINGS[quantity](axes, places, groups, index, label)
         data += numbers(groups, label, sag=places)
         drawn += groups
     style.logarithmic_abscissa(axes)
     axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)
     axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
-    axes.legend(frameon=False)
     finish(axes, shop, curves[0][0], drawn, "sag", quantity, ["line_tension"])
     return Plate(drawing, data)
 
 
-@figure("7c-saturated", "the same as 7c in saturated arrays, walls without friction", ["clogging-saturated", "clogging-sp-saturated"], "shared with 6c-saturated, 7a-saturated")
-def lengths_over_sag_in_saturated_arrays(shop: Workshop) -> Plate:
-    return over_sag(shop, [("clogging-saturated", "deformable polygon", list), ("clogging-sp-saturated", "soft disk", list)], 0.2, "length")
-
-
-@figure("9b", "mean speed against sag, deformable polygon and soft disk, minimum gap 1.1", ["speed", "speed-sp"], "shared with 8a, 9a")
-def speeds_over_sag(shop: Workshop) -> Plate:
-    return over_sag(shop, [("speed", "deformable polygon", list), ("speed-sp", "soft disk", list)], 1.1, "speed")
+figure("7c-saturated", "the same as 7c in saturated arrays, walls without friction", ["clogging-saturated", "clogging-sp-saturated"], "shared with 6c-saturated, 7a-saturated")(
+    lambda shop: over_sag(shop, [("clogging-saturated", "deformable polygon", list), ("clogging-sp-saturated", "soft disk", list)], 0.2, "length"))
+figure("9b", "mean speed against sag, deformable polygon and soft disk, minimum gap 1.1", ["speed", "speed-sp"], "shared with 8a, 9a")(
+    lambda shop: over_sag(shop, [("speed", "deformable polygon", list), ("speed-sp", "soft disk", list)], 1.1, "speed"))
 
 
 @figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", ["channel"], "1 s")
@@ -212,8 +202,8 @@ def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pand
 
 
 def clog_title(run: trajectory.Trajectory, row: pandas.Series) -> str:
-    return (rf"{row.mechanism}: $\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, seed {row.seed}, "
-            rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles, $N_v = {row.vertices}$, interface {row.preset}")
+    return (rf"{trajectory.end_of(run)}: $\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, "
+            rf"$\mu = {row.friction:g}$, seed {row.seed}, after $r = {row.distance:.2f}\sigma$")
 
 
 def clog_numbers(run: trajectory.Trajectory, row: pandas.Series, frame: int) -> list[dict[str, Any]]:
@@ -221,57 +211,59 @@ def clog_numbers(run: trajectory.Trajectory, row: pandas.Series, frame: int) -> 
              "distance": row.distance, "x": x, "y": y} for x, y in run.polygons[frame].T]
 
 
+VIEW = np.array([5.6, 3.2])  # of Figs. 5 and 6, which have one scale [sigma]; droplets that are longer need more
+
+
+def view_of(outlines: Numbers) -> Numbers:
+    """Width and height with room for these outlines. @param outlines  frames x 2 x N"""
+    return np.maximum(VIEW, np.ptp(outlines, axis=(0, 2)) + 0.4)
+
+
+def show_clog(axes: Axes, run: trajectory.Trajectory, frame: int, view: Numbers, outlines: Numbers) -> None:
+    """@param view  of view_of(); @param outlines  in whose middle it lies"""
+    surroundings.draw_droplet(axes, run, frame)
+    middle = (outlines.min(axis=(0, 2)) + outlines.max(axis=(0, 2))) / 2
+    surroundings.frame_limits(axes, middle - view / 2, middle + view / 2)
+    axes.set_xticks([]), axes.set_yticks([])
+
+
 def snapshot(shop: Workshop, mechanism: str) -> Plate:
     run, row = example(shop, mechanism)
-    drawing, axes = style.subplots(figsize=(5.6, 5.4))
-    shape = run.polygons[-1]
-    centre = shape.mean(axis=1)
-    surroundings.draw_droplet(axes, run, -1, centre)
-    half = 0.6 + np.abs(shape - centre[:, None]).max()
-    surroundings.frame_limits(axes, (-half, -half), (half, half))
-    axes.annotate("flow", (0.22, 0.94), (0.04, 0.94), xycoords="axes fraction", va="center",
-                  arrowprops={"arrowstyle": "-|>", "color": "black"}, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
-    axes.set_xlabel(r"$x/\sigma$")
-    axes.set_ylabel(r"$y/\sigma$")
+    last = run.polygons[-1:]
+    view = view_of(last)
+    drawing, axes = style.subplots(figsize=(5.6, 0.3 + 5.6 * view[1] / view[0]))
+    show_clog(axes, run, -1, view, last)
+    surroundings.draw_guides(axes)
     style.caption(axes, clog_title(run, row))
     return Plate(drawing, clog_numbers(run, row, -1))
 
 
-@figure("6a", "a clog by wrapping, from the sweep of 6c", [CLOGS], "shared with 6c")
-def wrapped(shop: Workshop) -> Plate:
-    return snapshot(shop, "wrapped")
-
-
-@figure("6b", "a clog by squeezing, from the sweep of 6c", [CLOGS], "shared with 6c")
-def squeezed(shop: Workshop) -> Plate:
-    return snapshot(shop, "squeezed")
+figure("6a", "a clog by wrapping, from the sweep of 6c", [CLOGS], "shared with 6c")(lambda shop: snapshot(shop, "wrapped"))
+figure("6b", "a clog by squeezing, from the sweep of 6c", [CLOGS], "shared with 6c")(lambda shop: snapshot(shop, "squeezed"))
 
 
 @figure("5", "how droplets wrap around an obstacle and squeeze into a gap: the last outlines before two clogs of 6c", [CLOGS], "shared with 6c")
 def two_ways(shop: Workshop) -> Plate:
-    drawing, panels = style.subplots(2, 4, figsize=(10.4, 6.0))
-    data = []
-    for line, mechanism in zip(panels, ["wrapped", "squeezed"]):
+    kinds = []
+    for mechanism in ("wrapped", "squeezed"):
         run, row = example(shop, mechanism)
         final = run.polygons[-1].mean(axis=1)
         # The last diameter and a half of the path.
         near = np.flatnonzero(np.hypot(*(run.polygons.mean(axis=2) - final).T) > 1.5)
         first = near[-1] + 1 if len(near) else 0
-        chosen = first + trajectory.along_the_way(run.polygons[first:], len(line))[-len(line):]
-        shown = run.polygons[chosen]
-        low, high = shown.min(axis=(0, 2)) - 0.3, shown.max(axis=(0, 2)) + 0.3
-        for axes, frame in zip(line, chosen):
-            surroundings.draw_droplet(axes, run, frame)
-            half = max(high - low) / 2
-            surroundings.frame_limits(axes, (low + high) / 2 - half, (low + high) / 2 + half)
-            axes.set_xticks([]), axes.set_yticks([])
+        kinds.append((run, row, first + trajectory.along_the_way(run.polygons[first:], 4)[-4:]))
+    view = np.max([view_of(run.polygons[chosen]) for run, _, chosen in kinds], axis=0)
+    drawing = style.new_figure(figsize=(9.0, 1.5 + 4.5 * view[1] / view[0]), layout="constrained")
+    for (run, row, chosen), part in zip(kinds, drawing.subfigures(2, 1)):
+        panels = part.subplots(1, 4)
+        for axes, frame in zip(panels, chosen):
+            show_clog(axes, run, frame, view, run.polygons[chosen])
             axes.set_title(f"$t = {run.times[frame]:.0f}\\,t_0$", fontsize=9)
-        for axes in line[len(chosen):]:
+        for axes in panels[len(chosen):]:
             axes.axis("off")
-        line[0].set_ylabel(f"{row.mechanism}\n$\\Gamma = {row.line_tension:g}$, $w_\\mathrm{{ob}} = {row.obstacle_gap:g}\\sigma$, seed {row.seed}", fontsize=9)
-        data += clog_numbers(run, row, -1)
-    drawing.suptitle(f"flow to the right; $N_v = {row.vertices}$; interface {row.preset}", fontsize=9, color="0.25")
-    return Plate(drawing, data)
+        surroundings.draw_guides(panels[0])
+        part.suptitle(clog_title(run, row), fontsize=9, color="0.25")
+    return Plate(drawing, [line for run, row, _ in kinds for line in clog_numbers(run, row, -1)])
 
 
 # Single runs and P(r)
@@ -299,7 +291,7 @@ def kinetic_energy(shop: Workshop) -> Plate:
     axes.legend(frameon=False)
     row = run.row
     style.caption(axes, rf"$\Gamma = 0.5$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated arrays, $V_t = {row['terminal_speed']:g}$, "
-                  rf"$N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface {run.word('preset')}")
+                  rf"$N_v = {row['vertices']}$, seed {row['seed']}, {interface_of(run.word('preset'))}")
     return Plate(drawing, data)
 
 
@@ -310,7 +302,7 @@ def draw_band(axes: Axes, group: Group) -> None:
     end = survival_curve.longest_way(group) if known == steps else steps[-1]["distance"]
     axes.fill_between([0.0] + [step["distance"] for step in known] + [end], *(
         [1.0] + [step[bound] for step in known] + [known[-1][bound] if known else 1.0] for bound in ("lower", "upper")),
-        step="post", color=style.COLOURS[0], alpha=0.2, linewidth=0, label="95 %, log-log")
+        step="post", color=style.COLOURS[0], alpha=0.2, linewidth=0, label="95 % confidence band")
 
 
 def lowest_shown(group: Group, end: float) -> float:
@@ -327,20 +319,19 @@ def survival(shop: Workshop) -> Plate:
         raise UserError(f"no run has clogged in {shop.sweep_file('survival')}; raise max-time or seeds")
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     draw_band(axes, group)
-    survival_curve.draw(axes, group, style.COLOURS[0], f"{rounded.counted(group['runs'], 'run')}, {rounded.counted(group['clogs'], 'clog')}",
-                        f"last seen going ({rounded.counted(len(group['censored_distances']), 'run')})")
+    survival_curve.draw(axes, group, style.COLOURS[0], f"estimate from {rounded.counted(group['runs'], 'run')}",
+                        f"end of a run that still flowed ({len(group['censored_distances'])} of {group['runs']})")
     end = survival_curve.longest_way(group)
     length, lower, upper = (group[f"clogging_length{bound}"] for bound in ("", "_lower", "_upper"))
     r = np.linspace(0, end, 200)
     axes.plot(r, np.exp(-r / length), color=style.COLOURS[1], linewidth=1.4,
-              label=rf"$e^{{-r/\lambda}}$, $\lambda = {length:.3g}\sigma$ ({lower:.3g} to {upper:.3g})")
-    axes.set_yscale("log")
+              label=rf"$e^{{-r/\lambda}}$ with $\lambda = {length:.3g}\sigma$ ({lower:.3g} to {upper:.3g})")
+    style.logarithmic_ordinate(axes)
     axes.set_ylim(lowest_shown(group, end), 1.3)
     axes.set_xlim(0, 1.02 * end)
-    axes.yaxis.set_major_formatter("{x:g}")
     style.label(axes, r"displacement along the flow $r/\sigma$", r"probability of not having clogged $P(r)$")
     axes.legend(frameon=False)
-    style.caption(axes, f"{describe(shop.columns('survival'), [group])}\nexponential? Weibull shape {group['weibull_shape']:.2f}, p = {group['weibull_p_value']:.2f}")
+    style.caption(axes, f"{describe(shop.columns('survival'), [group])}\nWeibull's exponent {group['weibull_shape']:.2f}, 1 if exponential (p = {group['weibull_p_value']:.2f})")
     names = ["distance", "probability", "standard_error", "lower", "upper"]
     return Plate(drawing, [{"distance": 0.0, "probability": 1.0}] + [{name: step[name] for name in names} for step in group["survival"]]
                  + [{"censored_distance": distance} for distance in group["censored_distances"]]
@@ -357,20 +348,22 @@ def displacements(shop: Workshop) -> dict[float, trajectory.Trajectory]:
 def displacement(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
+    ends = {}
     for index, (line_tension, run) in enumerate(displacements(shop).items()):
         speed = run.row["mean_speed"] / run.row["terminal_speed"]
         label = rf"$\Gamma = {line_tension:g}$" + (rf": $v_g = {speed:.2f}\,v_t$" if math.isfinite(speed) else "") + (
             ", clogged" if run.word("status") == "clogged" else "")
-        axes.plot(run.table["time"], run.table["distance"], color=style.COLOURS[index], linewidth=1.2, label=label)
+        line, = axes.plot(run.table["time"], run.table["distance"], color=style.COLOURS[index], linewidth=1.2, label=label)
+        ends[line] = run.table["distance"][-1]
         if run.word("status") == "clogged":
             axes.plot(run.table["time"][-1], run.table["distance"][-1], "x", color=style.COLOURS[index], markersize=8)
         data += [{"line_tension": line_tension, "time": t, "distance": r} for t, r in zip(run.table["time"], run.table["distance"])]
     row = run.row
     t = np.array([0, axes.get_xlim()[1]])
-    axes.plot(t, row["terminal_speed"] * t, ":", color="0.5", linewidth=1, label="terminal speed")
+    fastest, = axes.plot(t, row["terminal_speed"] * t, ":", color="0.5", linewidth=1, label="terminal speed $v_t$")
     axes.set_xlim(0, t[1]), axes.set_ylim(bottom=0)
     style.label(axes, r"time $t/t_0$", r"displacement along the flow $r/\sigma$")
-    axes.legend(frameon=False)
+    axes.legend(handles=[fastest, *sorted(ends, key=ends.__getitem__, reverse=True)], labelcolor="linecolor", frameon=False)
     style.caption(axes, rf"$w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated array, "
-                  rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface {run.word('preset')}")
+                  rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}, {interface_of(run.word('preset'))}")
     return Plate(drawing, data)

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Sequence
 
-from ..labels import runs_a_point, said
+from ..labels import interface_of, runs_a_point, said
 from ..tools.hints import Column, Group
 
 # Parameters that a caption names when all points share one value other than 0.
@@ -41,5 +41,5 @@ def describe(columns: dict[str, Column], groups: Sequence[Group], without: Colle
         words.append(rf"arrays ${groups[0]['box']:g}\,\sigma$ wide")
     words.append(runs_a_point(groups))
     if polygons and common("preset", polygons):
-        words.append(f"preset {polygons[0]['preset']}")
+        words.append(interface_of(polygons[0]["preset"]))
     return ", ".join(words)

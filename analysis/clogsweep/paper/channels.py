@@ -1,6 +1,8 @@
 """Figures of droplets in narrow channels and along walls."""
 
 import math
+import pathlib
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -8,10 +10,10 @@ from matplotlib.axes import Axes
 
 from .. import style
 from ..drawing import surroundings
-from ..labels import AXES
+from ..labels import AXES, interface_of
 from ..reading.trajectory import Trajectory
 from ..tools.errors import UserError
-from .plate import Plate, figure, interface_of
+from .plate import Plate, figure
 from .workshop import Workshop, measured
 
 SMOOTH = 512  # vertices from which on a passage of w = 0.4 shows no ripple
@@ -34,7 +36,7 @@ def profiles(shop: Workshop, name: str, outlines: bool = False, **keys: object) 
 def parameters(run: Trajectory, orifice: float) -> str:
     row = run.row
     return (rf"$w = {orifice}\sigma$, $\Gamma = {row['line_tension']:g}$, $b_0/b_\infty = {row['near_wall_drag']:g}$, "
-            rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$")
+            rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, {interface_of(run.word('preset'))}")
 
 
 def ending(run: Trajectory) -> str:
@@ -49,12 +51,10 @@ def draw_profile(axes: Axes, run: Trajectory, column: str, index: int, label: st
         axes.plot(run.table["h"][-1:], run.table[column][-1:], color=style_of["color"], marker="x", markersize=7, linestyle="none")
 
 
-def draw_measured(shop: Workshop, axes: Axes, column: str) -> None:
-    for number, path in enumerate(shop.profiles):
-        table = measured(path)
+def draw_measured(paths: Iterable[pathlib.Path], axes: Axes, column: str) -> None:
+    for number, table in enumerate(map(measured, paths)):
         if column in table:
-            axes.plot(table["h"], table[column], "o", color="black", markerfacecolor="none", markersize=4,
-                      label="measured" if number == 0 else None)
+            axes.plot(table["h"], table[column], "o", color="black", markerfacecolor="none", markersize=4, label="measured" if number == 0 else None)
 
 
 def finish(axes: Axes, ordinate: str, reach: float = 1.6) -> None:
@@ -135,12 +135,12 @@ def squeezing(shop: Workshop) -> Plate:
     for place, (column, ordinate) in enumerate([("shape_parameter", "shape"), ("speed_ratio", "profile")]):
         axes = panels[place]
         draw_profile(axes, run, column, 1, "simulation" + ending(run))
-        draw_measured(shop, axes, "A" if place == 0 else "v")
+        draw_measured(shop.profiles, axes, "A" if place == 0 else "v")
         finish(axes, ordinate)
         if shop.profiles:
             axes.legend(frameon=False)
     ripples = "" if run.row["vertices"] >= SMOOTH else f"; ripples of the speed: one for each vertex that passes the tips, none with {SMOOTH}"
-    drawing.suptitle(f"{parameters(run, 0.4)}; interface {run.word('preset')}\nflow to the right, walls grey{ripples}", fontsize=9, color="0.25")
+    drawing.suptitle(f"{parameters(run, 0.4)}\nflow to the right, walls grey{ripples}", fontsize=9, color="0.25")
     return Plate(drawing, profile_rows(run, "w=0.4"))
 
 
@@ -167,7 +167,6 @@ def two_orifices(shop: Workshop) -> Plate:
             if run.word("status") != "passed":
                 axes.legend(frameon=False)
         style.caption(panels[line][0], parameters(run, orifice))
-        style.caption(panels[line][1], f"interface {run.word('preset')}")
         # The most deformed outline, where nothing else is drawn.
         inset = panels[line][0].inset_axes([0.68, 0.5, 0.3, 0.47])
         frame = run.frame_at("h", run.row["largest_shape_parameter_at"])
@@ -176,11 +175,9 @@ def two_orifices(shop: Workshop) -> Plate:
         inset.set_xticks([]), inset.set_yticks([])
         inset.set_xlabel(rf"$\mathcal{{A}}_\mathrm{{max}} = {run.row['largest_shape_parameter']:.3f}$", fontsize=8)
         data += [*profile_rows(run, f"w={orifice}"), extremes(run, f"w={orifice}")]
-    for number, path in enumerate(shop.profiles[:2]):
-        table = measured(path)
-        for place, column in enumerate(["A", "v"]):
-            if column in table:
-                panels[number][place].plot(table["h"], table[column], "o", color="black", markerfacecolor="none", markersize=4)
+    for pair, path in zip(panels, shop.profiles):
+        for axes, column in zip(pair, "Av"):
+            draw_measured([path], axes, column)
     return Plate(drawing, data)
 
 
@@ -198,14 +195,13 @@ def overshooting(shop: Workshop, orifice: float) -> dict[float, Trajectory]:
 def overshoot(shop: Workshop) -> Plate:
     drawing, panels = style.subplots(1, 2, figsize=(9.6, 4.6))
     data = []
-    for axes, (orifice, drag) in zip(panels, OVERSHOOTS.items()):
+    for axes, (orifice, drag), origin in zip(panels, OVERSHOOTS.items(), ("parameters of the article", "not published, for comparison")):
         for index, (line_tension, run) in enumerate(overshooting(shop, orifice).items()):
             draw_profile(axes, run, "speed_ratio", index, rf"$\Gamma = {line_tension:g}$" + ending(run))
             data += profile_rows(run, f"w={orifice} b_0={drag:g} Gamma={line_tension:g}")
         finish(axes, "profile")
-        style.caption(axes, rf"$w = {orifice}\sigma$, $b_0/b_\infty = {drag:g}$, $V_t = 0.032$, $N_v = {run.row['vertices']}$"
-                      f"\ninterface {run.word('preset')}")
-    draw_measured(shop, panels[0], "v")
+        style.caption(axes, rf"{origin}: $w = {orifice}\sigma$, $b_0/b_\infty = {drag:g}$" "\n" rf"$V_t = 0.032$, $N_v = {run.row['vertices']}$, {interface_of(run.word('preset'))}")
+    draw_measured(shop.profiles, panels[0], "v")
     for axes in panels:
         axes.legend(frameon=False, fontsize=8, loc="lower right")
     return Plate(drawing, data)
@@ -229,22 +225,22 @@ def near_wall_drag(shop: Workshop) -> Plate:
     row = rows[0]
     drawing, axes = style.subplots(figsize=(6.4, 4.8))
     ratio = np.array([point["ratio"] for point in data])
-    axes.plot(distances, ratio, "o", color=style.COLOURS[0], label="droplet midway between two walls")
+    axes.plot(distances, ratio, "o", color=style.COLOURS[0], label="simulated droplet, midway between two walls")
     d = np.geomspace(0.02, 5, 100)
     alpha, strength = fit["near_wall_exponent"], fit["near_wall_drag"]
     axes.plot(d, d**alpha / strength, color=style.COLOURS[0], linewidth=1,
-              label=rf"fit: $\alpha = {alpha:.2f}\pm{fit['near_wall_exponent_error'] or math.nan:.2f}$")
-    # A circle with drag on each vertex: b_0/b_inf times the mean of d_i^-alpha over them.
+              label=rf"fit to these: exponent ${alpha:.2f}\pm{fit['near_wall_exponent_error'] or math.nan:.2f}$")
+    # A circle whose vertices feel the drag each: b_0/b_inf times the mean of d_i^-alpha over them.
     exponent, height = row["near_wall_exponent"], 0.5 * (1 - np.abs(np.sin(np.linspace(0, 2 * np.pi, row["vertices"], endpoint=False))))
     circle = 1 / (row["near_wall_drag"] * np.mean((d[:, None] + height) ** -exponent, axis=1))
-    axes.plot(d, circle, ":", color="black", linewidth=1, label="a circle whose every vertex feels it")
-    axes.plot(d, ratio[-1] * (d / distances[-1]) ** exponent, "--", color="0.4", linewidth=1, label=rf"slope {exponent:.3g}, of every vertex")
+    axes.plot(d, circle, ":", color="black", linewidth=1, label="sum over the vertices of a circle (no fit)")
+    axes.plot(d, ratio[-1] * (d / distances[-1]) ** exponent, "--", color="0.4", linewidth=1, label=rf"exponent {exponent:.3g} of each vertex")
     style.logarithmic_abscissa(axes)
     axes.set_yscale("log")
     style.label(axes, r"distance between wall and droplet $d/\sigma$", r"$v_g/(v_t - v_g)$")
     axes.legend(frameon=False)
-    style.caption(axes, rf"$\Gamma = 1$, $b_0/b_\infty = 0.07$, $V_t = 0.03$, $N_v = {row['vertices']}$, no error bars: one run a point" "\n"
-                  "near a wall only the nearest vertices feel it: the exponent of the whole droplet is smaller than theirs")
+    style.caption(axes, rf"$\Gamma = 1$, $b_0/b_\infty = 0.07$, $V_t = 0.03$, $N_v = {row['vertices']}$, one run per point" "\n"
+                  "drag of a droplet grows less steeply than that of its vertices: near a wall only the nearest ones feel it")
     return Plate(drawing, data)
 
 
@@ -270,7 +266,7 @@ def vertices(shop: Workshop) -> Plate:
     inset.set_ylim(0, 0.5)
     inset.tick_params(labelsize=7)
     axes.legend(frameon=False, fontsize=8, loc="lower left")
-    style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, $V_t = 0.032$; interface {run.word('preset')}"
+    style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, $V_t = 0.032$, {interface_of(run.word('preset'))}"
                   "\ninset: near the first minimum; a cross ends the curve of a droplet that stops")
     return Plate(drawing, data)
 
@@ -293,10 +289,10 @@ def perimeter_springs(shop: Workshop) -> Plate:
         found = [entry["delta_v"] for entry in shop.fit("deviation", reference, *compared)["deviations"]]
         axes.plot(places, found, **style.curve_style(index), markersize=5, linewidth=1, label=interface_of(preset))
         data += [{"preset": preset, "stiffness_ratio": x, "delta_v": y} for x, y in zip(places, found)]
-    style.logarithmic_abscissa(axes)
+    style.logarithmic_abscissa(axes, places)
     axes.set_ylim(bottom=0)
     style.label(axes, r"perimeter stiffness divided by line tension $K_l/\Gamma$",
                 r"$\Delta_v$ from the measured profile" if shop.profiles else r"$\Delta_v$ from the profile at $K_l/\Gamma = 10^{-4}$")
     axes.legend(frameon=False)
-    style.caption(axes, parameters(run, 0.9) + "\nsprings to the rest length")
+    style.caption(axes, parameters(run, 0.9).rpartition(", ")[0] + ", springs to the rest length")
     return Plate(drawing, data)

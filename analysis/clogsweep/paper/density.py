@@ -19,7 +19,7 @@ from .workshop import Workshop
 
 PUBLISHED_LENGTH, PUBLISHED_ERROR = 24.0, 1.0  # [sigma], at Gamma = 1.09 and a minimum gap of 0.2 sigma
 NORMAL_QUANTILE = 1.96  # two-sided 95 %
-CONFIGS = {"density-robust": "robust", "density-elastic": "elastic", "density-friction": r"elastic, wall friction, $\mu = 0.05$"}
+CONFIGS = {"density-robust": "constant tension", "density-elastic": "tension grows with the perimeter", "density-friction": r"likewise, wall friction $\mu = 0.05$"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -90,10 +90,10 @@ def density_of_the_published_arrays(shop: Workshop) -> Plate:
     style.grid(axes)
     axes.set_xlabel(r"obstacles per area $\rho_\mathrm{ob}\,\sigma^2$")
     axes.set_ylabel(AXES["length"])
-    style.legend(axes, everyone)
     style.caption(axes, describe(shop.columns("density-robust"), everyone, ["obstacle_density"]))
     style.notes(axes, ["legend: density at which the fitted curve has the published length, with its 95 % interval",
                        *length_notes(everyone, shop.confidence("density-robust"), [axes])])
+    style.legend(axes, everyone)
     return Plate(drawing, data)
 
 

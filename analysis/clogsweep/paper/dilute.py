@@ -7,20 +7,20 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
-from matplotlib.figure import SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from .. import style
-from ..drawing.lengths import draw_lengths, length_notes
-from ..labels import AXES, said
+from ..labels import AXES, interface_of, said
 from ..tools.hints import Group
+from . import panels
 from .arrays import HOLDS, by, numbers, of_each, over_sag
 from .captions import describe
-from .plate import Plate, figure, interface_of
+from .plate import Plate, figure
 from .workshop import Workshop
 
 # The one clogging length that was published, with its error: Appendix C. The density was not published: figure
@@ -28,6 +28,7 @@ from .workshop import Workshop
 PUBLISHED = {"line_tension": 1.09, "obstacle_gap": 0.2, "clogging_length": 24.0, "error": 1.0, "obstacle_density": 0.35}
 ENOUGH_CLOGS = 10  # from which on clogfit asks whether P(r) is exponential
 FINER = (0, (4, 2))
+STAR = {"color": "black", "marker": "*", "markersize": 15, "markeredgewidth": 1.4, "markerfacecolor": "none", "linestyle": "none"}  # hides no point
 
 
 @dataclasses.dataclass(frozen=True)
@@ -56,25 +57,10 @@ FAMILIES = [
     Family("clogging-friction", "wall friction", 0.1),
     Family("clogging-elastic", "no friction, corner pinning"),
 ]
-FRICTIONLESS, FRICTION = FAMILIES[:2]
 
 
 def draw_published(axes: Axes) -> None:
-    axes.errorbar([PUBLISHED["line_tension"]], [PUBLISHED["clogging_length"]], yerr=[PUBLISHED["error"]], color="black", marker="*",
-                  markersize=11, markerfacecolor="gold", linestyle="none", zorder=5)
-
-
-def legend(below: SubFigure, axes: Axes, groups: Sequence[Group], has_finer: bool) -> None:
-    """Below all panels: the gaps, the mechanisms, the finer mesh, the published point."""
-    curves = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels()) if label]
-    held = {style.main_mechanism(group) for group in groups if group["clogs"] > 0}
-    marks = [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}")
-             for name, marker in style.MECHANISM_MARKERS.items() if name in held]
-    if has_finer:
-        meshes = {group["vertices"] for group in groups}
-        marks.append((Line2D([], [], color="0.4", marker="s", markersize=3, linestyle=FINER), f"{max(meshes)} vertices (others: {min(meshes)})"))
-    marks.append((Line2D([], [], color="black", marker="*", markersize=11, markerfacecolor="gold", linestyle="none"), r"published, $w_\mathrm{ob} = 0.2\sigma$"))
-    below.legend(*zip(*curves, *marks), loc="center", ncols=4, frameon=False, fontsize=8, handlelength=4)
+    axes.errorbar([PUBLISHED["line_tension"]], [PUBLISHED["clogging_length"]], yerr=[PUBLISHED["error"]], zorder=5, **STAR)
 
 
 def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
@@ -83,60 +69,35 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
     kinds = [(family, coarse, fine) for family, coarse, fine in kinds if coarse]
     every = [group for _, coarse, fine in kinds for group in [*coarse, *fine]]
     gaps = sorted({group["obstacle_gap"] for group in every})
-    places = [group["line_tension"] for group in every]
-    rows = math.ceil(len(kinds) / 2)
-    drawing = style.new_figure(figsize=(10.4, 4.2 * rows + 1.2), layout="constrained")
-    above, below = drawing.subfigures(2, 1, height_ratios=[4.2 * rows + 0.5, 0.7])
-    panels = above.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
+    found: list[panels.Panel] = []
     data = []
-    for (family, coarse, fine), axes in zip(kinds, panels.flat):
-        columns = shop.columns(family.config)
-        meshes: list[tuple[list[Group], dict[str, Any]]] = [(coarse, {}), (fine, {"linestyle": FINER, "size": 3.5})]
-        for groups, mesh in meshes:
+    for family, coarse, fine in kinds:
+        curves: list[panels.Curve] = []
+        drawn: list[tuple[list[Group], dict[str, Any]]] = [(coarse, {}), (fine, {"linestyle": FINER, "size": 3.5})]
+        for groups, options in drawn:
             for gap, curve in by(groups, "obstacle_gap"):
-                index = gaps.index(gap)
-                shift = style.side_by_side(index, len(gaps), places)
-                label = "_finer" if mesh else said(columns["obstacle_gap"], gap)
-                draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index, label, **mesh)
+                label = "_finer" if options else said(shop.columns(family.config)["obstacle_gap"], gap)
+                curves.append((curve, gaps.index(gap), label, options))
                 data += numbers(curve, f"{family.config}, friction {family.friction:g}, gap {gap:g}, {curve[0]['vertices']} vertices",
                                 **of_each(curve, "friction", *HOLDS))
-        draw_published(axes)
-        style.logarithmic_ordinate(axes)
-        style.logarithmic_abscissa(axes, places)
-        style.grid(axes)
-        axes.set_title(f"{family.label}\n{interface_of(coarse[0]['preset'])}", fontsize=9)
-    for axes in list(panels.flat)[len(kinds):]:
-        axes.axis("off")
-    for line in panels:
-        line[0].set_ylabel(AXES["length"])
-    for axes in panels[-1]:
-        axes.set_xlabel(AXES["line_tension"])
-    legend(below, max(panels.flat, key=lambda axes: len(axes.get_legend_handles_labels()[1])), every, any(fine for _, _, fine in kinds))
-    config = kinds[0][0].config
-    drawing.suptitle(describe(shop.columns(config), every, ["preset"]), fontsize=8, color="0.25")
-    style.notes_of_panels(drawing, length_notes(every, shop.confidence(config), panels.flat))
-    return Plate(drawing, data)
-
-
-@figure("6c", "clogging length against line tension for four values of the minimum gap, dilute arrays: what holds droplets, on two meshes",
-        ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "25 min")
-def lengths_of_polygons(shop: Workshop) -> Plate:
-    return families(shop, FAMILIES, True)
+        found.append((f"{family.label}\n{interface_of(coarse[0]['preset'])}", curves))
+    meshes = sorted({group["vertices"] for group in every})
+    marks: list[tuple[Artist, str]] = [(Line2D([], [], color="0.4", marker="s", markersize=3, linestyle=FINER), f"{meshes[-1]} vertices (others: {meshes[0]})")] \
+        if any(fine for _, _, fine in kinds) else []
+    marks.append((Line2D([], [], **STAR), r"published, $w_\mathrm{ob} = 0.2\sigma$"))
+    return Plate(panels.draw(shop, kinds[0][0].config, found, ["preset"], marks=marks, on_each=draw_published), data)
 
 
 FILLINGS = [Family("clogging-elastic", "the same density in every array"), Family("clogging-filling", "an eighth of the saturated density of each gap")]
 
-
-@figure("6c-filling", "6c without friction at the same density for every gap, and at the same share of the saturated density",
-        ["clogging-elastic", "clogging-filling"], "5 min, shared with 6c")
-def lengths_at_one_filling(shop: Workshop) -> Plate:
-    return families(shop, FILLINGS, False)
-
-
-@figure("7c", "clogging length against sag, deformable polygons and soft disk, minimum gap 0.2, dilute arrays",
-        ["clogging-robust", "clogging-friction", "clogging-elastic", "clogging-sp"], "shared with 6c, 7a")
-def lengths_over_sag(shop: Workshop) -> Plate:
-    return over_sag(shop, [*((family.config, family.label, family.of) for family in FAMILIES), ("clogging-sp", "soft disk", list)], 0.2, "length")
+figure("6c", "clogging length against line tension for four values of the minimum gap, dilute arrays: what holds droplets, on two meshes",
+       ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "25 min")(
+    lambda shop: families(shop, FAMILIES, True))
+figure("6c-filling", "6c without friction at the same density for every gap, and at the same share of the saturated density",
+       ["clogging-elastic", "clogging-filling"], "5 min, shared with 6c")(lambda shop: families(shop, FILLINGS, False))
+figure("7c", "clogging length against sag, deformable polygons and soft disk, minimum gap 0.2, dilute arrays",
+       ["clogging-robust", "clogging-friction", "clogging-elastic", "clogging-sp"], "shared with 6c, 7a")(
+    lambda shop: over_sag(shop, [*((family.config, family.label, family.of) for family in FAMILIES), ("clogging-sp", "soft disk", list)], 0.2, "length"))
 
 
 # The map
@@ -172,11 +133,14 @@ def draw_cell(axes: Axes, x: int, y: int, group: Group, norm: LogNorm) -> None:
     face = style.VIRIDIS(norm(length))
     axes.add_patch(Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor=face, edgecolor="white", linewidth=0.6,
                              hatch="///" if group["clogs"] == 0 else None))
-    if is_exponential(group):
-        axes.add_patch(Rectangle((x - 0.43, y - 0.43), 0.86, 0.86, fill=False, edgecolor="black", linewidth=1.4))
     ink = "black" if norm(length) > 0.55 else "white"
+    exponential = is_exponential(group)
+    if exponential is not None:
+        axes.add_patch(Rectangle((x - 0.43, y - 0.43), 0.86, 0.86, fill=False, edgecolor="black" if exponential else ink, linewidth=1.4 if exponential else 1,
+                                 linestyle="-" if exponential else ":"))
     text = f"{float(f'{length:.2g}'):g}" if length < 1e5 else f"{length:.1g}"
-    axes.text(x, y, ("> " if group["clogs"] == 0 else "") + text, ha="center", va="center", fontsize=7.5, color=ink)
+    axes.text(x, y, ("> " if group["clogs"] == 0 else "") + text, ha="center", va="center", fontsize=7.5, color=ink,
+              bbox={"facecolor": face, "edgecolor": "none", "pad": 0.6})
 
 
 @figure("map", "clogging length against line tension, obstacle density and gap, walls without and with friction", ["map-robust", "map-friction"], "5 min")
@@ -187,7 +151,7 @@ def lengths_on_a_map(shop: Workshop) -> Plate:
     tensions = sorted({group["line_tension"] for group in every})
     lines = sorted({density_key(group) for group in every})
     norm = LogNorm(0.1, max(1e3, *map(known_length, every)), clip=True)
-    drawing, panels = style.subplots(len(kinds), len(gaps), figsize=(1.0 + 4.0 * len(gaps), 1.4 + 3.2 * len(kinds)), sharex=True, sharey=True, squeeze=False)
+    drawing, panels = style.subplots(len(kinds), len(gaps), figsize=(1.0 + 2.9 * len(gaps), 1.4 + 2.8 * len(kinds)), sharex=True, sharey=True, squeeze=False)
     data = []
     for (family, groups), row in zip(kinds, panels):
         for (gap, members), axes in zip(by(groups, "obstacle_gap"), row):
@@ -210,7 +174,6 @@ def lengths_on_a_map(shop: Workshop) -> Plate:
     drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=AXES["length"], shrink=0.8, extend="min")
     drawing.suptitle(describe(shop.columns(MAPS[0].config), every, ["obstacle_density", "preset"]), fontsize=8, color="0.25")
     style.notes_of_panels(drawing, [
-        f"framed: $P(r)$ is exponential (Weibull's shape compatible with 1, at least {ENOUGH_CLOGS} clogs, $\\lambda$ longer than a spacing)",
-        *(f"{family.label}: fewer than {ENOUGH_CLOGS} runs per cell, too few for a frame" for family, groups in kinds if max(group["runs"] for group in groups) < ENOUGH_CLOGS),
+        f"frames, where {ENOUGH_CLOGS} runs or more clogged: solid if $P(r)$ is exponential (Weibull's exponent compatible with 1) and $\\lambda$ above a spacing, else dotted",
         "hatched, >: lower bound (no run clogged); star: the published $\\lambda = 24\\sigma$, at the density that gives this length here"])
     return Plate(drawing, data)

@@ -11,17 +11,6 @@ from matplotlib.figure import Figure
 from .workshop import Workshop
 
 CATALOGUE: dict[str, Entry] = {}
-# Presets of the interface, in words; docs/explanation/model.md defines them.
-INTERFACES = {
-    "robust": "preset robust: weight on the liquid",
-    "heavy-interface": "preset heavy-interface: weight on the interface",
-    "elastic": "preset elastic: weight on the interface, tension grows with perimeter",
-    "literal": "preset literal: as published",
-}
-
-
-def interface_of(preset: str) -> str:
-    return INTERFACES.get(preset, preset)
 
 
 @dataclasses.dataclass

@@ -43,14 +43,16 @@ class Trajectory:
 
 
 def refined(polygons: Numbers, row: np.void) -> Numbers:
-    """Polygons with the middles of their edges, by the four-point rule (docs/explanation/model.md), which is the
-    interface that walls touch. Polygons of runs with wall-contact=vertex stay unchanged.
+    """Polygons with the middles of their edges, which walls touch. Polygons of runs with wall-contact=vertex stay unchanged.
 
     @param polygons  (..., 2, N_v) [sigma]
     @return (..., 2, 2 N_v)
     """
-    if row["wall_contact"] != b"edge" or polygons.size == 0:
-        return polygons
+    return polygons if row["wall_contact"] != b"edge" or polygons.size == 0 else with_middles(polygons)
+
+
+def with_middles(polygons: Numbers) -> Numbers:
+    """A point between every two, by the four-point rule (docs/explanation/model.md); repeated, it gives a smooth curve. @param polygons  (..., 2, N)"""
     before, after = np.roll(polygons, 1, axis=-1), np.roll(polygons, -1, axis=-1)
     middles = (9 * (polygons + after) - before - np.roll(polygons, -2, axis=-1)) / 16
     return np.stack([polygons, middles], axis=-1).reshape(*polygons.shape[:-1], -1)

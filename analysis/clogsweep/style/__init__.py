@@ -13,18 +13,24 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
+from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.path import Path
+from matplotlib.transforms import Bbox
 
 from ..tools import outputs, rounded
 from ..tools.hints import AnyPath, Group
 from ..tools.texts import printable
 from . import journal
-from .journal import NOTES, in_lines as in_lines
+from .journal import NOTES, fitting as fitting, in_lines as in_lines
 
 # Okabe and Ito's palette, safe for colour-blind readers, with a different marker for every curve.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
@@ -39,6 +45,8 @@ OBSTACLE = "0.72"
 NOTE_SIZE = 8
 CURVE = "curve "  # the beginning of the name (`gid`) of a curve's artists; its label follows
 DROPLET = "#D55E00"
+# An arrow that rises from a foot at the lower bound; it takes the upper half of a marker's size.
+LOWER_BOUND = Path([(-0.25, 0), (0.25, 0), (0, 0), (0, 1), (-0.25, 0.6), (0, 1), (0.25, 0.6)], [1, 2, 1, 2, 1, 2, 2])
 
 
 def new_figure(**options: Any) -> Figure:
@@ -68,6 +76,11 @@ def curve_style(index: int) -> dict[str, Any]:
     round_, which = divmod(index, len(COLOURS))
     line = (0, (6, 2) + (1, 2) * (round_ - 1)) if round_ > 0 else "-"
     return {"color": COLOURS[which], "marker": MARKERS[which], "linestyle": line}
+
+
+def shades(number: int) -> Sequence[Any]:
+    """Colours of curves in the order of a parameter; of few, neighbours are of different hues."""
+    return COLOURS[:number] if number <= len(COLOURS) else VIRIDIS(np.linspace(0, 0.95, number))
 
 
 @contextlib.contextmanager
@@ -104,29 +117,54 @@ def main_mechanism(group: Group) -> str:
     return max(MECHANISM_MARKERS, key=lambda name: group[name])
 
 
-def width_of(legend: Legend) -> float:
-    """In inches."""
-    return legend.get_window_extent().width / legend.figure.dpi
-
-
-def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs") -> None:
-    """Legend of named curves and of the markers that draw_lengths() gave these groups. A long legend is placed
-    beside the axes, and the figure gets wider, once. @param other  name of clogs without a mechanism"""
+def mechanism_entries(groups: Collection[Group], other: str = "other clogs") -> list[tuple[Artist, str]]:
+    """Legend entries of the markers that draw_lengths() gave these groups. @param other  what clogs are called that are of no mechanism"""
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
-    for name, marker in MECHANISM_MARKERS.items():
-        if name in names:
-            axes.plot([], [], color="0.4", marker=marker, linestyle="none", label=f"most clogs {name}" if name != "other" else other)
+    return [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else other)
+            for name, marker in MECHANISM_MARKERS.items() if name in names]
+
+
+def legend_off_curves(axes: Axes, entries: Sequence[tuple[Artist, str]], title: str) -> Legend:
+    """Where nothing is drawn; if there is no such place, the ordinate gets longer."""
+    # matplotlib looks for lines only: these are what lies under error bars and bands.
+    rising: Any = np.geomspace if axes.get_yscale() == "log" else np.linspace
+    bars = [bar for drawn in axes.containers if isinstance(drawn, ErrorbarContainer) for part in drawn.lines[2] for bar in part.get_segments() if len(bar)]
+    points = [(x, y) for (x, low), (_, high) in bars if low < high for y in [*rising(low, high, 9), math.nan]]
+    points += [point for band in axes.collections if isinstance(band, PolyCollection) for path in band.get_paths() for point in path.vertices]
+    axes.plot(*np.reshape(points, (-1, 2)).T, linestyle="none", label="_bars")
+    axes.figure.figure.draw_without_rendering()  # lays out
+    paths = [line.get_transform().transform_path(line.get_path()) for line in axes.lines if len(line.get_xdata())]
+
+    def put(place: str) -> tuple[Legend, Bbox]:
+        made = axes.legend(*zip(*entries), title=title, edgecolor="none", framealpha=0.6, loc=place)
+        return made, made.get_window_extent(axes.figure.canvas.get_renderer())
+
+    made, box = put("best")
+    if not any(path.intersects_bbox(box, filled=False) for path in paths):
+        return made
+    made, box = put("upper right")
+    x, y = np.concatenate([path.interpolated(9).vertices for path in paths]).T
+    highest = np.nanmax(y[(box.x0 < x) & (x < box.x1)], initial=box.y0) + 9
+    scale = axes.yaxis.get_transform()
+    low, high = scale.transform(axes.get_ylim())
+    axes.set_ylim(top=scale.inverted().transform([low + (high - low) * (highest - axes.bbox.y0) / (box.y0 - axes.bbox.y0)])[0])
+    return made
+
+
+def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs", title: str = "") -> None:
+    """Legend of named curves and of mechanism_entries(). A long one is placed beside the axes, and the figure gets wider."""
     entries = journal.legend_entries(axes)
-    before = axes.get_legend()
+    for mark, name in mechanism_entries(groups, other):
+        entries.append((axes.add_line(mark), name))
+        mark.set_label(name)
     if len(entries) > len(COLOURS):
-        width_before = width_of(before) if before and len(before.get_texts()) > len(COLOURS) else 0.0
-        made = axes.legend(*zip(*entries), frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
+        made = axes.legend(*zip(*entries), title=title, frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
                            loc="upper left", bbox_to_anchor=(1, 1))
         figure = axes.figure
         if isinstance(figure, Figure):  # not a part of one, whose width is given
             figure.set_figwidth(figure.get_figwidth() + width_of(made) - width_before)
     elif entries:
-        made = axes.legend(*zip(*entries), frameon=False)
+        made = legend_off_curves(axes, entries, title)
     if entries:
         mark_legend(made, [handle for handle, _ in entries])
 
@@ -137,32 +175,39 @@ def logarithmic_margin(values: Collection[float]) -> float:
 
 
 def side_by_side(index: int, num_curves: int, values: Collection[float]) -> float:
-    """Factor on logarithmic abscissae that curves share: a shift of a percent separates their bars; it is smaller if a
-    curve would reach the frame."""
-    outermost = max(num_curves - 1, 1) / 2
-    return min(1.012, logarithmic_margin(values) ** (0.7 / outermost)) ** (index - (num_curves - 1) / 2)
-
-
-def far_apart(values: Collection[float]) -> list[float]:
-    """The values whose labels fit side by side on a logarithmic axis."""
+    """Factor on logarithmic abscissae that curves share: moved apart so that their bars can be told apart: by a part of the
+    axis, less where neighbouring values or the frame are near."""
     ordered = sorted(set(values))
-    room = 0.08 * math.log(ordered[-1] / ordered[0])
-    kept = ordered[:1]
-    for value in ordered[1:]:
-        if math.log(value / kept[-1]) >= room:
+    outermost = max(num_curves - 1, 1) / 2
+    nearest = min((b / a for a, b in zip(ordered, ordered[1:])), default=2.0)
+    step = min(0.007 * math.log(max(ordered[-1] / ordered[0], 6)), 0.2 * math.log(nearest) / outermost, 0.7 * math.log(logarithmic_margin(values)) / outermost)
+    return math.exp(step * (index - (num_curves - 1) / 2))
+
+
+def far_apart(values: Collection[float], span: float) -> list[float]:
+    """The values whose labels have room side by side on a logarithmic axis. @param span  its last value over its first"""
+    kept: list[float] = []
+    for value in sorted(set(values)):
+        if not kept or math.log(value / kept[-1]) >= 0.08 * math.log(span):
             kept.append(value)
     return kept
 
 
 def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
-    """Plain numbers; at the values themselves if these are few or within a decade."""
+    """Plain numbers, at the values themselves where they are few or within a decade; those without room for their label have it one line lower."""
     axes.set_xscale("log")
     axis = axes.xaxis
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))
     if values and (len(set(values)) <= 10 or max(values) < 10 * min(values)):
-        axis.set_ticks(far_apart(values), minor=False)
-        axis.set_ticks(values, minor=True)
-        axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+        span = max(values) / min(values)
+        axis.set_ticks(upper := far_apart(values, span), minor=False)
+        axis.set_ticks(lower := sorted(set(values) - set(upper)), minor=True)
+        labelled = far_apart(lower, span)
+        axis.set_minor_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}" if value in labelled else ""))
+        axis.set_tick_params(which="minor", pad=4 + 1.2 * matplotlib.font_manager.FontProperties(size=matplotlib.rcParams["xtick.labelsize"]).get_size_in_points())
+    elif not values:
+        low, high = axes.get_xlim()
+        plain_logarithmic(axis, high / low)
     if values:
         # Ticks would widen an axis without a margin: artists at the last one would be on the frame.
         margin = logarithmic_margin(values)
@@ -210,17 +255,17 @@ def label(axes: Axes, along: str, up: str) -> None:
 def caption(axes: Axes, text: str) -> None:
     """Above the axes; lines that are wider than these go on below."""
     widest = 1.1 * axes.get_window_extent().width  # the layout makes axes wider than they are now
-    axes.set_title(in_lines(text, journal.fitting(axes, 8, widest)), fontsize=8, color="0.25")
+    axes.set_title(in_lines(text, fitting(axes.figure, 8, widest)), fontsize=8, color="0.25")
 
 
-def finish(axes: Axes, up: str, shared: str, lines: Sequence[str], groups: Collection[Group] = (), other: str = "other clogs") -> None:
-    """The ordinate's label, grid, legend, caption and notes of a picture of curves. @param groups, other  see legend()"""
+def finish(axes: Axes, up: str, shared: str, lines: Sequence[str], groups: Collection[Group] = (), other: str = "other clogs", title: str = "") -> None:
+    """The ordinate's label, grid, legend, caption and notes of a picture of curves. @param groups, other, title  see legend()"""
     axes.set_ylabel(up)
     grid(axes)
-    legend(axes, groups, other)
     caption(axes, shared)
     if lines:
         notes(axes, lines)
+    legend(axes, groups, other, title)
 
 
 def notes(axes: Axes, lines: Sequence[str]) -> None:

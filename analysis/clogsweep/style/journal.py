@@ -6,7 +6,7 @@ from collections.abc import Callable
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
@@ -32,11 +32,11 @@ def in_lines(text: str, fits: Callable[[str], bool], between: str = ", ") -> str
     return "\n".join(lines).replace("\0", " ")
 
 
-def fitting(axes: Axes, size: float, pixels: float) -> Callable[[str], bool]:
-    """Whether a line of text in letters of `size` points fits into this width."""
+def fitting(figure: FigureBase, size: float, pixels: float) -> Callable[[str], bool]:
+    """Does a line of text in letters of `size` points fit into this width?"""
     def fits(line: str) -> bool:
-        text = axes.figure.text(0, 0, line, fontsize=size)
-        width = text.get_window_extent(axes.figure.canvas.get_renderer()).width
+        text = figure.text(0, 0, line, fontsize=size)
+        width = text.get_window_extent(figure.canvas.get_renderer()).width
         text.remove()
         return bool(width <= pixels)
 
@@ -52,10 +52,12 @@ def legend_entries(axes: Axes) -> list[tuple[Artist, str]]:
 def draw_legend(axes: Axes, size: float) -> float:
     """A legend at the top of the figure, in as many columns as fit. @return its height [pixels]"""
     figure = axes.figure
-    fits = fitting(axes, size, figure.bbox.width - 4 * size / 72 * figure.dpi)  # beside a handle
+    fits = fitting(figure, size, figure.bbox.width - 4 * size / 72 * figure.dpi)  # beside a handle
     artists, labels = zip(*((artist, in_lines(label, fits)) for artist, label in legend_entries(axes)))
+    earlier = axes.get_legend()
+    title = earlier.get_title().get_text() if earlier else ""
     for columns in range(len(labels), 0, -1):
-        made = axes.legend(artists, labels, frameon=False, fontsize=size, ncols=columns, loc="upper center", bbox_to_anchor=(0.5, 1),
+        made = axes.legend(artists, labels, title=title, title_fontsize=size, frameon=False, fontsize=size, ncols=columns, loc="upper center", bbox_to_anchor=(0.5, 1),
                            bbox_transform=figure.transFigure, borderaxespad=0.2, borderpad=0.2, labelspacing=0.3, columnspacing=0.8, handlelength=1.3,
                            handletextpad=0.4)
         extent = made.get_window_extent(figure.canvas.get_renderer())
@@ -102,7 +104,7 @@ def lay_out(figure: Figure, width: float, height: float | None, size: float) -> 
     figure.draw_without_rendering()
     frame = axes.get_window_extent()
     for axis in scales:
-        fits = fitting(axes, size, frame.width if axis.axis_name == "x" else frame.height)
+        fits = fitting(figure, size, frame.width if axis.axis_name == "x" else frame.height)
         axis.label.set_text(in_lines(axis.label.get_text().replace("\n", " "), fits, " "))
     figure.draw_without_rendering()
     for axis in scales:
