@@ -16,14 +16,15 @@ def draw(found: Sequence[Prediction], measured: Sequence[Group], confidence: flo
     """@param measured  groups of a sweep, of the same array"""
     figure, axes = style.subplots(figsize=(6.8, 5.0))
     tensions = [one.tension for one in found]
-    for label, name, line in (("both", "length", "-"), ("squeezed, by two obstacles", "squeezed", "--"), ("wrapped, by one obstacle", "wrapped", ":")):
+    for label, name, look in (("both", "length", {"color": "0.8", "linewidth": 5}), ("squeezed, by two obstacles", "squeezed", {"color": style.COLOURS[0]}),
+                              ("wrapped, by one obstacle", "wrapped", {"color": style.COLOURS[1]})):
         lengths = np.array([getattr(one, name) for one in found])
-        axes.plot(tensions, np.where(np.isfinite(lengths), lengths, np.nan), line, marker=".", color=style.COLOURS[0 if line == "-" else 1],
-                  label=f"predicted: {label}", zorder=2 if line == "-" else 3)
+        axes.plot(tensions, np.where(np.isfinite(lengths), lengths, np.nan), marker=".", label=f"predicted: {label}", **look)
     style.logarithmic_abscissa(axes, tensions)
     if measured:
         draw_lengths(axes, [group["line_tension"] for group in measured], measured, 2, "measured", linestyle="none")
     style.logarithmic_ordinate(axes)
     axes.set_xlabel(AXES["line_tension"])
-    style.finish(axes, AXES["length"], "", length_notes(measured, confidence, [axes]) if measured else [], measured)
+    notes = length_notes(measured, confidence, [axes]) if measured else []
+    style.finish(axes, AXES["length"], "", [*notes, "no line: no obstacle and no pair holds the droplet"], measured)
     return figure
