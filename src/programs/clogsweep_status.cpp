@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <string>
 #include <thread>
@@ -9,6 +10,7 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/laboratory/lab_file.hpp"
 #include "clog/results/events.hpp"
 #include "clog/results/status.hpp"
 #include "clog/results/stored_sweep.hpp"
@@ -72,6 +74,18 @@ int follow(const std::string& path) {
   }
 }
 
+/// The law that scaled a measured speed to the droplets, if one did.
+std::string law_of_speed(const Status& status) {
+  if (status.groups.empty()) return "";
+  const RunParameters& run = status.groups.front().first_row.parameters;
+  if (!run.laboratory || run.laboratory->text().empty()) return "";
+  const auto lab = laboratory::parse_laboratory(run.laboratory->text(), "the laboratory of some rows");
+  constexpr double rounding = 1e-9;
+  const bool has_its_speed =
+      std::abs(run.drag.terminal_speed / lab.experiment.reduced_terminal_speed() - 1) < rounding;
+  return lab.measured && has_its_speed ? laboratory::law_of_speed(lab) + '\n' : "";
+}
+
 }  // namespace
 
 int clogsweep_status(int argc, const char* const* argv) {
@@ -98,8 +112,9 @@ int clogsweep_status(int argc, const char* const* argv) {
     const Status status = results::status_of(
         path, is_first ? results::read_with_caution(path) : store::read_sweep(path), confidence);
     if (line.has("watch") && format == "text" && isatty(STDOUT_FILENO)) std::cout << clear_screen;
-    std::cout << (format == "json" ? results::to_json(status, confidence)
-                                   : results::to_text(path, status, confidence, shared))
+    std::cout << (format == "json"
+                      ? results::to_json(status, confidence)
+                      : results::to_text(path, status, confidence, shared) + law_of_speed(status))
               << std::flush;
     if (!line.has("watch") || !status.is_alive) return console::exit_success;
     if (wait(std::chrono::seconds(2))) return console::exit_success;

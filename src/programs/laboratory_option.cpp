@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -61,7 +62,21 @@ std::string scaled_circles(const std::string& list, const laboratory::Laboratory
   return joined(names, ",");
 }
 
-/// Whether the array's geometry depends on this key, with a plain number other than 0.
+/// Numbers of a list; of `lin(0.3mm,0.5mm,3)` the first two.
+std::vector<std::string> numbers_of(const std::string& list) {
+  std::vector<std::string> numbers = split_at_commas(list);
+  std::erase_if(numbers, [](const std::string& number) { return number.ends_with(')'); });
+  for (std::string& number : numbers) number = console::trimmed(number.substr(number.find('(') + 1));
+  return numbers;
+}
+
+bool is_zero(const std::string& number) { return std::strtod(number.c_str(), nullptr) == 0; }
+
+bool is_plain_number(const std::string& text) {
+  return text.find_first_not_of("0123456789.eE+-") == std::string::npos;
+}
+
+/// Whether the array's geometry depends on this key, one of whose values is a plain number other than 0.
 bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, const std::string& text) {
   RunParameters run;
   run.obstacles.layout = layout;
@@ -70,8 +85,10 @@ bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, c
   const bool counts = layout == ObstacleLayout::file
                           ? is_of_file
                           : parameter.shapes_array && parameter.role == ParameterRole::physics;
-  return counts && parameter.applies_to(run) && (unit == "sigma" || unit == "1/sigma^2") && text != "0" &&
-         text.find_first_not_of("0123456789.,eE+-") == std::string::npos;
+  return counts && parameter.applies_to(run) && (unit == "sigma" || unit == "1/sigma^2") &&
+         std::ranges::any_of(numbers_of(text), [](const std::string& number) {
+           return is_plain_number(number) && !is_zero(number);
+         });
 }
 
 /// In millimetres an array stays the same for all droplets; in sigma it would grow with them, which the user
@@ -87,8 +104,9 @@ void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory:
   for (const std::string& layout : settings.values("obstacle-layout"))
     for (const Parameter& parameter : parameter_schema()) {
       const std::string text = text_of(parameter.key);
-      const bool replaced_by_pitch =
-          layout == "lattice" && text_of("pitch") != "0" && parameter.key == std::string_view("obstacle-gap");
+      const bool replaced_by_pitch = layout == "lattice" &&
+                                     parameter.key == std::string_view("obstacle-gap") &&
+                                     std::ranges::none_of(numbers_of(text_of("pitch")), is_zero);
       if (!replaced_by_pitch && is_length_without_unit(parameter, *meant_by<ObstacleLayout>(layout), text))
         throw Error(fmt::format(
             "invalid {0}={1} (a number without a unit is in droplet diameters, but {2} has several droplets, "
