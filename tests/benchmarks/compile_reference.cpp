@@ -1,6 +1,5 @@
-// A file that stays as it is: tests/benchmarks/build.sh gives compile times as multiples of the time that
-// this one takes, so that numbers of different machines can be compared. It uses the libraries whose headers
-// take longest.
+// An unchanged file: tests/benchmarks/build.sh gives compile times as multiples of this file's, to compare
+// machines. It uses the libraries whose headers take longest.
 
 #include <Eigen/Dense>
 #include <boost/program_options.hpp>

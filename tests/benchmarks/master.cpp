@@ -1,6 +1,6 @@
-/// How busy is a master with a thousand workers whose tasks take a second? What it has to do depends on the
-/// messages alone: a thousand rows a second, each answered with a task. Here a few workers send as many, with
-/// tasks that sleep; everything else is clogsweep's own: the scheduler, MPI, the table of runs on the disk.
+/// How busy is a master with a thousand workers whose tasks take a second? Its work depends on the messages
+/// alone: a thousand rows a second, each answered with a task. Here a few workers send as many, with tasks
+/// that sleep; everything else is clogsweep's own: the scheduler, MPI, the table of runs on the disk.
 ///   tests/mpirun.sh 5 bench_master [tasks per second] [seconds]
 /// With 0 tasks per second every worker sleeps in one long task: what does waiting cost?
 ///   bench_master rows 1000000
@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
   settings.set("seeds", "1.." + std::to_string(num_tasks / num_groups));
   const sweep::Plan plan(settings);
   std::optional<results::SweepState> state;
-  std::ostringstream screen;  // progress goes nowhere, but is made
+  std::ostringstream screen;  // progress is computed but not printed
   results::Progress progress(screen, results::Progress::Screen::terminal, num_workers,
                              [num_groups](std::int64_t task) { return task % num_groups; });
   std::vector<std::int64_t> tasks(num_tasks);

@@ -72,7 +72,7 @@ BENCHMARK(polygon_avx2)->Unit(benchmark::kMillisecond);
 void polygon_baseline(benchmark::State& state) { with_instruction_set(state, "baseline"); }
 BENCHMARK(polygon_baseline)->Unit(benchmark::kMillisecond);
 
-/// Everything on the vertices: nothing couples them but pressure.
+/// All terms act on the vertices, which only the pressure couples.
 void heavy_interface(benchmark::State& state) {
   RunParameters run =
       flowing_droplet(static_cast<int>(state.range(0)), 0.01 * static_cast<double>(state.range(1)));
@@ -137,7 +137,7 @@ BENCHMARK(elastic_polygon)
     ->Arg(30)
     ->Unit(benchmark::kMillisecond);
 
-/// The way up to a channel and through it, as clogrun follows it: with the account of what drag takes.
+/// The path to a channel and through it, as clogrun follows it, including the work against the drag.
 void polygon_in_channel(benchmark::State& state) {
   RunParameters run = flowing_droplet(256, 0.01 * static_cast<double>(state.range(0)));
   run.drag.terminal_speed = 0.032;

@@ -1,6 +1,6 @@
-/// What runs of real sweeps cost: for each vertex and step, and from release to verdict. Next to it what the
-/// two passes of a step cost on the same core when nothing touches, the limit of any step; slices of both
-/// take turns.
+/// What runs of real sweeps cost: for each vertex and step, and from release to verdict. Beside it is the
+/// cost of a step's two passes on the same core without contacts, the limit of any step; slices of both
+/// alternate.
 
 #include <algorithm>
 #include <cmath>

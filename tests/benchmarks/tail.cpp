@@ -59,7 +59,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// A sweep as likely as the recorded one: lengths of every group are drawn from those recorded of it.
+/// A random sweep: lengths of every group are drawn from the recorded ones.
 std::vector<double> resample(const std::vector<double>& recorded, std::int64_t num_seeds,
                              std::mt19937_64& engine) {
   const boost::random::uniform_int_distribution<std::int64_t> pick(

@@ -2,8 +2,8 @@
 
     two_ranks.py FOLDER_OF_PROGRAMS
 
-Steps per second need two cores that nobody else uses. Steps per second of CPU time show what the scheduler costs even
-where the cores are shared.
+Steps per second need two cores that nobody else uses. Steps per second of CPU time show the cost of the scheduler even
+on shared cores.
 """
 
 import pathlib

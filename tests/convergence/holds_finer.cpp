@@ -3,9 +3,9 @@
 ///     build/release/tests/holds_finer sweep.h5 [PART PARTS]
 ///
 /// Repeats each run that clogged, puts a vertex into the middle of each edge of the droplet at rest, forgets
-/// where walls hold it, and lets it go. A line of CSV for each run: how far it has come after 600 t0, or
-/// where it rests for certain; and the same without more vertices, since a droplet may need the memory of its
-/// walls. PART of PARTS divides the runs among processes.
+/// where walls hold it, and lets it go. A line of CSV for each run: its distance after 600 t0, or its
+/// certified rest; and the same without more vertices, because a droplet may need the memory of its walls.
+/// PART of PARTS divides the runs among processes.
 
 #include <fmt/core.h>
 
@@ -64,7 +64,7 @@ DropletState without_memory(DropletState state) {
   return state;
 }
 
-/// The same droplet with other vertices; numerics that are automatic follow.
+/// The same droplet with other vertices; automatic numerics follow.
 RunParameters with_vertices(RunParameters run, int vertices) {
   run.dp.vertices = vertices;
   run.wall_stiffness.reset();

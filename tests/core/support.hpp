@@ -27,7 +27,7 @@ inline RunParameters bare_parameters(int vertices = 64) {
   run.dp.gravity = Gravity::vertex;
   const double l0 = units::regular_edge_length(vertices);
   run.wall_stiffness = wall_stiffness(1000, l0);
-  // The published ranges: tests are to see that they enter.
+  // The published ranges, so that tests cover them.
   run.dp.contact_range = l0 / 2;
   run.dp.self_contact_range = l0;
   run.obstacles.box = 20;
@@ -110,7 +110,7 @@ inline Eigen::ArrayXd renumbered(const Eigen::ArrayXd& position, int first) {
   return result;
 }
 
-/// Vertices that walls hold without a touch.
+/// Vertices that walls hold without a contact.
 inline int num_behind_films(const DropletState& state, double contact_range) {
   return static_cast<int>(std::ranges::count_if(state.anchors, [&](const WallAnchor& one) {
     return std::hypot(state.x()[one.holder] - one.wall.x, state.y()[one.holder] - one.wall.y) >

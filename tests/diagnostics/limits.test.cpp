@@ -72,7 +72,7 @@ TEST_F(HostLimits, AreNoLessThanNothing) {
 }
 
 TEST_F(HostLimits, AreSeenFromWithinAContainer) {
-  // Its group is mounted as the root, while the path is the host's, or leads out of it.
+  // Its group is mounted as the root, while the path is the host's, or outside it.
   write("sys/fs/cgroup/cpu.max", "50000 100000\n");
   for (const char* path : {"0::/\n", "0::/kubepods/pod1\n", "0::/../other\n"}) {
     write("proc/self/cgroup", path);

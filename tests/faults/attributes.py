@@ -1,4 +1,4 @@
-"""One attribute of a sweep's file is damaged: what describes the file, or one of its columns."""
+"""One attribute of a sweep's file is damaged: of the file, or of one of its columns."""
 
 import h5py
 
@@ -34,7 +34,7 @@ class Faults:
 
     @staticmethod
     def check_salvaged(case, sample):
-        """All rows are whole, so all are kept, and the sweep's command completes the rest of the file."""
+        """All rows are intact, so all are kept, and the sweep's command completes the rest of the file."""
         salvaged = case.folder / SALVAGED
         salvaged.unlink(missing_ok=True)
         run(case, "clogsweep", "salvage", FILE, "--output", SALVAGED)

@@ -1,4 +1,4 @@
-"""Command lines and files with mistakes: made from what the programs say that they understand, and changed."""
+"""Command lines and files with mistakes: made from the programs' own descriptions, and changed."""
 
 import re
 import subprocess
@@ -15,7 +15,7 @@ LISTS = ["lin(0,1,3)", "lin(0,1,-3)", "lin(0,1,1e9)", "lin(0,1)", "lin(nan,1,3)"
 TEXTS = ["", " ", "auto", "saturated", "dp", "sp", "none", "yes", "=", "a=b", "--", "-", "#", "%", "%s%n", "x" * 300,
          "é", "\t", "a\nb", "\x1b[31mred", "\r", "\x7f", "\u202e", "nowhere.h5", ".", "/dev/null", "/", "~"]
 NOT_UTF_8 = [b"\xff\xfe", b"\xc3", b"1\x80", b"\xed\xa0\x80"]
-# Droplets of a second: what could make a run long has its value by the call, and is never mutated.
+# Droplets of a second: the call sets all values that could make a run long, and they are never mutated.
 SHORT = {"max-time": "0.5", "vertices": "32", "box": "13", "seeds": "1"}
 NAMES_OF_FILES = {"output", "frames", "obstacles", "write-obstacles"}
 OWN_OPTIONS = re.compile(r"^  --([a-z-]+)( arg)?", re.MULTILINE)
@@ -68,7 +68,7 @@ class Faults:
             content = text.encode()
             (case.folder / name).write_bytes(self.scatter(case, content) if case.chance.random() < 0.5 else content)
 
-    # Sound calls, before mistakes are made in them.
+    # Valid calls, before mistakes are added.
 
     def preview(self, case):
         """A sweep that is not run."""

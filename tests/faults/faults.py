@@ -3,7 +3,7 @@
 
     tests/faults/faults.py bits --count 200 --seed 1 --bin build/release/bin
 
-Exit code 0: all were taken well. 1: some were not; each is printed with the command that repeats it alone.
+Exit code 0: all were handled. 1: some were not; each is printed with the command that repeats it alone.
 """
 
 import argparse
@@ -30,7 +30,7 @@ KINDS = {
 
 
 class Case:
-    """One fault: what was done, and what was not as it must be after it."""
+    """One fault: its description, and the wrong reactions to it."""
 
     def __init__(self, chance, folder):
         self.chance = chance

@@ -1,4 +1,4 @@
-"""Journals that are whole and wrong: of another sweep or version, or with rows and snapshots that no run has made."""
+"""Valid journals with wrong content: of another sweep or version, or with rows and snapshots that no run has made."""
 
 import struct
 import zlib
@@ -55,7 +55,7 @@ class Faults:
         case.chance.choice([self.foreign, self.hostile_row, self.hostile_snapshot, self.hostile_snapshot])(case)
 
     def foreign(self, case):
-        """Refused, with nothing changed; the sweep goes on as soon as the journal is moved away."""
+        """Refused, with nothing changed; the sweep resumes as soon as the journal is moved away."""
         origin = case.chance.choice([*self.others, "another version"])
         if origin in self.others:
             records = split(self.others[origin].files[JOURNAL], self.row.itemsize)
@@ -96,7 +96,7 @@ class Faults:
         self.check(case, number, (row, bytes(harmed)))
 
     def check(self, case, number, record):
-        """A forged record may cost or change its own run; every other row is as it was, and all can be."""
+        """A forged record may affect its own run only; every other row is unchanged, and all can be."""
         task = int(numpy.frombuffer(self.own[number][0], self.row)[0]["task"])
         self.put(case, [*self.own[:number], record, *self.own[number + 1:]], self.stopped.files[FILE])
         for report in (VERIFY, *REPORTS):

@@ -10,7 +10,7 @@ from processes import Hung, are_gone, descend, kill, send, wait_for
 from samples import FILE, check_complete, finished_rows, stored_rows
 from support import SMALL, TIMING
 
-# A task may meet many kills before it is over, and has not failed for that.
+# A task may be killed many times before it is over, and has not failed for that.
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=2000", "seeds=1..2", "--attempts=1000",
          "--report-seconds=0.1", "--output", FILE]
 RANKS = 2
@@ -71,7 +71,7 @@ class Faults:
 
     @staticmethod
     def wait(case, process, sent):
-        """Who was not killed ends by himself, with the code that the README names."""
+        """A process that was not killed ends by itself, with the code that the README names."""
         is_killed = any(number == signal.SIGKILL for _, number in sent)
         try:
             code = process.wait(timeout=PATIENCE) if is_killed else wait_for(process.pid, process.wait)

@@ -1,4 +1,4 @@
-"""Runs programs under limits, and says what no program may do whatever was done to it."""
+"""Runs programs under limits, and checks what no program may do under any fault."""
 
 import dataclasses
 import os
@@ -12,7 +12,7 @@ from support import BIN, MPIRUN
 EXIT_CODES = {0, 1, 2, 75}  # docs/reference/exit-codes.md
 SUBCOMMANDS = {"status", "verify", "replay", "salvage", "merge", "select", "doctor", "array", "channel", "sag", "calibrate", "compare", "deviation",
                "drag", "report"}
-# Words of a program that met a fault of its own.
+# Words of a program that failed.
 SIGNS_OF_FAULTS = {
     b"Traceback (most recent call last)": "a traceback",
     b"internal fault": "an internal fault",
@@ -31,7 +31,7 @@ class Outcome:
 
     @property
     def is_over(self):
-        """It came to an end of its own."""
+        """It ended by itself."""
         return self.code is not None and self.code >= 0
 
 

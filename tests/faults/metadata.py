@@ -15,7 +15,7 @@ from support import SMALL
 JOURNAL = FILE + ".journal"
 # The first run has a snapshot after every 2^18 steps: from a sixth of its time on.
 STOPPED = [*SMALL, "obstacle-gap=0.4", "line-tension=0.05,0.5", "max-time=1e4", "seeds=1", "--output", FILE]
-# After how long it is stopped: the slower the machine, or the busier, the later there is a snapshot.
+# Time after which it is stopped: on a slow or busy machine the first snapshot comes later.
 HOURS = [1e-4 * 1.5**n for n in range(16)]
 
 
@@ -58,7 +58,8 @@ class Faults:
         case.chance.choice([self.harm_a_table, self.harm_a_table, self.harm_a_journal])(case)
 
     def harm_a_table(self, case):
-        """Harms a file as a sweep wrote it, or as another program copies it: then no seal shows that something is missing."""
+        """Damages a file as a sweep wrote it, or as another program copies it: then no seal shows that something is
+        missing."""
         sample = case.chance.choice(self.samples)
         end = case.chance.choice([len(sample.content), sample.content.rindex(SEAL)])
         places = [place for place in self.places[sample.name] if place < end]

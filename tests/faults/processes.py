@@ -57,7 +57,8 @@ def is_alive(pid):
 
 
 class Limits:
-    """Tells processes that hang from those that a busy machine makes slow. Of the slow ones one always has work."""
+    """Distinguishes processes that hang from those that a busy machine slows down. Of the slow ones one always has
+    work."""
 
     def __init__(self):
         self.idle_seconds = 0

@@ -1,4 +1,4 @@
-"""Small sweeps to be harmed, and what is said of them while they are whole."""
+"""Small sweeps to damage, and the answers about them while they are intact."""
 
 import multiprocessing
 import os
@@ -162,7 +162,7 @@ def check_called_whole(case, sample, path):
 
 
 def check_resumed(case, sweep, rows):
-    """The command that made the file makes it whole again, or refuses and leaves it alone.
+    """The command that made the file repairs it, or refuses and leaves it unchanged.
 
     @param rows  of the undisturbed sweep
     """

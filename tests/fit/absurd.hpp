@@ -26,7 +26,7 @@ inline std::vector<std::vector<Observation>> absurd_runs() {
   return all;
 }
 
-/// A possible result: not known, or a number that is a length.
+/// A possible result: unknown, or a number that is a length.
 inline bool is_length_or_unknown(double length) {
   return std::isnan(length) || (length >= 0 && std::isfinite(length));
 }

@@ -168,8 +168,8 @@ TEST(LeastSquaresLength, HasNoUnit) {
 }
 
 TEST(LeastSquaresLength, IsBiasedWhereTheFitIsNot) {
-  // Runs of one speed that began one after the other and are looked at in the middle: the censored ones have
-  // seen little, and least squares takes them for runs that never clog.
+  // Runs of one speed that began one after the other and are observed in the middle: the censored ones have
+  // seen little, and least squares treats them as runs that never clog.
   std::mt19937_64 engine(4);
   std::exponential_distribution<double> distance(1);
   double of_least_squares = 0, of_likelihood = 0;
@@ -192,7 +192,7 @@ TEST(CloggingLength, RefusesAnImpossibleConfidence) {
   EXPECT_THROW(fit_clogging_length({}, 0.0), std::invalid_argument);
 }
 
-/// A sweep of equal droplets on some workers, looked at when a share of it is done: droplets clog at
+/// A sweep of equal droplets on some workers, observed when a share of it is done: droplets clog at
 /// exponentially distributed distances and travel at one speed.
 struct LiveSweep {
   double of_finished = 0;  ///< lambda from finished runs alone, over the truth

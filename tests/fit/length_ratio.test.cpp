@@ -13,7 +13,7 @@
 namespace clog::fit {
 namespace {
 
-/// Pairs of ways with exponential laws, of which a share of the clogs is common (Marshall and Olkin): both
+/// Pairs of distances with exponential laws that share a part of the clogs (Marshall and Olkin): both
 /// droplets stop where a place holds both, and each where one holds it alone.
 std::vector<Pair> drawn_pairs(std::mt19937& engine, int number, double share, double ratio) {
   const double common_rate = share / std::max(1.0, ratio);

@@ -47,7 +47,7 @@ TEST(Migration, IsUndefinedWithoutDistance) {
 }
 
 TEST(Migration, LeavesOutRunsThatWentTooShortAWay) {
-  // Droplets that sagged in their void of release by 0.04, with a lateral displacement that is the void's.
+  // Droplets that sagged in their release void by 0.04, with the void's lateral displacement.
   EXPECT_TRUE(std::isnan(fit_migration(std::vector<Displacement>{{0.04, -0.007}, {0.04, -0.007}}).slope));
   const Migration fit = fit_migration(std::vector<Displacement>{{4, 1}, {0.04, -0.4}, {8, 5}, {-0.1, 0.3}});
   EXPECT_DOUBLE_EQ(fit.slope, 0.5);

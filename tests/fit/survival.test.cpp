@@ -107,7 +107,7 @@ TEST(Exponentiality, IsRejectedAsOftenAsItClaimsAndWhereItFails) {
 }
 
 TEST(Exponentiality, SeesClogsAtRelease) {
-  // Twelve of thirty do not get anywhere.
+  // Twelve of thirty do not move.
   std::mt19937_64 engine(7);
   std::exponential_distribution<double> distance(1);
   std::vector<Observation> runs(12, {-0.001, true});

@@ -2,7 +2,7 @@
 """clang.py warnings|tidy [--changed] [--most N] [FILE...]: what clang++ or clang-tidy says of the sources named, or of all.
 
 --changed takes those that changed (known.py says since when), and for a changed header a source that includes it. Of
-more than N sources it takes N by a rule that picks others at the next commit. Exit code 1: there is something to mend.
+more than N sources it takes N by a rule that picks others at the next commit. Exit code 1: there is a finding.
 """
 
 import argparse
@@ -55,7 +55,7 @@ def source_of(header, sources):
 
 
 def chosen(sources, most):
-    """The sources that changed, or that show a changed header, at most so many. Says what it leaves out."""
+    """The sources that changed, or that include a changed header, at most this number. Prints what it excludes."""
     answer = known.changed()
     if answer is None:
         print(f"what changed is not known: all {len(sources)} sources are candidates")
@@ -110,7 +110,7 @@ def main():
         for source, code, words in pool.map(lambda name: ask(name, commands[name]), sources):
             if code != 0:
                 faulty.append(source)
-            # A header's fault is told once, not with every source that includes it.
+            # A header's finding is printed once, not with every source that includes it.
             for finding in FINDING.split(words):
                 if finding.strip() and finding not in told:
                     told.add(finding)

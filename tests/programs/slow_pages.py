@@ -1,5 +1,5 @@
-"""Commands of the handbook. slow_tutorial runs tutorial, README and some how-to pages as they stand. Here every command of
-the other pages is run in a folder that has the files it names; what takes longer than seconds is cut down or only parsed.
+"""Commands of the handbook. slow_tutorial runs tutorial, README and some how-to pages as they stand. Here every command
+of the other pages is run in a folder with the files that it names; longer ones are shortened or only parsed.
 """
 
 import pathlib
@@ -82,7 +82,7 @@ class Commands(Analysis):
         picture.save(self.folder / "scan.png")
 
     def provide(self, words):
-        """Removes what the command is to make, and makes what it needs and the page does not make."""
+        """Removes the command's outputs, and makes the inputs that the page does not make."""
         made = [words[words.index(option) + 1] for option in ("--output", "--frames") if option in words]
         for name in made:
             for path in self.folder.glob(f"{name.removesuffix('.h5')}*"):

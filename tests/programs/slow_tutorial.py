@@ -1,8 +1,8 @@
 """Pages of the handbook: their commands as they stand, one block after the other, in an empty folder; those of the tutorial
 in one folder, one page after the other.
 
-Blocks of `bash` and `python` are run. The first line of a block of `text` has to be among what they print, whatever its
-numbers are, and every file that a page names has to be there in the end.
+Blocks of `bash` and `python` are run. The first line of a block of `text` must be among their output, except for its
+numbers, and every file that a page names must exist at the end.
 """
 
 import re
@@ -38,7 +38,7 @@ class Pages(ProgramTest):
             self.assertTrue((self.folder / name).exists(), f"{path} names {name}, which is not there")
 
     def test_the_tutorial(self):
-        """Its pages tell the reader to stay in one folder: what one of them writes must not be in the way of another."""
+        """Its pages tell the reader to stay in one folder, so files of one page must not disturb another."""
         self.assertGreaterEqual(len(pages.tutorial()), 3)
         for page in pages.tutorial():
             self.follow(page)

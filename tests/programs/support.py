@@ -94,7 +94,7 @@ class ProgramTest(unittest.TestCase):
         return done
 
     def refuse(self, name, *arguments, words, **options):
-        """The program must leave with exit code 2, say each of the words in one line, and write nothing."""
+        """The program must exit with 2, print each of the words in one line, and write nothing."""
         before = self.snapshot()
         done = self.run_program(name, *arguments, **options)
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
@@ -164,7 +164,8 @@ class SweepTest(ProgramTest):
         return children
 
     def until_in_time(self, attempt):
-        """A busy machine may let a sweep end before the test meets it. Then attempt() returns nothing, and is made anew."""
+        """A busy machine may let a sweep end before the test meets it. Then attempt() returns nothing, and is
+        repeated."""
         for _ in range(20):
             if outcome := attempt():
                 return outcome

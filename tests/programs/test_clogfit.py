@@ -70,7 +70,7 @@ class Fit(ProgramTest):
         return pandas.read_hdf(self.copy_sweep("sweep.h5", *SMALL, *settings), "runs")
 
     def change(self, **columns):
-        """Puts other results into the rows of the sweep file. What goes with a status goes along."""
+        """Puts other results into the rows of the sweep file. Adjusts what depends on a status."""
         if "status" in columns:
             status = np.array(columns["status"])
             columns.setdefault("clogged_by", np.where(status == b"clogged", b"certified", b"none"))
@@ -125,7 +125,7 @@ class Fit(ProgramTest):
         self.assertAlmostEqual(narrow["clogging_length_profile_lower"], group["clogging_length"], places=9)
         self.assertAlmostEqual(narrow["clogging_length_profile_upper"], group["clogging_length"], places=9)
 
-    # Runs of which some droplets stood for 20 t0 or more on their way; none clogs by wrapping.
+    # Runs in which some droplets rested for 20 t0 or more; none clogs by wrapping.
     DWELLING = ["seeds=1..8", "line-tension=0.05,0.3", "max-time=400"]
 
     def longest_first(self, table):
@@ -134,7 +134,7 @@ class Fit(ProgramTest):
         return [[(row[name], row[name + "_at"]) for name in names if row[name] > 0] for _, row in table.iterrows()]
 
     def expected_endings(self, table, dwell):
-        """Each run's distance until its droplet had stood for so long, and whether it had, from the table alone."""
+        """Each run's distance until its droplet had rested for so long, and whether it had, from the table alone."""
         for row, dwells in zip(table.itertuples(), self.longest_first(table)):
             stood = [place for length, place in reversed(dwells) if length > dwell]
             is_clogged = row.status == "clogged"
@@ -155,7 +155,7 @@ class Fit(ProgramTest):
                 self.assertEqual(group["clogging_length"] is None, clogs == 0)
                 if clogs:
                     self.assertAlmostEqual(group["clogging_length"], total / clogs, places=12)
-                # The mechanism of a droplet that moved on is not known; speeds are those of all runs.
+                # The mechanism of a droplet that moved on is unknown; speeds are those of all runs.
                 of_clogs = usual[group["line_tension"]]
                 self.assertEqual(group["flowing"], 8 - clogs)
                 self.assertLessEqual(group["squeezed"], of_clogs["squeezed"])
@@ -177,7 +177,7 @@ class Fit(ProgramTest):
                 self.assertGreaterEqual(longer_way, way)
                 self.assertLessEqual(fewer_clogs, clogs)
         self.assertLess(results[0], results[-1])
-        # No run can have stood for as long as it is: the same numbers as without the option.
+        # No run can have rested for its own duration: the same numbers as without the option.
         usual = self.fit()["groups"]
         for dwell in (400, 1e9):
             self.assertEqual(self.fit("--dwell", dwell)["groups"], usual)
@@ -358,7 +358,7 @@ class Fit(ProgramTest):
         self.assertRegex(text, r"95 % +broken +lambda_b/sigma.*\n.* 4 +13\.\d+ ")
         self.assertIn("lambda_b: mean distance before break-up", text)
         self.assertNotIn("w/s/h/o", text)
-        # A droplet that stood for long ended there, also if it broke later on; else it ends where it broke.
+        # A droplet that rested for long ended there, even if it broke later; otherwise it ends where it broke.
         dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5") if name.startswith(("longest_dwell", "earlier_dwell"))]
         self.change(**{name: np.nan for name in dwells})
         self.assertEqual(self.fit("--dwell", 0.9)["groups"][0]["broken"], 4)

@@ -15,7 +15,7 @@ import pandas
 import stored_rows
 from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest, SweepTest
 
-# Columns that tell where and how fast a row was made, not its results.
+# Columns about where and how fast a row was made, not its results.
 CIRCUMSTANCES = ["wall_seconds", "processor_seconds", "rank", "host"]
 # Writes which process has forked, and which has begun MPI, to the file FORK_LOG.
 FORK_LOGGER = r"""
@@ -212,7 +212,7 @@ class Sweep(ProgramTest):
         self.assertNotIn("obstacle spacing", self.succeed("clogsweep", *keys, "seeds=1..8", "--dry-run").stdout)
         saturated = [*keys, "obstacle-density=saturated"]
         self.assertRegex(self.succeed("clogsweep", *saturated, "seeds=1..8", "--dry-run").stdout, r"# \d of \d runs clogged within one obstacle spacing \(0.5 sigma\)")
-        # It counts runs that the file holds, too, and says so as clogfit does.
+        # It also counts runs outside the lists, as clogfit does.
         self.succeed("clogsweep", *saturated, "seeds=1..8", "--output", "s.h5")
         self.assertIn("clogged within one obstacle spacing", self.succeed("clogsweep", *saturated, "seeds=1..9", "--dry-run", "--output", "s.h5").stdout)
         self.assertIn("below_spacing", self.succeed("clogfit", "s.h5", "--format", "csv").stdout)

@@ -1,4 +1,4 @@
-"""Tests the answers to commands that were meant otherwise, and what the programs refuse to do."""
+"""Tests the answers to mistaken commands, and what the programs refuse to do."""
 
 import unittest
 
@@ -127,7 +127,7 @@ class Parameters(ProgramTest):
     """The line above the table of clogfit and status."""
 
     def test_a_line_of_a_config_that_is_no_setting_is_named(self):
-        # The first held Boost up for ever: it replaces names between percent signs in its own messages.
+        # The first made Boost loop for ever: it replaces names between percent signs in its own messages.
         for line in ("%prefix%invalid_line%", "line-tension 3"):
             self.write("bad.cfg", f"# a comment\nvertices = 64\n{line}\n")
             self.refuse("clogsweep", "--config", "bad.cfg", "--output", "s.h5", words=["bad.cfg line 3", line, "key = value"])

@@ -1,4 +1,4 @@
-"""Files that are not as they were written: who reads them notices, and what is whole can be kept."""
+"""Damaged files: readers notice the damage, and intact parts can be kept."""
 
 import contextlib
 import io
@@ -124,7 +124,7 @@ class Damage(ProgramTest):
         self.assertIn("preset=viscous", self.succeed("clogfit", "s.h5").stdout)
 
     def test_what_verify_refuses_is_not_salvaged(self):
-        """A foreign file may be written as its checksums say, and still hold what cannot be."""
+        """A foreign file may agree with its checksums and still contain impossible values."""
         def repeat_a_run(rows):
             rows[2] = rows[1]
             rows["task"][2] = 2
@@ -200,7 +200,7 @@ class Damage(ProgramTest):
                 (self.folder / "whole.h5").unlink()
 
     def test_python_does_not_read_a_copy_whose_description_is_damaged(self):
-        """Checksums are of bytes: other names, types or places would make other numbers of them."""
+        """Checksums are of bytes: other names, types or positions would change the numbers."""
         copy = self.copied()
         whole = copy.read_bytes()
         self.assertEqual(len(clogsweep.open(copy).rows), 6)
@@ -239,7 +239,7 @@ class Damage(ProgramTest):
             clogsweep.open(run)
 
     def test_little_memory_is_no_damage_and_no_crash(self):
-        """HDF5 and Open MPI crash where memory ends; a file that it did not suffice for was called damaged."""
+        """HDF5 and Open MPI crash without memory; a file that they could not load was called damaged."""
         if not may_limit_memory():
             self.skipTest("programs with sanitizers map more memory than any machine has")
         sweep = [*SETTINGS[:-1], "new.h5"]
@@ -274,7 +274,7 @@ class Damage(ProgramTest):
         pandas.testing.assert_frame_equal(table(self.folder / "packed.h5"), self.rows)
 
     def test_a_table_of_another_description_is_not_read(self):
-        """What a description says is compared with what is written here before a row is read."""
+        """The table's description is compared before a row is read."""
         def put(file, rows, **options):
             meanings = dict(file["runs"].attrs)
             del file["runs"]

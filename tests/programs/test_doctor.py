@@ -1,4 +1,4 @@
-"""clogsweep doctor: sees what spoils sweeps, and says what helps."""
+"""clogsweep doctor finds problems of sweeps, and prints remedies."""
 
 import os
 import pathlib

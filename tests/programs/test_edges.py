@@ -1,4 +1,5 @@
-"""Tests a sweep's surroundings: names with any byte, links that move, modes and journals of others. No row is lost there."""
+"""Tests a sweep's surroundings: names with any byte, moved links, file modes and foreign journals. No row is lost
+there."""
 
 import errno
 import os
@@ -85,7 +86,7 @@ BRIEF = [word.replace("max-time=2e4", "max-time=5e3") for word in SLOW]
 
 
 class Places(SweepTest):
-    """A place is resolved once; what others do to it meanwhile costs neither their files nor a row."""
+    """A path is resolved once; changes by others affect neither their files nor a row."""
 
     def begin(self, sweep, output):
         """A sweep that has published a table."""
@@ -150,7 +151,7 @@ def access_list(reader):
 
 
 class Access(SweepTest):
-    """Who may read a file is for its owner to say, before and after it is written again."""
+    """The owner determines who may read a file, before and after it is rewritten."""
 
     GROWN = [*FINISHED[:-1], "seeds=100..104"]
 
@@ -212,7 +213,7 @@ class LinksOfOthers(SweepTest):
 
     def test_links_of_others_are_refused(self):
         if os.geteuid() != 0:
-            return  # who is not root makes no links of somebody else
+            return  # without root one cannot make links of somebody else
         folder = self.open_folder()
         for name in ("s.h5", "t.h5.journal"):
             (folder / name).symlink_to(self.folder / "elsewhere")

@@ -1,4 +1,4 @@
-"""--instruction-set decides every bit of a row, whatever else the processor can do."""
+"""--instruction-set determines every bit of a row, whatever else the processor supports."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""--until-precision: seeds are added where lambda is not known well enough, the same ones however the sweep goes."""
+"""--until-precision: seeds are added where lambda is not precise enough, the same ones after any interruption."""
 
 import json
 import re
@@ -48,7 +48,7 @@ class Precision(ProgramTest):
         stopped, hours = 0, 0.00004
         while self.run_program("clogsweep", *SWEEP, "--output", "stopped.h5", f"--max-hours={hours}").returncode == 75:
             stopped += 1
-            hours *= 1.05  # on a machine that is busy a session may come to nothing
+            hours *= 1.05  # on a busy machine a session may achieve nothing
             self.assertLess(stopped, 200)
         self.assertGreater(stopped, 0)
         self.check_equal("stopped.h5", whole)
@@ -73,7 +73,7 @@ class Precision(ProgramTest):
                 hours = begin
                 continue
             self.assertEqual(done.returncode, 75, done.stderr)
-            hours *= 1.05  # on a machine that is busy a session may come to nothing
+            hours *= 1.05  # on a busy machine a session may achieve nothing
             rows = table(self.folder / "s.h5")
             if len(rows) > 8 and (rows.status == "interrupted").any():
                 break

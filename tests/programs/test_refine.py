@@ -1,4 +1,5 @@
-"""python3 -m clogsweep refine: values and seeds are put where the fitted curve needs them, the same however it goes."""
+"""python3 -m clogsweep refine: values and seeds are added where the fitted curve needs them, the same after any
+interruption."""
 
 import contextlib
 import functools
@@ -169,7 +170,7 @@ class Values(unittest.TestCase):
 
 
 class Choice(unittest.TestCase):
-    """Blocks of seeds on 41 places, whose errors are alike within three of them."""
+    """Blocks of seeds on 41 places, whose errors are equal within three of them."""
 
     NUMBER = 41
 
@@ -248,7 +249,7 @@ class Refine(RefineTest):
         stopped, hours = 0, 0.0002
         while (done := self.run_refine("line-tension", *SWEEP, GOAL, "--output", "s.h5", f"--max-hours={hours}")).returncode == 75:
             stopped += 1
-            hours *= 1.1  # on a machine that is busy a session may come to nothing
+            hours *= 1.1  # on a busy machine a session may achieve nothing
             self.assertLess(stopped, 200)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertGreater(stopped, 0)

@@ -23,7 +23,7 @@ sys.path.insert(1, str(ROOT / "analysis"))
 from clogsweep.pages import chart  # noqa: E402
 from clogsweep.tools import rounded  # noqa: E402
 
-SECONDS = 120  # more than a machine with much else to do needs
+SECONDS = 120  # enough for a busy machine
 POINT = "svg.chart .point"
 
 

@@ -25,7 +25,7 @@ class Resumed(SweepTest):
     def stop_with_unfinished_runs(self, sweep):
         """Stops it where a run has a snapshot, at another try if need be. @return rows of the unfinished runs"""
         for attempt in range(100):
-            # A busy machine needs longer to come so far.
+            # A busy machine needs longer for this.
             done = self.run_program("clogsweep", *sweep, f"--max-hours={0.0001 * 1.05**attempt:.6f}")
             if done.returncode != 75:
                 (self.folder / "s.h5").resolve().unlink()  # complete: once more from the beginning
@@ -185,7 +185,7 @@ class Resumed(SweepTest):
         self.refuse("clogsweep", *FEW_LONG, words=["its table is gone", "put the table back"])
 
     def kill_with_records(self, number):
-        """@return whether the journal had as many; else the sweep was over before that"""
+        """@return whether the journal had this number; else the sweep was over before"""
         process = self.start(*SLOW)
         self.wait_for(lambda: process.poll() is not None or self.journal()[0] >= number)
         self.kill_all(process)

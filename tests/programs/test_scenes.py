@@ -355,7 +355,7 @@ class OwnCircles(ProgramTest):
         self.assertGreater(clogs, 0)
         self.assertAlmostEqual(group["clogging_length_met"], (met.distance - met.first_contact_at).sum() / clogs, places=9)
         self.assertLess(group["clogging_length_met"], group["clogging_length"] / 2)
-        # What the keys of devices have by default needs no word.
+        # Default keys of devices are not mentioned.
         text = self.succeed("clogfit", "walls.csv.h5").stdout
         for word in ("side_walls", "entrance", "exit=", " length="):
             self.assertNotIn(word, text)

@@ -1,4 +1,4 @@
-"""Streams that are closed, full or not read, files that are none, and what messages show of odd names."""
+"""Streams that are closed, full or not read, files of other kinds, and messages with odd names."""
 
 import os
 import shutil

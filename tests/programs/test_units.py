@@ -1,4 +1,4 @@
-"""clogfit units, and sweeps, fits and figures that know their laboratory."""
+"""clogfit units, and sweeps, fits and figures with a laboratory."""
 
 import html
 import json

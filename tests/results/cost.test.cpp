@@ -87,7 +87,7 @@ TEST(SweepCost, CountsWhatComesBeforeTheFirstStep) {
 }
 
 TEST(SweepCost, WeighsRunsByWhatTheyMayCost) {
-  // Half of the sweep's runs are ten times as dear: sampled or not, they are in the bound.
+  // Half of the sweep's runs cost ten times as much: sampled or not, they are in the bound.
   const std::vector<RunCost> sample = {finished(1, 10), finished(10, 100)};
   EXPECT_NEAR(sweep_cost(sample, 110 * 50 / seconds_per_work, 100).expected, 550, 1e-9);
 }

@@ -22,13 +22,12 @@
 
 namespace {
 
-/// Somebody else moves a file over this one as soon as it is there and its folder is brought to the disk:
-/// just after it was renamed.
+/// Somebody else moves a file over this one just after it was renamed and its folder synchronised.
 struct Move {
   std::filesystem::path from, to;
 };
 std::optional<Move> move_at_sync_of_folder;
-/// A slow disk: drafts, of tables and journals, do not get there before this is over.
+/// A slow disk: drafts of tables and journals take this time.
 std::atomic<bool> is_disk_slow = false, is_draft_waiting = false;
 
 bool is_draft(int descriptor) {

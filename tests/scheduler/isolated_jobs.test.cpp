@@ -1,4 +1,4 @@
-/// Tasks that crash their process, under the scheduler on however many ranks mpirun gives it. Exits with 1 on
+/// Tasks that crash their process, under the scheduler on any number of ranks. Exits with 1 on
 /// the first fault.
 
 #include "clog/scheduler/isolated_jobs.hpp"
@@ -50,7 +50,7 @@ int oom_score_adj() {
   return score;
 }
 
-/// Crashes in its last slice, if it is one of those. Its row tells in which process it was.
+/// Crashes in its last slice, if it is one of those. Its row contains its process.
 class CrashingJob final : public SyntheticJob {
  public:
   using SyntheticJob::SyntheticJob;

@@ -1,4 +1,4 @@
-/// The scheduler on however many ranks mpirun gives it, with synthetic tasks. Exits with 1 on the first
+/// The scheduler on any number of ranks, with synthetic tasks. Exits with 1 on the first
 /// fault.
 
 #include "clog/scheduler/scheduler.hpp"

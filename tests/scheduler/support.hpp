@@ -13,7 +13,7 @@
 #include "clog/sweep/job.hpp"
 #include "order_of.hpp"
 
-/// For programs that test the scheduler under mpirun, where every rank has to leave when one finds a fault.
+/// For programs that test the scheduler under mpirun, where every rank has to exit when one finds a fault.
 
 namespace clog {
 

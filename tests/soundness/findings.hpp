@@ -20,16 +20,15 @@ struct Findings {
 };
 
 /// Contact is soft: the interface may come nearer to an obstacle's centre than its radius by this much
-/// [vertex diameters]. What is deep enough for 128 vertices is so for a finer mesh.
+/// [vertex diameters]. A depth allowed for 128 vertices is also allowed for a finer mesh.
 inline constexpr double deepest_overlap = 0.25;
 /// The area may not be wrong by more than this.
 inline constexpr double largest_area_error = 0.05;
 
 bool is_sound(const Findings& findings);
 
-/// Looks at every edge of the refined interface, which walls meet (see refined()), and every obstacle near
-/// the droplet, without the contact lists of the forces: an obstacle that those have missed is seen. Leaves
-/// `substeps` alone.
+/// Checks every edge of the refined interface (see refined()) and every obstacle near the droplet, without
+/// the contact lists of the forces, so it also finds obstacles that those missed. Leaves `substeps` alone.
 Findings look_at(const DropletState& state, const ObstacleArray& obstacles);
 
 }  // namespace clog::soundness

@@ -155,7 +155,7 @@ CaseReport release_case(const RunParameters& parameters) {
   return report;
 }
 
-/// Works on the cases 0 .. num_cases - 1, in this order, on so many threads.
+/// Works on the cases 0 .. num_cases - 1, in this order, on this number of threads.
 template <class Work>
 void for_all(std::size_t num_cases, unsigned num_threads, Work work) {
   std::atomic<std::size_t> next = 0;
@@ -325,7 +325,7 @@ std::vector<std::size_t> longest_first(const std::vector<CaseReport>& reports) {
   return order;
 }
 
-/// Does every case, long ones first, and tells of each on the error stream.
+/// Runs every case, long ones first, and reports each on the error stream.
 template <class DoCase>
 void do_all(std::vector<CaseReport>& reports, unsigned num_threads, DoCase do_case) {
   const std::vector<std::size_t> order = longest_first(reports);

@@ -83,7 +83,7 @@ int num_sockets(pid_t process) {
   return number;
 }
 
-/// Another process that works, tells, and stays until it is killed, without a chance to clean up.
+/// Another process that works, reports, and stays until it is killed, without a chance to clean up.
 class OtherProcess {
  public:
   /// @param work  what it returns is told
@@ -311,8 +311,8 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
   const auto take = [&](bool as_another) {
     return std::make_unique<OtherProcess>([&name, as_another] {
       static const NameLock lock(name);
-      // Another user's process is one that /proc shows as not one's own; who is not root cannot become one,
-      // but can be shown as one.
+      // Another user's process is one that /proc shows as foreign; without root one cannot start it, but can
+      // be shown as one.
       const bool is_root = geteuid() == 0;
       constexpr uid_t nobody = 65534;
       if (as_another && is_root && setuid(nobody) != 0) return std::string("cannot become another");

@@ -289,7 +289,7 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
   }
 }
 
-/// The end of a run that stood twice, and hangs.
+/// The end of a run that rested twice, and hangs.
 const RunRow& hanging() {
   static const RunRow row = [] {
     RunRow one = row_of({{"max-time", "1000"},
@@ -370,7 +370,7 @@ TEST(FaultOf, NamesContactsThatCannotBe) {
 }
 
 TEST(FarthestWay, IsHardlyMoreThanAFreeSoftDiskFalls) {
-  // No obstacle pushes it, so that it has nothing but its weight.
+  // No obstacle pushes it, so only its weight acts.
   RunRow row = describe(plan_of({{"model", "sp"}, {"wall-stiffness", "1"}}).task(0));
   row.parameters.obstacles.gap = std::nan("");
   row.time = 1000;

@@ -117,7 +117,7 @@ def judge(shop: Workshop, one: Statement) -> Judged:
 
 
 def judge_all(shop: Workshop) -> tuple[list[Judged], int]:
-    """@param shop  that runs nothing. @return also the model version. @throws UserError if its sweeps have several"""
+    """@param shop  that runs nothing. @return also the model version. @throws UserError  if its sweeps have several"""
     return [judge(shop, one) for one in STATEMENTS], the_version(shop.model_versions())
 
 

@@ -139,7 +139,7 @@ def read_profile(path: str, scales: Scales = Scales()) -> tuple[Profile, np.void
 
 
 def read_trial(path: str, scales: Scales = Scales()) -> tuple[Profile, Channel | None]:
-    """A passage to compare simulations with, and its channel if clogrun wrote it. @throws UserError also if the droplet
+    """A passage to compare simulations with, and its channel if clogrun wrote it. @throws UserError  also if the droplet
     did not pass"""
     profile, row = read_profile(path, scales)
     if row is None:

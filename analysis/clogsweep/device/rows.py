@@ -66,7 +66,7 @@ def valid(polygon: Any) -> Any:
 
 
 def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:
-    """@throws UserError before it makes more circles than are usable"""
+    """@throws UserError  before it makes more circles than are usable"""
     number = sum(core.exterior.length / (SPACING * radius) for of_part in all_cores for core, radius in of_part)
     if number > MOST_CIRCLES:
         raise UserError(f"--as-rows needs {number:.2g} circles (at most {MOST_CIRCLES}); give a larger --corner, or check --unit and --droplet")

@@ -217,7 +217,7 @@ def distinct(circles: Numbers) -> Numbers:
 
 def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float, turns: int) -> Device:
     """@param metres  in a unit of the drawing; @param droplet  its diameter [m]; @param turns  by 90 degrees
-    counter-clockwise, until the flow is along +x. @throws UserError for an empty drawing"""
+    counter-clockwise, until the flow is along +x. @throws UserError  for an empty drawing"""
     found, others = list(drawing.circles), []
     outlines = drawing.outlines
     edge: Numbers | None = None

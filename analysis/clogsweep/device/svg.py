@@ -100,7 +100,7 @@ def expand(element: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> No
 
 
 def group_of(use: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> Any:
-    """@throws UserError if the file lacks the target"""
+    """@throws UserError  if the file lacks the target"""
     link = next((use.get(name) for name in LINKS if use.get(name)), "")
     if link[:1] != "#" or link[1:] not in by_id:
         raise UserError(f"cannot read {path} (<use> refers to '{link[:60]}', which is not in the file); embed it, or unlink clones, in the drawing program")

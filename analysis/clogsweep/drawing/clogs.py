@@ -40,7 +40,7 @@ def mechanism_of(row: np.void) -> str:
 
 
 def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: Collection[int] | None, most: int) -> list[np.void]:
-    """@param rows  clogs of the sweep. @throws UserError if there are none, or not all of the tasks"""
+    """@param rows  clogs of the sweep. @throws UserError  if there are none, or not all of the tasks"""
     if not rows:
         raise UserError(f"{path} holds no clogged polygon (soft disks do not count); resume it, or sweep with a longer max-time into another file")
     if mechanism not in (None, *MECHANISMS):

@@ -267,7 +267,7 @@ def size_for(path: pathlib.Path | None) -> str:
 
 
 def path_of(output: pathlib.Path) -> pathlib.Path:
-    """The file of a film: with the requested ending, or .mp4 with ffmpeg, .gif otherwise. @throws UserError if it
+    """The file of a film: with the requested ending, or .mp4 with ffmpeg, .gif otherwise. @throws UserError  if it
     cannot be made, or exists"""
     outputs.refuse_ending(output, *ENDINGS)
     has_ffmpeg = shutil.which("ffmpeg") is not None

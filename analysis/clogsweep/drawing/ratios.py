@@ -66,7 +66,7 @@ def note_lines(told: dict[str, Any]) -> list[str]:
 
 
 def draw_on(axes: Axes, told: dict[str, Any]) -> None:
-    """@param told  the JSON of clogfit compare. @throws UserError if there is no ratio"""
+    """@param told  the JSON of clogfit compare. @throws UserError  if there is no ratio"""
     comparisons = told["comparisons"]
     if all(one["ratio_lower"] is None for one in comparisons):
         raise UserError("no ratio to draw: in every comparison one side has no clogs")

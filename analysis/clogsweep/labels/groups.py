@@ -42,7 +42,7 @@ class Groups:
         self._ask_for_curves: Callable[[], dict[str, Any]] = lambda: NO_CURVES  # see fit_curves()
 
     def finished(self, source: object = "the sweep") -> Groups:
-        """@throws UserError if none of their runs has finished"""
+        """@throws UserError  if none of their runs has finished"""
         if not self.members:
             raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
         return self

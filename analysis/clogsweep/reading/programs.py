@@ -60,7 +60,7 @@ def run_program(program: str | os.PathLike[str], *arguments: object, ranks: int 
 
 
 def warnings_of(program: str | os.PathLike[str], *arguments: object) -> str:
-    """Runs it for its output on the error stream. @throws ProgramFailed with its reason"""
+    """Runs it for its output on the error stream. @throws ProgramFailed  with its reason"""
     return _outputs(program, *arguments)[1]
 
 

@@ -33,7 +33,7 @@ WRITERS: dict[str | None, str] = {
 
 
 def is_sealed(path: AnyPath) -> bool:
-    """True if the file's seal matches, False if it has none. @throws Damaged if the seal does not match"""
+    """True if the file's seal matches, False if it has none. @throws Damaged  if the seal does not match"""
     with open(path, "rb") as file:
         content = file.read()
     seal = SEAL.fullmatch(content[-SEAL_SIZE:])

@@ -68,7 +68,7 @@ def outlines(polygons: Numbers, row: np.void) -> Numbers:
 
 
 def read(path: AnyPath, needs_frames: bool = True) -> Trajectory:
-    """@throws UserError if it is not a trajectory (with frames)"""
+    """@throws UserError  if it is not a trajectory (with frames)"""
     with stored.opened(path, stored.RUN) as file:
         frames = [file[name][:] if name in file else np.empty(shape)
                   for name, shape in [("polygons", (0, 2, 0)), ("polygon_times", (0,)),
@@ -82,7 +82,7 @@ def read(path: AnyPath, needs_frames: bool = True) -> Trajectory:
 
 
 def require_frames(trajectory: Trajectory) -> None:
-    """@throws UserError if there are no outlines"""
+    """@throws UserError  if there are no outlines"""
     if len(trajectory.times) == 0:
         raise stored.unreadable(trajectory.path, "holds no polygons", stored.RUN)
 

@@ -159,7 +159,7 @@ def _informing(runs: pandas.DataFrame) -> tuple[pandas.DataFrame, Numbers]:
 
 
 def require_bounds(key: str, text: str, values: Sequence[float]) -> None:
-    """@throws UserError unless these are at least two increasing, positive values"""
+    """@throws UserError  unless these are at least two increasing, positive values"""
     why = ""
     if any(math.isnan(value) for value in values):
         why = "refine needs numbers"

@@ -21,7 +21,7 @@ MOST_TASKS = 1000  # that clogsweep prints
 
 def tasks_of(printed: str) -> pandas.DataFrame:
     """The tasks that `clogsweep --dry-run` printed: texts of the columns in which they differ, `-` for missing ones.
-    @throws UserError if it did not print all"""
+    @throws UserError  if it did not print all"""
     lines = printed.splitlines()
     names = next((line[2:].split() for line in lines if line.startswith("# task ")), ["task"])
     tasks = pandas.DataFrame([line.split() for line in lines if line[:1].isdecimal()], columns=names, dtype=str)
@@ -67,7 +67,7 @@ class Membership:
 
     def of_curve(self, rows: pandas.DataFrame, deciding: Callable[[str], bool] = lambda _: True) -> pandas.DataFrame:
         """The rows that agree with the first run in all parameters in which the candidates do not differ. @param
-        deciding whether a column decides. @throws UserError if the file lacks the first run"""
+        deciding whether a column decides. @throws UserError  if the file lacks the first run"""
         fixed = [name for name in self._names if name not in self._varying and deciding(name)]
         first = rows.loc[rows["task"] == 0, fixed]  # clogsweep numbers the runs of its points first
         if first.empty:

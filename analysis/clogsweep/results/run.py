@@ -44,7 +44,7 @@ class Run:
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        """@throws UserError if the file is not a run or is damaged"""
+        """@throws UserError  if the file is not a run or is damaged"""
         self.path = pathlib.Path(path)
         self.trajectory = trajectory.read(self.path, needs_frames=False)
         self.samples = pandas.DataFrame(self.trajectory.table)

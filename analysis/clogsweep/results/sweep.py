@@ -44,7 +44,7 @@ class Sweep:
 
     def __init__(self, path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> None:
         """@param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module.
-        @throws UserError if the file is not a sweep or is damaged"""
+        @throws UserError  if the file is not a sweep or is damaged"""
         self.path = pathlib.Path(path)
         self._programs = programs
         self._name = ""
@@ -110,8 +110,8 @@ class Sweep:
         panel for each of up to six parameter sets.
 
         @param ways  runs of each panel drawn as lines; @param map  runs of each panel behind its map; all are replayed
-        @param jobs  runs at a time @throws UserError if the sweep has no user-supplied circles, or those of several
-        devices
+        @param jobs  runs at a time
+        @throws UserError  if the sweep has no user-supplied circles, or those of several devices
         """
         from ..drawing import device
         from ..style import Picture
@@ -158,7 +158,7 @@ class Sweep:
 
     def export(self, output: str | os.PathLike[str]) -> pathlib.Path:
         """Writes `rows` for other programs, with the columns' units: .csv, or .h5 with a dataset for each column.
-        @return the file. @throws UserError if it exists"""
+        @return the file. @throws UserError  if it exists"""
         path = pathlib.Path(output)
         export.write(self.rows, path, stored.source(self.attributes))
         return path
@@ -173,7 +173,7 @@ class Sweep:
 
 
 def merged(paths: Sequence[str | os.PathLike[str]], folder: str | os.PathLike[str] | None = None) -> Sweep:
-    """Several files as one sweep, in a temporary file. @param folder  of the programs. @throws UserError if they
+    """Several files as one sweep, in a temporary file. @param folder  of the programs. @throws UserError  if they
     contradict each other, or are not sweeps"""
     if len(paths) < 2:
         raise UserError("a list needs at least two files; give the name of a single file without a list")

@@ -349,7 +349,7 @@ class Picture:
         return out.getvalue()
 
     def save(self, output: str | os.PathLike[str]) -> pathlib.Path:
-        """Writes OUTPUT.png and OUTPUT.pdf. @return the first. @throws UserError if something else exists there"""
+        """Writes OUTPUT.png and OUTPUT.pdf. @return the first. @throws UserError  if something else exists there"""
         path = pathlib.Path(output)
         if path.suffix in (".png", ".pdf"):
             path = path.with_suffix("")

@@ -63,7 +63,7 @@ ENDINGS = (".png", ".pdf", ".mp4", ".gif", ".jpg", ".jpeg", ".svg", ".eps", ".ps
 
 
 def refuse_ending(output: pathlib.Path, *made: str) -> None:
-    """@param made  the available endings. @throws UserError if the name has another one"""
+    """@param made  the available endings. @throws UserError  if the name has another one"""
     if output.suffix.lower() in ENDINGS and output.suffix not in made:
         raise UserError(f"cannot write {output} (it can only be {' or '.join(made)}); give another ending, or none")
 

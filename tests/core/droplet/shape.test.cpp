@@ -12,7 +12,7 @@
 namespace clog {
 namespace {
 
-/// Every pair of edges, p + s u = q + t v solved for s and t: another formula than the one it tests.
+/// Every pair of edges, p + s u = q + t v solved for s and t: a different formula from the tested one.
 int crossings_of_every_pair(const Eigen::ArrayXd& position) {
   const int n = static_cast<int>(position.size() / 2);
   const auto point = [&](int i) { return Eigen::Array2d(position[i % n], position[n + i % n]); };

@@ -220,7 +220,7 @@ class PointsWithContacts {
       Axes axes{.directions = Eigen::SparseMatrix<double>(size, size), .slide = {}};
       axes.directions.setIdentity();
       return axes;
-    };  // NOLINT(clang-analyzer-unix.Malloc): the matrix takes its memory along
+    };  // NOLINT(clang-analyzer-unix.Malloc): the matrix owns this memory after the move
     return find_equilibrium(EquilibriumForces::of(*this, along_coordinates, true), test::state_of(position));
   }
 
@@ -243,7 +243,7 @@ TEST(Equilibrium, IsFoundThoughContactsOpenAndCloseOnTheWay) {
 }
 
 TEST(Equilibrium, IsFoundAtTheFirstSearchEvenIfItsFirstStepsLeadAstray) {
-  // Half of these searches return to where they began, and find the rest with halved steps.
+  // Half of these searches return to their start, and find the rest with halved steps.
   int num_early = 0;
   for (const std::uint32_t seed : {3u, 7u, 11u, 14u, 16u}) {
     RunParameters run;

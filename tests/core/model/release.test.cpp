@@ -126,7 +126,7 @@ TEST(Release, LeavesASoftDiskWithoutForce) {
 }
 
 TEST(Release, TheLiteralPlacementEnclosesObstacles) {
-  // A full-sized polygon put at the box's centre and relaxed does not feel what lies inside it.
+  // A full-sized polygon relaxed at the box's centre does not feel obstacles inside it.
   int num_runs_with_obstacles_inside = 0;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     const RunParameters run = test::bare_parameters(64);

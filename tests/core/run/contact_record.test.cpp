@@ -87,7 +87,7 @@ std::vector<Obstacle> row(double from, double to) {
 }
 
 TEST(ContactRecord, CountsAPostOfManyCirclesOnce) {
-  // Longer than what is looked at around the droplet.
+  // Longer than the range around the droplet that is searched.
   Passage along_a_row(row(4, 8));
   along_a_row.move_by_steps_to(8);
   EXPECT_EQ(along_a_row.found().number, 1);

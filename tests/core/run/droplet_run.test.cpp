@@ -183,8 +183,8 @@ TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
   EXPECT_THROW(resume_in_array(run, bytes), Error);
 }
 
-/// Snapshots whose checksum is right and whose content is not: any of their numbers may be anything. Either
-/// they are refused, or the run goes on to its end without a crash, and it does not spin.
+/// Snapshots with the right checksum and a wrong content: any of their numbers may be anything. Either they
+/// are refused, or the run continues to its end without a crash or an endless loop.
 TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
   RunParameters run = with_friction(soft_among_walls(), 0.02, FilmFriction::off);
   run.dp.vertices = 32;
@@ -220,7 +220,7 @@ TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
   EXPECT_GT(refused, 3 * numbers_of_shape);  // infinite, not a number, too large
 }
 
-/// The time that a droplet stood before it clogged does not depend on how the clog is found.
+/// The time that a droplet rested before it clogged does not depend on how the clog is found.
 TEST(DropletRun, ItsDwellsDoNotDependOnHowClogsAreFound) {
   RunParameters run = small_run(2);
   run.max_time = 5000;
@@ -278,7 +278,7 @@ TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   EXPECT_EQ(run.result().hold.mechanism, ClogMechanism::squeezed);
   EXPECT_GE(run.result().hold.geometry.num_arcs, 2);
 
-  // Integrating on must not set it free: the same run with a threshold it cannot reach.
+  // Further integration must not set it free: the same run with a threshold it cannot reach.
   RunParameters on = parameters;
   on.clog_energy = 1e-300;
   on.max_time = 2 * run.result().time + 100;
@@ -311,7 +311,7 @@ TEST(DropletRun, ADivergedRunIsAResult) {
 }
 
 TEST(DropletRun, ABurstPolygonIsAResultToo) {
-  // Unchecked parameters: a step that would have to be split more often than is sensible.
+  // Unchecked parameters: a step that would have to be split too often.
   RunParameters parameters = small_run();
   parameters.drag.terminal_speed = 100;
   parameters.time_step = 5;
@@ -397,7 +397,7 @@ TEST(BreakUp, OffCentreADropletHasToBeSofterToBreak) {
   }
 }
 
-/// Looking for necks changes nothing of a run's course but its end.
+/// Looking for necks changes only the end of a run.
 TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
   RunParameters run = falls_onto_a_circle(0.05, 0.1);
   const RunResult broken = result_of(run, 100);
@@ -410,8 +410,8 @@ TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
   EXPECT_EQ(same.kinetic_energy_ratio, broken.kinetic_energy_ratio);
 }
 
-/// A droplet that hangs over an obstacle, with its rest known, from where its neck still gets thinner: a rest
-/// with a neck that is too thin is none, and it breaks when its neck is there.
+/// A droplet that hangs over an obstacle, with a known rest, from where its neck still gets thinner: a rest
+/// with too thin a neck does not count, and the droplet breaks when its neck gets there.
 TEST(BreakUp, ComesBeforeACertifiedClog) {
   RunParameters run;
   run.dp.perimeter_spring = PerimeterSpring::rest;

@@ -13,7 +13,7 @@ namespace {
 constexpr double dwell_length = 0.05;
 constexpr double speed = 0.5;  // dwells of more than 1 t0 are kept
 
-/// A course with checks once in a unit of time: the droplet stands at each place in turn, for so long.
+/// A course with checks once in a unit of time: the droplet rests at each place in turn, for the given time.
 struct Stand {
   double place;
   int time;
@@ -104,7 +104,7 @@ TEST(DwellRecord, AFreeDropletHasNone) {
   EXPECT_EQ(record.found(100, false).known_from, DwellRecord::shortest * dwell_length / speed);
 }
 
-/// Whatever the course and the time asked for, the answer is that of a list of all dwells.
+/// For any course and time, the answer is that of a list of all dwells.
 TEST(DwellRecord, AgreesWithAListOfAllDwells) {
   std::mt19937 random(7);
   std::geometric_distribution<int> draw(0.02);

@@ -183,7 +183,7 @@ TEST(Resolve, FillsInTheStiffestStableContact) {
 
 TEST(Resolve, FillsInTheLargestStepThatHolds) {
   // Every resolved step passes resolve()'s own checks of stability, for stiff and for soft droplets, many and
-  // few vertices, strong and weak drag, given and automatic contact; and it is no smaller than it need be.
+  // few vertices, strong and weak drag, given and automatic contact; and it is as large as possible.
   for (const int vertices : {16, 64, 256, 1024})
     for (const double line_tension : {0.0, 0.01, 0.3, 10.0})
       for (const double terminal_speed : {0.003, 0.03, 1.0}) {

@@ -53,9 +53,9 @@ TEST(TransientLength, FindsWhereAStepEnds) {
   }
 }
 
-/// The best cut of a mean 1 - exp(-t/tau) with noise s balances bias and scatter: where the deviation's
-/// square falls below about the variance of a batch's mean, s^2/5, t = tau log(sqrt(5)/s). Chance moves it by
-/// a few batches, mostly onwards.
+/// The best cut of a mean 1 - exp(-t/tau) with noise s balances bias and scatter: where the squared deviation
+/// falls below about the variance of a batch's mean, s^2/5, t = tau log(sqrt(5)/s). Chance shifts it by a few
+/// batches, usually to later times.
 TEST(TransientLength, FindsWhereADecayDropsBelowTheNoise) {
   constexpr double tau = 40, noise = 0.05;
   const double expected = tau * std::log(std::sqrt(5.0) / noise);

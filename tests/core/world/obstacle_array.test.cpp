@@ -104,7 +104,7 @@ TEST(SampleObstacles, ReachesAGivenDensityExactly) {
 }
 
 TEST(SampleObstacles, TheSmallestGapDoesNotFixTheDensity) {
-  // Two arrays that the published rule, all gaps wider than w_ob, admits alike, one ten times as dense.
+  // Two arrays that the published rule, all gaps wider than w_ob, both allows, one ten times as dense.
   const ObstacleParameters sparse{.gap = 0.2, .diameter = 0.3, .density = 0.25, .box = 40};
   const ObstacleParameters saturated{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 40};
   const ObstacleArray few = sample_obstacles(sparse, 1), many = sample_obstacles(saturated, 1);
@@ -230,7 +230,7 @@ double close_pairs(const ObstacleArray& array, double widest) {
 }
 
 TEST(SampleObstacles, PacksLikeDiscsThatArriveOneByOne) {
-  // Near saturation (2.79 per sigma^2): how many neighbours are about as near as can be.
+  // Near saturation (2.79 per sigma^2): the number of neighbours near the smallest distance.
   const ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = 2.25, .box = 6};
   constexpr int num_arrays = 250;
   double difference = 0;

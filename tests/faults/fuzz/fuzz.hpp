@@ -17,7 +17,7 @@ inline std::string text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// Input may be refused; everything else that goes wrong is a finding.
+/// Input may be refused; any other failure is a finding.
 template <typename Read>
 void may_be_refused(Read read) {
   try {
@@ -27,7 +27,7 @@ void may_be_refused(Read read) {
   }
 }
 
-/// Ends the process unless the condition holds, as it must for every input that is not refused.
+/// Ends the process unless the condition holds, as it must for every accepted input.
 inline void require(bool holds) {
   if (!holds) std::abort();
 }

@@ -47,8 +47,7 @@ class Stack {
     contacts_.update(state_, {});
   }
 
-  /// The largest friction of each arc, divided by mu.
-  /// @param wall  the disc, or what is as round
+  /// The largest friction of each arc, divided by mu. @param wall  the disc, or a wall of the same curvature
   std::vector<double> held(const WallPlace& wall = {0, 0, disc}, std::span<const Wedge> wedges = {}) {
     std::vector<WallTouch> touches;
     for (int i = 0; i < num_; ++i) {
@@ -81,7 +80,7 @@ TEST(FilmTouches, OfAStackBearTogetherWhatTheWallBears) {
   EXPECT_NEAR(held[0] + held[1] + held[2], by_wall, 0.05 * by_wall);
   EXPECT_GT(held[2], 0);
   EXPECT_NEAR(held[3], 0, 1e-12);
-  // Every vertex is pushed by its own contact and by those of the others with its edges.
+  // Its own contact and those of the others with its edges push every vertex.
   const double unit = held[2] / third;
   EXPECT_NEAR(held[1], unit * (second - third), 0.05 * by_wall);
 }
@@ -142,12 +141,12 @@ class Band {
     bool lower, upper;
     bool operator==(const Slides&) const = default;
   };
-  /// Which ropes slide towards their second ends?
+  /// Which ropes slide towards their second ends.
   Slides slides(const Pulls& pulls) {
     constexpr int loading = 6000, waiting = 16000;
     double lower = 0, upper = 0;
     for (int step = 0; step < loading + waiting; ++step) {
-      // All pulls grow together, in proportion: none exceeds what the others bear.
+      // All forces grow in proportion: none exceeds what the others bear.
       move(pulls, std::min(1.0, static_cast<double>(step) / loading));
       if (step == loading + waiting / 2) lower = state_.position[each_ - 1], upper = state_.position[each_];
     }
@@ -224,8 +223,8 @@ class Band {
 };
 
 TEST(BandOverADisc, WithoutWeightSlidesAtExpMuTheta) {
-  // dT/dtheta = mu T in each of the two, as its own tension presses it: T_2 = exp(mu theta) T_1, whatever the
-  // other one does. Both together are held as a single rope is.
+  // dT/dtheta = mu T in each of the two, with its own tension as normal force: T_2 = exp(mu theta) T_1,
+  // independent of the other one. Both together are held like a single rope.
   constexpr double mu = 0.3;
   const double exact = std::exp(mu * pi);
   const double less = 0.97 * exact, more = 1.03 * exact;
@@ -263,7 +262,7 @@ TEST(BandOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
 
 TEST(BandOverADisc, IsHeldByCornersAloneIfNothingHoldsItsUpperRope) {
   // Both ropes bear the weights of the lobes, of which one is heavier. Without friction through the film the
-  // upper one gives way at once, whatever holds the lower one; what its corners bear falls as the square of
+  // upper one yields at once, whatever holds the lower one; the force of its corners falls with the square of
   // its edges.
   const auto upper_slides = [](Band::Law law, int edges, double imbalance) {
     return Band(law, edges, 0).slides({1, 1 + imbalance, 1, 1 + imbalance}).upper;

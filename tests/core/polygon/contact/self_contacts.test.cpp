@@ -116,8 +116,8 @@ int neighbours_of_first(double stretch) {
 }
 
 TEST(SelfContacts, LeavesOutThreeRangesOfTheContour) {
-  // Three ranges are 1.5 edges at rest: the next vertex is left out, the one behind it is not, however much
-  // the contour is compressed; of a stretched contour none.
+  // Three ranges are 1.5 edges at rest: the next vertex is excluded, the one after it is not, in any
+  // compressed contour; in a stretched contour none is excluded.
   EXPECT_EQ(neighbours_of_first(1), 1);
   EXPECT_EQ(neighbours_of_first(0.2), 1);
   EXPECT_EQ(neighbours_of_first(1.4), 1);

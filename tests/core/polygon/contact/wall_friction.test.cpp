@@ -31,7 +31,7 @@ RunParameters rough(double friction, double yield_traction) {
   return run;
 }
 
-/// Lets walls hold the droplet where it is.
+/// Lets walls hold the droplet in place.
 void anchor(const RunParameters& run, const ObstacleArray& walls, const DpForces& forces,
             DropletState& state) {
   WallTouches touches(run, walls);
@@ -87,7 +87,7 @@ TEST(WallTouches, PushesAddUpToTheContactsForce) {
   EXPECT_GT(wetted, 2 * units::regular_edge_length(64));
 }
 
-/// How well the energy of a droplet that a wall holds and the energy that was dissipated add up.
+/// How well the energy of a held droplet and the dissipated energy add up.
 struct Balance {
   double worst = 0;  ///< difference from what it was at first
   double rise = 0;   ///< of the energy alone, from one time to the next

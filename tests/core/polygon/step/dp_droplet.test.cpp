@@ -154,7 +154,7 @@ TEST(DpDroplet, RelativeDragDampsChangesOfShapeOnly) {
 }
 
 TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
-  // E_k + U + what the drag took stays what it was, through a collision with an obstacle, for every kind of
+  // E_k + U + the work against the drag is conserved through a collision with an obstacle, for every kind of
   // drag, on dry and on wetted walls.
   const ObstacleArray wall(20, {{0.775, 0.05, 0.15}});
   for (const Gravity gravity : {Gravity::vertex, Gravity::area})

@@ -192,8 +192,7 @@ TEST_P(Step, IsThatOfTheReadableFormWithAnImplicitPressure) {
 }
 
 TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
-  // A neck that closes within 32 steps and opens again, of which some vertex is the first and some edge the
-  // last.
+  // A neck that closes within 32 steps and opens again, at some first vertex and some last edge.
   for (const int vertices : {64, 97, 101, 256}) {
     const RunParameters run = parameters(vertices);
     const double diameter = units::regular_edge_length(vertices);
@@ -222,7 +221,7 @@ TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
 }
 
 TEST_P(Step, MeetsCirclesThatShareEdges) {
-  // Circles all around, so close that most edges touch two of them, those at the contour's ends, too; and few
+  // Circles all around, so close that most edges touch two of them, also at the contour's ends; and few
   // vertices.
   std::size_t num_compared = 0;
   for (const int vertices : {16, 30, 64, 101}) {
@@ -359,7 +358,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return tested.param.name; });
 
 TEST(InstructionSet, DecidesTheForcesOfReleasesToo) {
-  // Other sets add up in another order and round less often: some bit of many differs.
+  // Other sets add in another order and round less often, so some bits differ.
   RunParameters run;
   run.dp.vertices = 256;
   run.dp.line_tension = 0.3;

@@ -1,5 +1,5 @@
-/// Steps with an implicit pressure against exact solutions and against short steps without one. That each of
-/// them is what the documentation says is in dp_step.test.cpp.
+/// Steps with an implicit pressure against exact solutions and against short steps without one.
+/// dp_step.test.cpp compares each step with the documentation.
 
 #include <gtest/gtest.h>
 

@@ -60,7 +60,7 @@ class ReadableDroplet {
     if (num_evaluations_ % most_steps_per_survey == 0)
       fastest_ =
           std::sqrt((state_.velocity.head(n_).square() + state_.velocity.tail(n_).square()).maxCoeff());
-    // New at the beginning and at the first step's end.
+    // New at the beginning and at the end of the first step.
     if (num_evaluations_ > 1 && num_kept_ > 0) {
       --num_kept_;
     } else {
@@ -97,8 +97,8 @@ class ReadableDroplet {
     result << -far * n_ * (area_x * g(0) + area_y * g(2)), -far * n_ * (area_x * g(1) + area_y * g(3));
     return result;
   }
-  /// Acceleration by what an implicit pressure adds: -K_a dt^2 times the area's acceleration, by the forces,
-  /// the area's drag and the added pressure itself.
+  /// Acceleration by an implicit pressure: -K_a dt^2 times the area's acceleration, by the forces, the area's
+  /// drag and the added pressure itself.
   Eigen::ArrayXd pressed(const Eigen::ArrayXd& v) {
     if (pressure_ == Pressure::present) return Eigen::ArrayXd::Zero(force_.size());
     Eigen::ArrayXd gradient(force_.size());  // of the area

@@ -19,7 +19,7 @@ namespace {
 using namespace test;
 
 TEST(WallPlan, PushesAsPlainLoopsDoWhicheverEdgesCirclesShare) {
-  // Circles around a droplet. Their forces are those by which plain loops with and without them differ.
+  // Circles around a droplet. Their forces are the differences of plain loops with and without them.
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> part(0, 1);
   for (const int n : {16, 24, 30, 101, 256}) {

@@ -50,7 +50,7 @@ TEST(ContactLine, ForceIsTheGradientOfTheEnergyWhileTheAnchorsRest) {
 }
 
 TEST(ContactLine, AnEndsGradientIsBounded) {
-  // The bound is the stability's, for whatever lies on a wall.
+  // The bound is that of the stability, for any wetted wall.
   const ObstacleArray walls(20, {{0.63, 0.05, 0.15}});
   for (unsigned seed = 1; seed <= 200; ++seed) {
     RunParameters run = bare_parameters();
@@ -161,8 +161,8 @@ INSTANTIATE_TEST_SUITE_P(Sizes, OnADisc,
                                          Disc{"small", 0.5, 1, {0.5, 30, 150}, {0.03, 0.01}}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// What a drop's ends pull along the wall is all that turns it around the disc's centre: M g y = R (f_0 -
-/// f_1), y its centroid's way beside the centre. So two lobes of different weight are held over a disc.
+/// The ends' forces along the wall alone turn the drop around the disc's centre: M g y = R (f_0 - f_1), y its
+/// centroid's offset from the centre. So two lobes of different weight are held over a disc.
 TEST_P(OnADisc, CarriesTheTorqueOfADropsWeight) {
   const Disc& disc = GetParam();
   double error[2];
