@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -76,25 +77,18 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
     return Plate(drawing, data)
 
 
-def enter(name: str, caption: str, config: str, cost: str, *, abscissa: str, parameter: str, quantity: str) -> None:
-    """Enters a figure of curves() into the catalogue."""
-    figure(name, caption, [config], cost)(lambda shop: curves(shop, config, abscissa, parameter, quantity))
-
-
-enter("6c-saturated", "the same as 6c in saturated arrays, walls without friction", "clogging-saturated", "5 min",
-      abscissa="line_tension", parameter="obstacle_gap", quantity="length")
-enter("7a", "clogging length against wall stiffness for four values of the minimum gap (soft disk), dilute arrays", "clogging-sp", "1 min",
-      abscissa="wall_stiffness", parameter="obstacle_gap", quantity="length")
-enter("7a-saturated", "the same as 7a in saturated arrays", "clogging-sp-saturated", "10 s", abscissa="wall_stiffness", parameter="obstacle_gap", quantity="length")
-enter("8a", "mean speed against line tension for four wide gaps (deformable polygon)", "speed", "1 min",
-      abscissa="line_tension", parameter="obstacle_gap", quantity="speed")
-enter("8b", "mean speed against line tension for three obstacle diameters", "speed-diameter", "1 min",
-      abscissa="line_tension", parameter="obstacle_diameter", quantity="speed")
-enter("8ca", "the speeds of 8a against the capillary number", "speed", "1 min, shared with 8a", abscissa="capillary_number", parameter="obstacle_gap", quantity="speed")
-enter("9a", "mean speed against wall stiffness for four wide gaps (soft disk)", "speed-sp", "5 s",
-      abscissa="wall_stiffness", parameter="obstacle_gap", quantity="speed")
-enter("E", "mean speed against line tension for three near-wall drags", "near-wall-drag", "1 min",
-      abscissa="line_tension", parameter="near_wall_drag", quantity="speed")
+for name, config, abscissa, parameter, quantity, cost, about in [
+    ("6c-saturated", "clogging-saturated", "line_tension", "obstacle_gap", "length", "5 min", "the same as 6c in saturated arrays, walls without friction"),
+    ("7a", "clogging-sp", "wall_stiffness", "obstacle_gap", "length", "1 min",
+     "clogging length against wall stiffness for four values of the minimum gap (soft disk), dilute arrays"),
+    ("7a-saturated", "clogging-sp-saturated", "wall_stiffness", "obstacle_gap", "length", "10 s", "the same as 7a in saturated arrays"),
+    ("8a", "speed", "line_tension", "obstacle_gap", "speed", "1 min", "mean speed against line tension for four wide gaps (deformable polygon)"),
+    ("8b", "speed-diameter", "line_tension", "obstacle_diameter", "speed", "1 min", "mean speed against line tension for three obstacle diameters"),
+    ("8ca", "speed", "capillary_number", "obstacle_gap", "speed", "1 min, shared with 8a", "the speeds of 8a against the capillary number"),
+    ("9a", "speed-sp", "wall_stiffness", "obstacle_gap", "speed", "5 s", "mean speed against wall stiffness for four wide gaps (soft disk)"),
+    ("E", "near-wall-drag", "line_tension", "near_wall_drag", "speed", "1 min", "mean speed against line tension for three near-wall drags"),
+]:
+    figure(name, about, [config], cost)(partial(curves, config=config, abscissa=abscissa, parameter=parameter, quantity=quantity))
 
 
 # Both models over the sag
