@@ -158,7 +158,7 @@ class Looks(Analysis):
         self.assertIn("moved by $0.05", axes.get_xlabel())
         self.assertEqual([curve.get_label() for curve in axes.containers], [r"$\Gamma = 0.05$", r"$\Gamma = 0.3$"])
         soft, stiff = axes.containers
-        # No soft droplet stands: bounds, as arrows.
+        # No soft droplet rests: bounds, as arrows.
         self.assertTrue(np.isnan(soft.lines[0].get_xydata()[:, 1]).all())
         bounds, = [line for line in axes.lines if line.get_marker() is style.LOWER_BOUND and len(line.get_xdata()) > 0]
         places, lengths = stiff.lines[0].get_xydata().T

@@ -198,16 +198,12 @@ def draw_passages(axes: Axes, parts: Sequence[Part]) -> None:
     """The droplets that passed each place along the flow, divided by those released."""
     for number, part in enumerate(parts):
         middles, counts = came_past(part.place)
-        axes.step(middles, counts / len(part.place.rows), where="mid", color=colour_of(number, len(parts)), linewidth=1.2, label=part.label)
+        axes.step(middles, counts / len(part.place.rows), where="mid", color=style.shades(len(parts))[number], linewidth=1.2, label=part.label)
     axes.set_ylabel("share that\ncame past")
     axes.set_ylim(bottom=0)
     style.grid(axes)
     if len(parts) > 1:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8, frameon=False)
-
-
-def colour_of(number: int, count: int) -> Any:
-    return style.VIRIDIS(0.85 * number / max(1, count - 1))
 
 
 def passages(place: Place, ways: Sequence[Numbers]) -> Numbers:

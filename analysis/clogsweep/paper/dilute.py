@@ -82,7 +82,7 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
                                 **of_each(curve, "friction", *HOLDS))
         found.append((f"{family.label}\n{interface_of(coarse[0]['preset'])}", curves))
     meshes = sorted({group["vertices"] for group in every})
-    marks: list[tuple[Artist, str]] = [(Line2D([], [], color="0.4", marker="s", markersize=3, linestyle=FINER), f"{meshes[-1]} vertices (others: {meshes[0]})")] \
+    marks: list[tuple[Artist, str]] = [(Line2D([], [], color="0.4", marker="s", markersize=3, linestyle=FINER), rf"{meshes[-1]} vertices, at fewer $\Gamma$ (else {meshes[0]})")] \
         if any(fine for _, _, fine in kinds) else []
     marks.append((Line2D([], [], **STAR), r"published, $w_\mathrm{ob} = 0.2\sigma$"))
     return Plate(panels.draw(shop, kinds[0][0].config, found, ["preset"], marks=marks, on_each=draw_published), data)
