@@ -151,17 +151,24 @@ def legend_off_curves(axes: Axes, entries: Sequence[tuple[Artist, str]], title: 
     return made
 
 
+def width_of(legend: Legend) -> float:
+    """In inches."""
+    return legend.get_window_extent().width / legend.figure.dpi
+
+
 def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs", title: str = "") -> None:
-    """Legend of named curves and of mechanism_entries(). A long one is placed beside the axes, and the figure gets wider."""
+    """Legend of named curves and of mechanism_entries(). A long one is placed beside the axes, and the figure gets wider, once."""
     entries = journal.legend_entries(axes)
     for mark, name in mechanism_entries(groups, other):
         entries.append((axes.add_line(mark), name))
         mark.set_label(name)
     if len(entries) > len(COLOURS):
+        before = axes.get_legend()
+        width_before = width_of(before) if before and len(before.get_texts()) > len(COLOURS) else 0.0
         made = axes.legend(*zip(*entries), title=title, frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
                            loc="upper left", bbox_to_anchor=(1, 1))
         figure = axes.figure
-        if isinstance(figure, Figure):  # not a part of one, whose width is given
+        if isinstance(figure, Figure):  # not for a part of one, whose width is fixed
             figure.set_figwidth(figure.get_figwidth() + width_of(made) - width_before)
     elif entries:
         made = legend_off_curves(axes, entries, title)
