@@ -142,7 +142,7 @@ class Sizes(ProgramTest):
             with self.subTest(keys):
                 self.refuse("clogsweep", "--quiet", "--lab", lab, *keys, "--output", "x.h5", words=[words, "without a unit", "sigma"])
         self.succeed("clogsweep", "--lab", lab, "obstacle-gap=0.4sigma", "obstacle-diameter=0.3sigma", "obstacle-density=saturated", "--dry-run")
-        self.succeed("clogsweep", "--lab", lab, "obstacle-layout=lattice", "pitch=lin(1.6mm,1.8mm,2)", "obstacle-diameter=0.3mm", "--dry-run")
+        self.succeed("clogsweep", "--lab", lab, "obstacle-layout=lattice", "pitch=lin(1.6mm,1.8mm,2)", "obstacle-diameter=0.3mm", "--print-config")
         self.refuse("clogsweep", "--quiet", "--lab", self.lab("one.cfg", diameter="0.5 mm", angle="20 deg"), "obstacles=posts.csv", "box=10", "--output", "x.h5", words=["box=10"])
         self.refuse("clogsweep", "obstacle-gap=0.4mm", "--output", "x.h5", words=["obstacle-gap=0.4mm", "--lab"])
         self.write("plain.csv", "1,1,0.3\n")
