@@ -7,7 +7,7 @@ import pathlib
 import sys
 import tempfile
 from collections.abc import Sequence
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from matplotlib.axes import Axes
