@@ -85,6 +85,14 @@ class Predicted(Analysis):
             self.assertEqual((tension, length, wrapped, doubts), ("3", squeezed, "", ""))
             self.assertAlmostEqual(float(length), 20 * 20 / apart, delta=0.1)
 
+    def test_the_curve_is_drawn_beside_the_lengths_of_a_sweep(self):
+        self.pair("pair.csv", 0)
+        keys = ("obstacles=pair.csv", "box=20", "line-tension=3,4")
+        self.succeed("clogsweep", *keys, "vertices=64", "max-time=400", "seeds=1", "--output", "s.h5")
+        self.predict(*keys, "--output", "curve", "--with", "s.h5")
+        for ending in ("png", "pdf"):
+            self.assertTrue((self.folder / f"curve.{ending}").exists())
+
     def test_a_soft_droplet_hangs_on_one_obstacle(self):
         self.write("post.csv", "x,y,diameter\n13,10,0.3\n")
         soft = ("preset=elastic", "friction=0.3", "vertices=64", "inertia=4", "line-tension=0.1")
@@ -117,7 +125,7 @@ class Predicted(Analysis):
 
     def test_what_it_cannot_use_is_refused(self):
         self.write("two.csv", "x,y,diameter\n5,5,0.3\n5,5.8,0.3\n")
-        for words, said in [(["seeds=1..5"], "seeds"), (["obstacle-gap=0.2,0.3"], "one value"), (["release=anywhere"], "release"),
+        for words, said in [(["seeds=1..5"], "seeds"), (["obstacle-gap=0.2,0.3"], "one value"), (["release=anywhere"], "release"), (["--with", "s.h5"], "--output"),
                             (["terminal-speed=x"], "terminal-speed"), (["frobnicate=1", "obstacles=two.csv"], "")]:
             self.refuse_analysis("predict", "--programs", BIN, *words, words=[said])
         self.assertEqual(sorted(path.name for path in pathlib.Path(self.folder).glob("*.h5")), [])

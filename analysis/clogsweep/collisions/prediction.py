@@ -30,7 +30,7 @@ ARRAYS, ARRAY_BOX = 4, 60  # of random arrays, pairs of so many are counted
 # The keys of the array. All other keys belong to the droplet; `obstacle-diameter` belongs to both.
 OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacles", "lattice", "pitch", "lattice-angle", "box",
              "boxes", "length")
-REFUSED = {"seeds": "arrays and pairs have seeds of their own here", "max-time": "nothing runs in the array", "release": "nothing runs in the array"}
+REFUSED = {"exit": "droplets leave the obstacles at one of their own", "seeds": "arrays and pairs have seeds of their own here", "max-time": "nothing runs in the array", "release": "nothing runs in the array"}
 
 
 Circles = Sequence[tuple[float, float, float]]  # x along the flow, y across it, diameter [sigma]

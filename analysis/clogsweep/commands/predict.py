@@ -43,6 +43,8 @@ def body() -> int:
     for key, value in keys.items():
         if key not in ("line-tension", "obstacles") and ("," in value or ".." in value or "(" in value):
             raise UserError(f"invalid {key}={value} (only line-tension takes a list here); give one value")
+    if arguments.measured and not arguments.output:
+        raise UserError("no picture for the lengths of --with; give --output NAME")
     if arguments.output:
         outputs.refuse_unwritable_picture(arguments.output)
     folder_of_programs = programs.programs_in(arguments.programs)
