@@ -106,7 +106,9 @@ class Evidence(unittest.TestCase):
                                                     (DOES_NOT, IN_KIND, DOES_NOT, DOES_NOT), (IN_KIND, AGREES, AGREES, IN_KIND)]:
             found = {family: statements.Finding(one, "1") for family, one in zip((slides, rubbed, pinned), (nearest, friction, corners))}
             self.assertEqual(statements.with_variants(found), statements.Finding(
-                verdict, "1", f"wall friction (0.05): {friction}, 1; no friction, corner pinning: {corners}, 1"))
+                verdict, "1", f"wall friction (0.05): {friction}, 1; no friction, corner pinning: {corners}, 1",
+                f"{friction}: wall friction (0.05), no friction, corner pinning" if friction == corners else
+                f"{friction}: wall friction (0.05); {corners}: no friction, corner pinning"))
 
     def test_what_curves_say_together(self):
         for verdicts, together in [([AGREES, AGREES], AGREES), ([AGREES, NOT_KNOWN], AGREES), ([AGREES, DOES_NOT], IN_KIND), ([DOES_NOT, IN_KIND], IN_KIND),

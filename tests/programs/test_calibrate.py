@@ -131,7 +131,7 @@ class Calibrate(OnATerminal):
             self.assertEqual(self.succeed("clogfit", command, "--version").stdout, version.replace("clogfit", f"clogfit {command}", 1))
 
     def test_its_help_says_what_the_errors_leave_out(self):
-        self.assertIn("for frames without noise they are too small", self.succeed("clogfit", "calibrate", "--help").stdout)
+        self.assertIn("so without noise they are too small", self.succeed("clogfit", "calibrate", "--help").stdout)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         self.write("p.csv", "h [mm],v [mm/s]\n-1,1\n0,0.5\n1,1\n")

@@ -293,7 +293,7 @@ class Module(Analysis):
             helped = called(command, "--help")
             self.assertEqual(helped.returncode, 0, helped.stderr)
             self.assertTrue(helped.stdout.startswith(f"usage: python3 -m clogsweep {command} "), helped.stdout)
-        for word, hint in [("draw", "--help lists them"), ("clogging-lenght", "did you mean clogging-length?")]:
+        for word, hint in [("quux", "--help lists them"), ("clogging-lenght", "did you mean clogging-length?")]:
             wrong = called(word)
             self.assertEqual(wrong.returncode, 2)
             self.assertRegex(wrong.stderr, f"unknown command: {word}; .*{re.escape(hint)}\n")

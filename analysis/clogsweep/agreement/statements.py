@@ -20,11 +20,12 @@ DOES_NOT, NOT_KNOWN, NOT_RUN = "does not agree", "not known", "not run"
 @dataclasses.dataclass(frozen=True)
 class Finding:
     """The result of this program. @param value  in words, with numbers and their intervals; @param variants  the same for
-    other models"""
+    other models; @param brief  their verdicts alone"""
 
     verdict: str
     value: str
     variants: str = ""
+    brief: str = ""
 
 
 Judge = Callable[..., Finding]
@@ -74,8 +75,9 @@ def with_variants(found: Mapping[Family, Finding]) -> Finding:
     if verdict in (DOES_NOT, NOT_KNOWN):
         helps = [family for family, finding in others if finding.verdict == AGREES]
         verdict = FORCED if any(family.friction > 0 for family in helps) else BY_MESH if helps else verdict
+    families = {one: ", ".join(family.in_words for family, finding in others if finding.verdict == one) for one in dict.fromkeys(finding.verdict for _, finding in others)}
     return Finding(verdict, nearest.value, "; ".join(f"{family.in_words}: {finding.verdict}" + (f", {finding.value}" if finding.value else "")
-                                                     for family, finding in others))
+                                                     for family, finding in others), "; ".join(f"{one}: {names}" for one, names in families.items()))
 
 
 def statement_of_families(where: str, text: str, figure: str = "6c", families: Sequence[Family] = FAMILIES, **reasons: str) -> Callable[[Judge], Judge]:

@@ -23,16 +23,25 @@ def counts(judged: Sequence[Judged]) -> str:
     return ", ".join(f"{number[verdict]} {word}" for verdict, word in words.items() if number[verdict])
 
 
+def shortened(value: str) -> str:
+    """The first and the last of several results."""
+    parts = value.split("; ")
+    return f"{parts[0]}; ...; {parts[-1]}" if len(parts) > 2 else value
+
+
 def markdown(judged: Sequence[Judged], version: int) -> str:
-    """A table for each place of the article."""
+    """A table for each section of the article: the first and last of several results, and the verdicts on variants without theirs."""
     lines = [textwrap.fill(f"Of {len(judged)} statements {counts(judged)}. All rows have model version {version}.", 118)]
-    for where in dict.fromkeys(one.statement.where for one in judged):
-        rows = [cells(one)[1:] for one in judged if one.statement.where == where]
-        has_variants = any(row[-1] for row in rows)
-        lines += ["", f"**{where[0].upper()}{where[1:]}**", "", "| statement | here | verdict |" + " variants |" * has_variants,
-                  "|---|---|---|" + "---|" * has_variants]
-        for text, here, verdict, reason, variants in rows:
-            lines.append(f"| {text} | {here} | **{verdict}**{': ' if reason else ''}{reason} |" + f" {variants} |" * has_variants)
+    place_of = {id(one): one.statement.where.partition(", ") for one in judged}
+    for section in dict.fromkeys(place[0] for place in place_of.values()):
+        members = [one for one in judged if place_of[id(one)][0] == section]
+        variants = {id(one): one.finding.brief or one.finding.variants for one in members}
+        has_variants = any(variants.values())
+        lines += ["", f"**{section[0].upper()}{section[1:]}**", "", "| statement | here | verdict |" + " variants |" * has_variants, "|---|---|---|" + "---|" * has_variants]
+        for one in members:
+            place, reason = place_of[id(one)][2], one.reason
+            lines.append(f"| {place}{': ' if place else ''}{one.statement.text} | {shortened(one.finding.value)} | **{one.finding.verdict}**{': ' if reason else ''}{reason} |"
+                         + f" {variants[id(one)]} |" * has_variants)
     return "\n".join(lines) + "\n"
 
 

@@ -16,9 +16,7 @@ import math
 import pathlib
 import tempfile
 
-from .. import style
 from ..collisions import prediction
-from ..drawing import predicted
 from ..reading import fits, programs
 from ..tools import outputs
 from ..tools.errors import UserError
@@ -61,5 +59,8 @@ def body() -> int:
               " ".join(prediction.doubts_of(one.tension, one.length)), sep=",")
     if arguments.output:
         fit = fits.told(folder_of_programs / "clogfit", arguments.measured) if arguments.measured else {"groups": [], "confidence": 0.95}
+        from .. import style  # matplotlib only for a picture
+        from ..drawing import predicted
+
         style.Picture(predicted.draw(found, fit["groups"], fit["confidence"])).save(arguments.output)
     return 0
