@@ -229,7 +229,7 @@ class Sizes(ProgramTest):
         axes = style.figure_of(lengths.draw_on, groups).axes[0]
         self.assertEqual(axes.get_ylabel(), r"$\lambda$ [mm]")
         bound = max(group["clogging_length_lower_mm"] for group in groups.members if group["clogs"] == 0)
-        drawn = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.lines if line.get_marker() == "^"])
+        drawn = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.lines if line.get_marker() is style.LOWER_BOUND])
         self.assertAlmostEqual(np.nanmax(drawn), bound)
 
     def test_a_curve_runs_over_the_diameter_in_millimetres(self):
