@@ -204,6 +204,7 @@ bool Journal::make_anew(const OutputPath& table) {
     return false;
   }
   contents_.num_bytes = num_rewritten_bytes_ = 0;
+  num_whole_ = 0;
   has_begun_ = false;
   return true;
 }
@@ -214,6 +215,7 @@ void Journal::add(const sweep::RunRow& row, std::span<const std::byte> snapshot)
   const std::vector<std::byte> record = record_of(row, snapshot);
   write_at(file_, record, contents_.num_bytes, place_.path());
   contents_.num_bytes += record.size();
+  num_whole_ = contents_.num_bytes;
 }
 
 void Journal::flush() {
@@ -245,16 +247,20 @@ void Journal::prepare(std::span<const Entry* const> entries, std::uint64_t begin
   while (copy_additions() > little);
 }
 
-/// Returns the number of bytes. The last record may be incomplete: its writer is still writing it.
+/// Returns the number of bytes. Leaves a record out that is being written: if the disk is full, it will be
+/// undone.
 std::uint64_t Journal::copy_additions() {
-  constexpr std::size_t block = 1'000'000;
+  constexpr std::uint64_t block = 1'000'000;
   const std::uint64_t before = num_copied_;
-  while (true) {
-    const std::vector<std::byte> bytes = read_at(file_, num_copied_, block, place_.path());
-    if (bytes.empty()) return num_copied_ - before;
+  const std::uint64_t end = std::max(before, num_whole_.load());
+  while (num_copied_ < end) {
+    const std::vector<std::byte> bytes =
+        read_at(file_, num_copied_, std::min(block, end - num_copied_), place_.path());
+    if (bytes.empty()) break;
     next_->write(bytes);
     num_copied_ += bytes.size();
   }
+  return num_copied_ - before;
 }
 
 void Journal::replace() {
@@ -264,6 +270,7 @@ void Journal::replace() {
   if (!next_->publish(place_.stamp())) refuse_replaced();
   file_ = next_->take_descriptor();
   contents_.num_bytes = num_rewritten_bytes_ = next_->size();
+  num_whole_ = contents_.num_bytes;
   has_begun_ = true;
   next_.reset();
 }

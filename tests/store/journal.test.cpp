@@ -283,6 +283,22 @@ TEST_F(JournalTest, LosesNoRecordThatComesWhileItIsRewritten) {
   expect_entries(Journal(place()).take_entries(), 112);
 }
 
+TEST_F(JournalTest, LeavesOutARecordThatAFullDiskUndoesWhileItIsRewritten) {
+  {
+    Journal journal(place());
+    add_entries(journal, 0, 3);
+    const std::uint64_t end = journal.num_bytes();
+    std::ofstream(path(), std::ios::app) << std::string(5000, 'x');  // half a record
+    journal.prepare({}, end);
+    fs::resize_file(path(), end);
+    journal.replace();
+    add_entries(journal, 0, 3);
+  }
+  Journal journal(place());
+  EXPECT_EQ(journal.num_unreadable(), 0);
+  expect_entries(journal.take_entries(), 3);
+}
+
 TEST_F(JournalTest, CanBeRemoved) {
   Journal journal(place());
   add_entries(journal, 0, 1);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -87,8 +88,9 @@ class Journal {
   Contents contents_;  ///< contents at opening; num_bytes is kept up to date
   std::uint64_t num_rewritten_bytes_ = 0;
   bool has_begun_ = false;
-  std::unique_ptr<Draft> next_;   ///< the file that is to replace this one
-  std::uint64_t num_copied_ = 0;  ///< bytes of this file that the next one has or does not need
+  std::unique_ptr<Draft> next_;               ///< the file that is to replace this one
+  std::uint64_t num_copied_ = 0;              ///< bytes of this file that the next one has or does not need
+  std::atomic<std::uint64_t> num_whole_ = 0;  ///< bytes of complete records, for the thread of prepare()
 
   std::uint64_t copy_additions();
   void open_and_lock(const OutputPath* table);
