@@ -174,6 +174,6 @@ def lengths_on_a_map(shop: Workshop) -> Plate:
     drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=AXES["length"], shrink=0.8, extend="min")
     drawing.suptitle(describe(shop.columns(MAPS[0].config), every, ["obstacle_density", "preset"]), fontsize=8, color="0.25")
     style.notes_of_panels(drawing, [
-        f"frames, where {ENOUGH_CLOGS} runs or more clogged: solid if $P(r)$ is exponential (Weibull's exponent compatible with 1) and $\\lambda$ above a spacing, else dotted",
+        f"frames where {ENOUGH_CLOGS} runs or more clogged: solid if $P(r)$ is exponential (Weibull's exponent compatible with 1) and $\\lambda$ above a spacing, else dotted",
         "hatched, >: lower bound (no run clogged); star: the published $\\lambda = 24\\sigma$, at the density that gives this length here"])
     return Plate(drawing, data)

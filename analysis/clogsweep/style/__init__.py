@@ -282,8 +282,9 @@ def notes(axes: Axes, lines: Sequence[str]) -> None:
 
 
 def notes_of_panels(figure: Figure, lines: Sequence[str]) -> None:
-    """What marks mean, once below all panels."""
-    figure.supxlabel("\n".join(lines), fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
+    """What marks mean, once below all panels; lines that are wider than the figure go on below."""
+    fits = fitting(figure, NOTE_SIZE, 0.97 * figure.bbox.width)
+    figure.supxlabel("\n".join(in_lines(line, fits, " ") for line in lines), fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
 
 
 def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None, dpi: float = 160) -> None:
