@@ -20,8 +20,9 @@ std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::str
 /// Error if this program is one of them
 void refuse_to_be_alone(int num_ranks);
 
-/// @param mpi name and version, as Communicator::library_version() gives them. Since Open MPI 5, its launcher
-/// PRRTE reads variables of other names.
+/// The setting that lets ranks use every core of their host. @param mpi  name and version, as
+/// Communicator::library_version() gives them. Since Open MPI 5, its launcher PRRTE reads variables of other
+/// names.
 std::string how_to_unbind(const std::string& mpi);
 
 }  // namespace clog::diagnostics
