@@ -135,7 +135,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> truncated(V v) {
 #endif
 }
 
-/// Inlines the bodies of for_vectors(): otherwise their sums would be in memory, which is slow.
+/// Makes the bodies of for_vectors() inline: otherwise their sums would be in memory, which is slow.
 #undef CLOG_INLINE
 #if defined(__GNUC__)
 #define CLOG_INLINE __attribute__((always_inline))
