@@ -141,8 +141,8 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
     socket.close();
     rank.send(process_began, 0, to_bytes(process, {}));
     if (process > 0) {
-      // It stays a zombie until the rank asks for the next process, so its pid is not reused and the rank's
-      // kill cannot hit another process.
+      // The process stays a zombie until the rank asks for the next one, so its pid is not reused and the
+      // rank's kill cannot hit another process.
       siginfo_t end{};
       retried([&] { return waitid(P_PID, process, &end, WEXITED | WNOWAIT); });
       ending.code = end.si_code;

@@ -18,8 +18,8 @@ struct WallPlace {
   double radius = 0;        ///< [sigma]
   Eigen::Index wedge = -1;  ///< number of the wedge; -1: a circle
 
-  /// Whether it is the same wall. Centres from two lists may differ by rounding, those of two walls by much
-  /// more.
+  /// Whether it is the same wall. Two lists may give a wall's centre with different rounding; centres of
+  /// two walls differ by much more.
   bool is(const WallPlace& other) const {
     constexpr double rounding = 1e-6;
     return wedge == other.wedge && std::abs(x - other.x) < rounding && std::abs(y - other.y) < rounding;
