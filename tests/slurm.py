@@ -1,4 +1,4 @@
-"""Sweeps as jobs of a real Slurm are warned, queued again, cancelled, lose their node, and end with the rows of an undisturbed one.
+"""Sweeps as jobs of a real Slurm: warned, queued again, cancelled, without their node. They end with undisturbed rows.
 
     tests/slurm.sh [slurm.Slurm.test_...]    # starts the Slurm that these tests need
 """
@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "tests" / "programs"))
 from support import BIN, MPIRUN, STEPS_PER_SNAPSHOT, SWEEP, SweepTest, table  # noqa: E402
 
 KEYS = SWEEP[:-2]
-# Runs that together last a minute and more on two ranks of their own.
+# Runs that together take a minute or more on two ranks.
 LONG = [word.replace("max-time=4000", "max-time=1e5") for word in KEYS]
 NODES = {"node1", "node2"}
 
@@ -70,7 +70,7 @@ class Slurm(SweepTest):
         self.assertNotIn(now, {"COMPLETED", "CANCELLED", "FAILED", "TIMEOUT", "NODE_FAIL"} - {state}, self.log())
 
     def wait_for_runs_with_snapshots(self):
-        """Waits until some tasks have snapshots, and some are over."""
+        """Waits until some tasks have snapshots, and some have ended."""
         def seen():
             if not (self.folder / "s.h5").exists():
                 return False
@@ -98,7 +98,7 @@ class Slurm(SweepTest):
         self.assertEqual(set(zip(rows["rank"], rows.host)), {(0, "node1"), (1, "node2")})
 
     def test_a_job_is_warned_before_its_time_is_up_and_queues_itself_again(self):
-        # Slurm looks twice a minute, and warns half a minute early: after 20 to 50 s.
+        # Slurm checks twice a minute, and warns half a minute early: after 20 to 50 s.
         job = self.submit("--nodes=2", "--ntasks-per-node=1", "--time=1", "--signal=B:USR1@10", keys=LONG)
         self.wait_for(lambda: described("job", job)["Restarts"] != "0" or self.ended_otherwise(job, "RUNNING"))
         slurm("scontrol", "update", f"jobid={job}", "timelimit=60")
@@ -159,7 +159,7 @@ class Slurm(SweepTest):
         self.assertIn("not complete after 1 requeues, as many as MAX_REQUEUES allows", self.log())
 
     def preempt(self, partition):
-        """@return the number of a job that an urgent one has preempted"""
+        """@return the number of a job that an urgent job has preempted"""
         job = self.submit("--nodes=2", "--ntasks-per-node=1", f"--partition={partition}")
         self.wait_for_runs_with_snapshots()
         urgent = slurm("sbatch", "--parsable", "--partition=urgent", "--nodes=2", "--exclusive", "--output=/dev/null", "--wrap=sleep 5").strip()
@@ -178,10 +178,10 @@ class Slurm(SweepTest):
 
     def test_a_preempted_job_queues_again(self):
         user_signal = "SlurmctldParameters=preempt_send_user_signal\n"
-        # Without that only the daemon on the other node is warned.
+        # Without preempt_send_user_signal only the daemon on the other node is warned.
         for partition, removed, warned in [("requeue", "", False), ("cancel", "", True), ("cancel", user_signal, False)]:
             with self.subTest(partition=partition, removed=removed):
-                self.setUp()  # an empty folder
+                self.setUp()  # makes an empty folder
                 self.configure(removed, "")
                 self.check_completed(self.preempt(partition), restarts=1)
                 self.check_went_on()

@@ -47,7 +47,7 @@ bool is_assignment(const std::string& word) {
          word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == equals;
 }
 
-/// Whether a word that is no file looks like `Key=value` with an unknown key.
+/// Whether a word that names no file looks like `Key=value` with an unknown key.
 bool begins_like_key(const std::string& word) {
   const auto equals = word.find('=');
   return equals != std::string::npos && equals > 0 && word.find_first_of("./ ") > equals;
@@ -185,7 +185,7 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
     for (const auto& known : group->options()) names.push_back(known->long_name());
   const std::string option = excerpt(word.substr(0, word.find('=')));
   const std::string bare = option.substr(std::min(option.find_first_not_of('-'), option.size()));
-  // Skips the dashes that were added to `key=value`.
+  // Skips the dashes that parse() added to `key=value`.
   const bool has_dashes =
       std::any_of(typed.begin(), typed.end(), [&](std::string_view one) { return one.starts_with(word); });
   std::vector<std::string> meant = sweep::meant_names(bare, names);
@@ -196,8 +196,8 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
                              : fmt::format("; did you mean {}?", joined(meant, " or "))));
 }
 
-/// Boost would report this, too, but its message replaces %names% in the line: one with such a name never
-/// ends (Boost 1.74).
+/// Boost would report such lines, too, but its message replaces %names%, which never ends if the line has
+/// one of them (Boost 1.74).
 static void refuse_lines_without_value(const std::string& path, const std::string& text) {
   std::istringstream lines(text);
   int number = 0;

@@ -24,7 +24,7 @@
 namespace clog::cli {
 namespace {
 
-constexpr const char* droplet_diameters = "sigma";  ///< as a unit of a column
+constexpr const char* droplet_diameters = "sigma";  ///< the unit that means droplet diameters
 
 /// Metres in a unit of length. @throws Error
 double metres_in(const std::string& unit) {
@@ -42,7 +42,7 @@ bool is_same_unit(const std::string& unit, const std::string& other) {
   return metres_in(unit) == metres_in(other);
 }
 
-/// Converts lengths of the file to droplet diameters; a unit is `value` droplet diameters long.
+/// Converts lengths of the file to droplet diameters.
 struct Scale {
   std::string unit;  ///< of the numbers; empty: droplet diameters
   double droplet_metres = 0;
@@ -55,12 +55,12 @@ struct Scale {
   }
 };
 
-/// `units=um droplet=200um`, which a comment may say; anything else in a comment is skipped. @throws Error
+/// Reads `units=um droplet=200um` from a comment; anything else in a comment is skipped. @throws Error
 void read_scale(const std::string& comment, Scale& scale) {
   std::istringstream words(comment);
   std::optional<std::string> unit, droplet;
   for (std::string word; words >> word;) {
-    word.erase(word.find_last_not_of(";,\"") + 1);  // of empty cells that a spreadsheet adds
+    word.erase(word.find_last_not_of(";,\"") + 1);  // drops empty cells that a spreadsheet adds
     if (word.starts_with("units=")) unit = word.substr(6);
     if (word.starts_with("droplet=")) droplet = word.substr(8);
   }
@@ -80,12 +80,12 @@ void read_scale(const std::string& comment, Scale& scale) {
 /// Positions of the columns in a line; -1: missing.
 struct Columns {
   int x = 0, y = 1, diameter = 2, radius = -1;
-  std::vector<std::string> header;  ///< empty: there is none
-  std::string unit;                 ///< that the header names
+  std::vector<std::string> header;  ///< empty: the file has no header
+  std::string unit;                 ///< unit that the header names
 };
 
-/// Stores the column that a cell of the header names. @return whether it is one of those wanted @throws Error
-/// if it occurs twice, or with another unit than the others
+/// Stores the column that a cell of the header names. @return whether the reader needs this column @throws
+/// Error if the column occurs twice, or with another unit than the others
 bool take_column(Columns& columns, int place, const std::string& cell) {
   const auto [name, unit] = console::column_head(cell);
   int* const column = name == "x"                                            ? &columns.x
@@ -118,7 +118,7 @@ bool is_header(const std::vector<std::string>& cells) {
   });
 }
 
-/// @throws Error if x or y is missing, or if sizes are ambiguous
+/// The columns that a header names. @throws Error if x or y is missing, or if sizes are ambiguous
 Columns columns_named(std::vector<std::string> cells) {
   Columns columns{.x = -1, .y = -1, .diameter = -1, .radius = -1, .header = {}, .unit = ""};
   while (!cells.empty() && cells.back().empty()) cells.pop_back();
@@ -138,7 +138,7 @@ Columns columns_named(std::vector<std::string> cells) {
   return columns;
 }
 
-/// The columns that a comment names, as NumPy writes them; nothing for other comments.
+/// The columns that a comment names, as in files written by NumPy; nothing for other comments.
 std::optional<Columns> columns_in(std::string comment) {
   for (char& letter : comment)
     if (std::string_view("#,;\t\"").find(letter) != std::string_view::npos) letter = ' ';
@@ -192,7 +192,7 @@ class Numbers {
   }
 };
 
-/// @throws Error if the file does not define the header's unit, or contradicts it
+/// Checks the header's unit. @throws Error if the file does not define it, or contradicts it
 void check_unit(const Columns& columns, const Scale& scale) {
   const std::string unit = scale.unit.empty() ? droplet_diameters : scale.unit;
   if (columns.unit.empty() || is_same_unit(columns.unit, unit)) return;

@@ -30,14 +30,15 @@ std::vector<std::size_t> columns_of(const std::vector<std::string>& header) {
   return columns;
 }
 
-/// A cell as a key's value. If cells are not separated by commas, a comma is decimal; pandas writes integers
-/// as 64.0 or 64,0 in a column with an empty cell. @throws Error if a comma may be decimal or part of a list
+/// A cell as a key's value. A comma is a decimal comma if commas do not separate the cells; pandas writes
+/// integers as 64.0 or 64,0 in a column with an empty cell. @throws Error if a comma may be decimal or part
+/// of a list
 std::string value_of(const sweep::Key& key, const std::string& cell, char separator,
                      console::DecimalCommas& decimal_commas) {
   const bool is_integer = key.kind == ValueKind::integer;
   const bool is_number = key.kind == ValueKind::number || key.kind == ValueKind::number_or_share;
   const auto commas = std::ranges::count(cell, ',');
-  // A list of seeds may end with 0.
+  // A comma in a list of seeds is never decimal: the list may end with 0.
   const bool may_be_decimal = separator != ',' && commas == 1 && key.name != "seeds";
   if (is_integer && (cell.ends_with(".0") || (may_be_decimal && cell.ends_with(",0"))))
     return cell.substr(0, cell.size() - 2);

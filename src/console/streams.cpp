@@ -18,9 +18,9 @@ void prepare_streams() {
     if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
       std::_Exit(exit_user_fault);  // standard error may be closed, too
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that reaches ulimit -f cannot be written
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond ulimit -f then fails instead of ending the program
   std::cout.exceptions(std::ios_base::badbit);
-  std::cerr.tie(nullptr);  // print what is wrong even if the output cannot be written
+  std::cerr.tie(nullptr);  // errors are printed even if the output cannot be written
 }
 
 void say(const std::string& line) { std::cerr << printable(line) << std::endl; }

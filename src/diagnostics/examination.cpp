@@ -38,11 +38,11 @@ int number_in(const char* name) {
   return text ? std::atoi(text) : 0;
 }
 
-/// Why a single rank should have company; nothing if one rank is intended.
+/// Why a single rank should not be alone; nothing if one rank is intended.
 std::optional<Finding> why_not_alone(int num_ranks) {
   if (num_ranks > 1) return {};
   constexpr const char* of_open_mpi = "OMPI_COMM_WORLD_SIZE";
-  const bool by_mpirun = is_set(of_open_mpi) || is_set("MPI_LOCALNRANKS");  // the latter of MPICH
+  const bool by_mpirun = is_set(of_open_mpi) || is_set("MPI_LOCALNRANKS");  // the latter is MPICH's
   if (const int tasks = number_in("SLURM_NTASKS"); tasks > 1 && !by_mpirun)
     return Finding{fmt::format("one rank in a Slurm allocation of {} tasks", tasks),
                    "srun cannot start this MPI's ranks together: use mpirun, as jobs/slurm.sh does, or "

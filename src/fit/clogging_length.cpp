@@ -26,7 +26,7 @@ Interval chi_squared_interval(double total_distance, double degrees_of_freedom, 
 /// A droplet pushed back on release counts as not moved; NaN stays NaN.
 double way(const Observation& run) { return run.distance < 0 ? 0 : run.distance; }
 
-/// sqrt(2 (x + exp(-x) - 1)) with the sign of x. For small x the remaining sum is its series.
+/// sqrt(2 (x + exp(-x) - 1)) with the sign of x. For small x its series avoids cancellation.
 double signed_root(double x) {
   constexpr double small = 1e-3;  // the next term of the series is x^4/360
   if (std::abs(x) < small) return x * std::sqrt(1 - x / 3 + x * x / 12 - x * x * x / 60);
@@ -44,7 +44,7 @@ Interval profile_interval(const CloggingLength& fit, double confidence) {
         tools::toms748_solve(excess, from, to, tools::eps_tolerance<double>(), most_steps);
     return fit.length * std::exp((low + high) / 2);
   };
-  // |signed_root(x)| is more than |x| below zero, less above, and at 1 + y^2/2 more than y.
+  // |signed_root(x)| exceeds |x| for x < 0 and is smaller for x > 0; at x = 1 + y^2/2 it exceeds y.
   return {length_at(-allowed, -allowed, 0), length_at(allowed, allowed, 1 + allowed * allowed / 2)};
 }
 
@@ -101,8 +101,7 @@ double least_squares_length(std::span<const Observation> runs) {
   if (!all_finite(runs)) return undefined;
   double longest = 0;
   for (const Observation& run : runs) longest = std::max(longest, run.distance);
-  std::vector<double>
-      clogs;  // from here on lengths are in units of the longest distance, so nothing overflows
+  std::vector<double> clogs;  // lengths below are in units of the longest distance, so nothing overflows
   for (const Observation& run : runs)
     if (run.clogged) clogs.push_back(way(run) / longest);
   if (clogs.size() < 2 || !(longest > 0)) return undefined;
@@ -115,8 +114,8 @@ double least_squares_length(std::span<const Observation> runs) {
     }
     return sum;
   };
-  // No fit is longer than a straight line to one clog in this number of runs, nor much shorter than the first
-  // clog.
+  // No fitted length is larger than for a straight line to one clog in this number of runs, or much smaller
+  // than the distance of the first clog.
   const double first = std::max(clogs.front(), 1e-6);
   const double low = std::log(first / (10 * std::log(static_cast<double>(runs.size()) + 2)));
   const double high = std::log(10 * static_cast<double>(runs.size()));

@@ -15,9 +15,9 @@ struct Ends {
   double all, own;  ///< ends by any cause; by the given one
 };
 
-/// Sums over all distances so far from which the variance of F_c follows. With g = d/(n (n - d)), all causes,
-/// and h = P d_c/n^2 it is the sum of (F - F_s)^2 g + P h (n - d_c)/n - 2 (F - F_s) h, F_s being F_c at the
-/// term's distance and F now.
+/// Sums over all distances so far from which the variance of F_c follows. With g = d/(n (n - d)) for all
+/// causes and h = P d_c/n^2, the variance is the sum of (F - F_s)^2 g + P h (n - d_c)/n - 2 (F - F_s) h, with
+/// F_s the value of F_c at the term's distance and F the present value.
 struct VarianceSums {
   double g = 0, F_g = 0, F2_g = 0;
   double own = 0;

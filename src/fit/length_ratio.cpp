@@ -72,7 +72,7 @@ Scatter scatter_of(std::span<const Pair> pairs, const Sums& all) {
   return scatter;
 }
 
-/// Whether a correlation of this number of pairs is positive, with a 2.5 % probability of error.
+/// Whether a correlation of this number of pairs is positive, at a significance level of 2.5 %.
 bool is_positive(double correlation, double num_pairs) {
   constexpr double error = 0.025;
   const double t = correlation * std::sqrt((num_pairs - 2) / std::max(1 - correlation * correlation, 1e-12));

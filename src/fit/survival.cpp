@@ -16,7 +16,8 @@ namespace {
 /// Fraction of the mean distance to which the test raises shorter distances: Weibull's law excludes zero.
 constexpr double shortest_share = 1e-3;
 
-/// The interval of a falling function's root, [high/2, high] or lower; nothing if there is no root.
+/// The interval that contains a falling function's root, [high/2, high] or lower; nothing if there is no
+/// root.
 template <class Function>
 std::optional<std::pair<double, double>> bracket(const Function& falling) {
   constexpr int most_doublings = 200;  // 2^200 exceeds any ratio of two different doubles' logarithms
@@ -50,7 +51,7 @@ struct LogWays {
   std::vector<double> log_x;  ///< of every run
   double total = 0;           ///< sum of all x
   double clog_logs = 0;       ///< sum of log x over clogs
-  bool clogs_differ = false;  ///< is there more than one distance with clogs?
+  bool clogs_differ = false;  ///< whether clogs occur at more than one distance
 };
 /// Empty if no run has moved, or a distance is not finite.
 LogWays log_ways(std::span<const Observation> runs) {

@@ -102,7 +102,7 @@ void scale_speed(Laboratory& lab, const Entries& entries) {
 
 Laboratory laboratory_of(const Entries& entries) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  constexpr double octane = 703, water = 997;  // of the article [kg/m^3]
+  constexpr double octane = 703, water = 997;  // densities in the article [kg/m^3]
   Laboratory lab;
   lab.experiment = {.diameter = value_of(entries, "diameter", 0),
                     .terminal_speed = value_of(entries, "speed", 0),

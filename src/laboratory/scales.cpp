@@ -29,11 +29,11 @@ struct Puddle {
 };
 
 /// Young and Laplace: phi' = kappa_0 + z/Gamma, x' = cos(phi), z' = sin(phi) along the interface, with z the
-/// depth below the apex and phi the slope's angle, from 0 at the apex to pi at the wall; area' = 2 x z'. By
-/// Runge and Kutta's fourth-order rule.
+/// depth below the apex and phi the slope's angle, from 0 at the apex to pi at the wall; area' = 2 x z'.
+/// Integrated by the fourth-order Runge-Kutta rule.
 Puddle puddle(double line_tension, double apex_curvature) {
   using State = Eigen::Array<double, 5, 1>;  // phi, x, z, area, moment
-  // The interface bends over sqrt(Gamma) at a puddle's rim, over a radius of 1/2 elsewhere.
+  // The interface bends over a length of sqrt(Gamma) at a puddle's rim, and over a radius of 1/2 elsewhere.
   const double step = 0.02 * std::min(0.5, std::sqrt(line_tension));
   const auto slope = [&](const State& y) {
     const double deepening = std::sin(y[0]);
@@ -66,7 +66,7 @@ double root(Function function, double low, double high) {
 constexpr double softest = 1e-3, stiffest = 1e4;  // Gamma
 
 double sag_of(double line_tension) {
-  constexpr double flattest = 1e-120, roundest = 2;  // curvature of the apex; that of a circle is 2
+  constexpr double flattest = 1e-120, roundest = 2;  // curvature of the apex; a circle has 2
   const auto excess = [&](double curvature) {
     return puddle(line_tension, curvature).area - units::rest_area;
   };
@@ -139,7 +139,7 @@ std::string in_model_units(const std::string& key, const std::string& text, cons
     try {
       if (unit == units.end()) throw Error("numbers have no unit here");
       const auto& [quantity, size] = unit->second;
-      constexpr int digits = 13;  // as of circles in a file
+      constexpr int digits = 13;  // as many as for circles in a file
       converted += its_unit == "sigma" || its_unit == "/sigma^2"
                        ? number
                        : fmt::format("{:.{}g}", to_si(number + its_unit, quantity) / size, digits);

@@ -64,7 +64,7 @@ results::Comparisons compare_measured(const cli::CommandLine& line, const std::v
   return results::compare_distances(tables, confidence, sigma_in_mm(line, rows));
 }
 
-/// Does not return.
+/// Draws the comparison in Python. Does not return.
 void draw(const cli::CommandLine& line, const std::vector<std::string>& paths) {
   std::vector<std::string> arguments = {"compare", "--programs", cli::own_folder(), "--output",
                                         line.get("picture")};

@@ -113,8 +113,8 @@ std::string why_no_tilt(const Laboratory& lab) {
 struct Conversion {
   const char *option, *symbol;
   const char *name, *what, *unit;
-  std::function<double(double)> convert;  ///< NaN where nothing in the laboratory is that
-  std::string otherwise = "-";            ///< what is shown then
+  std::function<double(double)> convert;  ///< NaN where the laboratory has no such quantity
+  std::string otherwise = "-";            ///< shown instead of NaN
 };
 std::vector<Conversion> conversions(const Laboratory& lab, const Scales& scales) {
   const auto times = [](double unit) { return [unit](double model) { return model * unit; }; };
@@ -135,7 +135,7 @@ Line line_of(const Conversion& conversion, double model) {
           fmt::format("{} = {}", conversion.symbol, console::plain(model))};
 }
 
-/// A cheaper model for a nearly rigid droplet; nothing for others.
+/// Advises a cheaper model for a nearly rigid droplet; empty for others.
 std::string advice_of(const Scales& scales) {
   if (!(scales.line_tension > nearly_rigid_tension)) return "";
   return fmt::format(
@@ -177,7 +177,7 @@ Line line_of(const Laboratory& lab) {
   return line;
 }
 
-/// A file of several droplets: a line for each.
+/// Prints a line for each of several droplets.
 int show_droplets(const std::vector<Laboratory>& all, const std::string& format) {
   if (format == "json") {
     Json document = Json::array();

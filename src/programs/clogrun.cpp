@@ -72,7 +72,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
   return true;
 }
 
-/// Files that an option writes; for a film without a suffix all candidates.
+/// Files that an option writes; all candidates for a film without a suffix.
 std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const std::string& option) {
   if (!line.has(option)) return {};
   const std::filesystem::path name = line.get(option);
@@ -112,7 +112,7 @@ std::filesystem::path film_name(const cli::CommandLine& line) {
   return name;
 }
 
-/// How the Python module draws the film. @throws Error if it cannot be written
+/// The Python module's options for drawing the film. @throws Error if it cannot be written
 std::vector<std::string> film_options(const cli::CommandLine& line) {
   std::vector<std::string> options = {"droplet", line.get("output"), "--output=" + film_name(line).string(),
                                       "--film"};

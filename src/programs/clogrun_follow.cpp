@@ -44,7 +44,7 @@ void say_what_is_coarse(const RunParameters& run) {
                  "vertices=128 or more");
 }
 
-/// The row has all results of the run.
+/// Refuses keys of results: the row has all results of the run.
 void refuse_keys(const cli::CommandLine& line) {
   for (const sweep::Key& key : sweep::keys())
     if (line.has(key.name))

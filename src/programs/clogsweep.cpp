@@ -59,7 +59,7 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 The same command resumes a stopped or killed sweep.
 )";
 
-/// @param growing  if the sweep adds runs automatically
+/// @param growing  set if the sweep adds runs automatically
 store::Provenance provenance(const cli::CommandLine& line,
                              const std::optional<results::GrowingSweep>& growing, int num_ranks) {
   store::Provenance all = cli::origin(line);
@@ -92,7 +92,7 @@ std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::
     console::flush_output();
     if (console::stop_signalled()) return console::exit_incomplete;
     results::print_limits(plan);
-    // In the process that was forked before MPI started.
+    // The process that was forked before MPI started runs these jobs.
     const sweep::JobFactory jobs =
         isolated.jobs(assignment(line, line.settings()).text(), sweep::run_jobs(plan));
     return results::print_cost(plan, driver_options(line).output, growing ? &growing->rule : nullptr, jobs);
@@ -120,7 +120,7 @@ struct Led {
   }
 };
 
-/// Returned instead of an exit code if the sweep starts.
+/// Exit code that means: the sweep starts.
 constexpr int go_on = -1;
 
 int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::IsolatedJobs& isolated, int argc,
@@ -178,7 +178,7 @@ int main(int argc, char** argv) {
   const int exit_code = cli::run_program("clogsweep", [&] {
     require_memory("start MPI", memory_of_mpi);
     diagnostics::require_open_files();
-    // Before MPI begins.
+    // This must happen before MPI starts.
     isolated.emplace(scheduler::assigned_jobs);
     if (scheduler::Communicator::may_be_rank_0()) store::try_before_mpi(named_output(argc, argv));
     return console::exit_success;

@@ -71,7 +71,7 @@ double precision(const cli::CommandLine& line) {
               " (must lie between 0.1% and 100%) try 20%");
 }
 
-/// Whether every point has a text for this key, which makes its text on the command line useless.
+/// Whether every point has a text for this key, so that its text on the command line has no effect.
 bool is_full(const sweep::Points& points, std::size_t place) {
   return std::ranges::none_of(points.rows, [&](const auto& row) { return row[place].empty(); });
 }
@@ -118,8 +118,8 @@ void refuse_other_format(const cli::CommandLine& line) {
                       name, name.substr(0, name.size() - std::string(ending).size())));
 }
 
-/// --seeds-per-set: keeps the seeds of the keys and of the output's rows, and adds the smallest others. So
-/// the seeds are the same after a kill.
+/// --seeds-per-set: keeps the seeds of the keys and of the output's rows, and adds the smallest unused seeds.
+/// So a killed sweep gets the same seeds again.
 void fill_seeds(cli::CommandLine& line) {
   if (!line.has("seeds-per-set")) return;
   for (const char* other : {"until-precision", "shard"})

@@ -11,10 +11,10 @@
 namespace clog::programs {
 
 /// Declares and parses the options of a sweep. Returns whether there is anything else to do. @throws Error,
-/// as all of these do
+/// like the functions below
 bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv);
 
-/// Checked, the output's name excepted.
+/// The options of the driver, checked except for the output's name.
 scheduler::DriverOptions driver_options(const cli::CommandLine& line);
 scheduler::Assignment assignment(const cli::CommandLine& line, const sweep::Settings& settings);
 std::int64_t attempts(const cli::CommandLine& line);

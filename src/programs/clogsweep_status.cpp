@@ -80,7 +80,7 @@ std::string law_of_speed(const Status& status) {
   const RunParameters& run = status.groups.front().first_row.parameters;
   if (!run.laboratory || run.laboratory->text().empty()) return "";
   const auto lab = laboratory::parse_laboratory(run.laboratory->text(), "the laboratory of some rows");
-  constexpr double rounding = 1e-3;  // a sweep has four digits of it
+  constexpr double rounding = 1e-3;  // the sweep's terminal speed has four digits
   const bool has_its_speed =
       std::abs(run.drag.terminal_speed / lab.experiment.reduced_terminal_speed() - 1) < rounding;
   return lab.measured && has_its_speed ? laboratory::law_of_speed(lab) + '\n' : "";

@@ -33,10 +33,10 @@ results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
           .tilt = results::short_number(lab.experiment.tilt / (std::numbers::pi / 180))};
 }
 
-/// Several droplets of one sweep, or one.
+/// The droplets of a laboratory file, one or several.
 struct Droplets {
   std::vector<laboratory::Laboratory> all;
-  /// Whether there are several sizes, or circles drawn for another one.
+  /// Whether there are several sizes, or circles drawn for another size.
   bool have_several_sizes = false;
 
   void note_size(double diameter) {
@@ -62,7 +62,7 @@ std::string scaled_circles(const std::string& list, const laboratory::Laboratory
   return joined(names, ",");
 }
 
-/// Numbers of a list; of `lin(0.3mm,0.5mm,3)` the first two.
+/// Numbers of a list; the first two of `lin(0.3mm,0.5mm,3)`.
 std::vector<std::string> numbers_of(const std::string& list) {
   std::vector<std::string> numbers = split_at_commas(list);
   std::erase_if(numbers, [](const std::string& number) { return number.ends_with(')'); });
@@ -76,7 +76,7 @@ bool is_plain_number(const std::string& text) {
   return text.find_first_not_of("0123456789.eE+-") == std::string::npos;
 }
 
-/// Whether the array's geometry depends on this key, one of whose values is a plain number other than 0.
+/// Whether the array's geometry depends on this key, and one of its values is a plain number other than 0.
 bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, const std::string& text) {
   RunParameters run;
   run.obstacles.layout = layout;
@@ -117,7 +117,7 @@ void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory:
     }
 }
 
-/// How the speeds that were not measured follow.
+/// Prints how speeds that were not measured follow from the measured one.
 void say_law_of_speed(const cli::CommandLine& line, const Droplets& droplets) {
   const laboratory::Laboratory& first = droplets.all.front();
   const bool is_given =
@@ -130,7 +130,7 @@ void say_law_of_speed(const cli::CommandLine& line, const Droplets& droplets) {
     console::say(fmt::format("{}: {}: {}", line.program(), line.get("lab"), law));
 }
 
-/// A droplet's texts of keys whose numbers may have units, and of circles.
+/// A droplet's texts of keys, with units converted, and of circles.
 laboratory::Texts converted(const laboratory::Texts& given, const laboratory::Laboratory& lab,
                             const laboratory::Scales& scales, const Droplets& droplets) {
   laboratory::Texts texts;
@@ -140,7 +140,7 @@ laboratory::Texts converted(const laboratory::Texts& given, const laboratory::La
   return texts;
 }
 
-/// Keys that no point sets.
+/// Texts of the keys that no point sets.
 laboratory::Texts texts_of(const laboratory::Laboratory& lab, const Droplets& droplets,
                            const laboratory::Texts& given, const sweep::Settings& settings) {
   laboratory::Texts texts = converted(given, lab, laboratory::scales_of(lab), droplets);
@@ -157,7 +157,7 @@ std::set<std::string> cells_of(const sweep::Points& points, const std::string& k
   return cells;
 }
 
-/// A parameter set for each droplet and each point, of which there may be none.
+/// A parameter set for each droplet and each point; there may be no points.
 sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
                         const laboratory::Texts& given, sweep::Points points) {
   if (points.rows.empty()) points.rows.emplace_back();

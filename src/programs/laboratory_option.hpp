@@ -9,12 +9,14 @@
 
 namespace clog::programs {
 
-/// Sets the keys that the file of --lab determines, if any, converts those that were given with units, and
-/// scales user-supplied circles to the droplet. @throws Error, also if the file has several droplets
+/// Sets the keys that the file of --lab determines, if the option is given, converts keys that were given
+/// with units, and scales user-supplied circles to the droplet. @throws Error, also if the file has several
+/// droplets
 void use_laboratory(cli::CommandLine& line);
 
-/// The same for the droplets of a file. Several become points, each with the texts of one droplet.
-/// @param points  of the sweep, none or some; each is combined with each droplet
+/// use_laboratory() for a file of one or several droplets. Several become points, each with the texts of one
+/// droplet.
+/// @param points  the sweep's points, none or some; each is combined with each droplet
 void use_laboratories(cli::CommandLine& line, sweep::Points& points);
 
 /// Gives each group the scale of --lab, or else of its own laboratory. @throws Error

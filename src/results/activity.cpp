@@ -20,7 +20,7 @@ double to_milliseconds(double number) {
 
 }  // namespace
 
-/// Pairs of stretches are merged.
+/// Merges pairs of stretches.
 void Activity::lengthen() {
   stretch_ *= 2;
   for (std::size_t i = 0; 2 * i < busy_.size(); ++i)

@@ -61,7 +61,7 @@ std::set<Value> values_in(const std::vector<ParameterSet>& sets, const std::stri
   return values;
 }
 
-/// Columns that vary within a side and have values on both: they match parameter sets.
+/// Columns that match the parameter sets of two sides: they vary within a side and have values on both.
 std::vector<std::string> common_columns(const Side& there, const Side& here,
                                         const std::vector<ParameterSet>& sets_there,
                                         const std::vector<ParameterSet>& sets_here) {

@@ -37,7 +37,7 @@ class Outlook {
     slowing_ = fit::fit_clogging_length(logarithms, default_confidence);
   }
 
-  /// Mean remaining time of a run if only max-time ends it after `longest`.
+  /// Mean remaining time of a run; max-time ends it after `longest` at the latest.
   double seconds_left(const RunCost& run, double longest, Case which) const {
     const double most = longest - run.seconds;
     const bool may_never_end = !sets_with_ends_.contains(run.parameter_set);
@@ -57,9 +57,9 @@ class Outlook {
  private:
   std::set<std::int64_t> sets_with_ends_;
   fit::CloggingLength even_;     // of times: one run ends as likely as any other
-  fit::CloggingLength slowing_;  // of their logarithms: the longer a run has lasted, the longer it will
+  fit::CloggingLength slowing_;  // of their logarithms: an older run lasts longer from now on
 
-  /// Half an end more: without any the mean is long, but finite.
+  /// Counts half an end more: without any end the mean is long, but finite.
   static double mean(const fit::CloggingLength& fit) { return fit.total_distance / (fit.num_clogs + 0.5); }
 
   /// Ends are exponential, P = exp(-t/mean).
@@ -91,10 +91,10 @@ class Share {
     }
   }
   double value() const { return expected_sum_ / longest_sum_; }
-  /// Remaining time of the sample's own runs.
+  /// Remaining time of the runs in the sample.
   double seconds_left() const { return left_; }
 
-  /// Relative standard error of a ratio of sums over a sample without replacement.
+  /// Relative standard error of a ratio of sums, for a sample without replacement.
   double relative_error(std::int64_t population) const {
     const auto n = static_cast<double>(expected_.size());
     const auto all = static_cast<double>(population);
@@ -113,7 +113,7 @@ class Share {
   double left_ = 0;
 };
 
-/// Mean time of runs that have not begun, and per work.
+/// Mean time before a run moves, and mean time per work after that.
 struct Pace {
   double begin_seconds = 0;
   double seconds_per_work = 0;
@@ -162,7 +162,7 @@ class Shares {
         highest_(runs, pace.seconds_per_work, outlook, Outlook::Case::highest),
         num_runs_(static_cast<std::int64_t>(runs.size())) {}
 
-  /// Remaining time of the sample's own runs.
+  /// Remaining time of the runs in the sample.
   Expectation left() const {
     return {lowest_.seconds_left(), middle_.seconds_left(), highest_.seconds_left()};
   }
@@ -173,7 +173,7 @@ class Shares {
             std::pow(middle * relative_error, 2)};
   }
   double error_of_all(std::int64_t population) const { return middle_.relative_error(population); }
-  /// The whole error belongs to the runs outside the sample, because those in it are known.
+  /// The whole error comes from the runs outside the sample, because the cost of those inside is known.
   double error_of_others(std::int64_t number) const {
     const std::int64_t all = num_runs_ + number;
     return middle_.relative_error(all) * static_cast<double>(all) / static_cast<double>(number);

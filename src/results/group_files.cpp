@@ -56,11 +56,11 @@ Json field_units(const std::vector<Group>& groups) {
   return all;
 }
 
-/// @param step  of a survival curve or an incidence; @param name  of its number of ends
+/// All of a group's fields, with its curves.
 Json group_json(const Group& group, bool with_laboratory) {
   Json entry;
   for (const auto& [name, value] : all_fields(group, with_laboratory)) entry[name] = json_of(value);
-  // For programs that draw them: such values separate no curves and need no mention.
+  // Programs that draw groups need this: automatic values separate no curves and need no mention.
   entry["automatic"] = Json::array();
   for (const sweep::Column* column : group_columns())
     if (separating_value(*column, group.first_row) == Value() && column->get(group.first_row) != Value())

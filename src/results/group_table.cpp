@@ -101,7 +101,7 @@ std::string column_notes(const std::vector<Group>& groups) {
   return text;
 }
 
-/// The longest time of one digit that is shorter than this one.
+/// The longest time with one digit that is shorter than the given time.
 double shorter_dwell(double rest) {
   const double unit = std::pow(10, std::floor(std::log10(rest)));
   const double digit = std::ceil(rest / unit) - 1;
@@ -164,7 +164,7 @@ std::vector<bool> varying_columns(const std::vector<Group>& groups) {
   return varies;
 }
 
-/// Does a value of each group follow from others of it?
+/// Whether a value of each group follows from other values of the group.
 template <class Value, class Others>
 bool follows(const std::vector<Group>& groups, const Value& value_of, const Others& others_of) {
   std::map<decltype(others_of(groups.front())), decltype(value_of(groups.front()))> known;
@@ -243,8 +243,8 @@ std::vector<std::string> heads(const std::vector<ResultColumn>& columns) {
   return line;
 }
 
-/// What the groups differ in. If their droplets differ in size or tilt, these come first; the numbers of the
-/// model that follow from them are separate.
+/// The parameters in which the groups differ. If their droplets differ in size or tilt, these come first;
+/// parameters that follow from them are separate.
 struct ParameterColumns {
   std::vector<ResultColumn> droplets, others, following;
 
@@ -312,7 +312,7 @@ std::string wrapped(const std::vector<std::string>& words) {
   return text;
 }
 
-/// One line across a device: x, number of droplets that passed it and of how many, fraction and interval.
+/// One line across a device: x, how many droplets passed it and of how many, fraction and interval.
 void append_passage(const Passage& passage, std::vector<std::string>& line) {
   const int num_known = passage.num_passed + passage.num_stopped;
   line.push_back(fmt::format("{:.4g}", passage.x));
@@ -328,7 +328,7 @@ bool are_counts_equal(const Passage& one, const Passage& other) {
   return one.num_passed == other.num_passed && one.num_stopped == other.num_stopped;
 }
 
-/// Among many lines those at which the counts change, and the last.
+/// Shortens a list of many lines to those at which the counts change, and the last.
 std::vector<Passage> shown_passages(const std::vector<Passage>& all) {
   constexpr std::size_t most_lines = 8;
   if (all.size() <= most_lines) return all;
@@ -358,7 +358,7 @@ std::string table_of_passages(const std::vector<Group>& groups, const std::vecto
                      console::aligned(lines));
 }
 
-/// Defines a clog, if resting droplets count, too.
+/// Defines a clog if resting droplets count as clogged, too.
 std::string definition_of_clogs(const std::vector<Group>& groups) {
   const double dwell = groups.front().dwell;
   if (std::isinf(dwell)) return "";

@@ -30,7 +30,7 @@
 namespace clog::results {
 namespace {
 
-/// Whether enough clogs may be artefacts of the mesh to move the length.
+/// Whether so many clogs may be artefacts of the mesh that the length may be wrong.
 bool hangs_on_mesh(const Group& group) {
   constexpr double tolerated = 0.1;  // of the clogs
   return group.num_on_mesh > 0 && group.num_on_mesh >= tolerated * group.clogging.num_clogs;
@@ -128,13 +128,13 @@ std::optional<Ending> counted(const sweep::RunRow& run, Ending ending) {
 /// The later of two times; unknown if one of them is.
 double later(double one, double other) { return std::isnan(one) || one > other ? one : other; }
 
-/// Three figures, rounded up, for people to type.
+/// Rounds up to three figures, which people can type.
 std::string rounded_up(double number) {
   const double unit = std::pow(10, std::floor(std::log10(number)) - 2);
   return fmt::format("{:.3g}", std::ceil(number / unit) * unit);
 }
 
-/// @throws Error if intact rows do not record which droplets rested for this time
+/// @throws Error if intact rows do not record which droplets rested for longer than `dwell`
 void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
   int num_unknown = 0;
   double known_from = 0;
@@ -158,7 +158,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
 
 /// Clogging lengths of intact runs that reached the distance from which they count.
 void fit_clogging(Group& group, std::span<const Ending> runs, double confidence, double from_distance) {
-  // Observations in which only some of the ends count as events; the others are censored.
+  // Some of the ends count as events; all other runs are censored.
   const auto observe = [&](auto is_end) {
     std::vector<fit::Observation> observations;
     observations.reserve(runs.size());
@@ -188,11 +188,11 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
   }
 }
 
-/// Fits the runs from their first obstacle on. @param runs  intact, and counted
+/// The runs that met an obstacle, counted from the first one on.
 struct Meetings {
-  std::vector<fit::Observation> from_first;  ///< of the runs that met one
+  std::vector<fit::Observation> from_first;  ///< of the runs that met an obstacle
   std::int64_t num_contacts = 0;
-  double way = 0;  ///< of all runs that record it [sigma]
+  double way = 0;  ///< distance of all runs that record contacts [sigma]
   int num_free = 0;
 
   void count(const sweep::RunRow& run, const Ending& ending, double from_distance) {
@@ -220,7 +220,7 @@ fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   return speed;
 }
 
-/// Counts a run that max-time ended although its droplet had rested for long.
+/// Counts a run that ended by max-time although its droplet had rested for long.
 void add_rest(const sweep::RunRow& run, Group& group) {
   constexpr double diameters = 10;
   const double rest = run.time - run.dwells.last_begin;
@@ -229,14 +229,15 @@ void add_rest(const sweep::RunRow& run, Group& group) {
   group.shortest_rest = std::min(group.shortest_rest, rest);
 }
 
-/// Distance and time until the end or the arrest; unknown in files without dwells.
+/// Distance and time until the end, or until the last dwell of a clogged run began; unknown in files without
+/// dwells.
 fit::Travel travel_until_arrest(const sweep::RunRow& run) {
   const bool is_clogged = run.status == RunStatus::clogged;
   const double way = is_clogged ? run.dwells.last_distance : run.distance;
   return {way / run.parameters.drag.terminal_speed, is_clogged ? run.dwells.last_begin : run.time};
 }
 
-/// As single droplets, groups that sank by less than half a diameter on average have no speed.
+/// Groups that sank by less than half a diameter on average have no speed, just as single droplets.
 fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double terminal_speed) {
   constexpr double shortest_way = 0.5;  // [sigma]
   double way = 0;
@@ -266,7 +267,7 @@ struct Tally {
   std::vector<fit::Displacement> displacements;
 };
 
-/// Includes a run in the clogging lengths, if it counts there.
+/// Includes a run in the clogging lengths, unless it is left out there.
 void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Tally& tally) {
   const Ending from_release = ending_of(run, group.dwell);
   const std::optional<Ending> ending = counted(run, from_release);

@@ -30,7 +30,7 @@ bool have_common_value(const std::vector<std::string>& some, const std::vector<s
   });
 }
 
-/// A key's values as the user typed them, unless points have others.
+/// A key's values: as the user typed them, or all values of the points.
 std::string shown(const sweep::Settings& settings, const sweep::Key& key,
                   const std::map<std::string, std::vector<std::string>>& values) {
   const std::vector<std::string>& all = values.at(key.name);

@@ -29,7 +29,7 @@ double tension_of(const Group& group) {
                                 : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Its lengths in millimetres; NaN without a laboratory.
+/// The group's clogging length in millimetres; NaN without a laboratory.
 fit::CloggingLength clogging_in_mm(const Group& group) {
   fit::CloggingLength clogging = group.clogging;
   for (double* length : {&clogging.length, &clogging.interval.lower, &clogging.interval.upper})

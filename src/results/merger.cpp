@@ -60,8 +60,8 @@ class Rows {
 
  private:
   std::vector<RunRow> rows_;
-  std::vector<std::string> paths_;                       // that rows are from
-  std::unordered_map<std::string, std::size_t> places_;  // by what runs are
+  std::vector<std::string> paths_;                       // the files of the rows
+  std::unordered_map<std::string, std::size_t> places_;  // places of rows, by identity()
   std::set<std::size_t> shared_, differing_;
   std::int64_t num_faulty_ = 0;
 
@@ -88,7 +88,7 @@ class Rows {
     paths_[place] = path;
   }
 
-  /// Whether it replaces the existing row. @throws Error if they contradict each other
+  /// Whether a row replaces the existing one. @throws Error if the two contradict each other
   bool is_better(const RunRow& row, std::size_t place, const std::string& path) {
     const RunRow& known = rows_[place];
     if (!sweep::is_result(row.status) || !sweep::is_result(known.status)) {
@@ -184,7 +184,7 @@ std::string part_line(const std::string& path, const store::SweepFile& file, con
   return console::json_text(part, -1) + attribute(file.provenance, "parts");
 }
 
-/// Attributes of the program's call: a new file has its own, which summarise those of its parts.
+/// Attributes of the program's call: a new file has its own, which summarise the attributes of its parts.
 static constexpr std::string_view replaced_attributes[] = {"config", "sessions", "parts", "stopping_rule",
                                                            "num_wanted"};
 

@@ -10,11 +10,11 @@ namespace clog::results {
 /// The position that a droplet of a device reached, in the coordinates of its circles [sigma].
 struct Arrival {
   double x;
-  bool is_final;  ///< otherwise it was still moving
+  bool is_final;  ///< false: the droplet was still moving
 };
 
 /// The fractions of droplets that passed the rows of posts downstream of the entrance, and the exit. @param
-/// lines x of lines in place of the rows of posts, whose x is that of their centres
+/// lines  x of lines to use instead of the rows of posts; the x of a row is the x of its centres
 std::vector<Passage> passages_of(const RunParameters& device, std::span<const Arrival> arrivals,
                                  std::span<const double> lines, double confidence);
 

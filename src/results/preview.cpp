@@ -72,7 +72,7 @@ struct Sample {
   std::string failure;  ///< reason of the first that could not begin; these are not among the costs
   std::int64_t num_clogged = 0;
   std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
-  double spacing = 0;          ///< of the obstacles of such a run [sigma]
+  double spacing = 0;          ///< obstacle spacing of such a run [sigma]
   bool has_own_circles = false;
 
   void count(const sweep::RunRow& row) {
@@ -99,12 +99,12 @@ RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunP
 constexpr std::size_t fewest_stored_runs = 5;
 constexpr double hour = 3600;
 
-/// The runs in the sweep's own file; empty without a file.
+/// The sample of runs in the sweep's own file; empty without a file.
 struct Stored {
   Sample sample;
   std::vector<WaitingRuns> waiting;  ///< runs of each parameter set that are not in the sample
   std::int64_t num_done = 0;         ///< tasks that need not run again
-  double seconds = 0;                ///< that its tasks have taken so far
+  double seconds = 0;                ///< time that the tasks have taken so far
 
   bool knows_enough() const { return sample.costs.size() >= fewest_stored_runs; }
 };
@@ -134,7 +134,8 @@ Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
   return stored;
 }
 
-/// Tasks spread over parameter sets and, where these are few, over seeds; those of the same array together.
+/// Tasks spread over parameter sets and, if there are few sets, over seeds; tasks of the same array are
+/// adjacent.
 std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
   constexpr std::int64_t most_tasks = 24;
   constexpr std::int64_t most_seeds = 4;  // few of many parameter sets, because arrays may take long to build
@@ -159,7 +160,7 @@ std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
 constexpr double seconds_to_try = 10;
 
 /// Runs short pieces of these tasks. Another process may compute the jobs and answers between slices of its
-/// work; one that takes too long, such as a release that does not come to rest, is dropped.
+/// work; a job that takes too long, such as a release that does not come to rest, is dropped.
 Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
   constexpr double fewest_seconds = 0.1;  // for a run whose array took all of its share
   constexpr double grace = 0.5;           // for the last answer
@@ -202,14 +203,14 @@ SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample) {
   return sweep_cost(sample.costs, all_work, plan.size());
 }
 
-/// Adds earlier time, or subtracts it.
+/// Adds seconds to a cost; negative seconds subtract.
 SweepCost plus(SweepCost cost, double seconds) {
   for (double* part : {&cost.bound, &cost.expected, &cost.lower, &cost.upper})
     *part = std::max(0.0, *part + seconds);
   return cost;
 }
 
-/// Limits an estimate by what is known; its interval keeps its width.
+/// Replaces the estimate; the interval keeps its relative width.
 SweepCost with_expected(SweepCost cost, double expected) {
   cost.lower *= expected / cost.expected;
   cost.upper *= expected / cost.expected;
@@ -242,7 +243,7 @@ void print_left(const sweep::Plan& plan, const std::string& output, const Stored
              plan.size() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
 }
 
-/// Clogging lengths below an obstacle spacing would be doubted (`v`): warns before the runs.
+/// Warns before the runs about clogging lengths below an obstacle spacing, which clogfit would doubt (`v`).
 void print_short_lengths(const Sample& sample) {
   constexpr std::int64_t fewest = 3;
   constexpr std::int64_t one_in = 4;  // if the length is five spacings, one clog in six is this short
@@ -256,7 +257,7 @@ void print_short_lengths(const Sample& sample) {
 }
 
 /// Limits of the cost of a sweep that adds seeds.
-/// @param cost  of its first round
+/// @param cost  of the sweep's first round
 void print_rounds(const SeedRule& rule, std::int64_t first_seeds, const SweepCost& cost) {
   const std::int64_t needed = rule.clogs_needed();
   fmt::print(std::cout, "# this is the first round: +-{} % needs {} per parameter set\n",

@@ -59,7 +59,7 @@ bool have_some_broken(const std::vector<Group>& groups) {
 
 namespace {
 
-/// Clogs by mechanism, as 3/5/2/0.
+/// Numbers of clogs by mechanism, as 3/5/2/0.
 std::string mechanism_counts(const Group& group) {
   std::vector<std::string> counts;
   for (const Group::EndsBy& cause : group.causes)

@@ -19,7 +19,7 @@ std::string length_text(const fit::CloggingLength& clogging);
 std::string interval_text(const fit::CloggingLength& clogging);
 
 /// The columns of the scene's results. @param groups  not empty
-/// @param has_laboratory  columns in its units follow, in which speeds are those of all runs
+/// @param has_laboratory  whether columns in laboratory units follow, in which speeds are those of all runs
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
                                               bool has_laboratory);
 
@@ -31,9 +31,9 @@ bool have_some_broken(const std::vector<Group>& groups);
 bool have_laboratory(const std::vector<Group>& groups);
 /// A group's interfacial tension, clogging length, speed and time until a clog in laboratory units.
 std::vector<Field> laboratory_fields(const Group& group);
-/// The same for people.
+/// The same fields as printed columns.
 std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups, double confidence);
-/// Diameter and tilt, as far as the groups differ in them.
+/// Columns of diameter and tilt, if the groups differ in them.
 std::vector<ResultColumn> droplet_columns(const std::vector<Group>& groups);
 
 }  // namespace clog::results

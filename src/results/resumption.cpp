@@ -12,16 +12,16 @@
 /// What a sweep adopts from the table and the journal of its earlier sessions.
 namespace clog::results {
 
-/// Whether it is the run that has this number in the plan. Usually all are, because the sweep resumes
-/// unchanged.
+/// Whether the row belongs to the run that has its task number in the plan. Usually all rows do, because the
+/// sweep resumes unchanged.
 bool SweepState::is_of_its_task(const sweep::RunRow& row) const {
   return row.task >= 0 && row.task < plan_->size() &&
          sweep::identity(row) == sweep::identity(sweep::describe(plan_->task(row.task)));
 }
 
-/// Turns rows of the table, and records of the journal in its order, into runs: in runs_ if all are of their
-/// tasks, otherwise in the list that it returns. Each is moved, because a large sweep has memory for each row
-/// just once.
+/// Turns rows of the table, and then records of the journal in its order, into runs. These go to runs_ if
+/// every row belongs to its task, otherwise to the list that this returns. Rows are moved, because a large
+/// sweep has memory for each row just once.
 SweepState::Known SweepState::recognise(std::vector<sweep::RunRow> rows, std::vector<Entry> records,
                                         const sweep::Settings& settings) {
   Known known;
@@ -96,7 +96,7 @@ void SweepState::adopt(const store::SweepFile& file, const sweep::Settings& sett
   provenance_ = std::move(all);
 }
 
-/// Another sweep may have left its journal here.
+/// Refuses a record of another sweep, which may have left its journal here.
 void SweepState::refuse_foreign(const sweep::RunRow& record, const FixedValues& fixed) const {
   const std::string differing = fixed.differing_keys(record);
   if (!differing.empty())
@@ -106,7 +106,7 @@ void SweepState::refuse_foreign(const sweep::RunRow& record, const FixedValues& 
                     path_, journal_.path(), differing));
 }
 
-/// Runs outside this plan may have other circles.
+/// Keeps circles of runs outside this plan.
 void SweepState::keep_circles(const store::SweepFile& file) {
   for (const store::CircleFile& one : file.circles)
     if (std::ranges::none_of(circles_, [&](const auto& known) { return known.circles == one.circles; }))
@@ -118,7 +118,7 @@ void SweepState::find_tasks(Known known) {
   for (const auto& [run, entry] : known)
     last_seed = std::max(last_seed, std::int64_t{entry->row.parameters.seed});
   for (std::int64_t task = 0; task < plan_->size(); ++task) {
-    // Seeds that may be added later follow in increasing order: none beyond has begun yet.
+    // Seeds that may be added later follow in increasing order: no later seed has begun yet.
     if (task >= std::max(num_wanted_, std::ssize(runs_)) &&
         (known.empty() || plan_->task(task).seed > last_seed))
       break;

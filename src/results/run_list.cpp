@@ -19,7 +19,7 @@ namespace {
 using Texts = std::vector<std::string>;
 
 constexpr const char* seeds_key = "seeds";
-constexpr std::size_t longest_list = 2500;  // of a key's text; longer ones become points
+constexpr std::size_t longest_list = 2500;  // of a key's text; longer lists become points
 
 std::string identity_without_seed(sweep::RunRow run) {
   run.parameters.seed = 0;
@@ -58,8 +58,8 @@ void set_all(sweep::Settings& settings, const Texts& texts) {
     if (!texts[i].empty()) settings.set(sweep::keys()[i].name, texts[i]);
 }
 
-/// Texts of a plan's first parameter set, changed to those of another run; nothing if a file's name is
-/// needed.
+/// Texts of a plan's first parameter set, changed to those of another run; nothing if the name of a file is
+/// unknown.
 std::optional<Texts> texts_of(const sweep::RunRow& row, const sweep::Plan& plan) {
   const sweep::RunRow first = sweep::describe(plan.group(0));
   Texts texts = plan.texts(0);

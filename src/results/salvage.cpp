@@ -85,7 +85,7 @@ Salvage salvage(const std::string& path) {
 
 std::vector<std::string> drop_faulty(std::vector<sweep::RunRow>& rows) {
   std::vector<std::string> faults;
-  std::unordered_map<std::string, std::int64_t> seen;  // tasks by runs
+  std::unordered_map<std::string, std::int64_t> seen;  // tasks by the identity of their runs
   std::erase_if(rows, [&](const sweep::RunRow& row) {
     std::string fault = sweep::fault_of(row);
     if (fault.empty())

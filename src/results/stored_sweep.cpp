@@ -94,7 +94,8 @@ sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file) {
   });
 }
 
-/// Whether the key has a list of its own, or one in points. Others may vary because they follow from a word.
+/// Whether the key has a list of its own, or one in points. Other keys may vary because they follow from a
+/// word.
 static bool is_listed(const sweep::Key& key, const sweep::Settings& settings) {
   const std::vector<std::string>& keys = settings.points().keys;
   return settings.values(key.name).size() > 1 || std::ranges::find(keys, key.name) != keys.end();

@@ -202,14 +202,14 @@ void SweepState::withdraw_failure(std::int64_t task) {
   Entry& entry = *runs_.at(task);
   {
     const std::lock_guard lock(changing_);
-    restart(entry.row);  // a broken rank's result does not count as progress
+    restart(entry.row);  // the broken rank's result does not count as progress
   }
   write_down(entry);
 }
 
 void SweepState::tick() {
-  // Writing the whole table takes longer for more runs, and the journal must be rewritten now and then; both
-  // may take two percent of the time.
+  // Writing the whole table takes longer the more runs there are, and the journal must be rewritten now and
+  // then; both may take two percent of the time.
   const Clock::time_point now = Clock::now();
   if (publication_.valid()) {
     if (publication_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;
@@ -251,8 +251,8 @@ void SweepState::publish() {
   end_publication();
 }
 
-/// If the journal was removed or the table replaced, writes everything once more and ends the sweep. A
-/// removed table is written again.
+/// Starts to write the table in another thread. If the table was replaced or the journal removed, writes
+/// everything once more and ends the sweep. A removed table is written again.
 void SweepState::begin_publication() {
   const std::string there = place_.stamp();
   if (!there.empty() && there != stamp_) rescue();
@@ -299,7 +299,8 @@ void SweepState::rescue() {
       path_, rescued().path()));
 }
 
-/// For when the table has the results before this place of the journal; later records stay.
+/// Prepares the journal for when the table has the results before `place`: unfinished runs and all later
+/// records stay.
 void SweepState::prepare_journal(const std::vector<const Entry*>& all, std::uint64_t place) {
   std::deque<Entry> unfinished;
   std::vector<const Entry*> needed;
@@ -312,7 +313,7 @@ void SweepState::prepare_journal(const std::vector<const Entry*>& all, std::uint
 
 std::string SweepState::finish() {
   publish();
-  if (place_.stamp() != stamp_) publish();  // somebody moved or removed it meanwhile
+  if (place_.stamp() != stamp_) publish();  // somebody has moved or removed the table
   const std::vector<const Entry*> all = entries();
   const bool is_complete =
       std::ssize(all) - std::ssize(other_runs_) >= num_wanted_ &&

@@ -15,7 +15,7 @@
 namespace clog::results {
 namespace {
 
-/// Model and preset of the row, defaults otherwise; not resolved yet.
+/// The row's model and preset, and defaults for all other keys; not resolved.
 RunParameters defaults_for(const sweep::RunRow& row) {
   sweep::Settings settings;
   settings.set("model", name(row.parameters.model));
@@ -43,7 +43,7 @@ Value usual_density(RunParameters run) {
   return sweep::describe(resolve(run)).obstacle_density;
 }
 
-/// The density of these arrays follows from gaps, diameters or circles.
+/// Whether the array's density follows from gaps, diameters or circles.
 bool has_derived_density(const sweep::RunRow& row) {
   const ObstacleParameters& obstacles = row.parameters.obstacles;
   return obstacles.layout != ObstacleLayout::random ||
@@ -61,17 +61,17 @@ bool follows(const Parameter& one, const Parameter& other) {
 
 enum class Others { all, independent };
 
-/// Whether the value is automatic if the other parameters are given: all, or those that do not follow from
-/// it.
+/// Whether the value is automatic for the row's other parameters: for all of them, or for those that do not
+/// follow from it.
 bool is_automatic_with(Others others, const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
-  if (are_circles_missing(row.parameters)) return true;  // as far as the row shows
+  if (are_circles_missing(row.parameters)) return true;  // the row cannot tell
   RunParameters run = defaults_for(row);
   for (const Parameter& parameter : parameter_schema())
     if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column) &&
         (others == Others::all || !follows(parameter, *column.parameter)))
       parameter.set(run, parameter.get(row.parameters));
-  run.obstacles.own = row.parameters.obstacles.own;  // the circles, too
+  run.obstacles.own = row.parameters.obstacles.own;  // with the circles
   return column.get(sweep::describe(resolve(run))) == column.get(row);
 } catch (const Error&) {
   return false;
@@ -90,7 +90,7 @@ Value separating_value(const sweep::Column& column, const sweep::RunRow& row) {
   const DpParameters& dp = row.parameters.dp;
   if (column.name == "perimeter_stiffness" && dp.perimeter_spring == PerimeterSpring::rest &&
       dp.perimeter_stiffness && dp.line_tension > 0) {
-    constexpr double figures = 1e9;  // the ratio is known only to round-off
+    constexpr double figures = 1e9;  // the ratio has round-off
     return std::round(figures * *dp.perimeter_stiffness / dp.line_tension) / figures;
   }
   return column.get(row);

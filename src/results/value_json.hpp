@@ -24,11 +24,12 @@ nlohmann::ordered_json step_json(const Step& step, const char* name, int num_end
           {"lower", step.interval.lower},
           {"upper", step.interval.upper}};
 }
-/// For a table: four figures; `-` for an unset value. A foreign file's words may contain control characters.
+/// Text for a printed table: four figures; `-` for an unset value. A foreign file's words may contain control
+/// characters.
 std::string short_text(const sweep::Value& value);
-/// For CSV: all digits; quoted if a word contains a comma or a quote.
+/// Text for CSV: all digits; quoted if a word contains a comma or a quote.
 std::string csv_cell(const sweep::Value& value);
-/// A line for each row, after one with the names of the fields.
+/// CSV with the names of the fields, then a line for each row.
 std::string csv_table(const std::vector<std::vector<Field>>& rows);
 
 }  // namespace clog::results

@@ -15,15 +15,15 @@ namespace {
 /// Variables in which launchers give a process its rank.
 constexpr const char* rank_variables[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
 
-/// A rank that no launcher has started is alone. Otherwise Open MPI would start a daemon for it, which looks
-/// for ssh and ends the rank when it is killed; and it would use a folder whose name all such ranks of a user
-/// share, so that one that starts while another ends may fail.
+/// A rank that no launcher has started is alone. Otherwise Open MPI would start a daemon for the rank, which
+/// looks for ssh and ends the rank when the daemon is killed. Open MPI would also use a folder whose name all
+/// such ranks of a user share, so that a rank that starts while another ends may fail.
 void stand_alone_without_launcher() {
   for (const char* name : rank_variables)
     if (std::getenv(name)) return;
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
-  setenv("HOME", "/", 0);  // Open MPI 5 does not start without one; it looks for settings there
+  setenv("HOME", "/", 0);  // Open MPI 5 does not start without it; it looks for settings there
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ class Driver {
     if (is_expecting_) progress_.finish();
   }
   bool was_interrupted() const { return was_interrupted_; }
-  /// None: nullptr.
+  /// Why the sweep must stop now; nullptr: it must not.
   const char* reason_to_stop() const {
     if (console::stop_signalled()) return "a signal";
     const std::chrono::duration<double, std::ratio<3600>> hours = Clock::now() - begin_;
@@ -119,7 +119,7 @@ class Driver {
   }
 };
 
-/// Requests the next round from the state of the sweep, if the rule wants one. Returns whether it does.
+/// Requests the next round from the state of the sweep, if the rule needs one. Returns whether it does.
 bool begin_round(results::SeedRule& rule, results::SweepState& state) {
   std::vector<std::int64_t> next =
       rule.next_round([&](std::int64_t task) { return state.row(task).status == RunStatus::clogged; });

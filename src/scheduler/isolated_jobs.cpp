@@ -36,12 +36,12 @@ enum Kind : std::int64_t {
   process_began,      // helper -> rank: its pid, once nobody else has its socket; -1 if it never began
   process_ended,      // helper -> rank: an Ending
   begin,              // rank -> process: a task's number and the snapshot to begin at
-  report,             // rank -> process: how far is it (empty); and the answer: a row and its snapshot
+  report,             // rank -> process: asks for progress (empty); the answer: a row and its snapshot
   over,               // process -> rank: the last row
   drop,               // rank -> process: work no more on this (empty)
 };
 
-/// How long a rank waits for a process that should answer at once: a stopped one never does.
+/// Timeout for answers that a process should give at once: a stopped process never does.
 constexpr std::chrono::milliseconds patience{2000};
 /// Timeout for the start of a process, which takes long when memory is scarce.
 constexpr std::chrono::milliseconds patience_for_start{20'000};
@@ -53,7 +53,7 @@ struct Ending {
   int status = 0;      // exit code or signal
 };
 
-/// Such as SIGKILL. (sigabbrev_np() needs glibc 2.32.)
+/// The name of a signal, such as SIGKILL. (sigabbrev_np() needs glibc 2.32.)
 std::string name_of(int signal) {
   static constexpr std::pair<int, const char*> deadly[] = {
       {SIGHUP, "HUP"},   {SIGINT, "INT"},   {SIGQUIT, "QUIT"},     {SIGILL, "ILL"},   {SIGTRAP, "TRAP"},
@@ -73,10 +73,10 @@ std::string describe(const Ending& ending) {
                      signal == SIGKILL ? ", as the kernel does when memory runs out" : "");
 }
 
-/// The process dies with the one that forked it. The rank handles signals that stop a sweep.
+/// Makes this process die with the one that forked it. The rank handles signals that stop a sweep.
 void depend_on_parent(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(0);  // it was quicker
+  if (getppid() != parent) _exit(0);  // the parent died before the call
   for (const int signal : console::stop_signals) std::signal(signal, SIG_IGN);
 }
 
@@ -141,8 +141,8 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
     socket.close();
     rank.send(process_began, 0, to_bytes(process, {}));
     if (process > 0) {
-      // It stays a zombie until the rank asks for the next process, so its pid is not reused and the rank's
-      // kill cannot hit another process.
+      // The process stays a zombie until the rank asks for the next one, so its pid is not reused and the
+      // rank's kill cannot hit another process.
       siginfo_t end{};
       retried([&] { return waitid(P_PID, process, &end, WEXITED | WNOWAIT); });
       ending.code = end.si_code;
@@ -188,7 +188,7 @@ class IsolatedJobs::Processes {
   std::optional<Ending> bury() {
     process_.close();
     if (process_id_ > 0)
-      kill(process_id_, SIGKILL);  // its pid is not reused until the helper starts the next
+      kill(process_id_, SIGKILL);  // nobody else gets this pid until the helper starts the next process
     if (helper_.wait(patience))
       if (const auto message = helper_.receive()) return from_bytes<Ending>(message->bytes).first;
     give_up_helper();
@@ -269,7 +269,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
       fail(ending ? describe(*ending) : without_helper);
       return;
     }
-    if (message->job != number_) return;  // of an earlier job, which was dropped meanwhile
+    if (message->job != number_) return;  // from an earlier job, which was dropped
     last_ = sweep::report_from(message->bytes);
     is_over_ = message->kind == over;
     is_asked_ = false;

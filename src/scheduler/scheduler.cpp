@@ -30,7 +30,7 @@ enum Tag : int {
 };
 constexpr std::int64_t no_more_tasks = -1;
 
-/// Sleeps a little longer each time nothing happened.
+/// Sleeps a little longer each time nothing has happened.
 class Backoff {
  public:
   void sleep() {
@@ -139,13 +139,13 @@ class Master {
     return running_.empty() && (stopping_ || !has_tasks() || schedule_.trust.num_in_service() == 0);
   }
 
-  /// Whether tasks remain while every rank is on hold, or waits for a rank that is.
+  /// Whether tasks remain while every rank is on hold or waits for a rank on hold.
   bool nobody_can_work() const {
     const bool all_wait = static_cast<int>(waiting_.size()) + num_dismissed_ == ranks_.size() - 1;
     return running_.empty() && all_wait && !is_over();
   }
 
-  /// One clock for all rounds.
+  /// The time of one clock for all rounds [s].
   static double seconds() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
   struct Beginning {
@@ -204,7 +204,7 @@ class Master {
 
   void withdraw_failure(std::int64_t task) {
     if (running_.contains(task) || !withdrawn_.insert(task).second)
-      return;  // another rank tries it, now or later
+      return;  // another rank tries the task, now or later
     if (std::find(failed_tasks_.begin(), failed_tasks_.end(), task) == failed_tasks_.end())
       failed_tasks_.push_back(task);
     events_.failure_withdrawn(task);
@@ -254,7 +254,7 @@ class Master {
     }
   }
 
-  /// One slice of this rank's own task. Returns whether there was one.
+  /// Computes one slice of this rank's own task. Returns whether it has one.
   bool work() {
     if (!schedule_.master_computes) return false;
     if (!own_job_) {

@@ -24,12 +24,12 @@ class Socket {
 
   struct Message {
     std::int64_t kind = 0;
-    std::int64_t job = 0;  ///< which one it is about
+    std::int64_t job = 0;  ///< the job to which the message belongs
     std::vector<std::byte> bytes;
   };
   bool is_open() const { return descriptor_.is_open(); }
-  /// From now on a message that stops for this long after its beginning, in either direction, counts as the
-  /// other process's death: it may have been stopped.
+  /// From now on the other process counts as dead if a message in either direction halts for this long after
+  /// its beginning: the process may have been stopped.
   void limit_halts(std::chrono::milliseconds longest) const;
   void close() { descriptor_ = Descriptor(); }
   /// A message to a process that has died is lost.
@@ -39,7 +39,7 @@ class Socket {
   /// Whether there is something to receive, possibly the end.
   bool wait(std::chrono::milliseconds longest) const;
 
-  /// Hands the other process a socket of its own (SCM_RIGHTS).
+  /// Sends one end of another connection to the other process (SCM_RIGHTS).
   void send_socket(const Socket& socket) const;
   /// Waits for a socket; not open: the other process has died.
   Socket receive_socket() const;

@@ -43,7 +43,7 @@ std::vector<Obstacle> obstacles_along(const std::vector<store::PolygonFrame>& fr
   return obstacles;
 }
 
-/// The number of checks of the run in this time, at least one.
+/// The number of the run's checks in this time, at least one.
 std::int64_t in_checks(double interval, double time_step) {
   constexpr double never = 1e15;
   return std::llround(std::clamp(interval / (DropletRun::steps_per_check * time_step), 1.0, never));

@@ -14,7 +14,7 @@
 namespace clog::store {
 namespace {
 
-/// The attribute with a line, checksum and name, for every other attribute and for the table.
+/// The attribute that has a line, checksum and name, for every other attribute and for the table.
 constexpr const char* list_name = "checksums";
 
 std::string line_of(const NamedCheckSum& one) { return fmt::format("{:08x} {}\n", one.second, one.first); }
@@ -42,7 +42,8 @@ std::optional<std::uint32_t> listed_check_sum(hid_t file, const std::string& nam
   return std::nullopt;
 }
 
-/// An attribute holds less than 64 KiB: the rest of a longer text is in others, `config.2` and so on.
+/// An attribute holds less than 64 KiB: the rest of a longer text is in further attributes, `config.2` and so
+/// on.
 constexpr std::size_t longest_part = 60'000;
 
 std::string name_of_part(const std::string& name, std::size_t part) {
@@ -61,7 +62,7 @@ void join_parts(Provenance& provenance) {
     }
 }
 
-/// The rest of an attribute with a damaged part is useless.
+/// Drops an attribute with a damaged part: the rest is useless.
 void drop_attribute(const std::string& part, Provenance& provenance) {
   const std::string name = part.substr(0, part.find('.'));
   std::erase_if(provenance,

@@ -20,7 +20,7 @@ using NamedCheckSum = std::pair<std::string, std::uint32_t>;
 /// @param table  the list's entry about the table. @throws LibraryError
 void write_attributes(hid_t file, const NamedCheckSum& table, const Provenance& attributes);
 
-/// An attribute's text; if it is damaged, the candidate that matches its checksum.
+/// An attribute's text; for a damaged text the candidate that matches its checksum.
 std::string text_as_written(hid_t file, const std::string& name,
                             std::span<const std::string_view> candidates);
 /// An attribute's text; empty if it is missing or damaged.

@@ -27,7 +27,7 @@ void write_one(hid_t group, const CircleFile& file) {
                   "centres and radii [sigma]; radius 0: half of the row's obstacle_diameter");
 }
 
-/// Nothing if write_one() has not written it.
+/// Reads circles; nothing if write_one() has not written them.
 std::optional<CircleFile> read_one(hid_t group, const std::string& name) {
   const Dataset table(H5Dopen2(group, name.c_str(), H5P_DEFAULT));
   if (!table.valid()) return std::nullopt;

@@ -25,22 +25,21 @@ class Draft {
   /// @param mark  see remove_stale_drafts(); written first @throws Error if no file can be made there
   Draft(OutputPath place, std::string_view mark);
   Draft(Draft&&) = delete;
-  /// Removes it, unless it has been published.
+  /// Removes the draft, unless it has been published.
   ~Draft();
 
   int descriptor() const { return file_; }
   std::uint64_t size() const { return size_; }
 
-  /// Appends to its content. @throws Error
+  /// Appends to the draft. @throws Error
   void write(std::span<const std::byte> bytes);
 
-  /// Call this before publishing it, if others are to read it from then on: HDF5 locks the files that it
-  /// reads, and fails if somebody else has locked them.
+  /// Call this before publishing a draft that others will read: HDF5 locks the files that it reads, and fails
+  /// if somebody else has locked them.
   void unlock();
-  /// Saves it to disk and renames it to the target, replacing the file with this OutputPath::stamp(), if that
-  /// is still there, with its mode, owner, group and access list. Returns the stamp of the published file,
-  /// which somebody may have replaced meanwhile; nothing if a different file is there, which stays. @throws
-  /// Error
+  /// Saves the draft to disk and renames it to the target, with the mode, owner, group and access list of the
+  /// file with this OutputPath::stamp(), which it replaces. Returns the stamp of the published file, which
+  /// somebody may have replaced since; nothing if a different file is there, which stays. @throws Error
   std::optional<std::string> publish(const std::string& stamp);
   /// The open file, which the caller owns from now on.
   Descriptor take_descriptor() { return std::move(file_); }

@@ -28,7 +28,7 @@ std::string file_fault(FileAction action, const std::string& path, std::error_co
   return what + " (" + reason.message() + "); check the disk and the permissions";
 }
 
-/// The user's value of the variable: prepare_library() changes it.
+/// The user's value of the variable, before prepare_library() changes it.
 const bool are_locks_optional = [] {
   const char* use = std::getenv("HDF5_USE_FILE_LOCKING");
   return use && std::string_view(use) == "FALSE";

@@ -44,7 +44,7 @@ std::size_t size_of(int descriptor, const std::string& path);
 /// All bytes of a file; fewer than size_of() if somebody truncates it meanwhile.
 std::vector<std::byte> read_all(int descriptor, const std::string& path);
 
-/// So many bytes from a place on; fewer if the file ends before.
+/// Reads `size` bytes from `place` on; fewer if the file ends before.
 std::vector<std::byte> read_at(int descriptor, std::uint64_t place, std::size_t size,
                                const std::string& path);
 

@@ -23,7 +23,7 @@ namespace clog::store {
 
 void prepare_library() {
   static const bool is_prepared = [] {
-    H5dont_atexit();  // before anything else: querying the version initialises it, too
+    H5dont_atexit();  // first of all, because even querying the version initialises the library
     setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
     return true;
   }();
@@ -39,8 +39,8 @@ namespace {
 
 constexpr std::string_view hdf5_mark = "\x89HDF\r\n\x1a\n";
 
-/// Returns the bytes of a file of the earliest format. It is built in memory, because the library does not
-/// always survive a full disk.
+/// Builds a file of the earliest format in memory, because the library does not always survive a full disk,
+/// and passes its bytes to use().
 void with_file_image(const std::string& path, const std::function<void(hid_t file)>& fill,
                      const std::function<void(std::span<const std::byte> image)>& use) try {
   prepare_library();
@@ -53,7 +53,7 @@ void with_file_image(const std::string& path, const std::function<void(hid_t fil
   fill(file);
   const ssize_t size =
       H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0 ? H5Fget_file_image(file, nullptr, 0) : ssize_t{0};
-  void* image = nullptr;  // where the library's driver keeps the address of the image, which is not copied
+  void* image = nullptr;  // address of the image in the library's driver, which avoids a copy
   if (size <= 0 || H5Fget_vfd_handle(file, access, &image) < 0) throw LibraryError("pass on the file");
   use({*static_cast<const std::byte* const*>(image), static_cast<std::size_t>(size)});
 } catch (const LibraryError& error) {
@@ -105,7 +105,7 @@ File open_image(std::vector<std::byte>& image, const std::string& path) {
     throw Error("cannot read " + path + " (not an HDF5 file); give a file written by clogsweep");
   const PropertyList access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_fapl_core(access, image.size(), false);
-  // The library would make two copies.
+  // Without these callbacks the library would make two copies.
   H5FD_file_image_callbacks_t no_copies = {
       [](std::size_t, H5FD_file_image_op_t, void* bytes) { return bytes; },
       [](void* bytes, const void*, std::size_t, H5FD_file_image_op_t, void*) { return bytes; },

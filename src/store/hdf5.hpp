@@ -45,13 +45,14 @@ using Attribute = Handle<H5Aclose>;
 using PropertyList = Handle<H5Pclose>;
 using Group = Handle<H5Gclose>;
 
-/// Call this before the first use of the library: no clean-up of its own at exit, which crashes after a
-/// failed write; no error stack on the screen (we print one line of our own); and no file locks (a reader
-/// with the file open must not make a write fail; they also fail on many cluster file systems).
+/// Call this before the first use of the library. It turns off the library's clean-up at exit, which crashes
+/// after a failed write; its error stack on the screen (we print one line of our own); and its file locks (a
+/// reader with the file open must not make a write fail; locks also fail on many cluster file systems).
 void prepare_library();
 
-/// The library keeps what it reads and writes in memory, and may crash without it. @param purpose  as in
-/// "read sweep.h5"; @param size  of the file [bytes] @throws Error if there is not enough
+/// Checks the memory for a file that the library reads or writes in memory: the library may crash without it.
+/// @param purpose  as in "read sweep.h5" @param size  of the file [bytes] @throws Error if there is not
+/// enough
 void require_memory_of_file(const std::string& purpose, std::size_t size, int copies = 2);
 
 /// The library failed in memory.
@@ -67,8 +68,8 @@ std::optional<std::string> write_whole(const OutputPath& place, const std::strin
 
 /// The content of a regular file. @throws Error that says what is wrong with the path
 std::vector<std::byte> read_file(const std::string& path);
-/// Opens the bytes of a file for reading, so that the checked bytes are those that are read. They must live
-/// as long. @throws Error naming the path if they are not an HDF5 file
+/// Opens the bytes of a file for reading, so that the library reads exactly the checked bytes. `image` must
+/// outlive the result. @throws Error naming the path if the bytes are not an HDF5 file
 File open_image(std::vector<std::byte>& image, const std::string& path);
 
 Space space_of(std::initializer_list<hsize_t> shape);

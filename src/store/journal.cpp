@@ -54,7 +54,7 @@ std::vector<std::byte> record_of(const sweep::RunRow& row, std::span<const std::
   return record;
 }
 
-/// Is the header complete? It is missing or incomplete if its writer died at once.
+/// Whether the header is complete. It is missing or incomplete if the journal's writer died at once.
 bool has_header(std::span<const std::byte> bytes, const std::string& path) {
   const FileHeader header;
   const std::size_t size = std::min(bytes.size(), sizeof header);
@@ -77,7 +77,7 @@ std::optional<RecordHeader> header_at(std::span<const std::byte> bytes, std::siz
 Journal::Contents parse(std::span<const std::byte> bytes) {
   Journal::Contents contents;
   std::size_t end = std::min(sizeof(FileHeader), bytes.size());  // end of the last readable record
-  std::int64_t num_passed = 0;                                   // headers of damaged records since then
+  std::int64_t num_passed = 0;                                   // headers of damaged records since `end`
   for (std::size_t place = end; place < bytes.size();) {
     const std::optional<RecordHeader> header = header_at(bytes, place);
     const std::size_t begin = place + sizeof(RecordHeader);
@@ -129,7 +129,7 @@ Journal::Journal(OutputPath place, const OutputPath* table) : place_(std::move(p
     remove_stale_drafts(place_, journal_mark);
     const std::vector<std::byte> bytes = read_all(file_, place_.path());
     if (has_header(bytes, place_.path())) contents_ = parse(bytes);
-    if (bytes.empty()) begin();  // a full disk is noticed before hours of work
+    if (bytes.empty()) begin();  // reports a full disk before hours of work
   } catch (...) {
     remove_if_empty();
     throw;
@@ -172,7 +172,7 @@ void Journal::begin() {
     write_at(file_, bytes_of(FileHeader()), 0, place_.path());
     contents_.num_bytes = sizeof(FileHeader);
     check(sync(file_), FileAction::write, place_.path());
-    place_.sync_folder();  // the table of the same folder tells whether that succeeds
+    place_.sync_folder();  // the table's next publication in the same folder reports a failure
   }
   if (ftruncate(file_, static_cast<off_t>(contents_.num_bytes)) != 0)
     throw FileError(FileAction::write, place_.path(), last_error());
@@ -247,8 +247,8 @@ void Journal::prepare(std::span<const Entry* const> entries, std::uint64_t begin
   while (copy_additions() > little);
 }
 
-/// Returns the number of bytes. Leaves a record out that is being written: if the disk is full, it will be
-/// undone.
+/// Returns the number of copied bytes. Leaves out a record that is being written: if the disk is full, the
+/// writer undoes it.
 std::uint64_t Journal::copy_additions() {
   constexpr std::uint64_t block = 1'000'000;
   const std::uint64_t before = num_copied_;
@@ -266,7 +266,7 @@ std::uint64_t Journal::copy_additions() {
 void Journal::replace() {
   check_place();
   copy_additions();
-  // The table of the same folder tells whether the folder can be synchronised.
+  // The table in the same folder reports whether the folder can be synchronised.
   if (!next_->publish(place_.stamp())) refuse_replaced();
   file_ = next_->take_descriptor();
   contents_.num_bytes = num_rewritten_bytes_ = next_->size();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* laboratories_name = "laboratories";
 
-/// Empty if it is not a text of fixed length.
+/// Reads a text; empty if it is not a text of fixed length.
 std::string read_text(hid_t group, const std::string& name) {
   const Dataset dataset(H5Dopen2(group, name.c_str(), H5P_DEFAULT));
   if (!dataset.valid()) return "";

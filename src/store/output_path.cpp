@@ -26,8 +26,8 @@ std::string folder_of(const fs::path& path) {
   return folder.empty() ? "." : folder.string();
 }
 
-/// Like the kernel's fs.protected_symlinks: in a world-writable sticky folder it follows only links of this
-/// user, or of the folder's owner.
+/// Refuses links as the kernel does with fs.protected_symlinks: in a world-writable sticky folder it follows
+/// only links of this user, or of the folder's owner.
 void refuse_link_of_others(const fs::path& link) {
   struct stat folder {
   }, there{};
@@ -70,7 +70,7 @@ std::string follow_links(const std::string& path) {
   return target.string();
 }
 
-/// Whether the file system lacks this way to rename.
+/// Whether the file system does not support this kind of renaming.
 bool is_unsupported(std::error_code reason) {
   return reason == std::errc::invalid_argument || reason == std::errc::function_not_supported;
 }
@@ -159,7 +159,7 @@ std::error_code OutputPath::replace(const std::string& stamp, const OutputPath& 
     }
     if (is_unsupported(reason)) return this->stamp() == stamp ? other.rename_to(*this, 0) : occupied;
     if (reason != std::errc::no_such_file_or_directory)
-      return reason;  // otherwise somebody removed it meanwhile
+      return reason;  // otherwise somebody has removed the file
   }
   const std::error_code reason = other.rename_to(*this, RENAME_NOREPLACE);
   if (!is_unsupported(reason)) return reason;

@@ -11,7 +11,7 @@ namespace clog::store {
 inline constexpr const char* trajectory_kind = "clogsweep trajectory";
 
 /// Makes the dataset /runs with these rows in an open file, and the root attributes: kind, format version,
-/// provenance, and the checksums of all of them. @throws LibraryError
+/// provenance, and the checksums of all these. @throws LibraryError
 void write_runs(hid_t file, const std::string& kind, const Rows& rows, const Provenance& provenance);
 
 }  // namespace clog::store

@@ -39,7 +39,7 @@ constexpr std::size_t rows_per_block = 1024;  // rows that are copied at once
 
 using CheckSums = std::vector<std::uint32_t>;  // of the rows
 
-/// Calls with the first row and the number of rows of each block.
+/// Calls visit() with the first row and the number of rows of each block.
 template <class Visit>
 void for_each_block(std::size_t num_rows, Visit visit) {
   for (std::size_t first = 0; first < num_rows; first += rows_per_block)
@@ -60,7 +60,7 @@ Space growing_space(std::size_t num_rows) {
   return Space(H5Screate_simple(1, &size, &unlimited));
 }
 
-/// @param laboratories  gets the checksums of those that rows refer to
+/// Writes the table. @param laboratories  gets the checksums of all laboratories of the rows
 CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& laboratories) {
   const RowLayout layout = RowLayout::present();
   const Dataset table = write_dataset(file, runs_name, layout.type(), growing_space(rows.number), nullptr,
@@ -85,10 +85,11 @@ CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& labor
   return sums;
 }
 
-/// Distinguishes a damaged table, which lacks a written column, from one of an older program.
+/// Attribute by which a damaged table, which lacks a written column, differs from a table of an older
+/// program.
 constexpr const char* num_columns_name = "num_columns";
 
-/// What the list of checksums says about the rows as a whole.
+/// The entry of the list of checksums for all rows together.
 NamedCheckSum joint_check_sum(const CheckSums& sums) {
   return {fmt::format("{} rows", sums.size()), check_sum(std::as_bytes(std::span(sums)))};
 }
@@ -268,7 +269,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
                           damage.what()));
 }
 
-/// Returns the seal of the file, which then can be read in this process.
+/// Returns the seal of the file, which this process can then read safely.
 Seal try_unless_whole(std::vector<std::byte>& image, const std::string& path) {
   const Seal seal = look_at_seal(image);
   if (seal != Seal::whole) try_in_child(image, path, [&] { examine(image, seal, path); });

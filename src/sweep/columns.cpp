@@ -183,7 +183,7 @@ Column filling_column() {
                 obstacles.lattice = lattice.value_or(LatticeKind::square);
                 obstacles.density = ObstacleParameters().density;
                 if (word == until_full) obstacles.density = {};
-                if (word == to_density) obstacles.density = RunRow::not_known;  // its column has it
+                if (word == to_density) obstacles.density = RunRow::not_known;  // see density_column()
               },
           .set_unknown = [](RunRow&) {}};
 }
@@ -234,14 +234,14 @@ std::vector<Column> make_columns() {
   using enum ColumnRole;
   std::vector<Column> all = {
       member("task", &RunRow::task, circumstance, "", "number of the task in its sweep")};
-  // Parameters that decide which others have a meaning come first.
+  // Parameters that decide which others apply come first.
   for (const Parameter& one : parameter_schema()) {
     if (one.has_own_column) all.push_back(parameter_column(one));
     if (one.key == std::string_view("model")) all.push_back(filling_column());
   }
   all.push_back(density_column());
   const std::vector<Column> others = {
-      // Any word: presets of another version may have other names.
+      // Allows any word: presets of another version may have other names.
       member("preset", &RunRow::preset, parameter, "",
              "preset with these keys of the interface; custom: no preset has them; none: soft disk", 16),
       member("model_version", &RunRow::model_version, parameter, "",

@@ -16,7 +16,7 @@ constexpr const char* point_keys_line = "point-keys";
 constexpr const char* point_line = "point";
 constexpr const char* shard_line = "shard";
 constexpr const char* usual_text = "*";  // of a key for which a point has no text
-// Behind the config, for each file its name and the number of its circles, then a circle a line.
+// After the config follow, for each file, its name with the number of its circles, then one line per circle.
 constexpr const char* file_mark = "#circles ";
 
 /// The text with blanks escaped, because they separate texts.
@@ -34,7 +34,7 @@ std::string line_of(const char* name, const std::vector<std::string>& texts) {
   return line + '\n';
 }
 
-/// The texts of such a line.
+/// The texts of a line that word_of() escaped.
 std::vector<std::string> texts_of_line(const std::string& line) {
   std::vector<std::string> texts;
   std::istringstream words(line);

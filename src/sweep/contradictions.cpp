@@ -9,12 +9,12 @@
 namespace clog::sweep {
 namespace {
 
-/// Whether it is given and differs from its automatic text.
+/// Whether the key is given and differs from its automatic text.
 bool is_changed(const Settings& settings, const std::string& key) {
   return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
 }
 
-/// A key of the interface was given without effect, because of another one.
+/// Refuses keys of the interface that have no effect because of another key.
 void refuse_interface_keys(const Settings& settings) {
   if (settings.text("model") == "sp") {
     if (settings.text("preset") != find_key("preset").default_text)

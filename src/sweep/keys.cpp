@@ -42,7 +42,7 @@ std::vector<Key> make_keys() {
   std::vector<Key> all;
   all.reserve(parameter_schema().size());
   for (const Parameter& parameter : parameter_schema()) all.push_back(key_of(parameter));
-  all.insert(all.begin() + 1, preset_key());  // behind the model
+  all.insert(all.begin() + 1, preset_key());  // after the model
   return all;
 }
 
@@ -114,7 +114,7 @@ std::vector<std::string> meant_names(std::string_view word, const std::vector<st
   std::vector<std::string> all = with_part(word, names);
   const std::string near = did_you_mean(word, names);
   std::erase(all, near);
-  // A word without its last letters, such as a plural's, precedes words that only contain it.
+  // A word without its last letters, such as a plural's s, precedes words that only contain it.
   if (!near.empty() && (all.empty() || near.starts_with(word))) all.insert(all.begin(), near);
   if (all.size() > most_named) all.resize(most_named);
   return all;

@@ -84,7 +84,8 @@ ObstacleArray ObstacleArrays::build(const RunParameters& run) {
 }
 
 std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParameters& parameters) {
-  // A place takes half a microsecond, times the places within reach of the largest obstacle, times up to two.
+  // A place takes half a microsecond, times the number of places within reach of the largest obstacle, times
+  // up to two.
   constexpr double ten_builds = 10 * 1e-6;
   const double reach =
       (parameters.largest_diameter() + parameters.gap) / (parameters.smallest_diameter() + parameters.gap);
@@ -103,7 +104,8 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
     const NameLock lock(*name);
     if (lock.state() == NameLock::State::impossible) return build(run);
     if (lock.state() == NameLock::State::held) {
-      // Nobody makes one meanwhile. Waiting processes do not search, which would take the builder's time.
+      // The lock keeps others from making one. Waiting processes do not search, which would take the
+      // builder's time.
       if (auto memory = SharedMemory::find(*name)) {
         is_waiting_worthwhile_ = true;
         return array_over(std::move(memory));

@@ -23,8 +23,8 @@ namespace {
 
 constexpr std::int64_t largest_sweep = 100'000'000;
 
-/// What a check of one branch of the settings returns. If one value of a list like 0,3 is refused, the
-/// message asks whether 0.3 was meant. @param where  beginning of the message
+/// Returns what a check of one branch of the settings returns. If the check refuses one value of a list like
+/// 0,3, the message asks whether 0.3 was meant. @param where  beginning of the message
 template <class Check>
 auto checked(const Settings& branch, const std::string& where, const Check& check) try {
   return check();
@@ -84,10 +84,10 @@ class Plan::Builder {
 
  private:
   Plan& plan_;
-  std::unordered_map<std::string, std::int64_t> known_;  // groups by what they are
+  std::unordered_map<std::string, std::int64_t> known_;  // groups, by the identity of their runs
   std::vector<std::string> names_;                       // of products, for messages; empty for lists
   std::int64_t num_runs_ = 0;                            // of all shards
-  Seeds last_seeds_;                                     // which many branches have in common
+  Seeds last_seeds_;                                     // shared by branches with the same seeds
 
   void add_branch(const Settings& branch, const std::string& name) {
     const std::string where = name.empty() ? "" : name + ": ";
@@ -117,7 +117,7 @@ class Plan::Builder {
         own[axis] = values;
   }
 
-  /// All at once; resolve() refuses a single one.
+  /// Refuses all angles at once; resolve() refuses a single one.
   void refuse_misfitting_angles(std::size_t product, std::int64_t num_places,
                                 const std::string& where) const {
     std::vector<std::string> angles;
@@ -126,7 +126,7 @@ class Plan::Builder {
       const RunParameters run = plan_.unresolved(product, place, last_seeds_->front());
       const ObstacleParameters& obstacles = run.obstacles;
       const bool is_possible = is_each_possible(run) && obstacles.layout == ObstacleLayout::lattice &&
-                               obstacles.box <= 1e4 * obstacles.spacing();  // else refused, see check_spacing
+                               obstacles.box <= 1e4 * obstacles.spacing();  // else check_spacing refuses
       if (!is_possible || fitting_lattice(obstacles)) continue;
       const std::string angle = shortest(obstacles.lattice_angle);
       if (std::ranges::find(angles, angle) != angles.end()) continue;
@@ -154,7 +154,7 @@ class Plan::Builder {
   }
 
   /// Different texts may mean the same parameter set: tilts of the same lattice, or `auto` and its value.
-  /// With other seeds that is one group.
+  /// Such sets with different seeds form one group.
   void add_group(RunRow run, std::size_t product, std::int64_t place) {
     run.parameters.seed = 0;
     const auto [known, is_new] = known_.emplace(identity(run), plan_.num_groups());
@@ -186,7 +186,7 @@ class Plan::Builder {
     }
   }
 
-  /// One part of a product.
+  /// Keeps the shard's part of a product.
   void keep(const Shard& shard) {
     std::vector<Group> groups;
     for (std::size_t i = 0; i < plan_.groups_.size(); ++i) {
@@ -264,7 +264,7 @@ std::int64_t Plan::task_of(std::int64_t group, std::int64_t place) const {
          std::distance(layer.groups.begin(), found);
 }
 
-/// A text for every axis.
+/// The texts of a parameter set, one for every axis.
 std::vector<const std::string*> Plan::texts(std::size_t product, std::int64_t place) const {
   const OwnLists& own = products_[product];
   std::vector<const std::string*> texts(axes_.size());

@@ -37,7 +37,8 @@ constexpr double longest_patience = 3.2e9;
 /// Largest number of obstacles, gaps or arcs of a droplet.
 constexpr std::int64_t most_contacts = 1'000'000;
 
-/// The same as a fraction of the weight: x^2/16 of an edge as long as the droplet, on a needle.
+/// Largest fraction of the weight that corners may hold: x^2/16 of an edge as long as the droplet, on a
+/// needle.
 constexpr double most_mesh_hold = 1e6;
 
 bool is_number_below(double value, double bound) { return std::isfinite(value) && std::abs(value) <= bound; }
@@ -49,7 +50,7 @@ std::string named(std::string_view column, std::string_view word) {
   return fmt::format("{}='{}'", column, word);
 }
 
-/// The rules are those of this program's model.
+/// Checks the parameters by the rules of this program's model.
 std::string parameter_fault(const RunRow& row) {
   const RunParameters& run = row.parameters;
   for (const auto& [name, value] : {std::pair{"time_step", run.time_step.value_or(RunRow::not_known)},
@@ -63,7 +64,7 @@ std::string parameter_fault(const RunRow& row) {
   try {
     const Scene& scene = scene_of(run);
     if (scene.walls_from == WallsFrom::circles) {
-      check_each(run);  // the row has only the checksum
+      check_each(run);  // the row has only the checksum of its circles
       return "";
     }
     const double density = scene.density(resolve(run).obstacles);
@@ -90,7 +91,7 @@ std::string bookkeeping_fault(const RunRow& row) {
 
 double time_step_of(const RunRow& row) { return row.parameters.time_step.value(); }
 
-/// Runs end after a whole number of steps.
+/// Checks that the run ended after a whole number of steps.
 std::string time_fault(const RunRow& row) {
   if (!(row.time >= 0 && row.time <= (1 + round_off) * row.parameters.max_time + time_step_of(row)))
     return named("time", row.time) + " is not between 0 and " + named("max_time", row.parameters.max_time);
@@ -127,7 +128,7 @@ std::string motion_fault(const RunRow& row) {
   return "";
 }
 
-/// A dwell begins within the path and the time of the run.
+/// Checks that a dwell begins within the path and the time of the run.
 std::string dwell_begin_fault(const RunRow& row, const std::string& column, double distance, double begin) {
   if (distance < 0 || distance > farthest_way(row))
     return named(column + "_at", distance) + " is not on the droplet's way";
@@ -136,7 +137,7 @@ std::string dwell_begin_fault(const RunRow& row, const std::string& column, doub
   return "";
 }
 
-/// @param next  the longer dwell; the run's end if there is none
+/// @param next  the dwell that was longer than this one; the run's end if there is none
 std::string dwell_fault(const RunRow& row, const std::string& column, const Dwell& dwell, const Dwell& next) {
   if (std::string fault = dwell_begin_fault(row, column, dwell.distance, dwell.begin); !fault.empty())
     return fault;
@@ -153,7 +154,7 @@ std::string dwells_fault(const RunRow& row) {
   const bool are_known = is_known(dwells.known_from);
   if (is_known(dwells.last_distance) != are_known || is_known(dwells.last_begin) != are_known)
     return "dwells_known_from, last_dwell_at, last_dwell_from: only some are known";
-  // A run too short for any recorded dwell ends before this time.
+  // A run that is too short for any recorded dwell ends before this time.
   const RunParameters& run = row.parameters;
   const double first = DwellRecord::shortest * run.dwell_length / run.drag.terminal_speed;
   if (are_known &&
@@ -166,7 +167,7 @@ std::string dwells_fault(const RunRow& row) {
   for (std::size_t i = 0; i < Dwells::most; ++i) {
     const Dwell& dwell = dwells.longest[i];
     if (!is_known(dwell.length) && !is_known(dwell.distance) && !is_known(dwell.begin)) {
-      next.length = -infinity;  // no earlier one was longer
+      next.length = -infinity;  // the file lists fewer dwells, so no further one may follow
       continue;
     }
     if (std::string fault = dwell_fault(row, dwell_column(i), dwell, next); !fault.empty()) return fault;
@@ -175,7 +176,7 @@ std::string dwells_fault(const RunRow& row) {
   return "";
 }
 
-/// Checks the shape of a droplet that has moved; before, it is unknown.
+/// Checks the shape of a droplet that has moved; the shape is unknown before.
 std::string shape_fault(const RunRow& row) {
   if (row.steps == 0) return "";
   if (!(row.kinetic_energy_ratio >= 0 && row.kinetic_energy_ratio < diverged_energy_ratio))
@@ -254,7 +255,7 @@ std::string passage_fault(const RunRow& row) {
   return "";
 }
 
-/// Only a thinner neck breaks a droplet, and every such neck does.
+/// Checks that a broken droplet has a neck thinner than break-up-neck, and that no other droplet has one.
 std::string neck_fault(const RunRow& row) {
   const double width = row.neck.width, least = row.parameters.dp.break_up_neck;
   if (is_known(width) != is_known(row.neck.distance))
@@ -272,8 +273,8 @@ std::string neck_fault(const RunRow& row) {
   return "";
 }
 
-/// A place of release is known only among user-supplied circles; it is in the array, or in a void across its
-/// border.
+/// Checks the place of release, which is known only among user-supplied circles: it is in the array, or in a
+/// void across its border.
 std::string release_fault(const RunRow& row) {
   if (!is_known(row.release_x) && !is_known(row.release_y)) return "";
   const ObstacleParameters& obstacles = row.parameters.obstacles;

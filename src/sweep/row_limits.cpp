@@ -64,10 +64,10 @@ std::string untested_angle(const DpParameters& dp) {
                      shortest(smallest_receding_angle));
 }
 
-/// Needles slip through the interface, and the droplet encloses them, at its release or later. Observed with
-/// obstacles up to as thick as an edge is long; more of them make it more frequent.
+/// Needles slip through the interface, and the droplet encloses them, at its release or later. This was
+/// observed with obstacles up to as thick as an edge is long; it is more frequent among more obstacles.
 std::string untested_diameter(const RunParameters& run) {
-  constexpr double thinnest = 2;                                  // over the length of an edge, with a margin
+  constexpr double thinnest = 2;  // in units of the edge length, with a margin
   if (scene_of(run).walls_from == WallsFrom::droplet) return "";  // there are no obstacles
   const double edge = units::regular_edge_length(*run.dp.vertices);
   if (!(run.obstacles.smallest_diameter() < thinnest * edge)) return "";
@@ -116,8 +116,8 @@ bool has_met_repetition(const RunRow& row) { return row.distance > repetition_le
 
 std::string possible_repetition(const Plan& plan) {
   std::int64_t num_groups = 0;
-  double farthest = 0, shortest_length = 0, most_boxes = 0;  // of the set that lacks most
-  bool is_of_user = false;                                   // whose circles boxes do not multiply
+  double farthest = 0, shortest_length = 0, most_boxes = 0;  // of the set that needs most boxes
+  bool is_of_user = false;                                   // boxes do not multiply its circles
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunRow row = describe(plan.group(group));
     const RunParameters& run = row.parameters;
@@ -169,7 +169,7 @@ std::string bare_lanes(std::span<const Obstacle> circles, const ObstacleParamete
       obstacles.own->source(), joined(named), shortest(period));
 }
 
-/// Lengths of the device in other units than those of the circles make it far too large.
+/// Lengths of a device in other units than its circles make it far too large.
 std::string small_part(std::span<const Obstacle> circles, const ObstacleParameters& obstacles) {
   constexpr double small = 0.2;
   const auto [left, right] = std::ranges::minmax(circles, {}, &Obstacle::x);

@@ -40,7 +40,7 @@ std::string unit_in_words(const Key& key) {
   return unit.empty() ? "a pure number" : "in " + unit;
 }
 
-/// The list of a key; some run can have each value. @throws Error that names the key
+/// The list of a key, of which each value must be possible in some run. @throws Error that names the key
 std::vector<std::string> values_of(const Key& key, const std::string& text) {
   constexpr std::size_t longest_text = 3000;  // in a config
   try {
@@ -61,7 +61,7 @@ std::vector<std::string> values_of(const Key& key, const std::string& text) {
   }
 }
 
-/// Calls for each combination of single words.
+/// Calls visit() for each combination of single words.
 void visit_words(const Settings& settings, const std::function<void(const Settings&)>& visit) {
   for (const Key& key : keys()) {
     if (key.kind != ValueKind::word) continue;
@@ -197,8 +197,8 @@ std::map<std::string, std::vector<std::string>> Settings::all_values() const {
   return all;
 }
 
-/// Keys that nobody has given and whose texts differ between branches: writing them down as given would
-/// contradict it.
+/// Keys that nobody has given and whose texts differ between branches: a config that gave them one text would
+/// contradict the branches.
 std::set<std::string> Settings::keys_that_follow() const {
   std::set<std::string> following;
   visit_branches([&](const Settings& branch, std::int64_t) {

@@ -44,8 +44,8 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
   return true;
 }
 
-/// Visits files that processes of this user have open, by /proc, until told to stop. @param link  where the
-/// entry of such a file leads
+/// Calls visit() for files that processes of this user have open, found in /proc, until it returns true.
+/// @param link  where the entry of such a file leads
 void visit_open_files(const fs::path& link, const std::function<bool(const fs::path&)>& visit) {
   // An unreadable process belongs to another user, or has just ended.
   std::error_code error;
@@ -114,7 +114,8 @@ NameLock::NameLock(const std::string& name)
     : address_(fmt::format("clogsweep-{}-{}", geteuid(), std::hash<std::string>{}(name))),
       socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   if (!socket_.is_open()) return;
-  // An abstract address, which exists on this machine as long as the socket. Nobody ever connects to it.
+  // An abstract address, which exists on this machine as long as the socket is open. Nobody ever connects to
+  // it.
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   std::memcpy(address.sun_path + 1, address_.data(), address_.size());

@@ -18,8 +18,8 @@ class SharedMemory {
   /// Memory that a process, perhaps this one, holds under the name; nullptr if there is none, or it is not
   /// accessible.
   static std::shared_ptr<const SharedMemory> find(const std::string& name);
-  /// Makes it of consecutive pieces; nullptr if the system has no such memory, or no more. @param name  up to
-  /// 200 characters
+  /// Publishes consecutive pieces as one memory; nullptr if the system has no such memory, or not enough.
+  /// @param name  up to 200 characters
   static std::shared_ptr<const SharedMemory> publish(const std::string& name,
                                                      std::span<const std::span<const std::byte>> pieces);
 
@@ -46,8 +46,8 @@ class NameLock {
   explicit NameLock(const std::string& name);
 
   State state() const { return state_; }
-  /// Any process can take an address; others then wait in vain. Slow, because it inspects all processes of
-  /// this user.
+  /// Whether a process of another user holds the lock. Any process can take an address, and others would then
+  /// wait in vain. Slow, because it inspects all processes of this user.
   bool is_taken_by_another_user() const;
 
  private:

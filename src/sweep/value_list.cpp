@@ -66,7 +66,8 @@ std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
     double value =
         logarithmic ? first * portable::pow(last / first, fraction) : std::lerp(first, last, fraction);
     if (i == count - 1 && count > 1) value = last;
-    // Twelve digits are enough for what a person would write, and avoid 0.30000000000000004 in the file.
+    // Twelve digits are enough for the values that a person would write, and avoid 0.30000000000000004 in the
+    // file.
     if (i > 0 && i < count - 1) {
       char digits[32];
       const char* const end =
@@ -85,7 +86,7 @@ std::vector<std::string> expand_range(std::string_view item, std::size_t dots) {
   const long long first = to_integer(trimmed(item.substr(0, dots)));
   const long long last = to_integer(trimmed(item.substr(dots + 2)));
   if (last < first) refuse(item, "has no values");
-  // Unsigned: the difference of any two integers fits.
+  // The type is unsigned, so that the difference of any two integers fits.
   const auto steps = static_cast<unsigned long long>(last) - static_cast<unsigned long long>(first);
   check_length(item, static_cast<long long>(std::min<unsigned long long>(steps, longest_list)) + 1);
   std::vector<std::string> values;

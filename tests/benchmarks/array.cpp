@@ -1,5 +1,6 @@
-/// What a saturated obstacle array costs: time, the memory needed while it is built, and what stays.
-///   bench_array [box [boxes]]
+/// Measures what a saturated obstacle array costs: time, the memory needed while it is built, and the memory
+/// that it keeps.
+/// bench_array [box [boxes]]
 
 #include <sys/resource.h>
 

@@ -1,5 +1,5 @@
-/// Does a step cost more in a larger box? The same droplet follows the same path through an array of period
-/// 60, and through one of period 540 made of 81 copies of it; slices of both runs alternate.
+/// Measures whether a step costs more in a larger box. The same droplet follows the same path through an
+/// array of period 60, and through one of period 540 made of 81 copies of it; slices of both runs alternate.
 
 #include <algorithm>
 #include <cstdio>

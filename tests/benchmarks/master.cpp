@@ -56,7 +56,7 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// Sleeps, in slices as a run computes in slices.
+/// Sleeps, in slices like those in which a run computes.
 class SleepingJob final : public sweep::Job {
  public:
   SleepingJob(const sweep::Plan& plan, std::int64_t task, double seconds)
@@ -77,7 +77,7 @@ class SleepingJob final : public sweep::Job {
   sweep::RunRow row_;
 };
 
-/// Without workers: runs begin and end one after the other.
+/// Without workers, runs begin and end one after the other.
 int measure_rows(std::int64_t num_rows) {
   const auto kilobytes = [num_rows, before = peak_kilobytes()] {
     return (peak_kilobytes() - before) / static_cast<double>(num_rows);
@@ -142,8 +142,7 @@ int main(int argc, char** argv) {
   const std::string path =
       (std::filesystem::temp_directory_path() / ("bench_master_" + std::to_string(getpid()) + ".h5"))
           .string();
-  sweep::Settings
-      settings;  // as many tasks as are to be done, in a hundred parameter sets as a large sweep has
+  sweep::Settings settings;  // as many tasks as requested, in a hundred parameter sets as in a large sweep
   const std::int64_t num_groups = std::min<std::int64_t>(num_tasks, 100);
   settings.set("line-tension", "lin(0.1,10," + std::to_string(num_groups) + ")");
   settings.set("seeds", "1.." + std::to_string(num_tasks / num_groups));

@@ -1,4 +1,5 @@
-/// What a step costs. `time per vertex-step` is the figure to compare; always compare within one run.
+/// Measures the cost of a step. Compare `time per vertex-step`, and only within one execution of this
+/// program.
 
 #include <benchmark/benchmark.h>
 
@@ -100,7 +101,7 @@ void wrapped_polygon(benchmark::State& state) {
 }
 BENCHMARK(wrapped_polygon)->Unit(benchmark::kMillisecond);
 
-/// What break-up-neck costs, once in DropletRun::steps_per_check steps: of a soft droplet on its way.
+/// Cost of break-up-neck, once in DropletRun::steps_per_check steps, for a soft droplet that moves.
 void neck_of_a_droplet(benchmark::State& state) {
   RunParameters run = flowing_droplet(static_cast<int>(state.range(0)), 0);
   run.dp.line_tension = 0.05;
@@ -114,8 +115,8 @@ void neck_of_a_droplet(benchmark::State& state) {
 }
 BENCHMARK(neck_of_a_droplet)->ArgName("vertices")->Arg(128)->Arg(512)->Unit(benchmark::kMicrosecond);
 
-/// As in the figures: the elastic interface, the automatic step, and gaps that the droplet wraps its way
-/// through.
+/// As in the figures: the elastic interface, the automatic step, and gaps that the droplet passes by
+/// wrapping.
 void elastic_polygon(benchmark::State& state) {
   RunParameters run;
   run.dp.vertices = 128;

@@ -1,6 +1,6 @@
-/// What runs of real sweeps cost: for each vertex and step, and from release to verdict. Beside it is the
-/// cost of a step's two passes on the same core without contacts, the limit of any step; slices of both
-/// alternate.
+/// Measures the cost of runs of real sweeps: per vertex and step, and from release to verdict. For
+/// comparison, it measures a step's two passes on the same core without contacts, which no step can beat;
+/// slices of both alternate.
 
 #include <algorithm>
 #include <cmath>
@@ -83,7 +83,7 @@ class BareStep {
 struct Task {
   const char* name;
   void (*change)(RunParameters&);
-  double time;  ///< of each run at most [t0]
+  double time;  ///< longest simulated time of each run [t0]
 };
 
 void make_elastic(RunParameters& run) {
@@ -135,7 +135,7 @@ RunParameters parameters(const Task& task, std::uint32_t seed) {
 struct Measured {
   double per_vertex_step;  ///< [ns]
   double seconds;          ///< of a run, with its array and release
-  double limit;            ///< [ns]
+  double limit;            ///< cost per vertex and step of the two passes alone [ns]
 };
 
 /// Measures a few runs one after another, each in slices that alternate with the bare step.
@@ -183,7 +183,7 @@ void print(const char* name, const std::vector<Measured>& rounds) {
 
 }  // namespace
 
-/// bench_sweep [ROUNDS [WORD]]: with a word, only the tasks in whose names it is.
+/// bench_sweep [ROUNDS [WORD]]: with a word, only the tasks whose names contain it.
 int main(int argc, char** argv) {
   const int num_rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 3;
   const std::string_view word = argc > 2 ? argv[2] : "";

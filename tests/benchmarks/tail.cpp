@@ -1,5 +1,6 @@
-/// What the order of the tasks does to the end of a sweep: 64 simulated workers and the run lengths of a real
-/// sweep. Workers take tasks as the scheduler's workers do, from the scheduler's own TaskOrder.
+/// Measures how the order of the tasks affects the end of a sweep, with 64 simulated workers and the run
+/// lengths of a real sweep. Workers take tasks as the scheduler's workers do, from the scheduler's own
+/// TaskOrder.
 ///   bench_tail run-lengths-dp.csv [workers] [seeds]
 
 #include <algorithm>

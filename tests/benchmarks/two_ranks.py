@@ -1,4 +1,4 @@
-"""Two ranks against one: the same sweep of runs of equal length, in turn, several times.
+"""Compares two ranks with one: the same sweep of runs of equal length, alternately, several times.
 
     two_ranks.py FOLDER_OF_PROGRAMS
 

@@ -39,7 +39,7 @@ TEST_F(TextFile, MayBeginWithAByteOrderMark) {
 }
 
 TEST_F(TextFile, MayBeInUtf16) {
-  const std::string text = "a=\xc2\xb5\xf0\x9f\x92\xa7\n";  // of two, and of four bytes
+  const std::string text = "a=\xc2\xb5\xf0\x9f\x92\xa7\n";  // characters of two and of four bytes
   write(path("a.cfg"), std::string("\xff\xfe"
                                    "a\0=\0\xb5\0\x3d\xd8\xa7\xdc\n\0",
                                    14));

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Compares the runs of sweeps over `vertices` with those of the most vertices: verdicts, places of clogs, lambda.
+"""Compares the runs of sweeps over `vertices` with the runs of the most vertices: verdicts, places of clogs, lambda.
 
     compare.py --clogfit build/release/bin/clogfit sweep.h5 [sweep.h5 ...]
 
-A run is the same if both are clogged within 0.02 sigma of each other, or neither is. Prints a row per preset, gap and
+Runs are the same if both clogged within 0.02 sigma of each other, or neither did. Prints a row per preset, gap and
 line tension, with a cell per number of vertices: same runs; median distance between the clogs of both [sigma]; lambda
 with its 95 % interval by clogfit [sigma]. The last rows have the sums, with the time that the runs took.
 """
@@ -24,7 +24,7 @@ def fits(clogfit, path):
 
 
 def compared(runs, finest):
-    """Every run beside that of the same seed with the most vertices."""
+    """Every run beside the run of the same seed with the most vertices."""
     both = runs.set_index("seed").join(finest.set_index("seed"), rsuffix="_finest", how="inner")
     both["both_clog"] = (both.status == "clogged") & (both.status_finest == "clogged")
     both["apart"] = (both.distance - both.distance_finest).abs()

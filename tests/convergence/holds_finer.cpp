@@ -1,11 +1,9 @@
-/// Does a finer polygon rest where a coarser one clogged?
-///
-///     build/release/tests/holds_finer sweep.h5 [PART PARTS]
-///
-/// Repeats each run that clogged, puts a vertex into the middle of each edge of the droplet at rest, forgets
-/// where walls hold it, and lets it go. A line of CSV for each run: its distance after 600 t0, or its
-/// certified rest; and the same without more vertices, because a droplet may need the memory of its walls.
-/// PART of PARTS divides the runs among processes.
+/// Tests whether a finer polygon rests where a coarser one clogged.
+/// build/release/tests/holds_finer sweep.h5 [PART PARTS]
+/// Repeats each run that clogged, puts a vertex into the middle of each edge of the droplet at rest, drops
+/// the anchors of its walls, and lets the droplet move. Prints a line of CSV for each run: the droplet's
+/// distance after 600 t0, or its certified rest; and the same without more vertices, because a droplet may
+/// need the anchors of its walls to stay at rest. PART of PARTS divides the runs among processes.
 
 #include <fmt/core.h>
 
@@ -36,7 +34,7 @@ void finish(DropletRun& run) {
   }
 }
 
-/// Each edge's middle on the cubic through its ends and their other neighbours.
+/// Each edge's middle on the cubic through the edge's ends and their other neighbours.
 Eigen::ArrayXd with_middles(const Eigen::Ref<const Eigen::ArrayXd>& coarse) {
   const Eigen::Index n = coarse.size();
   Eigen::ArrayXd fine(2 * n);

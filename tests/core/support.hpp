@@ -22,12 +22,12 @@ inline RunParameters bare_parameters(int vertices = 64) {
   run.time_step = 1e-3;
   run.dp.area_stiffness = 1e4;
   run.dp.perimeter_stiffness = 1.0;
-  // Terms with an energy: tests compare forces with its gradient.
+  // Springs with an energy, because tests compare forces with its gradient.
   run.dp.perimeter_spring = PerimeterSpring::mean;
   run.dp.gravity = Gravity::vertex;
   const double l0 = units::regular_edge_length(vertices);
   run.wall_stiffness = wall_stiffness(1000, l0);
-  // The published ranges, so that tests cover them.
+  // The published ranges, so that tests cover both.
   run.dp.contact_range = l0 / 2;
   run.dp.self_contact_range = l0;
   run.obstacles.box = 20;
@@ -99,7 +99,7 @@ inline Eigen::ArrayXd dumbbell(int num_vertices, double neck) {
   return position;
 }
 
-/// The same contour with its numbers begun at another vertex.
+/// The same contour, numbered from another vertex.
 inline Eigen::ArrayXd renumbered(const Eigen::ArrayXd& position, int first) {
   const Eigen::Index n = position.size() / 2;
   Eigen::ArrayXd result(position.size());
@@ -110,7 +110,7 @@ inline Eigen::ArrayXd renumbered(const Eigen::ArrayXd& position, int first) {
   return result;
 }
 
-/// Vertices that walls hold without a contact.
+/// Number of vertices that walls hold without touching them.
 inline int num_behind_films(const DropletState& state, double contact_range) {
   return static_cast<int>(std::ranges::count_if(state.anchors, [&](const WallAnchor& one) {
     return std::hypot(state.x()[one.holder] - one.wall.x, state.y()[one.holder] - one.wall.y) >

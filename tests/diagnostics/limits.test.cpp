@@ -51,7 +51,7 @@ TEST_F(HostLimits, AreTheTightestFromTheOwnControlGroupUp) {
   write("sys/fs/cgroup/system.slice/job_7/memory.current", "3000000000\n");
   write("sys/fs/cgroup/system.slice/job_7/step_0/memory.max", "2000000000\n");
   write("sys/fs/cgroup/system.slice/job_7/step_0/memory.current", "500000000\n");
-  write("sys/fs/cgroup/system.slice/job_8/cpu.max", "1000 100000\n");  // another one's
+  write("sys/fs/cgroup/system.slice/job_8/cpu.max", "1000 100000\n");  // another job's limit
   EXPECT_EQ(granted_cores(root_), 1.5);
   EXPECT_EQ(available_memory(root_), 1e9);
 }
@@ -67,12 +67,12 @@ TEST_F(HostLimits, CountsWhatTheKernelKeepsOfFilesAsAvailable) {
 TEST_F(HostLimits, AreNoLessThanNothing) {
   write("proc/self/cgroup", "0::/job\n");
   write("sys/fs/cgroup/job/memory.max", "1000000\n");
-  write("sys/fs/cgroup/job/memory.current", "1004096\n");  // the limit has been lowered
+  write("sys/fs/cgroup/job/memory.current", "1004096\n");  // more than the limit, which has been lowered
   EXPECT_EQ(available_memory(root_), 0);
 }
 
 TEST_F(HostLimits, AreSeenFromWithinAContainer) {
-  // Its group is mounted as the root, while the path is the host's, or outside it.
+  // The process's group is mounted as the root, while the path is the host's, or outside it.
   write("sys/fs/cgroup/cpu.max", "50000 100000\n");
   for (const char* path : {"0::/\n", "0::/kubepods/pod1\n", "0::/../other\n"}) {
     write("proc/self/cgroup", path);

@@ -1,4 +1,4 @@
-"""One attribute of a sweep's file is damaged: of the file, or of one of its columns."""
+"""Damages one attribute of a sweep's file: of the file itself, or of one of its columns."""
 
 import h5py
 
@@ -24,7 +24,7 @@ class Faults:
             way = case.chance.choice([self.flip, self.empty, self.remove])
             way(case.chance, file[place].attrs, name)
         content = path.read_bytes()
-        if case.chance.random() < 0.5 and SEAL in content:  # as another program leaves it
+        if case.chance.random() < 0.5 and SEAL in content:  # another program's copy has no seal
             path.write_bytes(content[:content.rindex(SEAL)])
         case.note(f"{sample.name}: {way.__name__} {place} {name}")
         check_readers(case, sample)
@@ -34,7 +34,7 @@ class Faults:
 
     @staticmethod
     def check_salvaged(case, sample):
-        """All rows are intact, so all are kept, and the sweep's command completes the rest of the file."""
+        """All rows are intact, so salvage keeps all, and the sweep's command restores the rest of the file."""
         salvaged = case.folder / SALVAGED
         salvaged.unlink(missing_ok=True)
         run(case, "clogsweep", "salvage", FILE, "--output", SALVAGED)

@@ -1,4 +1,4 @@
-"""Command lines and files with mistakes: made from the programs' own descriptions, and changed."""
+"""Makes valid calls from the programs' own descriptions, adds mistakes to them or to files, and runs them."""
 
 import re
 import subprocess
@@ -15,7 +15,7 @@ LISTS = ["lin(0,1,3)", "lin(0,1,-3)", "lin(0,1,1e9)", "lin(0,1)", "lin(nan,1,3)"
 TEXTS = ["", " ", "auto", "saturated", "dp", "sp", "none", "yes", "=", "a=b", "--", "-", "#", "%", "%s%n", "x" * 300,
          "é", "\t", "a\nb", "\x1b[31mred", "\r", "\x7f", "\u202e", "nowhere.h5", ".", "/dev/null", "/", "~"]
 NOT_UTF_8 = [b"\xff\xfe", b"\xc3", b"1\x80", b"\xed\xa0\x80"]
-# Droplets of a second: the call sets all values that could make a run long, and they are never mutated.
+# Runs of a second: the call sets all values that could make a run long, and the mutations spare these.
 SHORT = {"max-time": "0.5", "vertices": "32", "box": "13", "seeds": "1"}
 NAMES_OF_FILES = {"output", "frames", "obstacles", "write-obstacles"}
 OWN_OPTIONS = re.compile(r"^  --([a-z-]+)( arg)?", re.MULTILINE)
@@ -38,7 +38,7 @@ class Faults:
         self.sample = Sample("disks", folder)
 
     def own_options(self, *words):
-        """The options of a command that are no keys, and whether they take a value."""
+        """The options of a command that are not keys, and whether they take a value."""
         return {name: bool(value) for name, value in OWN_OPTIONS.findall(printed(*words, "--help"))
                 if name not in self.keys}
 
@@ -56,7 +56,7 @@ class Faults:
 
     @staticmethod
     def check_refusal(case, outcome):
-        """One line, and nothing in it that a terminal obeys."""
+        """A refusal is one line without control characters."""
         name = outcome.name
         is_line = outcome.error.count(b"\n") == 1 and outcome.error.endswith(b"\n")
         case.expect(is_line, f"{name}: refuses, but not in one line")
@@ -68,10 +68,10 @@ class Faults:
             content = text.encode()
             (case.folder / name).write_bytes(self.scatter(case, content) if case.chance.random() < 0.5 else content)
 
-    # Valid calls, before mistakes are added.
+    # Valid calls, before mistakes are added
 
     def preview(self, case):
-        """A sweep that is not run."""
+        """A sweep that only prints its plan or config."""
         own = self.options[("clogsweep",)]
         return ["clogsweep", *self.some_keys(case, self.keys), *self.some_options(case, own),
                 *case.chance.choice([[], ["--config", "s.cfg"]]), case.chance.choice(["--dry-run", "--print-config"])]
@@ -87,7 +87,7 @@ class Faults:
         return [*words, self.file_name(case), *more, *self.some_options(case, options)]
 
     def droplet(self, case):
-        """A run of so short a time that it is over at once."""
+        """A run so short that it ends at once."""
         system = case.chance.choice(["array", "channel", "sag"])
         keys = {name: value for name, value in self.keys.items() if name not in SHORT}
         more = case.chance.choice([[], ["--obstacles", "o.csv"]]) if system == "array" else []
@@ -102,7 +102,7 @@ class Faults:
         return [*words, *(case.chance.choices(["p.csv", "o.csv", "nowhere.csv"], k=case.chance.randint(1, 2))),
                 *self.some_options(case, self.options[tuple(words)])]
 
-    # Mistakes.
+    # Mistakes
 
     def value(self, case, usual="1"):
         return case.chance.choice([usual, usual, self.misspelt(case, usual),
@@ -131,7 +131,7 @@ class Faults:
         return word[:place] + case.chance.choice("abz0.-=,( ") + word[place + case.chance.randrange(2):]
 
     def disorder(self, case, words):
-        """Leaves a word out, repeats or misspells one, or leaves all as they are."""
+        """Leaves a word out, repeats or misspells one, or returns all unchanged."""
         program, *words = map(as_bytes, words)
         deed = case.chance.randrange(8)
         if words and deed < 3:
@@ -146,7 +146,7 @@ class Faults:
 
     @staticmethod
     def scatter(case, content):
-        """A file's bytes with a few of them replaced, left out, or repeated."""
+        """A file's bytes with a few of them replaced, omitted, or repeated."""
         content = bytearray(content)
         for _ in range(case.chance.randint(1, 8)):
             place = case.chance.randrange(len(content) + 1)
@@ -161,5 +161,5 @@ def as_bytes(word):
 
 
 def is_limit(word):
-    """Without this word the call would take long."""
+    """Whether the call would take long without this word."""
     return word in (b"--dry-run", b"--print-config") or word.split(b"=")[0].decode("latin-1") in SHORT

@@ -1,4 +1,4 @@
-"""At a random moment the disk is full, a file reaches its size limit, or memory runs out."""
+"""Runs programs while the disk gets full, a file reaches its size limit, or memory runs out at a random moment."""
 
 import contextlib
 import os
@@ -12,7 +12,7 @@ from support import QUICK
 TRAJECTORY = ["array", *QUICK, "--sample-interval=0.1", "--polygon-interval=0.5", "--output", "r.h5"]
 MEGABYTE = 2**20
 ENOUGH_MEMORY = 2048 * MEGABYTE
-LOADER_GAVE_UP = 127  # libraries did not find room, and the program did not begin
+LOADER_GAVE_UP = 127  # the loader found no memory for libraries, so the program did not begin
 
 
 def limit_files(size):
@@ -45,7 +45,7 @@ def may_mount(folder):
 
 
 def may_limit_memory():
-    """Programs with sanitizers map more than any machine has."""
+    """False for programs with sanitizers, which map more memory than any machine has."""
     return subprocess.run(command("clogfit", "--version"), capture_output=True,
                           preexec_fn=limit_memory(ENOUGH_MEMORY)).returncode == 0
 
@@ -73,7 +73,7 @@ class Faults:
         self.sweep_and_go_on(case, prepare=limit_files(size))
 
     def sweep_on_a_small_disk(self, case):
-        size = (1 + self.size(case) // 4096) * 4096 * 2  # there is a draft beside the table
+        size = (1 + self.size(case) // 4096) * 4096 * 2  # a draft exists beside the table
         case.note(f"sweep, disk of {size} bytes")
         with small_disk(case.folder, size):
             self.sweep_and_go_on(case, make_room=lambda: subprocess.run(
@@ -85,7 +85,7 @@ class Faults:
         self.sweep_and_go_on(case, prepare=limit_memory(size), exit_codes={0, 2, LOADER_GAVE_UP})
 
     def sweep_and_go_on(self, case, prepare=None, make_room=lambda: None, exit_codes=frozenset({0, 2})):
-        """A sweep that has no room, and the same command when it has."""
+        """Runs a sweep without room, and then the same command with room."""
         run(case, "clogsweep", *self.sample.sweep, prepare=prepare, exit_codes=exit_codes)
         finished = finished_rows(case)
         make_room()
@@ -104,7 +104,7 @@ class Faults:
                     f"{outcome.name}: exit code {outcome.code}, and leaves {', '.join(files) or 'no file'}")
 
     def limited_output(self, case):
-        """Printed text goes to a file that may not grow: exit code 0 must mean that all was written."""
+        """Prints to a file that may not grow: exit code 0 must mean that everything was written."""
         words = case.chance.choice([["clogsweep", "--help"], ["clogsweep", *self.sample.sweep, "--dry-run"],
                                     ["clogsweep", "status", FILE], ["clogfit", FILE, "--format", "json"],
                                     ["clogrun", "--help"]])

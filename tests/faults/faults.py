@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Does faults to the programs, one after the other, and says which of them were not taken as they must be.
+"""Injects faults into the programs, one after the other, and reports those that a program handled wrongly.
 
     tests/faults/faults.py bits --count 200 --seed 1 --bin build/release/bin
 
-Exit code 0: all were handled. 1: some were not; each is printed with the command that repeats it alone.
+Exit code 0: the programs handled all faults. 1: some were handled wrongly; prints the command that repeats each.
 """
 
 import argparse
@@ -30,7 +30,7 @@ KINDS = {
 
 
 class Case:
-    """One fault: its description, and the wrong reactions to it."""
+    """One fault: its description, and the program's wrong reactions."""
 
     def __init__(self, chance, folder):
         self.chance = chance

@@ -30,7 +30,7 @@ def split(content, row_size):
 
 
 def join(content, records):
-    """A journal of these records, with checksums that are right."""
+    """A journal of these records, with correct checksums."""
     magic = RECORD_HEADER.unpack_from(content, FILE_HEADER)[2]
     payloads = [row + snapshot for row, snapshot in records]
     return content[:FILE_HEADER] + b"".join(RECORD_HEADER.pack(len(payload), zlib.crc32(payload), magic) + payload for payload in payloads)
@@ -55,13 +55,13 @@ class Faults:
         case.chance.choice([self.foreign, self.hostile_row, self.hostile_snapshot, self.hostile_snapshot])(case)
 
     def foreign(self, case):
-        """Refused, with nothing changed; the sweep resumes as soon as the journal is moved away."""
+        """A foreign journal is refused and changes nothing; the sweep resumes once the journal has been moved away."""
         origin = case.chance.choice([*self.others, "another version"])
         if origin in self.others:
             records = split(self.others[origin].files[JOURNAL], self.row.itemsize)
         else:
             records = [(self.edited(row, "model_version", 1), snapshot) for row, snapshot in self.own]
-        if case.chance.random() < 0.5:  # what both sweeps wrote
+        if case.chance.random() < 0.5:  # a mixture of both sweeps' records
             records = case.chance.sample([*records, *self.own], len(records) + len(self.own))
         case.note(f"journal of {origin}, {len(records)} records")
         self.put(case, records, case.chance.choice([self.stopped.files[FILE], self.complete, None]))
@@ -96,7 +96,7 @@ class Faults:
         self.check(case, number, (row, bytes(harmed)))
 
     def check(self, case, number, record):
-        """A forged record may affect its own run only; every other row is unchanged, and all can be."""
+        """A forged record may affect its own run only: every other row stays the same."""
         task = int(numpy.frombuffer(self.own[number][0], self.row)[0]["task"])
         self.put(case, [*self.own[:number], record, *self.own[number + 1:]], self.stopped.files[FILE])
         for report in (VERIFY, *REPORTS):
@@ -117,7 +117,7 @@ class Faults:
             (case.folder / FILE).write_bytes(table)
 
     def go_on(self, case):
-        """The sweep's own command, without the journal if it refuses that. @return has it refused the journal?"""
+        """Runs the sweep's command, and again without the journal if the command refuses it. @return whether it did"""
         before = {path.name: path.read_bytes() for path in case.folder.iterdir()}
         outcome = run(case, "clogsweep", *STOPPED, exit_codes={0, 2})
         if outcome.code != 2:
@@ -134,7 +134,7 @@ class Faults:
 
     @staticmethod
     def hostile_value(chance, kind):
-        """A column's value: a number that no run has, or any bytes."""
+        """A column's value: a number that no run can have, or any bytes."""
         if kind.kind == "f" and chance.random() < 0.7:
             return chance.choice(SPECIAL)
         if kind.kind in "iu" and chance.random() < 0.7:

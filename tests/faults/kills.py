@@ -1,4 +1,4 @@
-"""Processes of a sweep on two ranks get signals at random moments; then the same command completes it."""
+"""Sends signals to processes of a sweep on two ranks at random moments; the same command must then complete it."""
 
 import os
 import signal
@@ -10,15 +10,16 @@ from processes import Hung, are_gone, descend, kill, send, wait_for
 from samples import FILE, check_complete, finished_rows, stored_rows
 from support import SMALL, TIMING
 
-# A task may be killed many times before it is over, and has not failed for that.
+# A task may be killed many times before it ends, which does not count as its failure.
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=2000", "seeds=1..2", "--attempts=1000",
          "--report-seconds=0.1", "--output", FILE]
 RANKS = 2
 GENERATIONS = ["mpirun", "a rank", "a helper", "a computing process"]
 SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGSTOP]
-# Exit codes of a sweep whose mpirun alone got this signal: docs/reference/exit-codes.md. On SIGINT the code is mpirun's own.
+# Exit codes of a sweep whose mpirun alone got this signal: docs/reference/exit-codes.md. On SIGINT mpirun chooses the
+# code itself.
 CODES_OF_MPIRUN = {signal.SIGTERM: {0, 1, 75}, signal.SIGSTOP: {0}}
-PATIENCE = 5  # seconds for processes that have lost others, before they are killed as a batch system would
+PATIENCE = 5  # seconds for processes that have lost others, before the test kills them as a batch system would
 
 
 class Faults:
@@ -41,13 +42,13 @@ class Faults:
         case.expect(os.listdir(case.folder) == [FILE], "a finished sweep leaves a journal or a draft")
 
     def disturb(self, case):
-        """Starts the sweep, or resumes it, and sends signals to one or two of its processes."""
+        """Starts or resumes the sweep, and sends signals to one or two of its processes."""
         process = subprocess.Popen(command("clogsweep", *SWEEP, ranks=RANKS), cwd=case.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         time.sleep(case.chance.uniform(0, self.duration))
         generations = descend(process.pid)
         sent = [self.send_one(case, generations) for _ in range(case.chance.randint(1, 2))]
-        generations += descend(process.pid)  # what it has begun since then
+        generations += descend(process.pid)  # processes begun since then
         pids = {pid for generation in generations for pid in generation}
         self.wait(case, process, sent)
         kill(pid for generation in descend(process.pid) for pid in generation)
@@ -57,7 +58,7 @@ class Faults:
 
     @staticmethod
     def send_one(case, generations):
-        """A signal to a process of any generation. @return whom it went to, and the signal"""
+        """Sends a signal to a process of any generation. @return the process and the signal"""
         generation = case.chance.randrange(len(generations))
         victim = case.chance.choice(generations[generation])
         number = case.chance.choice(SIGNALS)
@@ -71,7 +72,7 @@ class Faults:
 
     @staticmethod
     def wait(case, process, sent):
-        """A process that was not killed ends by itself, with the code that the README names."""
+        """A process that was not killed ends by itself, with a code of docs/reference/exit-codes.md."""
         is_killed = any(number == signal.SIGKILL for _, number in sent)
         try:
             code = process.wait(timeout=PATIENCE) if is_killed else wait_for(process.pid, process.wait)

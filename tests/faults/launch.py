@@ -1,4 +1,4 @@
-"""Runs programs under limits, and checks what no program may do under any fault."""
+"""Runs programs under limits, and checks rules that hold for every program under any fault."""
 
 import dataclasses
 import os
@@ -12,7 +12,7 @@ from support import BIN, MPIRUN
 EXIT_CODES = {0, 1, 2, 75}  # docs/reference/exit-codes.md
 SUBCOMMANDS = {"status", "verify", "replay", "salvage", "merge", "select", "doctor", "array", "channel", "sag", "calibrate", "compare", "deviation",
                "drag", "report"}
-# Words of a program that failed.
+# Words in the output of a program that failed
 SIGNS_OF_FAULTS = {
     b"Traceback (most recent call last)": "a traceback",
     b"internal fault": "an internal fault",
@@ -24,14 +24,14 @@ SIGNS_OF_FAULTS = {
 @dataclasses.dataclass
 class Outcome:
     name: str
-    code: int | None  # None: it did not end
+    code: int | None  # None: the program did not end
     output: bytes
     error: bytes
-    hung: str | None = None  # why it was ended
+    hung: str | None = None  # why the test ended it
 
     @property
     def is_over(self):
-        """It ended by itself."""
+        """Whether the program ended by itself."""
         return self.code is not None and self.code >= 0
 
 
@@ -41,7 +41,7 @@ def command(name, *arguments, ranks=None):
 
 
 def run(case, name, *arguments, prepare=None, ranks=None, exit_codes=EXIT_CODES, **streams):
-    """Runs one of the programs in the case's folder, notes what it must not do, and returns its outcome.
+    """Runs one of the programs in the case's folder, records forbidden behaviour, and returns its outcome.
 
     @param prepare  called in the new process before the program begins
     @param streams  stdin, stdout, stderr as subprocess has them; nothing, and pipes that are read
@@ -66,13 +66,13 @@ def run(case, name, *arguments, prepare=None, ranks=None, exit_codes=EXIT_CODES,
 
 
 def title(name, arguments):
-    """clogsweep status, clogfit: a program with the subcommand, by which findings are counted."""
+    """Name by which findings are counted: the program with its subcommand, as in clogsweep status."""
     first = os.fsdecode(arguments[0]) if arguments else ""
     return f"{name} {first}" if first in SUBCOMMANDS else name
 
 
 def wrongs(outcome, exit_codes=EXIT_CODES):
-    """Names anything that no program may do."""
+    """Names everything in an outcome that no program may do."""
     if outcome.hung:
         yield f"{outcome.name}: {outcome.hung}"
     elif outcome.code < 0:
@@ -85,7 +85,7 @@ def wrongs(outcome, exit_codes=EXIT_CODES):
 
 
 def quoted(arguments):
-    """The command for bash, without characters that a terminal would obey."""
+    """The command for bash, without characters that a terminal would interpret."""
     return " ".join(quoted_word(os.fsencode(word)) for word in arguments)
 
 

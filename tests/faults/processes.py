@@ -8,16 +8,16 @@ import time
 
 from support import children_of
 
-# No load of the machine changes either.
-CPU_SECONDS = 100  # of all processes of a program together; a sweep under the sanitizers needs some 30
-IDLE_SECONDS = 100  # in which all of them wait for something else than the machine
+# The load of the machine changes neither of these limits.
+CPU_SECONDS = 100  # for all processes of a program together; a sweep under the sanitizers needs about 30
+IDLE_SECONDS = 100  # while all processes wait, but not for the machine
 LOOK_SECONDS = 1
-BUSY = {"R", "D"}  # states of who runs, or waits for a processor or a disk
+BUSY = {"R", "D"}  # states of processes that run, or wait for a processor or a disk
 TICKS = os.sysconf("SC_CLK_TCK")
 
 
 def descend(pid):
-    """The process and all that it began, one list for each generation."""
+    """The process and all its descendants, one list for each generation."""
     generations = [[pid]]
     while generations[-1]:
         generations.append([child for parent in generations[-1] for child in children_of(parent)])
@@ -28,7 +28,7 @@ def send(pid, number):
     try:
         os.kill(pid, number)
     except ProcessLookupError:
-        pass  # it has ended
+        pass  # the process has ended
 
 
 def kill(pids):
@@ -37,7 +37,7 @@ def kill(pids):
 
 
 def status(folder):
-    """State of a process or a thread, and its processor time with that of ended children; Z and 0 if it is gone."""
+    """State of a process or thread, and its processor time with that of ended children; Z and 0 if it has ended."""
     try:
         fields = (folder / "stat").read_text().rpartition(")")[2].split()
     except (FileNotFoundError, ProcessLookupError):
@@ -57,14 +57,14 @@ def is_alive(pid):
 
 
 class Limits:
-    """Distinguishes processes that hang from those that a busy machine slows down. Of the slow ones one always has
+    """Distinguishes hanging processes from those that a busy machine slows down: of the latter one always has
     work."""
 
     def __init__(self):
         self.idle_seconds = 0
 
     def exceeded_by(self, pids, seconds):
-        """Looks at processes so many seconds after the last look. @return what is wrong with them, if anything is"""
+        """Inspects processes `seconds` after the last call. @return what is wrong with them; None if nothing is"""
         folders = [pathlib.Path(f"/proc/{pid}") for pid in pids]
         if not any(status(thread)[0] in BUSY for folder in folders for thread in threads(folder)):
             self.idle_seconds += seconds
@@ -76,14 +76,14 @@ class Limits:
 
 
 class Hung(Exception):
-    """A program that does not end by itself; says how that was noticed."""
+    """A program did not end by itself; the text says how this was noticed."""
 
 
 def wait_for(pid, wait):
     """Waits until a program ends by itself, however long a busy machine needs for it.
 
-    @param wait  waits for the end, or for so many seconds, as subprocess does
-    @return what it returns
+    @param wait  waits for the end, or for a given time, as subprocess does
+    @return the result of `wait`
     """
     limits = Limits()
     while True:
@@ -97,7 +97,7 @@ def wait_for(pid, wait):
 
 
 def are_gone(pids):
-    """Have all of them ended, or do they soon?"""
+    """Whether all processes have ended or end soon."""
     limits = Limits()
     while alive := [pid for pid in pids if is_alive(pid)]:
         if limits.exceeded_by(alive, 0.05):

@@ -14,7 +14,7 @@ from processes import CPU_SECONDS
 from support import BLOCKED, QUICK, TIMING
 
 FILE = "s.h5"
-SEAL = b"\nclogsweep seal"  # behind all else
+SEAL = b"\nclogsweep seal"  # at the end of a file
 SALVAGED = "salvaged.h5"
 SWEEPS = {
     "polygons": [*QUICK, "obstacle-gap=0.4", "line-tension=0.05,0.5,1", "seeds=1..2"],
@@ -27,10 +27,10 @@ ENDINGS = (b"clogged", b"broken", b"flowing")
 
 
 def in_child(function, *arguments):
-    """The value of a function that may crash or spin. @return None and why not if there is no value"""
+    """Calls a function that may crash or spin. @return its value, or None and why there is none"""
     def work(connection):
         resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # words of caution
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # hides warnings
         try:
             connection.send((function(*arguments), None))
         except (OSError, UserError) as error:
@@ -71,12 +71,12 @@ def read_with_python(path):
 
 
 def results(rows, ignored=TIMING):
-    """Rows without the columns that a second computation of the same run may change."""
+    """Rows without the columns in which two computations of the same run may differ."""
     return {task: {name: value for name, value in row.items() if name not in ignored} for task, row in rows.items()}
 
 
 def finished_rows(case):
-    """The results of the runs that are over; nothing if there is no table yet."""
+    """The results of runs that have ended; nothing if there is no table yet."""
     path = case.folder / FILE
     if not path.exists():
         return {}
@@ -86,14 +86,14 @@ def finished_rows(case):
 
 
 def differing(some, others):
-    """Names of the columns in which rows of two tables differ, and what is in one of them only."""
+    """Names of columns in which rows of two tables differ, and tasks of which only one table has a row."""
     names = {name for task in some.keys() & others.keys() for name in some[task].keys() | others[task].keys()
              if some[task].get(name) != others[task].get(name)}
     return sorted(names | {f"task {task}" for task in some.keys() ^ others.keys()})
 
 
 class Sample:
-    """A finished sweep, with what every reader says of it."""
+    """A finished sweep, and what every reader reports about it."""
 
     def __init__(self, name, folder):
         self.name = name
@@ -129,14 +129,14 @@ def check_readers(case, sample):
     table, why = in_child(read_with_python, path)
     case.expect(table is None or table == sample.table, "read_table: other numbers than from the undamaged file")
     case.expect(table is not None or why.startswith("refused"), f"read_table: {str(why).split(':')[0]}")
-    if run(case, *VERIFY).code == 0 and SEAL in before:  # of a copy only rows and settings are known to be whole
+    if run(case, *VERIFY).code == 0 and SEAL in before:  # in a copy, verify checks only rows and settings
         check_called_whole(case, sample, path)
     check_salvaged(case, sample)
     case.expect(path.read_bytes() == before, "a reader changed the file")
 
 
 def check_salvaged(case, sample):
-    """Rows that salvage keeps of a damaged file are as they were."""
+    """Rows that salvage keeps of a damaged file have not changed."""
     outcome = run(case, "clogsweep", "salvage", FILE, "--output", SALVAGED)
     if outcome.code != 0:
         return
@@ -147,7 +147,7 @@ def check_salvaged(case, sample):
 
 
 def check_called_whole(case, sample, path):
-    """A file that verify accepts as undamaged is as it was, for every reader."""
+    """A file that verify accepts as undamaged has not changed, for every reader."""
     rows, why = in_child(stored_rows, path)
     texts, why_no_texts = in_child(stored_texts, path)
     if rows is None or texts is None:
@@ -189,7 +189,7 @@ def check_complete(case, path, rows, ignored=TIMING):
 
 
 def rows_place(path):
-    """Where the rows begin and end, the size of one in bytes, place and size of each column in it."""
+    """First and last byte of the rows, the size of a row in bytes, place and size of each column in it."""
     with h5py.File(path, "r") as file:
         table = file["runs"]
         begin = table.id.get_chunk_info(0).byte_offset if table.chunks else table.id.get_offset()

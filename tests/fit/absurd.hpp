@@ -8,7 +8,7 @@
 
 namespace clog::fit {
 
-/// Sets of runs of which one or all have a distance that no droplet goes: what a damaged table may hold.
+/// Sets of runs in which one or all distances are impossible, as in a damaged table.
 inline std::vector<std::vector<Observation>> absurd_runs() {
   const std::vector<Observation> sane{{1, true}, {2, true}, {3, true}, {4, false}};
   std::vector<std::vector<Observation>> all;
@@ -26,7 +26,7 @@ inline std::vector<std::vector<Observation>> absurd_runs() {
   return all;
 }
 
-/// A possible result: unknown, or a number that is a length.
+/// Whether a result is unknown or a possible length.
 inline bool is_length_or_unknown(double length) {
   return std::isnan(length) || (length >= 0 && std::isfinite(length));
 }

@@ -40,7 +40,7 @@ TEST(CloggingLength, OfRunsThatAllClogHasTheExactInterval) {
 }
 
 TEST(CloggingLength, OfOneClogByHand) {
-  // 2 S/chi2 with 2 degrees of freedom, whose quantiles are -2 log(1 - p).
+  // The interval is 2 S/chi2 with 2 degrees of freedom, whose quantiles are -2 log(1 - p).
   const std::vector<Observation> runs{{8, true}};
   const CloggingLength fit = fit_clogging_length(runs, 0.9);
   EXPECT_DOUBLE_EQ(fit.length, 8);
@@ -49,7 +49,7 @@ TEST(CloggingLength, OfOneClogByHand) {
 }
 
 TEST(CloggingLength, HasAnIntervalForAnyConfidence) {
-  // With little confidence it shrinks to lambda exp(-+ z/sqrt(d)), z = confidence sqrt(pi/2).
+  // For little confidence the interval is lambda exp(-+ z/sqrt(d)), with z = confidence sqrt(pi/2).
   for (const double confidence : {1e-300, 1e-20, 1e-8, 1e-3}) {
     const CloggingLength fit = fit_clogging_length(leukaemia_treated, confidence);
     const double width = confidence * std::sqrt(std::numbers::pi / 2 / fit.num_clogs);
@@ -95,7 +95,7 @@ TEST(CloggingLength, OfADistanceThatIsNotANumberIsNotKnown) {
 }
 
 TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
-  // Censoring by the number of clogs: the interval is then exact. 4000 samples: standard error 0.0034.
+  // With censoring by the number of clogs the interval is exact. 4000 samples: standard error 0.0034.
   std::mt19937_64 engine(1);
   std::exponential_distribution<double> distance(1.0 / 7.0);
   int num_covered = 0;
@@ -113,8 +113,9 @@ TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
 }
 
 TEST(CloggingLength, IntervalsCoverTheTruthWhereRunsAreCensoredAfterSomeDistance) {
-  // From a quarter of the runs clogged to nearly all of them. 20000 samples: standard error 0.0015; as d is a
-  // whole number the coverage wavers, most where few clogs are expected (docs/explanation/statistics.md).
+  // A quarter of the runs to nearly all of them have clogged. 20000 samples: standard error 0.0015; as d is a
+  // whole number, the coverage fluctuates, most where few clogs are expected
+  // (docs/explanation/statistics.md).
   std::mt19937_64 engine(2);
   std::exponential_distribution<double> distance(1);
   for (const double share : {0.25, 0.5, 0.75, 0.95}) {
@@ -161,15 +162,15 @@ TEST(LeastSquaresLength, OfAbsurdDistancesIsALengthOrNotKnown) {
 }
 
 TEST(LeastSquaresLength, HasNoUnit) {
-  // Multiplication by powers of two is exact.
+  // Multiplication by powers of two causes no rounding.
   std::vector<Observation> scaled(std::begin(leukaemia_treated), std::end(leukaemia_treated));
   for (Observation& run : scaled) run.distance *= 0x1p-900;
   EXPECT_EQ(least_squares_length(scaled), least_squares_length(leukaemia_treated) * 0x1p-900);
 }
 
 TEST(LeastSquaresLength, IsBiasedWhereTheFitIsNot) {
-  // Runs of one speed that began one after the other and are observed in the middle: the censored ones have
-  // seen little, and least squares treats them as runs that never clog.
+  // Runs of one speed begin one after the other, and the test looks at them in the middle: the censored runs
+  // have covered little distance, and least squares treats them as runs that never clog.
   std::mt19937_64 engine(4);
   std::exponential_distribution<double> distance(1);
   double of_least_squares = 0, of_likelihood = 0;
@@ -195,8 +196,8 @@ TEST(CloggingLength, RefusesAnImpossibleConfidence) {
 /// A sweep of equal droplets on some workers, observed when a share of it is done: droplets clog at
 /// exponentially distributed distances and travel at one speed.
 struct LiveSweep {
-  double of_finished = 0;  ///< lambda from finished runs alone, over the truth
-  double of_all = 0;       ///< with the running ones as censored
+  double of_finished = 0;  ///< lambda from finished runs alone, divided by the true value
+  double of_all = 0;       ///< the same with running ones as censored
 };
 LiveSweep look_at(int num_workers, int num_runs, double share_done, std::mt19937& engine) {
   std::exponential_distribution<double> distance(1);
@@ -222,7 +223,7 @@ LiveSweep look_at(int num_workers, int num_runs, double share_done, std::mt19937
 TEST(CloggingLength, IsNotTooShortWhileASweepRuns) {
   std::mt19937 engine(5);
   for (const auto& [num_workers, bias] : {std::pair{15, 0.5}, {63, 0.2}}) {
-    // 300 runs, 5 % done: 15 finished ones.
+    // 5 % of 300 runs are done: 15 finished runs.
     double of_finished = 0, of_all = 0;
     constexpr int num_sweeps = 2000;
     for (int i = 0; i < num_sweeps; ++i) {

@@ -84,7 +84,7 @@ TEST(CumulativeIncidence, OfUncensoredRunsIsTheirShareWithABinomialError) {
     }
 }
 
-/// For a single cause it is one minus the survival curve, with Greenwood's error.
+/// For a single cause the incidence is one minus the survival curve, with Greenwood's error.
 TEST(CumulativeIncidence, OfOneCauseIsOneMinusSurvival) {
   std::vector<CompetingEnd> runs = twenty_runs;
   std::vector<Observation> observations;
@@ -101,8 +101,8 @@ TEST(CumulativeIncidence, OfOneCauseIsOneMinusSurvival) {
   }
 }
 
-/// Constant rates 1/lambda_c: F_c(r) = (lambda/lambda_c) (1 - exp(-r/lambda)), 1/lambda the rates' sum. Runs
-/// are censored as max-time does it, independently of their ends.
+/// With constant rates 1/lambda_c, F_c(r) = (lambda/lambda_c) (1 - exp(-r/lambda)), where 1/lambda is the sum
+/// of the rates. Runs are censored independently of their ends, as by max-time.
 TEST(CumulativeIncidence, OfExponentialCausesIsTheirShareOfAllEnds) {
   const double lambda_1 = 10, lambda_2 = 30, lambda = 1 / (1 / lambda_1 + 1 / lambda_2);
   constexpr int num_samples = 400, num_runs = 100;

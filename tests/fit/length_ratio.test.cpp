@@ -13,8 +13,8 @@
 namespace clog::fit {
 namespace {
 
-/// Pairs of distances with exponential laws that share a part of the clogs (Marshall and Olkin): both
-/// droplets stop where a place holds both, and each where one holds it alone.
+/// Pairs of distances with exponential laws that have some clogs in common (Marshall and Olkin): both
+/// droplets stop at a place that holds both, and each stops at a place that holds it alone.
 std::vector<Pair> drawn_pairs(std::mt19937& engine, int number, double share, double ratio) {
   const double common_rate = share / std::max(1.0, ratio);
   const auto draw = [&](double rate) {
@@ -92,7 +92,7 @@ TEST(LengthRatio, IsNotKnownWithoutClogs) {
   EXPECT_FALSE(ratio.is_paired);
 }
 
-/// Shares of the sweeps whose interval contains the true ratio, and whose runs were paired.
+/// Fractions of the sweeps whose interval contains the true ratio, and whose runs were paired.
 struct Coverage {
   double covered = 0, paired = 0;
 };
@@ -115,7 +115,7 @@ TEST(LengthRatio, CoversTheTruthAsOftenAsItClaims) {
     const Coverage found = coverage(40, share);
     RecordProperty("covered", std::to_string(found.covered));
     EXPECT_GT(found.covered, 0.92) << share;
-    EXPECT_LT(found.covered, 0.99) << share;  // of pairs that are not used it is wider than need be
+    EXPECT_LT(found.covered, 0.99) << share;  // the interval is too wide for pairs that are not used
     EXPECT_GE(found.paired, share == 0.8 ? 0.8 : 0) << share;
     EXPECT_LE(found.paired, share == 0 ? 0.06 : 1) << share;
   }
@@ -124,7 +124,7 @@ TEST(LengthRatio, CoversTheTruthAsOftenAsItClaims) {
 TEST(LengthRatio, FindsHowMuchPairsGain) {
   std::mt19937 engine(5);
   EXPECT_NEAR(fit_pairs(drawn_pairs(engine, 4000, 0, 1)).gain, 1, 0.05);
-  // Equal laws of which a share s of the clogs is common have the correlation s/(2 - s) (Marshall and Olkin
+  // Equal laws that have a share s of the clogs in common have the correlation s/(2 - s) (Marshall and Olkin
   // 1967).
   const double correlation = 0.8 / 1.2;
   const LengthRatio ratio = fit_pairs(drawn_pairs(engine, 4000, 0.8, 1));

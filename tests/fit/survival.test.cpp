@@ -31,7 +31,7 @@ TEST(SurvivalCurve, OfTheLeukaemiaTrialIsTheReferenceAnswer) {
 }
 
 TEST(SurvivalCurve, HasTheReferenceAnswersLogLogInterval) {
-  // R's survfit(conf.type = "log-log"); the same is SAS's default.
+  // R's survfit(conf.type = "log-log"), which is also SAS's default.
   const std::vector<SurvivalStep> steps = survival_curve(leukaemia_treated);
   EXPECT_NEAR(steps.front().interval.lower, 0.6197, 5e-5);
   EXPECT_NEAR(steps.front().interval.upper, 0.9516, 5e-5);
@@ -107,7 +107,7 @@ TEST(Exponentiality, IsRejectedAsOftenAsItClaimsAndWhereItFails) {
 }
 
 TEST(Exponentiality, SeesClogsAtRelease) {
-  // Twelve of thirty do not move.
+  // Twelve of thirty droplets do not move.
   std::mt19937_64 engine(7);
   std::exponential_distribution<double> distance(1);
   std::vector<Observation> runs(12, {-0.001, true});

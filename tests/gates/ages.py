@@ -15,7 +15,7 @@ NOTE = re.compile(r"\]\(\.\./notes/(([\d-]{10})-[\w-]+)\.md\)")
 
 
 def same_now(link, date):
-    """The pictures of which a note after that date found the same."""
+    """The pictures that a note after that date found unchanged."""
     if not link or link[2] <= date:
         return set()
     with open(known.ROOT / f"docs/notes/{link[1]}.csv", newline="") as file:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""clang.py warnings|tidy [--changed] [--most N] [FILE...]: what clang++ or clang-tidy says of the sources named, or of all.
+"""clang.py warnings|tidy [--changed] [--most N] [FILE...]: what clang++ or clang-tidy finds in these sources, or in all.
 
---changed takes those that changed (known.py says since when), and for a changed header a source that includes it. Of
+--changed takes sources that changed (known.py says since when), and for a changed header a source that includes it. Of
 more than N sources it takes N by a rule that picks others at the next commit. Exit code 1: there is a finding.
 """
 
@@ -19,20 +19,20 @@ import sys
 import known
 
 BUILD = known.ROOT / "build/gates"
-# Before the line that a finding begins with.
+# Matches before the first line of a finding.
 FINDING = re.compile(r"^(?=[^\s:]+:\d+:\d+: (?:warning|error):)", re.MULTILINE)
 
 
 def configure():
-    """Writes how clang++ would compile each source to build/gates. Warnings of CMake itself are faults."""
+    """Writes how clang++ would compile each source to build/gates. CMake's own warnings are faults."""
     done = subprocess.run(["cmake", "--preset", "gates"], cwd=known.ROOT, capture_output=True, text=True)
     if done.returncode != 0 or "Warning" in done.stderr:
         sys.exit(done.stdout + done.stderr + "CMake fails or warns")
 
 
 def compile_commands():
-    """The arguments that compile each source that git knows. A source that no target compiles is a fault, but for examples,
-    which a test builds with what is installed."""
+    """The arguments that compile each source in git. A source that no target compiles is a fault, except for examples,
+    which a test builds against an installation."""
     sources = set(known.files("*.cpp", ":(exclude)docs/examples"))
     commands = {}
     for entry in json.loads((BUILD / "compile_commands.json").read_text()):
@@ -55,7 +55,7 @@ def source_of(header, sources):
 
 
 def chosen(sources, most):
-    """The sources that changed, or that include a changed header, at most this number. Prints what it excludes."""
+    """The sources that changed, or that include a changed header, at most this number. Prints those it excludes."""
     answer = known.changed()
     if answer is None:
         print(f"what changed is not known: all {len(sources)} sources are candidates")
@@ -73,7 +73,7 @@ def chosen(sources, most):
 
 
 def compiler_words(source, command):
-    """Warnings of a clang++ that only parses and checks: all but those of its optimiser."""
+    """Warnings of a clang++ that only parses and checks: all but the optimiser's."""
     arguments, folder = command
     words = [word for word in arguments if word != "-c"] + ["-Werror", "-fsyntax-only"]
     done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -83,7 +83,7 @@ def compiler_words(source, command):
 def tidy_words(source, command):
     words = ["clang-tidy", "--quiet", "--warnings-as-errors=*", "-p", BUILD, known.ROOT / source]
     done = subprocess.run(words, cwd=known.ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    # Its standard error counts warnings that it does not show, unless it could not work.
+    # Standard error counts warnings that are not shown, so it matters only after a failure.
     return source, done.returncode, done.stdout or (done.stderr if done.returncode else "")
 
 

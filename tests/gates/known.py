@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# The number of last commits to look at, where nothing else says what changed: as many as a push may bring.
+# Number of last commits to look at where nothing else tells what changed: as many as a push may bring.
 LAST_COMMITS = 10
 
 
@@ -25,7 +25,7 @@ def files(*patterns):
 
 
 def base():
-    """The commit against which files have changed, and in words why that one; None if none is known."""
+    """The commit against which files have changed, and why this one, in words; None if none is known."""
     named = os.environ.get("GATES_SINCE")
     if named:
         commit = git("rev-parse", "--verify", "--quiet", f"{named}^{{commit}}")
@@ -48,7 +48,7 @@ def base():
 
 
 def changed():
-    """The files that differ from base(), uncommitted and new ones too, and since when in words; None if not known."""
+    """The files that differ from base(), also uncommitted and new ones, and since when, in words; None if unknown."""
     since = base()
     if since is None:
         return None

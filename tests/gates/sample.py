@@ -11,7 +11,7 @@ import known
 import spelling
 import width
 
-# How many sentences of each kind, and the files that have them.
+# Number of sentences of each kind, and the files that have them.
 KINDS = {"README": (6, ["README.md"]), "tutorial": (10, ["docs/tutorial/*.md"]), "how-to": (12, ["docs/how-to/*.md", "docs/faq.md"]),
          "explanation": (16, ["docs/explanation/*.md"]), "reference": (14, ["docs/reference/*.md", "docs/glossary.md"]),
          "gallery": (8, ["docs/gallery/*.md"]), "notes": (6, ["docs/notes/*.md", "CHANGELOG.md", "docs/paper/*.md"]),

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The handbook's site in a browser: `site.py build/docs/html`. No page says anything on the console or asks another host;
+"""Tests the handbook's site in a browser: `site.py build/docs/html`. No page prints on the console or asks another host;
 pages follow the browser's choice of light or dark; nothing is wider than a phone; search results hold no TeX."""
 
 import contextlib
@@ -20,7 +20,7 @@ LOADED_FROM = re.compile(r'<(?:script|img|link rel="stylesheet")[^>]*\b(?:src|hr
 
 
 class Quiet(http.server.SimpleHTTPRequestHandler):
-    """Serves the site, and says nothing of it."""
+    """Serves the site without log messages."""
 
     def log_message(self, *_):
         pass
@@ -50,14 +50,14 @@ def browser(scheme):
 
 
 def wait_for(driver, condition):
-    """Waits until a script is true, or for half a minute; if it never is, the checks below fail."""
+    """Waits until a script returns true, at most half a minute; the checks below fail if it never does."""
     end = time.monotonic() + 30
     while not driver.execute_script(f"return !!({condition})") and time.monotonic() < end:
         time.sleep(0.1)
 
 
 def requests(driver):
-    """Addresses that the page has asked for."""
+    """Addresses that the page has requested."""
     for entry in driver.get_log("performance"):
         message = json.loads(entry["message"])["message"]
         if message["method"] == "Network.requestWillBeSent":

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The spelling of prose: *.md, comments, docstrings, and what programs say. British, with -ise, by aspell.
+"""Checks the spelling of prose: *.md, comments, docstrings, and messages of programs. British, with -ise, by aspell.
 
-Words that aspell does not know and that are right stand in words.txt. What looks like code is left out: `quoted`,
+Correct words that aspell does not know are in words.txt. What looks like code is left out: `quoted`,
 with digits, underscores, slashes or equals signs, in CamelCase or CAPITALS.
 """
 
@@ -60,7 +60,7 @@ def of_script(text):
 
 
 def prose(name):
-    """Lines of prose in a file, with their numbers. Tests quote mistakes of others: there, what is said is left out."""
+    """Lines of prose in a file, with their numbers. Tests quote mistakes of others, so their messages are left out."""
     text = (known.ROOT / name).read_text()
     with_messages = not name.startswith("tests/")
     if name.endswith(".md"):

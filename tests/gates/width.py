@@ -15,7 +15,7 @@ def prose(text):
     for number, line in enumerate(text.splitlines(), 1):
         if line.lstrip().startswith("```"):
             fenced = not fenced
-        # A block of code is indented by four and follows an empty line; without one it is a list that goes on.
+        # A block of code is indented by four and follows an empty line; without one the line continues a list.
         indented = line.startswith("    ") and (indented or not before.strip()) or (indented and not line.strip())
         before = line
         if not fenced and not indented and not line.lstrip().startswith("|"):

@@ -39,7 +39,7 @@ def layer_of(parts, layers):
 
 
 def includes(root, layers):
-    """File, line, layer and what is included."""
+    """File, line, layer and included layer of every include."""
     for base in (root / "include" / "clog", root / "src"):
         for path in sorted(base.rglob("*.?pp")):
             for number, line in enumerate(path.read_text().splitlines(), 1):
@@ -49,7 +49,7 @@ def includes(root, layers):
 
 
 def circle_of(uses):
-    """Names that lead back to the first, or none. @param uses  names by name"""
+    """Names that lead back to the first, if any. @param uses  names by name"""
     try:
         graphlib.TopologicalSorter(uses).prepare()
     except graphlib.CycleError as error:
@@ -85,13 +85,13 @@ def cpp_faults(root, uses):
 
 
 def file_of(base, parts):
-    """The file of a module, below the package. None: it is not there"""
+    """The file of a module, below the package; None if it does not exist"""
     folder = pathlib.Path(*parts)
     return next((place for place in (folder.with_suffix(".py") if parts else folder, folder / "__init__.py") if (base / place).is_file()), None)
 
 
 def imports(base, path):
-    """Line, module and file of all that a Python file imports. A file that is no part of the package is None."""
+    """Line, module and file of every import in a Python file. The file is None outside the package."""
     for node in ast.walk(ast.parse((base / path).read_text())):
         if isinstance(node, ast.Import):
             yield from ((node.lineno, name.name, None) for name in node.names)

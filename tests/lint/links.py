@@ -14,17 +14,17 @@ import sys
 FOLDERS = ("analysis", "cmake", "docs", "include", "jobs", "src", "tests")
 LINK = re.compile(r"\]\(\s*<?([^\s()<>]+)>?(?:\s+\"[^\"]*\")?\s*\)|^ {0,3}\[[^\]]+\]:\s+(\S+)", re.MULTILINE)
 BLOCK = re.compile(r"^( *)(`{3,}|~{3,}).*?^\1\2 *$", re.MULTILINE | re.DOTALL)
-# It may go on in the next line, not in the next paragraph.
+# The text may continue in the next line, but not in the next paragraph.
 QUOTED = re.compile(r"(?<!`)`((?:[^`\n]|\n(?!\s*\n))+)`(?!`)")
 PATH = re.compile(rf"(?:{'|'.join(FOLDERS)})/[^\s<*{{$]*")
 HEADING = re.compile(r"^#{1,6} +(.+?)(?: +#+)?$", re.MULTILINE)
 TARGET = re.compile(r"^\(([\w-]+)\)=$", re.MULTILINE)
-# Dated measurements and releases speak of the sources of their day.
+# Dated measurements and releases describe the sources of their day.
 OF_THEIR_DAY = ("docs/notes/", "CHANGELOG.md")
 
 
 def sources(root):
-    """The files that git knows or would take; in an archive of the sources all but what was built there."""
+    """The files that git knows or would add; in an archive of the sources, all files except build outputs."""
     if (root / ".git").exists():
         asked = subprocess.run(["git", "-C", root, "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
                                capture_output=True, text=True)
@@ -35,7 +35,7 @@ def sources(root):
 
 
 def without(pattern, text):
-    """The same text, as many lines, in which nothing of the pattern is left."""
+    """The same text, with as many lines, without everything that matches the pattern."""
     return pattern.sub(lambda found: "\n" * found[0].count("\n"), text)
 
 

@@ -13,7 +13,7 @@ PROCESSES = {"Popen", "run", "check_output"}
 
 
 def is_unnamed(call):
-    """Does this call read or write text without a word on its encoding?"""
+    """Whether this call reads or writes text without naming an encoding."""
     given = {word.arg: word.value for word in call.keywords}
     if "encoding" in given:
         return False

@@ -1,5 +1,5 @@
-"""No compiled file of ours has indirect functions, of which the processor chooses one when a program starts, and none asks
-the processor what it is: what decides the bits of a row is for --instruction-set to say.
+"""No compiled file of ours has indirect functions, which the processor chooses when a program starts, and none queries
+the processor: only --instruction-set may decide the bits of a row.
 
     one_selector.py READELF OBJDUMP FILE...     (archives and programs)
 """

@@ -1,5 +1,5 @@
-"""Layers whose numbers end up in rows call no function of the C library of which it has versions for several kinds of
-processors; those of include/clog/core/tools/portable_math.hpp take their place.
+"""Layers whose numbers end up in rows call no function of the C library that has versions for several kinds of
+processors; include/clog/core/tools/portable_math.hpp replaces them.
 
     portable_math.py READELF ARCHIVE...
 """

@@ -15,7 +15,7 @@ BEGIN, END = "<!-- {} of clogsweep --schema, by tests/lint/schema_tables.py -->"
 
 
 def values_of(key):
-    """Its default; then other values."""
+    """The default of a key, then its other values."""
     words = [f"`{word}`" for word in key["words"] if word != key["default"]]
     if key["kind"] != "word":
         numbers = {"text": "a description, as of `--lab`", "file": "a file's name"}.get(key["kind"], key.get("range") or "any number")
@@ -41,7 +41,7 @@ def type_of(column):
 
 
 def columns(schema):
-    """Columns with the name and value of a key in one paragraph; columns whose meanings differ only in numbers in one entry."""
+    """Columns with the name and value of a key share a paragraph; columns whose meanings differ only in numbers an entry."""
     key_of = {(key.get("column"), key.get("meaning")): key["key"] for key in schema["keys"]}
     named, rows = [], {}
     for column in schema["columns"]:

@@ -22,7 +22,7 @@ EXPECTED = {
 
 
 def variables_after(**before):
-    """What mpirun would see of Open MPI's and PRRTE's variables in a script that has sourced the settings."""
+    """The variables of Open MPI and PRRTE that mpirun would see in a script that has sourced the settings."""
     printed = subprocess.run(["bash", "-euc", '. "$0" && env', SETTINGS], env={"PATH": os.environ["PATH"], **before},
                              check=True, capture_output=True, text=True).stdout
     return {name: value for name, _, value in (line.partition("=") for line in printed.splitlines())

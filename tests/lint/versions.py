@@ -43,7 +43,7 @@ def faults(root):
 
 
 def table_of_dependencies(text):
-    """Rows of the handbook's table, of the lines of cmake/dependencies.txt."""
+    """Rows of the handbook's table, from the lines of cmake/dependencies.txt."""
     for line in text.splitlines():
         if line[:1].isalpha():
             name, minimum, *packages = line.split()

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """A new parameter is a member of RunParameters, an entry in core/parameters/schema.cpp, and its physics: quiet_checks.patch.
 
-    tests/newcomer/add_parameter.py            # applies it to a copy, builds that, and looks for the parameter everywhere
-    tests/newcomer/add_parameter.py --check    # does the patch still fit? Takes no time
+    tests/newcomer/add_parameter.py            # applies the patch to a copy, builds it, and looks for the parameter
+    tests/newcomer/add_parameter.py --check    # only checks that the patch still fits, in no time
 
-The copy is built without optimisation, in some minutes. Exit code 1: the parameter is missing somewhere.
+Building the copy without optimisation takes some minutes. Exit code 1: the parameter is missing somewhere.
 """
 
 import argparse
@@ -42,7 +42,7 @@ def build(folder):
 
 
 def findings(programs, folder):
-    """Names what is missing."""
+    """Names the places where the parameter is missing."""
     schema = json.loads(output(programs / "clogsweep", "--schema"))
     yield "a key", any(key["key"] == "quiet-checks" and key["range"] == "at least 1, at most 1000" for key in schema["keys"])
     yield "a column", any(column["name"] == "quiet_checks" for column in schema["columns"])

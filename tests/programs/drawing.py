@@ -18,8 +18,8 @@ from clogsweep import style  # noqa: E402
 
 
 def warm_up():
-    """Loads all commands, and the fonts by drawing a small picture. A forked process that draws has it all, which costs
-    more CPU time than the picture itself."""
+    """Loads all commands, and the fonts by drawing a small picture. Forked processes share both, whose CPU time
+    exceeds the picture's own."""
     for command in clogsweep.__main__.COMMANDS:
         importlib.import_module(f"clogsweep.commands.{command.replace('-', '_')}")
     figure, axes = style.subplots(figsize=(2, 2))
@@ -41,8 +41,8 @@ def run_in(folder, out, error, call):
 
 class Analysis(ProgramTest):
     def fork(self, words, call):
-        """Calls in the test's folder, in a process forked for it: what warm_up() has loaded is there already.
-        @param words  what is said to be called; @param call  returns an exit code"""
+        """Calls a function in the test's folder, in a forked process, which shares what warm_up() has loaded.
+        @param words  the call, for messages; @param call  returns an exit code"""
         out, error = self.folder / "stdout.txt", self.folder / "stderr.txt"
         process = multiprocessing.get_context("fork").Process(target=run_in, args=(self.folder, out, error, call))
         process.start()

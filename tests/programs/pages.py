@@ -11,14 +11,14 @@ from support import BIN, LONGEST, ROOT
 
 BLOCK = re.compile(r"^```(bash|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 TOCTREE = re.compile(r"^```{toctree}\n(?::.*\n)*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-# Settings from the page before the tutorials; `set` ends a block at the first command that fails.
+# Settings from the page before the tutorials; `set` makes a block end at the first command that fails.
 BEFORE = f"set -euo pipefail; . {ROOT}/jobs/mpi-settings.sh\n"
 HOW_TO = ("other-arrays", "own-obstacles", "lattice", "lateral-displacement", "compare-sweeps", "python", "contact-angles", "sizes-and-tilts")
 PAGES = ["README.md", *(f"docs/how-to/{name}.md" for name in HOW_TO)]
 
 
 def tutorial():
-    """Its pages, in their order."""
+    """The tutorial's pages, in their order."""
     return [f"docs/tutorial/{page}.md" for page in TOCTREE.search((ROOT / "docs/tutorial/index.md").read_text())[1].split()]
 
 
@@ -58,7 +58,7 @@ def commands(path):
 
 
 def run(language, block, folder):
-    # Another python3 that comes first in the path may lack what Debian's has. mpirun stays the one it was.
+    # Another python3 that comes first in the path may lack what Debian's has. mpirun stays the same.
     folders = [str(BIN), os.path.dirname(shutil.which("mpirun")), os.path.dirname(sys.executable), os.environ["PATH"]]
     environment = {**os.environ, "PATH": ":".join(folders), "PYTHONPATH": str(ROOT / "analysis")}
     command = ["bash", "-c", BEFORE + block] if language == "bash" else [sys.executable, "-c", block]

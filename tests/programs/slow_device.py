@@ -1,4 +1,4 @@
-"""Devices of a user's own, in runs that take long."""
+"""Devices of a user, in runs that take long."""
 
 import unittest
 

@@ -14,7 +14,7 @@ from test_install import KEYS, Installation
 COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": [],
             "clogfit": ["calibrate", "curve", "deviation", "drag", "report", "units"]}
 
-# Meanings of words without dashes.
+# Meanings of words without dashes
 POSITIONAL = {"--file", "--system", "--task"}
 
 
@@ -36,7 +36,7 @@ class Built(Installation):
 
 class Handbook(Installation):
     def man_page(self, name, section):
-        """The page without its fonts."""
+        """The page without its font commands."""
         return re.sub(r"\\f[BIP]", "", (self.prefix / f"share/man/man{section}/{name}.{section}").read_text().replace("\\-", "-"))
 
     def test_man_pages_have_every_option_with_its_default_and_no_other(self):

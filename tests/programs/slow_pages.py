@@ -1,5 +1,5 @@
-"""Commands of the handbook. slow_tutorial runs tutorial, README and some how-to pages as they stand. Here every command
-of the other pages is run in a folder with the files that it names; longer ones are shortened or only parsed.
+"""Runs commands of the handbook. slow_tutorial runs tutorial, README and some how-to pages as they are. Here every
+command of the other pages runs in a folder with the files that it names; longer commands are shortened or only parsed.
 """
 
 import pathlib
@@ -25,18 +25,18 @@ FOLLOWED = {*pages.PAGES, *pages.tutorial()}
 PAGES = sorted({str(path.relative_to(ROOT)) for part in ("how-to", "reference", "gallery", "explanation", "developer")
                 for path in (ROOT / "docs" / part).glob("*.md")} - FOLLOWED)
 PROGRAMS = ("clogsweep", "clogrun", "clogfit")
-LAUNCHERS = {"mpirun": 3, "srun": 1}  # how many words each takes
-# Commands that name a program of ours, and are not run here because of what they need.
+LAUNCHERS = {"mpirun": 3, "srun": 1}  # number of words of each
+# Commands that name one of our programs, but need something that may be missing here
 NOT_RUN = {"docker", "spack", "sbatch", "qsub", "git", "sudo", "pydoc"}
-# Options and keys that make a run short, by the first words of a command.
+# Options and keys that make a run short, by the first words of a command
 SHORT = {"clogrun array": ["max-time=20", "seeds=1"], "clogrun replay": [], "clogrun channel": ["vertices=64", "start=-1.2", "end=-1"]}
-# Commands of python3 -m clogsweep that take longer.
+# Commands of python3 -m clogsweep that take longer
 LONG = {"agreement": agreement, "collision": collision, "predict": predict}
 SWEEP = ["preset=elastic", "line-tension=0.5,1,2,4", "seeds=1..4", *SMALL, "max-time=60"]
 
 
 def own_program(words):
-    """@return the call of a program of ours in a command, without what launches it, or nothing"""
+    """@return the call of one of our programs in a command, without its launcher, or nothing"""
     while words and re.match(r"[A-Z_]+=", words[0]):
         words = words[1:]
     if words and words[0] in LAUNCHERS:
@@ -101,14 +101,14 @@ class Commands(Analysis):
             self.check_python(rest[1:])
         elif program == "clogsweep" and ("=" in rest[0] or rest[0].startswith("--")):
             self.succeed(program, *rest, "--print-config")
-        elif program == "clogsweep" and rest[0] == "doctor":  # who may find something
+        elif program == "clogsweep" and rest[0] == "doctor":  # which may find problems
             self.assertIn(self.run_program(program, *rest).returncode, (0, 1))
         elif program == "clogfit" and rest[0] == "calibrate":  # takes minutes
             (self.folder / "trial.csv").unlink()
             self.refuse(program, *rest, words=["cannot read trial.csv"])
         else:
             short = SHORT.get(f"{program} {rest[0]}", [])
-            self.succeed(program, *replaced([word for word in rest if word != "--watch"], short))  # --watch goes on until the sweep is over
+            self.succeed(program, *replaced([word for word in rest if word != "--watch"], short))  # --watch waits for the end of the sweep
 
     def check_figures(self, words):
         sys.argv[1:] = words
@@ -125,13 +125,13 @@ class Commands(Analysis):
         elif command in LONG:
             sys.argv[1:] = rest
             LONG[command].parse()
-        elif command == "refine":  # the launcher may be of a cluster
+        elif command == "refine":  # the launcher may be a cluster's
             done = self.analyse(command, *rest[:rest.index("--")], "--dry-run")
             self.assertEqual(done.returncode, 0, done.stderr)
         else:
             sweep = {"device": "device.h5", "clogs": "wrapped.h5"}.get(command, "sweep.h5")
             stand_ins = {"/dev/stdin": "fit.json", "sweep.h5": sweep}
-            if command == "export":  # never replaces a file
+            if command == "export":  # which never replaces a file
                 (self.folder / rest[-1]).unlink(missing_ok=True)
             done = self.analyse(command, *(stand_ins.get(word, word) for word in rest))
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -154,7 +154,7 @@ class Commands(Analysis):
 
 class Pictures(Analysis):
     def stored(self, path):
-        """@return the call of the program that made the rows of a picture, or nothing for those of figures"""
+        """@return the call of the program that made the rows of a picture; nothing for pictures of `figures`"""
         with Image.open(path) as picture:
             about = picture.info.get("Description", "")
         for line in about.splitlines():

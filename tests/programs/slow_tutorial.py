@@ -1,5 +1,5 @@
-"""Pages of the handbook: their commands as they stand, one block after the other, in an empty folder; those of the tutorial
-in one folder, one page after the other.
+"""Runs the commands of pages of the handbook as they are, one block after the other, in an empty folder; tutorial pages
+share one folder and run one after the other.
 
 Blocks of `bash` and `python` are run. The first line of a block of `text` must be among their output, except for its
 numbers, and every file that a page names must exist at the end.
@@ -38,7 +38,7 @@ class Pages(ProgramTest):
             self.assertTrue((self.folder / name).exists(), f"{path} names {name}, which is not there")
 
     def test_the_tutorial(self):
-        """Its pages tell the reader to stay in one folder, so files of one page must not disturb another."""
+        """The tutorial tells the reader to stay in one folder, so files of one page must not disturb another."""
         self.assertGreaterEqual(len(pages.tutorial()), 3)
         for page in pages.tutorial():
             self.follow(page)

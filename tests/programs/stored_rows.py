@@ -1,4 +1,4 @@
-"""Puts other results into a sweep's file, with checksums that are right: the file's format once more, in Python."""
+"""Changes results in a sweep's file, with correct checksums: a second implementation of the format, in Python."""
 
 import zlib
 
@@ -7,7 +7,7 @@ import numpy as np
 
 
 def edited(path, edit):
-    """@param edit  called with the open file; its checksums and the seal behind its end are then made to agree with it"""
+    """@param edit  called with the open file, whose checksums and seal are then made to agree with it"""
     content = path.read_bytes()
     path.write_bytes(content[:content.rindex(b"\nclogsweep seal")])
     with h5py.File(path, "r+") as file:
@@ -25,7 +25,7 @@ def edited(path, edit):
 
 
 def change(path, edit):
-    """@param edit  called with the rows, to be changed in place"""
+    """@param edit  called with the rows, which it changes in place"""
     def edit_rows(file):
         rows = file["runs"][:]
         edit(rows)
@@ -52,7 +52,7 @@ def columns(path):
 
 
 def make_older(path, version, without=()):
-    """Makes the file one of another format, with fewer columns."""
+    """Gives the file another format version, with fewer columns."""
     def edit(file):
         table = file["runs"][:]
         del file["runs"]

@@ -15,21 +15,21 @@ import unittest
 import pandas
 
 BIN = pathlib.Path(os.environ["CLOG_BIN"])
-# mpirun's own behaviour differs between Open MPI and MPICH.
+# The behaviour of mpirun itself differs between Open MPI and MPICH.
 _mpi = re.search(r"^MPI: (.*) v?(\d+)",
                  subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout, re.MULTILINE)
 MPI, MPI_MAJOR = _mpi[1], int(_mpi[2])
-STEPS_PER_SNAPSHOT = 2**18  # runs that were stopped go on from a snapshot
+STEPS_PER_SNAPSHOT = 2**18  # stopped runs resume from a snapshot
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MPIRUN = ROOT / "tests" / "mpirun.sh"
 
-# After so many seconds a program counts as one that never ends. With sanitizers, on a busy machine, some take minutes.
+# After this number of seconds a program counts as hanging. With sanitizers, on a busy machine, some take minutes.
 LONGEST = 1500
 
 # Small droplets in a small box: a run takes some hundredths of a second.
 SMALL = ["vertices=64", "box=20", "obstacle-density=saturated"]
 QUICK = [*SMALL, "max-time=60"]
-# A sweep to be shared, see shared_sweep(): two parameter sets of two droplets; some clog.
+# A sweep that tests share, see shared_sweep(): two parameter sets of two droplets; some clog.
 FEW = [*QUICK, "line-tension=1,3", "seeds=1..2"]
 # Long runs, each of several snapshots (four a second).
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
@@ -38,11 +38,12 @@ FEW_LONG = [word.replace("1..6", "1") for word in SWEEP]
 # Two runs of seconds each: both are in progress at the first snapshot.
 SLOW = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05", "max-time=2e4", "seeds=1",
         "--report-seconds=0.1", "--output", "s.h5"]
-# The same, but of hours: in progress until something ends them, however long the test has to wait for the processor.
+# The same for hours: these runs are in progress until something ends them, however long the test has to wait for the
+# processor.
 ENDLESS = [word.replace("max-time=2e4", "max-time=1e9") for word in SLOW]
-# Obstacles so near to each other that some seeds (53 and 64 of 51..70) leave no void to release the droplet in.
+# Obstacles so close to each other that some seeds (53 and 64 of 51..70) leave no void for the release of the droplet.
 BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3", "obstacle-gap=0.06", "self-contact-range=0.1"]
-# Columns that differ when the same run is recomputed: who did it, and how long it took.
+# Columns that differ when the same run is recomputed: who computed it, and how long it took.
 TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]
 
 
@@ -72,7 +73,7 @@ def shared_sweep(*arguments, program="clogsweep"):
 
 
 def undisturbed(sweep):
-    """The file of a sweep of which the last two arguments are its --output, when nothing happens to it."""
+    """The file of an undisturbed sweep, whose last two arguments are its --output."""
     return shared_sweep(*sweep[:-2])
 
 
@@ -114,7 +115,7 @@ class ProgramTest(unittest.TestCase):
             time.sleep(0.02)
 
     def ended(self, process, code=0):
-        """Waits until it has ended with that exit code. @return what it said on its standard error"""
+        """Waits until the process has ended with that exit code. @return its standard error"""
         output, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, code, f"{output}{error}")
         return error
@@ -124,7 +125,7 @@ class ProgramTest(unittest.TestCase):
         return name
 
     def copy_sweep(self, name, *arguments, program="clogsweep"):
-        """A shared sweep as a file of the test's own, which may be changed; another of that name is replaced."""
+        """Copies a shared sweep to a file of the test's own, which may be changed; replaces an existing file."""
         return pathlib.Path(shutil.copyfile(shared_sweep(*arguments, program=program), self.folder / name))
 
 
@@ -138,7 +139,7 @@ def table(path):
 
 
 class SweepTest(ProgramTest):
-    """Sweeps that run while the test looks on."""
+    """Tests that look on while a sweep runs."""
 
     def start(self, *arguments, ranks=2, launcher=MPIRUN):
         process = subprocess.Popen([str(launcher), str(ranks), str(BIN / "clogsweep"), *arguments], cwd=self.folder,
@@ -148,7 +149,7 @@ class SweepTest(ProgramTest):
         return process
 
     def kill_all(self, process, more=()):
-        """mpirun and its ranks, which have process groups of their own; `more` are ranks that may have lost their mpirun."""
+        """Kills mpirun and its ranks, which have own process groups; `more` are ranks that may have lost their mpirun."""
         for pid in [*self.ranks_of(process), process.pid, *more]:
             try:
                 os.kill(pid, signal.SIGKILL)
@@ -159,12 +160,12 @@ class SweepTest(ProgramTest):
 
     def ranks_of(self, process):
         children = children_of(process.pid)
-        if MPI == "MPICH":  # whose mpirun has a process of its own between itself and the ranks
+        if MPI == "MPICH":  # its mpirun has a process of its own between itself and the ranks
             return [rank for proxy in children for rank in children_of(proxy)]
         return children
 
     def until_in_time(self, attempt):
-        """A busy machine may let a sweep end before the test meets it. Then attempt() returns nothing, and is
+        """On a busy machine a sweep may end too early for the test. Then attempt() returns nothing, and is
         repeated."""
         for _ in range(20):
             if outcome := attempt():

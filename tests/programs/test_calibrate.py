@@ -1,4 +1,4 @@
-"""clogfit calibrate: profiles of a simulated droplet with noise, in both kinds of units, give back what made them."""
+"""clogfit calibrate: profiles of a simulated droplet with noise, in both kinds of units, recover its parameters."""
 
 import json
 import math
@@ -21,13 +21,13 @@ class OnATerminal(ProgramTest):
     def read_some(terminal):
         try:
             return os.read(terminal, 4096)
-        except OSError:  # nobody writes to it any more
+        except OSError:  # the last writer has closed the terminal
             return b""
 
 
 class Calibrate(OnATerminal):
     def measure(self, **options):
-        """A droplet's profile, by clogrun."""
+        """A droplet's profile from clogrun."""
         run = shared_sweep("channel", f"line-tension={LINE_TENSION}", f"near-wall-drag={NEAR_WALL_DRAG}", "--start=-2.5", "--end=1.3",
                            "--sample-interval=0.3", "terminal-speed=0.05", *CHANNEL, program="clogrun")
         with h5py.File(run) as file:
@@ -41,7 +41,7 @@ class Calibrate(OnATerminal):
         noisy = [v * (1 + 0.02 * chance.standard_normal(len(v))) for _ in range(2)]
         lines = [f"{a:.5g},{b:.5g},{c:.5g}" for a, b, c in zip(h, noisy[0], shape)]
         self.write("reduced.csv", "\n".join(["h [sigma], v [v_t], A", *lines]))
-        # The other by hand: a droplet of 2 mm at 3 mm/s.
+        # The other file has units by hand: a droplet of 2 mm at 3 mm/s.
         lines = [f"{25 * frame}, {2 * a:.4f}, {3 * b:.4f}" for frame, (a, b) in enumerate(zip(h, noisy[1]))]
         self.write("by_hand.csv", "\n".join(["# trial 2, 21 May", "t [ms], h [mm], v [mm/s]", *lines]))
         found = json.loads(self.succeed(
@@ -78,7 +78,7 @@ class Calibrate(OnATerminal):
         self.write("trial.csv", "\n".join(["h [sigma], v [v_t]", *(f"{0.1 * i},{1 - 0.05 * (i % 3)}" for i in range(-10, 11))]))
         ours, theirs = pty.openpty()
         self.addCleanup(os.close, ours)
-        # It would take minutes.
+        # The calibration would take minutes.
         with subprocess.Popen([BIN / "clogfit", "calibrate", "trial.csv", "--orifice=0.7", "vertices=256", "--format=json"], cwd=self.folder,
                               stdout=subprocess.PIPE, stderr=theirs) as process:
             os.close(theirs)
@@ -121,7 +121,7 @@ class Calibrate(OnATerminal):
         with h5py.File(self.folder / "clogged.h5") as file:
             self.assertEqual(file["runs"]["status"][0], b"clogged")
         with h5py.File(self.folder / "channel.h5", "a") as file:
-            file.attrs["note"] = "changed by hand"  # cuts the seal off
+            file.attrs["note"] = "changed by hand"  # which removes the seal
         done = self.succeed("clogfit", "deviation", "channel.h5", "channel.h5")
         self.assertIn("may go unnoticed", done.stderr)
 

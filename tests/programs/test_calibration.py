@@ -1,4 +1,4 @@
-"""The module behind clogfit calibrate, deviation and drag, with simulations of closed form."""
+"""The module behind clogfit calibrate, deviation and drag, with simulations in closed form."""
 
 import json
 import math
@@ -47,7 +47,7 @@ def first_half(profile):
 
 
 def clogging(tension, near_wall_drag):
-    """Its speed in the neck falls to nothing at the line tension 1, with bumps whose places depend on how near that is."""
+    """A droplet whose speed in the neck falls to zero at the line tension 1, with bumps that move with the line tension."""
     h = np.arange(-1, 1, 0.004)
     if tension >= 1:
         h = h[h <= -0.1]
@@ -80,7 +80,7 @@ class Deviations(unittest.TestCase):
     def test_residuals_of_another_shape_are_correlated(self):
         noisy = measured(model(1, 0.1), 0.02)
         self.assertLess(abs(correlation(speed_residuals(noisy, model(1, 0.1))[0])), 3 / math.sqrt(len(noisy.h)))
-        faster = noisy._replace(speed=1.2 * noisy.speed)  # its terminal speed is not what it was divided by
+        faster = noisy._replace(speed=1.2 * noisy.speed)  # divided by another speed than its terminal speed
         residuals = speed_residuals(faster, model(1, 0.1))[0]
         self.assertGreater(correlation(residuals), 0.9)
         self.assertTrue(math.isnan(correlation(residuals[:7])))
@@ -108,7 +108,7 @@ class Calibrations(unittest.TestCase):
         number = 40
         found = [search.calibrate(measured(model(0.8, 0.1), 0.02, seed), model) for seed in range(number)]
         every = calibrate.means(found)
-        # The scatter of 40 is known to 11 %; the mean to a scatter over the root of 40.
+        # The scatter of 40 results is known to 11 %, their mean to the scatter divided by the root of 40.
         self.assertAlmostEqual(every["line_tension_deviation"] / np.mean([one.line_tension_error for one in found]), 1, delta=0.35)
         self.assertAlmostEqual(every["near_wall_drag_deviation"] / np.mean([one.near_wall_drag_error for one in found]), 1, delta=0.35)
         self.assertAlmostEqual(every["line_tension"], 0.8, delta=4 * every["line_tension_deviation"] / math.sqrt(number))
@@ -155,7 +155,7 @@ class Calibrations(unittest.TestCase):
     def test_every_simulation_is_reported_and_a_search_is_repeatable(self):
         told = []
         found = search.calibrate(measured(model(1, 0.1), 0.02), model, lambda *attempt: told.append(attempt))
-        self.assertGreaterEqual(len(told), found.simulations)  # two threads may have tried one place
+        self.assertGreaterEqual(len(told), found.simulations)  # two threads may have tried one value
         self.assertAlmostEqual(min(delta for _, _, delta in told), found.delta_v, places=12)
         self.assertEqual(search.calibrate(measured(model(1, 0.1), 0.02), model)[:4], found[:4])
 
@@ -178,7 +178,7 @@ class Drag(unittest.TestCase):
         found = drag.fit(distances, 1 / (1 + 0.07 * distances**-1.25))
         self.assertAlmostEqual(found["near_wall_exponent"], 1.25, places=12)
         self.assertAlmostEqual(found["near_wall_drag"], 0.07, places=12)
-        self.assertLess(found["near_wall_exponent_error"], 1e-7)  # the root of round-off
+        self.assertLess(found["near_wall_exponent_error"], 1e-7)  # the root of the round-off
 
     def test_errors_are_those_of_numpy_s_polyfit(self):
         distances = np.array([0.05, 0.1, 0.2, 0.5, 1.0])
@@ -250,7 +250,7 @@ class ProfileFiles(unittest.TestCase):
 
 
 class Records(unittest.TestCase):
-    """What version 0.2.0 in C++ found, of a coarse and fast droplet."""
+    """Results of version 0.2.0 in C++, for a coarse and fast droplet."""
 
     record = json.loads((Path(__file__).parent / "records" / "calibrate.json").read_text())
 

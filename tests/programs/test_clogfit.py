@@ -18,7 +18,7 @@ sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.tools import rounded  # noqa: E402
 from clogsweep.reading import stored  # noqa: E402
 
-# Such droplets might get a hundred diameters far: rows of theirs can be given any distance up to that.
+# Such droplets might travel a hundred diameters: a test may give their rows any distance up to that.
 FAR = ["max-time=1", "terminal-speed=100"]
 # Ten runs whose distances follow the exponential law exactly.
 EXPONENTIAL = -np.log(1 - (np.arange(10) + 0.5) / 10)
@@ -70,7 +70,7 @@ class Fit(ProgramTest):
         return pandas.read_hdf(self.copy_sweep("sweep.h5", *SMALL, *settings), "runs")
 
     def change(self, **columns):
-        """Puts other results into the rows of the sweep file. Adjusts what depends on a status."""
+        """Writes other results into the rows of the sweep file. Adjusts what depends on a status."""
         if "status" in columns:
             status = np.array(columns["status"])
             columns.setdefault("clogged_by", np.where(status == b"clogged", b"certified", b"none"))
@@ -99,7 +99,7 @@ class Fit(ProgramTest):
         self.refuse("clogfit", "sweep.h5", "--pool=max-time,seeds", words=["invalid --pool=max-time,seeds", "runs that differ in seeds"])
 
     def test_it_gives_the_reference_answer(self):
-        # Sum of 359 over 21 runs with 9 ends: the classic leukaemia trial.
+        # The classic leukaemia trial: 21 runs with 9 ends and a total distance of 359.
         self.sweep("seeds=1..21", *FAR)
         times = [6, 6, 6, 6, 7, 9, 10, 10, 11, 13, 16, 17, 19, 20, 22, 23, 25, 32, 32, 34, 35]
         clogged = [1, 1, 1, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0]
@@ -125,7 +125,7 @@ class Fit(ProgramTest):
         self.assertAlmostEqual(narrow["clogging_length_profile_lower"], group["clogging_length"], places=9)
         self.assertAlmostEqual(narrow["clogging_length_profile_upper"], group["clogging_length"], places=9)
 
-    # Runs in which some droplets rested for 20 t0 or more; none clogs by wrapping.
+    # Runs in which some droplets rest for 20 t0 or more; no droplet clogs by wrapping
     DWELLING = ["seeds=1..8", "line-tension=0.05,0.3", "max-time=400"]
 
     def longest_first(self, table):
@@ -134,7 +134,7 @@ class Fit(ProgramTest):
         return [[(row[name], row[name + "_at"]) for name in names if row[name] > 0] for _, row in table.iterrows()]
 
     def expected_endings(self, table, dwell):
-        """Each run's distance until its droplet had rested for so long, and whether it had, from the table alone."""
+        """Distance of each run until its droplet rested longer than `dwell`, and whether it did, from the table alone."""
         for row, dwells in zip(table.itertuples(), self.longest_first(table)):
             stood = [place for length, place in reversed(dwells) if length > dwell]
             is_clogged = row.status == "clogged"
@@ -155,7 +155,7 @@ class Fit(ProgramTest):
                 self.assertEqual(group["clogging_length"] is None, clogs == 0)
                 if clogs:
                     self.assertAlmostEqual(group["clogging_length"], total / clogs, places=12)
-                # The mechanism of a droplet that moved on is unknown; speeds are those of all runs.
+                # The mechanism of a droplet that moved on is unknown; speeds are of all runs.
                 of_clogs = usual[group["line_tension"]]
                 self.assertEqual(group["flowing"], 8 - clogs)
                 self.assertLessEqual(group["squeezed"], of_clogs["squeezed"])
@@ -177,11 +177,11 @@ class Fit(ProgramTest):
                 self.assertGreaterEqual(longer_way, way)
                 self.assertLessEqual(fewer_clogs, clogs)
         self.assertLess(results[0], results[-1])
-        # No run can have rested for its own duration: the same numbers as without the option.
+        # No run can have rested for its own duration, so the numbers are the same as without the option.
         usual = self.fit()["groups"]
         for dwell in (400, 1e9):
             self.assertEqual(self.fit("--dwell", dwell)["groups"], usual)
-        # The fit that stops earlier counts at most one dwell length less for each droplet last seen moving.
+        # The fit that stops earlier loses at most one dwell length for each droplet that was still moving.
         for (way, clogs), group in zip(results[-3], usual):
             self.assertEqual(clogs, group["clogs"])
             self.assertLess(group["total_distance"] - way, 0.05 * (group["flowing"] + 1))
@@ -221,11 +221,11 @@ class Fit(ProgramTest):
         self.assertEqual(fit["units"]["relative_speed_pooled_error"], "v_t")
         self.assertEqual(fit["units"]["clogging_length_wrapped_upper"], "sigma")
         self.assertLessEqual(set(fit["units"]), set(group))
-        self.assertNotIn("mean_speed", group)  # the table's, in other units
+        self.assertNotIn("mean_speed", group)  # a column of the table, in other units
 
     def test_it_says_what_spoils_a_length(self):
         self.sweep("seeds=1..24", *FAR)
-        self.change(distance=[5.0] * 12 + [5.1] * 12, status=[b"clogged"] * 24)  # anything but exponential
+        self.change(distance=[5.0] * 12 + [5.1] * 12, status=[b"clogged"] * 24)  # far from exponential
         fit = self.fit()
         group, = fit["groups"]
         self.assertEqual(group["doubts"], "not_exponential")
@@ -289,13 +289,13 @@ class Fit(ProgramTest):
         self.assertEqual([step["distance"] for step in group["survival"]], [0, 1, 2, 3])
         text = self.succeed("clogfit", "sweep.h5", "--from-distance=0.5").stdout
         self.assertIn("3 runs ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all runs", text)
-        # Mechanisms are told also where those that are left clogged by one only.
+        # Mechanisms are also shown if all remaining runs clogged by the same one.
         self.assertRegex(self.succeed("clogfit", "sweep.h5", "--from-distance=3").stdout, "w/s/h/o.*\n.* 1/0/0/0 ")
         group, = self.fit()["groups"]
         self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (8, 6, 0))
         group, = self.fit("--from-distance", 100)["groups"]
         self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (0, 0, 8))
-        self.assertIsNone(group["doubts"])  # of no runs
+        self.assertIsNone(group["doubts"])  # there are no runs
         self.assertNotIn("> 0", self.succeed("clogfit", "sweep.h5", "--from-distance=100").stdout)
 
     def test_each_mechanism_has_a_length_of_its_own(self):
@@ -347,18 +347,20 @@ class Fit(ProgramTest):
         self.assertEqual([group[name] for name in ("runs", "clogs", "broken", "flowing", "squeezed", "other")], [10, 4, 4, 2, 4, 0])
         self.assertEqual([group[name] for name in ("total_distance", "clogging_length", "break_up_length")], [55, 55 / 4, 55 / 4])
         self.assertTrue(group["break_up_length_lower"] < 55 / 4 < group["break_up_length_upper"])
-        # By hand: P just before r times ends over runs at risk, 1/10 each until the first is censored at 5, from then on 6/10 of 1/5.
+        # By hand: each end adds P just before it, divided by the runs at risk: 1/10 until the first run is censored at
+        # 5, then 6/10 of 1/5.
         broken = [(step["distance"], round(step["probability"], 12)) for step in group["incidence"]["broken"]]
         self.assertEqual(broken, [(2, 0.1), (3, 0.2), (7, 0.32), (8, 0.44)])
         clogged = [round(step["probability"], 12) for step in group["incidence"]["squeezed"]]
         self.assertEqual(clogged, [0.1, 0.2, 0.32, 0.44])
         self.assertEqual(set(group["incidence"]), {"squeezed", "broken"})
-        self.assertEqual(group["censored_distances"], [2, 3, 5, 7, 8, 10])  # of clogs
+        self.assertEqual(group["censored_distances"], [2, 3, 5, 7, 8, 10])  # without clogged runs
         text = self.succeed("clogfit", "sweep.h5").stdout
         self.assertRegex(text, r"95 % +broken +lambda_b/sigma.*\n.* 4 +13\.\d+ ")
         self.assertIn("lambda_b: mean distance before break-up", text)
         self.assertNotIn("w/s/h/o", text)
-        # A droplet that rested for long ended there, even if it broke later; otherwise it ends where it broke.
+        # A droplet that rested for long counts as ended there, even if it broke later; otherwise it ends where it
+        # broke.
         dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5") if name.startswith(("longest_dwell", "earlier_dwell"))]
         self.change(**{name: np.nan for name in dwells})
         self.assertEqual(self.fit("--dwell", 0.9)["groups"][0]["broken"], 4)
@@ -490,7 +492,7 @@ class Fit(ProgramTest):
             mine = rows[rows.lattice_angle == group["lattice_angle"]]
             slope = mine.lateral_displacement.sum() / mine.distance.sum()
             self.assertAlmostEqual(group["lateral_slope"], slope, places=12)
-            # A disk too large for the lattice follows its rows.
+            # A disk that is too large for the lattice's gaps follows its rows.
             self.assertAlmostEqual(slope, math.tan(math.radians(group["lattice_angle"])), delta=0.03)
             self.assertLess(group["lateral_slope_error"], 0.03)
             tangent = math.tan(math.radians(group["lattice_angle"]))

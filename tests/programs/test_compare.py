@@ -1,4 +1,4 @@
-"""Clogging lengths of two sweeps compared, several files as one sweep, and what happens in a sweep as events."""
+"""Comparison of two sweeps' clogging lengths, several files read as one sweep, and events of a sweep."""
 
 import json
 import math

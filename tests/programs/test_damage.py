@@ -1,4 +1,4 @@
-"""Damaged files: readers notice the damage, and intact parts can be kept."""
+"""Damaged files: readers notice the damage, and salvage keeps intact parts."""
 
 import contextlib
 import io
@@ -42,7 +42,7 @@ class Damage(ProgramTest):
         self.rows = table(self.file)
 
     def multiply_a_distance(self):
-        """Puts a clogged row 16 times as far, as a single flipped bit of the exponent does."""
+        """Multiplies the distance of a clogged row by 16, as a single flipped bit of the exponent does."""
         content = self.file.read_bytes()
         self.file.write_bytes(content.replace(struct.pack("<d", self.rows.distance[1]), struct.pack("<d", 16 * self.rows.distance[1])))
         self.assertNotEqual(self.file.read_bytes(), content)
@@ -62,7 +62,7 @@ class Damage(ProgramTest):
         self.assertIn("row 1 (task 1) is not as it was written\ns.h5: 5 undamaged rows, 1 fault\n", verified.stdout)
         with self.assertRaises(stored.Damaged):
             stored.read_rows(self.file)
-        # Readers who know nothing of it: HDF5's own checksum of the table's chunks.
+        # HDF5's own checksum of the table's chunks protects readers that do not know our checksums.
         with self.assertRaises(OSError), h5py.File(self.file) as file:
             file["runs"][:]
         with pandas.HDFStore(self.file, "r") as store, self.assertRaisesRegex(Exception, "read"):
@@ -124,7 +124,7 @@ class Damage(ProgramTest):
         self.assertIn("preset=viscous", self.succeed("clogfit", "s.h5").stdout)
 
     def test_what_verify_refuses_is_not_salvaged(self):
-        """A foreign file may agree with its checksums and still contain impossible values."""
+        """A foreign file may match its checksums and still contain impossible values."""
         def repeat_a_run(rows):
             rows[2] = rows[1]
             rows["task"][2] = 2
@@ -170,21 +170,21 @@ class Damage(ProgramTest):
         self.refuse("clogfit", "copy.h5", words=["row 2 (task 2)"])
 
     def copied(self):
-        """The file as another program writes it: all is there, but no seal."""
+        """Copies the file as another program would: with all its content, but without a seal."""
         content = self.file.read_bytes()
         copy = self.folder / "copy.h5"
         copy.write_bytes(content[:content.rindex(b"\nclogsweep seal")])
         return copy
 
     def test_verify_tells_when_only_other_readers_refuse_a_copy(self):
-        """HDF5's checksum of a chunk is of its padding, too; ours are of rows and attributes."""
+        """HDF5's checksum of a chunk includes its padding; our checksums cover rows and attributes."""
         copy = self.copied()
         whole = copy.read_bytes()
         with h5py.File(copy) as file:
             chunks = {name: file[name].id.get_chunk_info(0) for name in ("runs", "row_checksums")}
             num_rows, row_size = len(file["runs"]), file["runs"].dtype.itemsize
         self.assertIn("all undamaged", self.succeed("clogsweep", "verify", "copy.h5").stdout)
-        last = {name: chunk.byte_offset + chunk.size - 1 for name, chunk in chunks.items()}  # of the checksum
+        last = {name: chunk.byte_offset + chunk.size - 1 for name, chunk in chunks.items()}  # last byte of the checksum
         for place in (*last.values(), chunks["runs"].byte_offset + num_rows * row_size):
             content = bytearray(whole)
             content[place] ^= 1
@@ -200,7 +200,7 @@ class Damage(ProgramTest):
                 (self.folder / "whole.h5").unlink()
 
     def test_python_does_not_read_a_copy_whose_description_is_damaged(self):
-        """Checksums are of bytes: other names, types or positions would change the numbers."""
+        """Checksums cover bytes only: other names, types or positions would change the numbers."""
         copy = self.copied()
         whole = copy.read_bytes()
         self.assertEqual(len(clogsweep.open(copy).rows), 6)
@@ -220,7 +220,7 @@ class Damage(ProgramTest):
         self.assertGreater(refused, 15)
 
     def test_the_check_of_a_copy_is_not_reused_for_a_changed_copy(self):
-        """The check was once remembered by name and time, so a changed copy with the same time passed as undamaged."""
+        """The check was once cached by name and time, so a changed copy with the same time counted as undamaged."""
         copy = self.copied()
         clogsweep.open(copy)
         content = copy.read_bytes()
@@ -239,7 +239,7 @@ class Damage(ProgramTest):
             clogsweep.open(run)
 
     def test_little_memory_is_no_damage_and_no_crash(self):
-        """HDF5 and Open MPI crash without memory; a file that they could not load was called damaged."""
+        """HDF5 and Open MPI crash without memory; an intact file that they could not load was once called damaged."""
         if not may_limit_memory():
             self.skipTest("programs with sanitizers map more memory than any machine has")
         sweep = [*SETTINGS[:-1], "new.h5"]
@@ -253,11 +253,11 @@ class Damage(ProgramTest):
             for name, *arguments in [("clogfit", "s.h5"), ("clogsweep", "verify", "s.h5"), ("clogsweep", *sweep)]:
                 size = megabytes * 2**20
                 done = run_with(size, name, arguments)
-                # For 150 kB above what loading takes, Highway's library ends the process before main().
+                # In a range of 150 kB above what loading takes, Highway's library ends the process before main().
                 if done.returncode == -signal.SIGABRT and run_with(size - 2**18, name, arguments).returncode == 127:
                     continue
                 with self.subTest(program=name, arguments=arguments[:1], megabytes=megabytes):
-                    self.assertIn(done.returncode, (0, 2, 127), done.stderr)  # 127: its libraries are not even loaded
+                    self.assertIn(done.returncode, (0, 2, 127), done.stderr)  # 127: libraries do not fit
                     self.assertNotIn("damaged", done.stderr)
                 told.append((done.returncode, "out of memory" in done.stderr))
         self.assertIn((2, True), told)
@@ -316,7 +316,7 @@ class Damage(ProgramTest):
             self.assertEqual(self.file.read_bytes(), before)
 
     def test_a_column_offset_beyond_the_row_is_refused(self):
-        """Foreign memory was shown as a value: the offset of a member in the table's description."""
+        """Memory outside the row was once shown as a value, by the offset of a member in the table's description."""
         content = bytearray(self.file.read_bytes()[:-stored.SEAL_SIZE])
         name = content.index(b"kinetic_energy_ratio\0")
         offset = name + 24  # names are padded to eight bytes; the member's offset follows
@@ -328,10 +328,10 @@ class Damage(ProgramTest):
 
     def test_a_full_disk_ends_with_exit_code_2(self):
         def limit():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # SIGXFSZ is not ignored
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # SIGXFSZ would end the program
 
         for name, *arguments in [("clogsweep", *SETTINGS[:-1], "new.h5"), ("clogrun", "array", *QUICK, "seeds=1", "--output", "run.h5")]:
-            # Neither a daemon of Open MPI nor shared memory of MPICH that meet the limit, too.
+            # Excludes a daemon of Open MPI and shared memory of MPICH, which would meet the limit, too.
             done = subprocess.run([BIN / name, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, preexec_fn=limit,
                                   env={**os.environ, "OMPI_MCA_ess_singleton_isolated": "1", "UCX_TLS": "self,tcp"})
             self.assertEqual(done.returncode, 2, done.stderr)

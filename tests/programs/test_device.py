@@ -1,4 +1,4 @@
-"""Devices of a user's own: files of circles in any form, walls, entrance, exit; drawings of them, and pictures."""
+"""Devices of a user: files of circles in any form, walls, entrance, exit; drawings of devices, and pictures."""
 
 import contextlib
 import io
@@ -43,8 +43,8 @@ def csv(scale=1.0):
 
 class Walls(Analysis):
     def slide(self, angle, tolerance):
-        """Along a wall without friction, at an angle to the flow, a droplet has its terminal speed times the cosine: along
-        the flow, the square."""
+        """Along a wall without friction, at an angle to the flow, a droplet has its terminal speed times the cosine;
+        its speed along the flow has the square of the cosine."""
         tangent = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
         for radius, spacing, vertices in ((0.05, 0.0167, 128), (0.1, 0.0333, 64)):
             normal = np.array([-tangent[1], tangent[0]])
@@ -144,7 +144,7 @@ class Devices(Walls):
         self.assertIn("other.cfg replaces the laboratory that rows have", self.succeed("clogfit", "s.h5", "--lab", "other.cfg").stderr)
 
     def test_droplets_that_rest_uncertified_are_named(self):
-        # On the flat top of a row of circles across the flow nothing holds a droplet sideways.
+        # The flat top of a row of circles across the flow holds no droplet sideways.
         self.write("row.csv", "".join(f"10,{y:.4f},0.1\n" for y in np.arange(3, 7, 0.0167)))
         self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=8", "entrance-from=4.9", "entrance-to=5.1",
                      "line-tension=1", "vertices=64", "max-time=1500", "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "s.h5")
@@ -153,7 +153,7 @@ class Devices(Walls):
         group, = json.loads(self.succeed("clogfit", "s.h5", "--dwell", 1000, "--format", "json").stdout)["groups"]
         self.assertEqual((group["clogs"], group["flowing"]), (1, 0))
         self.assertNotIn("at rest", self.succeed("clogfit", "s.h5", "--dwell", 1000).stdout)
-        # At rest from the beginning, for a time of one digit: the advice is to use a shorter one.
+        # The droplet rests from the beginning, for a time of one digit: the advice is a shorter time.
         self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=9.44", "entrance-from=4.9", "entrance-to=5.1",
                      "line-tension=1", "vertices=64", "max-time=1000", "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "t.h5")
         self.assertIn("--dwell=900 counts it as clogged", self.succeed("clogfit", "t.h5").stdout)
@@ -210,7 +210,7 @@ class Devices(Walls):
         for command, output in [("device", "device"), ("report", "report.html")]:
             self.draw(command, "s.h5", "--output", output, "--programs", BIN)
         self.assertTrue("2 of 2 runs finished (2 passed)" in (self.folder / "report.html").read_text())
-        # Beside groups whose droplets do.
+        # Merged with groups whose droplets do pass.
         self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=6", "side-walls=on", "release=entrance", "entrance-from=4.5", "entrance-to=5.5", "exit=6",
                      "line-tension=1", "vertices=64", "max-time=500", "seeds=1..2", "--output", "t.h5")
         self.succeed("clogsweep", "merge", "s.h5", "t.h5", "--output", "both.h5")
@@ -340,7 +340,7 @@ class Drawings(Analysis):
         space.add_text("not a post")
         drawing.saveas(self.folder / "device.dxf")
         self.assert_posts(self.circles("device.dxf"), 1e-6)
-        # clogsweep reads it as the command describes it.
+        # clogsweep reads the file as the printed command describes it.
         self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-2], "max-time=5", "seeds=1", "--output", "s.h5")
         self.assertEqual(len(table(self.folder / "s.h5")), 1)
 
@@ -382,7 +382,7 @@ class Drawings(Analysis):
         triangle = rows[rows[:, 2] < 0.3]
         self.assertGreater(len(triangle), 20)
         self.assertLess(np.ptp(triangle[:, 2]), 1e-4)
-        # Within the outline, touching each side.
+        # A circle within the outline that touches each side
         radius = triangle[0, 2] / 2
         corners = np.array([(10.0, 3.5), (10.5, 3.5), (10.25, 3.0)])  # y upwards
         for (x, y), (end_x, end_y) in zip(corners, np.roll(corners, -1, axis=0)):
@@ -410,7 +410,7 @@ class Drawings(Analysis):
 
 
 class WrongDrawings(Analysis):
-    """What a drawing may have that a user did not intend."""
+    """Contents of a drawing that the user may not have intended."""
 
     COMMAND = ["--droplet", "200um", "--output", "posts"]
 
@@ -485,12 +485,12 @@ class WrongDrawings(Analysis):
         self.assertIn("install python3-shapely", told)
 
     def red(self):
-        """Which pixels of the picture are."""
+        """The red pixels of the picture."""
         pixels = image.imread(self.folder / "posts.png")
         return (pixels[..., 0] > 0.7) & (pixels[..., 1:3] < 0.5).all(axis=2)
 
     def run_printed(self, told, *keys):
-        """The command that circles prints."""
+        """The command that `circles` prints."""
         begin = told.strip().splitlines()[-1].removesuffix(" ...").split()
         self.succeed(*begin, "line-tension=1", "vertices=64", "max-time=5", "seeds=1..2", *keys, "--output", "s.h5")
         return begin
@@ -560,7 +560,7 @@ def record(kind, form=0, data=b""):
 
 
 def real(value):
-    """In GDSII: a sign, a power of 16, and 56 bits."""
+    """A number in GDSII: a sign, a power of 16, and 56 bits."""
     power = 0
     if value == 0:
         return bytes(8)
@@ -572,7 +572,7 @@ def real(value):
 
 
 def gdsii(outlines, metres, more=b"", in_user_units=0.001):
-    """A GDSII file by hand. @param outlines  of layer 1, in user units; @param metres  in one"""
+    """A GDSII file by hand. @param outlines  in layer 1, in user units; @param metres  in a user unit"""
     date = struct.pack(">12h", *[0] * 12)
     begin = [record(0, 2, struct.pack(">h", 600)), record(1, 2, date), record(2, 6, b"LIB "), record(3, 5, real(in_user_units) + real(in_user_units * metres)),
              record(5, 2, date), record(6, 6, b"TOP ")]
@@ -583,7 +583,7 @@ def gdsii(outlines, metres, more=b"", in_user_units=0.001):
 
 
 class OtherTools(Analysis):
-    """Drawings as other programs write them."""
+    """Drawings in the form in which other programs write them."""
 
     def device(self, name, *, layer=None, region=None, posts=None, droplet=200e-6, unit=None, tolerance=0.04):
         self.drawing = readers.read(self.folder / name, layer, posts)
@@ -592,7 +592,7 @@ class OtherTools(Analysis):
         return shapes.understood(self.drawing, unit or self.drawing.metres, droplet, tolerance, 0)
 
     def circles_of(self, name, **options):
-        """In micrometres, from the device's lower left corner."""
+        """Converts the drawing to micrometres from the device's lower left corner."""
         device = self.device(name, **options)
         self.assertEqual([outline.tolist() for outline in device.others], [])
         circles = device.circles * device.droplet_micrometres
@@ -702,7 +702,7 @@ class OtherTools(Analysis):
         for x, y in [(800, 300), (1600, 900)]:
             axes.add_patch(matplotlib.patches.Circle((x, y), 50))
         axes.scatter([2400], [600], s=(0.1 * 72)**2, linewidths=0)  # a circle of 0.1 inch
-        axes.add_patch(matplotlib.patches.Circle((-500, 600), 50))  # which the axes clip
+        axes.add_patch(matplotlib.patches.Circle((-500, 600), 50))  # clipped by the axes
         figure.savefig(self.folder / "device.svg")
         np.testing.assert_allclose(self.circles_of("device.svg", droplet=0.2 * 25.4e-3) / 25.4, [(800, 300, 100), (1600, 900, 100), (2400, 600, 100)], rtol=1e-3)
 
@@ -858,7 +858,7 @@ class OtherTools(Analysis):
             return record(kind) + record(0x12, 6, name) + transform + size + record(16, 3, struct.pack(f">{2 * len(corners)}i", *(1000 * value for corner in corners for value in corner))) + record(17)
 
         def polygons(references):
-            """@param references  in TOP, to MID, which is an oblique array of POST"""
+            """@param references  in TOP to MID, which contains an oblique array of POST"""
             date = record(5, 2, struct.pack(">12h", *[0] * 12))
             post = record(8) + record(13, 2, struct.pack(">h", 1)) + record(14, 2, struct.pack(">h", 0)) + record(16, 3, struct.pack(">8i", 0, 0, 30000, 0, 0, 20000, 0, 0)) + record(17)
             cells = record(7) + date + record(6, 6, b"POST") + post + record(7) + date + record(6, 6, b"MID\0")

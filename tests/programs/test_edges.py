@@ -1,5 +1,5 @@
-"""Tests a sweep's surroundings: names with any byte, moved links, file modes and foreign journals. No row is lost
-there."""
+"""Tests the surroundings of a sweep: names with any byte, moved links, file modes and foreign journals. No row is lost
+in any of them."""
 
 import errno
 import os
@@ -16,7 +16,7 @@ OWN = ["obstacle-layout=file", "box=10", "vertices=64", "max-time=30"]
 
 
 class Limits(SweepTest):
-    """Limits of a shell or batch system: one line that names them."""
+    """Limits of a shell or batch system: the program names them in one line."""
 
     def test_too_few_open_files(self):
         for most in (8, 10, 12, 18):
@@ -25,7 +25,7 @@ class Limits(SweepTest):
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertEqual(done.stderr, f"clogsweep: cannot start MPI (this shell allows {most} open files, 32 are needed); raise the limit: ulimit -n 1024\n")
         done = self.under(resource.RLIMIT_NOFILE, (10, 4096))
-        self.assertEqual(done.returncode, 0, done.stderr)  # it raises the limit itself
+        self.assertEqual(done.returncode, 0, done.stderr)  # the program raises the limit itself
 
     def test_too_few_processes(self):
         done = self.under(resource.RLIMIT_NPROC, (1, 1))
@@ -34,7 +34,7 @@ class Limits(SweepTest):
         self.assertEqual(done.stderr.count("\n"), 1)
 
     def under(self, what, limits):
-        """Root has no limit on processes: then it is somebody else who runs a copy of the program."""
+        """Root has no limit on processes, so as root another user runs a copy of the program."""
         program = shutil.copy(BIN / "clogsweep", self.folder)
         os.chmod(self.folder, 0o777)
 
@@ -49,7 +49,7 @@ class Limits(SweepTest):
 
 
 class Names(SweepTest):
-    """A file of circles may be called anything that a file system takes."""
+    """A file of circles may have any name that the file system accepts."""
 
     def sweep_among(self, name):
         with open(os.fsencode(self.folder) + b"/" + name, "w") as file:
@@ -144,7 +144,7 @@ ACCESS_LIST = "system.posix_acl_access"
 
 
 def access_list(reader):
-    """One by which this user may read what its owner alone may write."""
+    """An access list by which this user may read a file that only its owner may write."""
     nobody = 2**32 - 1
     entries = [(0x01, 6, nobody), (0x02, 4, reader), (0x04, 0, nobody), (0x10, 4, nobody), (0x20, 0, nobody)]  # owner, a user, group, mask, others
     return struct.pack("<I", 2) + b"".join(struct.pack("<HHI", *entry) for entry in entries)
@@ -189,14 +189,14 @@ class Access(SweepTest):
         try:
             os.setxattr(file, ACCESS_LIST, access_list(12))
         except OSError as error:
-            self.assertEqual(error.errno, errno.ENOTSUP)  # then no file there has one
+            self.assertEqual(error.errno, errno.ENOTSUP)  # this file system has no access lists
             return
         self.grow()
         self.assertEqual(os.getxattr(file, ACCESS_LIST), access_list(12))
 
 
 class LinksOfOthers(SweepTest):
-    """Follows links as the kernel does with fs.protected_symlinks: where everybody may make links, only the user's own."""
+    """Links are followed as with fs.protected_symlinks: where everybody may make links, only the user's own."""
 
     def open_folder(self):
         folder = self.folder / "open"
@@ -213,7 +213,7 @@ class LinksOfOthers(SweepTest):
 
     def test_links_of_others_are_refused(self):
         if os.geteuid() != 0:
-            return  # without root one cannot make links of somebody else
+            return  # without root nobody can make links of somebody else
         folder = self.open_folder()
         for name in ("s.h5", "t.h5.journal"):
             (folder / name).symlink_to(self.folder / "elsewhere")
@@ -259,7 +259,7 @@ int unlinkat(int folder, const char* name, int flags) {
 
 
 class Refusals(SweepTest):
-    """A file system that refuses what comes after the rows are there."""
+    """A file system that fails after it has stored the rows."""
 
     def where(self, fails, **more):
         """The environment of a program for which these calls fail."""

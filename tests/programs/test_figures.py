@@ -32,7 +32,7 @@ from clogsweep.tools import rounded
 from clogsweep.labels.groups import Groups
 from clogsweep.paper import arrays, dilute
 
-# A few seconds for all of them: coarse droplets, short ways.
+# All of them take a few seconds: coarse droplets, short paths
 TINY = {
     **{name: ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4", "obstacle-density=80%"]
        for name in ("clogging-robust", "clogging-friction", "clogging-elastic", "clogging-filling", "clogging-saturated")},
@@ -57,7 +57,7 @@ SINGLE_RUNS = ("1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "D")
 
 
 class Survival(unittest.TestCase):
-    """Figure C2's curve, from numbers as clogfit gives them."""
+    """Figure C2's curve, from numbers like those of clogfit."""
 
     STEPS = [{"distance": 2.0, "probability": 0.75, "lower": 0.13, "upper": 0.96}, {"distance": 5.0, "probability": 0.375, "lower": 0.01, "upper": 0.8}]
 
@@ -89,7 +89,7 @@ class Survival(unittest.TestCase):
 
 
 class Parts(unittest.TestCase):
-    """Drawn from numbers and outlines that no program computed."""
+    """Pictures of numbers and outlines that no program computed."""
 
     def test_the_legend_of_displacements_has_the_order_of_the_curves_at_their_ends(self):
         def run(end):
@@ -132,7 +132,7 @@ class Parts(unittest.TestCase):
             self.assertGreater(np.abs(np.diff(colours, axis=0)).max(axis=1).min(), 0.3)
 
     def test_a_legend_stays_off_error_bars(self):
-        # Bars fill all but the lower right, or all; the points alone leave room above them.
+        # Bars fill all but the lower right, or everything; the points alone leave room above them.
         for lowest in (6, 0):
             axes = style.new_figure().subplots()
             right = np.arange(12) > 8
@@ -147,7 +147,7 @@ class Parts(unittest.TestCase):
 
 
 class Drawn(Analysis):
-    """Figures in the test's folder."""
+    """Draws figures in the test's folder."""
 
     PLACE = "reduced"
 
@@ -162,7 +162,7 @@ class Drawn(Analysis):
         return json.loads(self.succeed("clogfit", f"{self.PLACE}/sweeps/{sweep}.h5", "--format", "json").stdout)["groups"]
 
     def assert_groups(self, name, sweep, quantity):
-        """The numbers beside the picture are clogfit's, every one of them."""
+        """The numbers beside the picture are exactly clogfit's."""
         groups = [group for group in self.fit(sweep) if group[quantity] is not None]
         self.assertGreater(len(groups), 0)
         points = [row for row in self.drawn(name) if row["model"] == groups[0]["model"] and row[quantity]]
@@ -186,7 +186,7 @@ class Drawn(Analysis):
             self.assertAlmostEqual(float(point["sag"]), math.pi / 16 / float(point["wall_stiffness"]), delta=1e-4)
 
     def call_wrapped(self, sweep, number):
-        """One clog of the sweep is said to be wrapped, the others to be squeezed."""
+        """Marks one clog of the sweep as wrapped, and the others as squeezed."""
         def edit(rows):
             clogged = np.flatnonzero(rows["status"] == b"clogged")
             rows["mechanism"][clogged] = b"squeezed"
@@ -195,10 +195,10 @@ class Drawn(Analysis):
         stored_rows.change(sweep, edit)
 
     def assert_clogs(self, sweep, *names):
-        """Marks one clog as wrapped: so short a sweep wraps no droplet."""
+        """Marks one clog as wrapped, because so short a sweep wraps no droplet, and checks the figures."""
         self.call_wrapped(sweep, -1)
         before = table(sweep)
-        # Once more: nothing runs again.
+        # Repeated commands run nothing.
         self.figures(*names)
         pandas.testing.assert_frame_equal(table(sweep), before, check_exact=True)
         for name in names:
@@ -210,10 +210,10 @@ class Drawn(Analysis):
         task = clogs.task.iloc[-1]
         with h5py.File(sweep.parent.parent / "runs" / f"clogging-friction-{task}.h5") as file:
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
-        # A figure drawn from files alone is not labelled as another droplet.
+        # A figure drawn from existing files must not show another droplet than its label.
         self.call_wrapped(sweep, 0)
         self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-friction-", "leave out --draw-only"])
-        # Other settings than the file's are refused by clogsweep, in its words.
+        # clogsweep refuses other settings than the file's, with its own message.
         self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--set", "clogging-friction:box=30", words=["box"])
 
     def assert_report(self, sweep):
@@ -231,7 +231,7 @@ class Drawn(Analysis):
         self.assertIn("command_line: clogsweep", page)
 
     def assert_curves(self, names, *more):
-        """@param names  sweep and quantity of figures with numbers of clogfit"""
+        """@param names  sweep and quantity, by the name of a figure with numbers of clogfit"""
         done = self.figures(*names, *more, "--ranks", 1)
         self.assertNotIn("Warning", done.stderr)
         for name in [*names, *more]:
@@ -248,13 +248,13 @@ class Drawn(Analysis):
             with self.subTest(figure=name):
                 self.assert_drawn(name)
         self.assert_passage_and_survival()
-        # Drawn from what is there, whatever the settings; nothing runs again.
+        # --draw-only uses existing files, whatever the settings; nothing runs.
         before = self.times_of_runs()
         self.assertEqual(len(before), num_runs)
         self.figures(*redrawn, "--draw-only", "--set", "channel:max-time=200")
         self.figures(*names, "--set", "seeds=1..3")
         self.assertEqual(self.times_of_runs(), before)
-        # Other settings than the sweep's are refused by clogsweep, in its words.
+        # clogsweep refuses other settings than the sweep's, with its own message.
         self.refuse_analysis("figures", redrawn[0], "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
 
     def assert_passage_and_survival(self):
@@ -275,7 +275,7 @@ class Drawn(Analysis):
 
 
 class Figures(Drawn):
-    """Some figures of every kind. All of them: slow_figures."""
+    """Some figures of every kind; slow_figures has all of them."""
 
     def test_curves_show_what_clogfit_says(self):
         self.assert_curves({"7a": ("clogging-sp", "clogging_length"), "8ca": ("speed", "capillary_number")}, "9b")
@@ -354,7 +354,7 @@ class Pictures(Analysis):
                  if len(line.get_xdata()) == 1 and np.isfinite(line.get_ydata()[0])}
         arrow = drawn.pop(4)[0]
         self.assertEqual(drawn, {1: ("o", True), 2: ("s", False), 3: ("D", False)})
-        # An arrow that begins at the lower bound and rises.
+        # The arrow begins at the lower bound and rises.
         self.assertEqual(arrow.vertices[:, 1].min(), 0)
         self.assertEqual([line.get_ydata().tolist() for line in axes.lines if line.get_marker() is arrow], [[1.0]])
         style.legend(axes, groups)
@@ -418,7 +418,7 @@ class Pictures(Analysis):
             self.assertEqual(lengths.reasons_for_hollow_marker(group), doubts)
 
         def hollow_places():
-            """Draws with the notes."""
+            """@return places of hollow markers, and the notes"""
             axes = style.figure_of(lengths.draw_on, groups).axes[0]
             notes, = [text.get_text() for text in axes.texts if text.get_gid() == style.NOTES]
             return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white"], notes
@@ -434,7 +434,7 @@ class Pictures(Analysis):
         self.assertEqual(places, [2, 30])
         self.assertIn("hollow: fewer than 5 clogs", notes)
         self.assertIn("incomplete: runs of 1 of 2 points are unfinished or failed", notes)
-        groups.members[0]["clogs"] = 0  # an arrow, which says it
+        groups.members[0]["clogs"] = 0  # an arrow already shows this
         self.assertNotIn("fewer than 5 clogs", hollow_places()[1])
 
     def test_clogs_are_drawn_from_a_sweep(self):
@@ -459,9 +459,9 @@ class Pictures(Analysis):
         self.assertTrue((image.imread(self.folder / "from-fit.png") == image.imread(self.folder / "from-sweep.png")).all())
 
     def test_edges_marked_as_touching_are_those_that_the_program_counts(self):
-        # One post leaves gaps narrower than the droplet at both side walls.
+        # One post leaves gaps at both side walls that are narrower than the droplet.
         self.write("post.csv", "3,0.9,1\n")
-        # Uneven edges, whose chords touch elsewhere than the interface; contact at the surface and off it.
+        # Uneven edges, whose chords touch at other places than the interface; contact at the surface and off it
         for name, points_per_vertex, keys in [
             ("surface", 2, ["preset=elastic", "vertices=32", "line-tension=0.3,1", "box=20"]),
             ("off", 2, ["contact-range=half-vertex", "vertices=32", "line-tension=1", "box=20"]),
@@ -529,7 +529,7 @@ class Pictures(Analysis):
             self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, "--frames", film, "--output", "r.h5", words=["own4.", "it exists"])
         after = self.snapshot()
         self.assertEqual({name: after[name] for name in before}, before)
-        # An earlier page or picture of ours is replaced.
+        # The command replaces an earlier page or picture of ours.
         self.write("report.html", "<!DOCTYPE html>\n<title>an earlier one</title>\n")
         self.draw("report", "s.h5", "--output", "report.html", "--programs", BIN, "--examples", 0)
         for _ in range(2):
@@ -588,7 +588,7 @@ class Pictures(Analysis):
             low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
             self.assertTrue((run.polygons[frame].min(axis=1) > low).all() and (run.polygons[frame].max(axis=1) < high).all())
             self.assertGreater(1, (high - low).max() / 10, "the droplet can be seen")
-            # Obstacles are known wherever the camera looks.
+            # The file has obstacles wherever the camera looks.
             self.assertLess(run.obstacles[:, 0].min(), low[0] + 0.5)
             self.assertGreater(run.obstacles[:, 0].max(), high[0] - 0.5)
             shown.append([text.get_text() for text in axes.texts if text.get_visible()])
@@ -600,7 +600,7 @@ class Pictures(Analysis):
         self.assertGreater(len(run.times), 1000)
         self.assertEqual(frames[-1], len(run.times) - 1)
         self.assertLessEqual(len(frames), 100)
-        # It moves too far for every tenth frame to do: the end is shown, in steps that the eye can follow.
+        # The droplet moves too far for every tenth frame: the film shows the end, in steps that the eye can follow.
         self.assertGreater(frames[0], 0)
         steps = np.abs(np.diff(trajectory.centroids(run.polygons)[frames], axis=0)).sum(axis=1)
         self.assertLess(steps.max(), 2 * film.LONGEST_STEP)
@@ -650,7 +650,7 @@ class Pictures(Analysis):
         self.assertEqual([float(frame.get("timestep")) for frame in frames], times.tolist())
         last = xml.parse(self.folder / frames[-1].get("file"))
         points = self.numbers(last, "Points").reshape(-1, 3)
-        # The vertices, and the middles of the edges between them.
+        # First come the vertices, then the middles of the edges.
         np.testing.assert_array_equal(points[::2, :2], polygons[-1].T)
         piece, = last.findall(".//Piece")
         self.assertEqual(int(piece.get("NumberOfPoints")), len(points))
@@ -661,7 +661,7 @@ class Pictures(Analysis):
         np.testing.assert_array_equal(self.numbers(discs, "diameter"), obstacles[:, 2])
 
     def test_a_channel_is_exported_in_numbers_that_vtk_reads(self):
-        """Its readers stop at the first NaN."""
+        """VTK's readers stop at the first NaN."""
         self.succeed("clogrun", "channel", "vertices=32", "line-tension=0.5", "max-time=30", "--start", -1, "--polygon-interval", 10, "--output", "run.h5")
         self.draw("export-vtk", "run.h5", "--output", "run")
         walls = xml.parse(self.folder / "run-obstacles.vtp")

@@ -16,8 +16,8 @@ sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.curves import answer, features, model, points, table  # noqa: E402
 from clogsweep.tools.errors import UserError  # noqa: E402
 
-# Made by `clogfit curve` of 0b3b912ecf24 from sweeps with fabricated distances: each record has the command and what it
-# printed, with every fourth place (every thirteenth of a surface) and the clogs of each point by mechanism.
+# Made by `clogfit curve` of 0b3b912ecf24 from sweeps with fabricated distances: each record has the command and its
+# output, with every fourth place (every thirteenth of a surface) and the clogs of each point by mechanism.
 RECORDS = json.loads((pathlib.Path(__file__).parent / "data" / "curves.json").read_text())["records"]
 LENGTH = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 
@@ -58,14 +58,14 @@ class Records(unittest.TestCase):
                             key=lambda crossing: abs(crossing.place - math.log(one[key])))
                 self.assertEqual(found.is_upward, one["direction"] == "upwards")
                 for value, name in ((found.place, key), (found.lower, f"{key}_lower"), (found.upper, f"{key}_upper")):
-                    self.assertAlmostEqual(math.exp(-value) * one[name] if one[name] else 1.0 * math.isinf(value), 1, delta=1e-6)  # 0 and None: no end
+                    self.assertAlmostEqual(math.exp(-value) * one[name] if one[name] else 1.0 * math.isinf(value), 1, delta=1e-6)  # 0, None: no end
 
     def test_peaks_agree_and_their_intervals_do_within_the_scatter_of_the_draws(self):
         for told, recorded, _, places, curve in self.fits():
             peak = features.find_peak(curve, places, told["confidence"])
             expected = recorded["peak"]
             self.assertAlmostEqual(peak.length / expected["clogging_length"], 1, delta=1e-6)
-            # Ends come from 2000 draws, on either side: the density of draws at an end gives their standard error.
+            # Both sides have 2000 draws: the density of draws at an end of the interval gives its standard error.
             draws = features.tops(features.drawn_curves(curve), places)
             ends = [(np.log([peak.length_lower, peak.length_upper]), [math.log(expected[name]) for name in LENGTH[1:]], draws[1])]
             for i, key in enumerate(told["keys"]):

@@ -1,4 +1,4 @@
-"""A sweep across two hosts, of which one dies. tests/two_hosts.sh says what a host is here."""
+"""A sweep across two hosts, one of which dies. tests/two_hosts.sh explains what a host is here."""
 
 import contextlib
 import os
@@ -25,12 +25,12 @@ class TwoHosts(SweepTest):
         return [int(pid) for pid, state in states.items() if state not in ("", "Z")]
 
     def lose_a_host(self):
-        """@return rows before its host died; nothing if it was over before that"""
+        """@return the sweep's process and its rows before the host died; nothing if the sweep ended before"""
         process = self.start_on_both()
         self.wait_for(lambda: process.poll() is not None or
                       (self.folder / "s.h5").exists() and set(table(self.folder / "s.h5")["rank"]) == {0, 1})
         before = table(self.folder / "s.h5")
-        # The second host's rank and its daemon, the first's parent.
+        # The second host's rank and its daemon, which is the rank's parent
         for daemon in self.members(process, "--exact", "orted"):
             found = subprocess.run(["pgrep", "--parent", str(daemon)], capture_output=True, text=True).stdout.split()
             for pid in [*map(int, found), daemon]:

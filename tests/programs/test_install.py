@@ -26,7 +26,7 @@ class Installation(unittest.TestCase):
         cls.folder = pathlib.Path(folder.name)
         first = cls.folder / "first"
         cls.called("cmake", "--install", BIN.parent, "--prefix", first)
-        # Moves the installation: a program that relies on its old place fails.
+        # Moves the installation, so that a program that depends on its old place fails.
         cls.prefix = cls.folder / "moved"
         first.rename(cls.prefix)
 
@@ -45,11 +45,11 @@ class Installation(unittest.TestCase):
 class Installed(Installation):
     def test_nothing_knows_where_it_was_built(self):
         cache = (BIN.parent / "CMakeCache.txt").read_text()
-        # The sanitizers' own tables name every source by its full path; nobody installs such a build.
+        # The sanitizers' own tables contain the full path of every source; nobody installs such a build.
         sources = [] if "CLOG_SANITIZE:STRING=address" in cache else [ROOT, BIN.parent]
         for path in self.prefix.rglob("*"):
             self.assertFalse(path.is_symlink(), path)
-            if path.is_file() and path.suffix != ".png":  # a picture holds the command that made it
+            if path.is_file() and path.suffix != ".png":  # a picture contains its command
                 content = path.read_bytes()
                 for place in (*sources, self.folder / "first"):
                     self.assertFalse(str(place).encode() + b"/" in content, f"{path} knows {place}")
@@ -75,13 +75,13 @@ class Installed(Installation):
         self.assertIn("line-tension = 0.05,0.1,0.2,0.25,0.3,0.4,0.6", said)
 
     def test_the_script_for_slurm_finds_what_is_installed(self):
-        # Runs the script from a copy somewhere else, as Slurm does.
+        # Runs a copy of the script in another folder, as Slurm does.
         copy = shutil.copy(self.prefix / "share/clogsweep/jobs/slurm.sh", self.folder / "slurm_script")
         self.called("bash", copy, *KEYS[:-1], "seeds=1", "--output", "slurm.h5")
         self.assertEqual(len(pandas.read_hdf(self.folder / "slurm.h5", "runs")), 1)
 
     def test_a_program_of_ones_own_finds_the_libraries(self):
-        # slow_install.py builds and runs it.
+        # slow_install.py builds and runs the example.
         example = self.prefix / "share/doc/clogsweep/docs/examples/own-program"
         self.called("cmake", "-G", "Ninja", "-S", example, "-B", self.folder / "example", f"-DCMAKE_PREFIX_PATH={self.prefix}")
 
@@ -125,7 +125,7 @@ class Installed(Installation):
                                (["clogsweep", "--max-hours"], []), (["clogfit", "s.h5", "--dwell"], []), (["clogrun", "array", "--seed"], []),
                                (["clogsweep", "orifice", "="], []), (["clogsweep", "--orifice"], [])):
             self.assertEqual(self.completed(*words, ""), offered, words)
-        self.assertEqual(self.completed("clogsweep", "--verbose", "stat"), [])  # a command comes first
+        self.assertEqual(self.completed("clogsweep", "--verbose", "stat"), [])  # a command must come first
         self.assertIn("inputs", self.completed("clogfit", ""))
         self.assertIn("calibrate", self.completed("clogfit", ""))
         for option, words in (("--isolate", ["yes", "no"]), ("--master-computes", ["auto", "yes", "no"])):
@@ -145,7 +145,7 @@ class Installed(Installation):
         self.read_until(terminal, b"clogsweep preset=elastic ")
 
     def read_until(self, terminal, text):
-        """Reads from a terminal, which may be slow, until the text is there."""
+        """Reads from a terminal, which may be slow, until the text has arrived."""
         seen = b""
         while text not in seen:
             ready, _, _ = select.select([terminal], [], [], LONGEST)

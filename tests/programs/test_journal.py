@@ -24,7 +24,7 @@ class Journal(Analysis):
         return clogsweep.open(shared_sweep(*keys), BIN).fit(lab=self.folder / "lab.cfg")
 
     def assert_tidy(self, picture):
-        """Labels of ticks and axes and words of the legend are on the page, none over another."""
+        """Labels of ticks and axes and words of the legend are on the page, and none covers another."""
         axes, = picture.figure.axes
         picture.figure.canvas.draw()
         texts = list(axes.get_legend().get_texts())

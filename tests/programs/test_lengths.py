@@ -51,7 +51,8 @@ class Lengths(ProgramTest):
         for name, expected in [("probability", 0.490909090909), ("standard_error", 0.1641932672211), ("lower", 0.1673309097769), ("upper", 0.753399790371)]:
             self.assertAlmostEqual(steps[4][name], expected, places=9)
         self.assertEqual(maintained["censored_distances"], [13, 28, 45, 161])
-        # The table of the Python module. summary(..., times=161), and of the other group the last step, whose bounds R does not know either
+        # The table of the Python module. summary(..., times=161), and the last step of the other group, whose bounds R
+        # does not know either
         groups = [*told["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
         known = types.SimpleNamespace(told={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
         end, not_censored, none = (fit.Fit.survival(known, group).iloc[-1].to_dict() for group in range(3))
@@ -97,7 +98,7 @@ class Lengths(ProgramTest):
 
 
 class Beside(ProgramTest):
-    """Measured distances beside those of a sweep."""
+    """Comparison of measured distances with those of a sweep."""
 
     def setUp(self):
         super().setUp()
@@ -126,7 +127,7 @@ class Beside(ProgramTest):
         found = self.compare("sweep.h5", "own.csv")
         self.assertEqual([(one["wall"], one["line_tension"]) for one in found], [(wall, tension) for wall in ("glass", "steel") for tension in self.groups])
         self.assertEqual({one["clogs_here"] for one in found}, {0, 2})
-        # Two lengths whose droplets all clogged: their ratio follows Snedecor's F with 2 d and 2 d degrees of freedom.
+        # The ratio of two lengths whose droplets all clogged follows Snedecor's F with 2 d and 2 d degrees of freedom.
         one = next(one for one in found if one["wall"] == "glass" and one["clogs_there"] == 2)
         quantile = scipy.stats.f.ppf(0.975, 4, 4)
         self.assertAlmostEqual(one["ratio_lower"], one["ratio"] / quantile, places=6)

@@ -1,4 +1,4 @@
-"""The Python module clogsweep, as a person uses it in a notebook."""
+"""The Python module clogsweep, as users call it in a notebook."""
 
 import json
 import os
@@ -257,7 +257,7 @@ class Module(Analysis):
 
     def test_a_python_module_that_is_lacking_gets_one_line(self):
         for lines in ("clogsweep.open('s.h5')", "clogsweep.Sweep"):
-            # None in sys.modules stands for what cannot be imported.
+            # None in sys.modules makes an import fail.
             done = subprocess.run([sys.executable, "-c", f"import sys; sys.modules['pandas'] = None\nimport clogsweep\n{lines}"],
                                   cwd=ROOT / "analysis", capture_output=True, text=True)
             self.assertRegex(done.stderr.splitlines()[-1], "^ImportError: cannot start .*pandas.*; .*python.* needs h5py, pandas, SciPy, tables and matplotlib")

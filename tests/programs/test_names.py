@@ -1,4 +1,4 @@
-"""Names and words that hold any bytes are shown as text, and every output of the Python package is whole, and in UTF-8."""
+"""Names and words with any bytes are shown as text, and outputs of the Python package are complete, and in UTF-8."""
 
 import json
 import os
@@ -23,7 +23,7 @@ from clogsweep.tools import outputs, texts
 CIRCLES = os.fsdecode("ü".encode() + b"a$x^2$b\xff\x1b[31m.csv")
 SHOWN = r"üa$x^2$b\xff\x1b[31m.csv"
 SWEEP = os.fsdecode(b"s$1$\xfe\x1b.h5")
-WORD = 'x,"y$1$\x1b['  # in the place of a preset
+WORD = 'x,"y$1$\x1b['  # instead of a preset
 
 
 class Texts(unittest.TestCase):
@@ -77,7 +77,7 @@ class Names(Analysis):
 
 
 class Words(Analysis):
-    """A foreign file has any words in its columns and attributes."""
+    """A foreign file with arbitrary words in its columns and attributes"""
 
     def setUp(self):
         super().setUp()
@@ -137,7 +137,7 @@ class Outputs(Analysis):
         self.assertEqual(page.read_text(encoding="utf-8"), "<!DOCTYPE html> earlier")
 
     def test_every_output_takes_the_place_of_the_earlier_one(self):
-        """Another name of the earlier file still leads to it: it was not written into."""
+        """A second name of the earlier file still leads to it, so the command has not written into that file."""
         self.copy_sweep("s.h5", *QUICK, "line-tension=0.5,3", "seeds=1..4")
         self.copy_sweep("run.h5", "array", *QUICK, "line-tension=3", "seeds=1", "--polygon-interval=20", program="clogrun")
         picture = Image.new("L", (600, 300), 255)

@@ -1,6 +1,6 @@
-"""The cells of the gallery's notebook, with fewer and shorter runs: the module has all that they call.
+"""The cells of the gallery's notebook, with fewer and shorter runs: the module has everything that they call.
 
-Whether they print the stored outputs is a matter of slow_notebook.
+slow_notebook tests whether they print the stored outputs.
 """
 
 import ast
@@ -12,7 +12,7 @@ from drawing import Analysis
 from support import BIN, ROOT
 
 NOTEBOOK = ROOT / "docs" / "gallery" / "notebook.ipynb"
-# What takes long, and what replaces it.
+# Commands that take long, and their replacements
 SHORTER = {"mpirun -np 2 clogsweep": str(BIN / "clogsweep"), "line-tension=0.2,0.3,0.5,1,2": "line-tension=0.3,1,3", "box=40": "box=20",
            "max-time=2000": "max-time=100", "seeds=1..12": "seeds=1..2", "most=4": "most=1", "interval=2": "interval=10", "most_frames=100": "most_frames=2"}
 

@@ -9,11 +9,11 @@ from unittest import mock
 import pandas
 from support import TIMING, ProgramTest, table
 
-# The C library of a processor without fused multiply-adds.
+# Settings that make the C library behave as on a processor without fused multiply-adds.
 PLAIN = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F"}
 COSINES = "import math; print([math.cos(0.01 * i).hex() for i in range(10000)])"
 
-# Droplets of 80 vertices begin with sines and cosines that differ; those of large line tension soon clog.
+# The release of droplets of 80 vertices uses sines and cosines that differ; those of large line tension soon clog.
 POLYGONS = ["vertices=80", "box=20", "obstacle-density=saturated", "obstacle-gap=0.3", "line-tension=log(0.3,1,3)", "max-time=100", "seeds=1..3"]
 # The angle of this lattice (8 columns over 69 rows) differs.
 DISKS = ["model=sp", "wall-stiffness=10,100", "obstacle-layout=lattice", "lattice-angle=6.6135",

@@ -1,4 +1,4 @@
-"""Sweeps of points, of lists of words, in parts; files that are merged, and rows that are selected."""
+"""Sweeps of points, of lists of words, and in parts; merged files, and selected rows."""
 
 import json
 import unittest

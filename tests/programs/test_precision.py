@@ -1,4 +1,4 @@
-"""--until-precision: seeds are added where lambda is not precise enough, the same ones after any interruption."""
+"""--until-precision adds seeds where lambda is not precise enough, and the same seeds after any interruption."""
 
 import json
 import re
@@ -48,7 +48,7 @@ class Precision(ProgramTest):
         stopped, hours = 0, 0.00004
         while self.run_program("clogsweep", *SWEEP, "--output", "stopped.h5", f"--max-hours={hours}").returncode == 75:
             stopped += 1
-            hours *= 1.05  # on a busy machine a session may achieve nothing
+            hours *= 1.05  # on a busy machine a session may make no progress
             self.assertLess(stopped, 200)
         self.assertGreater(stopped, 0)
         self.check_equal("stopped.h5", whole)
@@ -66,14 +66,14 @@ class Precision(ProgramTest):
     def test_a_lower_precision_finishes_runs_of_a_higher_one(self):
         more = [*SWEEP[:-2], "--until-precision=30%", "--most-seeds=60"]
         begin = hours = 0.00004
-        for _ in range(200):  # until it is stopped when a later round has begun
+        for _ in range(200):  # until a stop comes after a later round has begun
             done = self.run_program("clogsweep", *more, "--output", "s.h5", f"--max-hours={hours}")
-            if done.returncode == 0:  # it was over first: once more from the beginning
+            if done.returncode == 0:  # the sweep ended before: start again
                 (self.folder / "s.h5").unlink()
                 hours = begin
                 continue
             self.assertEqual(done.returncode, 75, done.stderr)
-            hours *= 1.05  # on a busy machine a session may achieve nothing
+            hours *= 1.05  # on a busy machine a session may make no progress
             rows = table(self.folder / "s.h5")
             if len(rows) > 8 and (rows.status == "interrupted").any():
                 break
@@ -112,7 +112,7 @@ class Precision(ProgramTest):
         self.assertLessEqual(most, high)
         for end, of_most in zip(of_fewest, (low, high)):
             self.assertAlmostEqual(of_most / end / 4, 1, delta=0.11)
-        self.assertAlmostEqual(fewest / expected / 25, 1, delta=0.11)  # of two figures
+        self.assertAlmostEqual(fewest / expected / 25, 1, delta=0.11)  # two figures
         self.assertAlmostEqual(most / expected / 100, 1, delta=0.11)
         self.assertAlmostEqual(longest / bound / 100, 1, delta=0.02)
         self.assertIn("# --most-seeds=30 ends it before that; give 100 or more", told("--until-precision=20%", "--most-seeds=30"))

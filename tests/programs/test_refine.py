@@ -1,4 +1,4 @@
-"""python3 -m clogsweep refine: values and seeds are added where the fitted curve needs them, the same after any
+"""python3 -m clogsweep refine adds values and seeds where the fitted curve needs them, and the same ones after any
 interruption."""
 
 import contextlib
@@ -29,7 +29,7 @@ from clogsweep.tools.errors import UserError  # noqa: E402
 
 SCHEMA = json.loads(subprocess.run([BIN / "clogsweep", "--schema"], check=True, capture_output=True, text=True).stdout)
 NUMBERS = {key["key"]: key for key in SCHEMA["keys"] if key.get("role") == "physics" and key["kind"].startswith("number")}
-# Keys whose meaning has no curve (of channels), or a search of its own.
+# Keys without a curve (of channels), or with a search of their own.
 ELSEWHERE = {name for name, key in NUMBERS.items() if key["scope"] == "channel"} | {"lattice-angle"}
 GOAL = "--until=curve=70%"
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT / "analysis")}
@@ -42,14 +42,14 @@ def descendants(pid):
 
 
 def settings_for(name):
-    """Settings in which the key means something."""
+    """Settings to which the key applies."""
     scope = NUMBERS[name]["scope"]
     words = ["vertices=64", "max-time=1", "box=60"]
     if scope == "file":
         return [*words, "obstacles=posts.csv", *(["release=entrance"] if name.startswith("entrance") else [])]
     elastic = ["preset=elastic"] if name in ("perimeter-stiffness-ratio", "perimeter-stiffness", "friction", "yield-traction") else []
     if name == "advancing-angle":
-        words.append("wall-tension=0.5")  # Young's angle is 120 degrees then
+        words.append("wall-tension=0.5")  # Young's angle is then 120 degrees
     if name == "pitch":
         return [*words, "obstacle-layout=lattice"]
     return [*words, *elastic, *(["obstacle-gap=0.6"] if name != "obstacle-gap" else [])]
@@ -85,7 +85,7 @@ class EveryKey(ProgramTest):
         return Membership(keys, SCHEMA, values, functools.partial(self.tasks, keys, settings))
 
     def rows(self, tasks, copies):
-        """Rows of the tasks, with zeros and empty texts in all columns in which they agree."""
+        """Rows of the tasks, with zeros and empty texts in all columns that are equal in all of them."""
         rows = pandas.DataFrame(0.0, index=range(copies * len(tasks)), columns=[column["name"] for column in SCHEMA["columns"]])
         for column in SCHEMA["columns"]:
             if column["kind"] in ("word", "text"):
@@ -104,14 +104,14 @@ class EveryKey(ProgramTest):
             name = column["name"]
             if column.get("parameter_role") not in ("physics", "numerics") or name in {NUMBERS[key]["column"] for key in keys}:
                 continue
-            other = rows.iloc[-1:].copy()  # of another sweep, in this column alone
+            other = rows.iloc[-1:].copy()  # a row of another sweep, which differs in this column alone
             other[name] = "other" if rows[name].dtype == object else other[name].fillna(0) * 1.01 + 7
             others.append(other.assign(task=len(rows) + len(others)))
         found = members.of_values(pandas.concat([rows, *others]))
         self.assertEqual(list(zip(found["task"], found["values"])), list(enumerate([*values, *values])))
 
     def check_peak(self, name, settings, values):
-        """The search finds the peak of a known curve, which is in the middle of its range."""
+        """The search finds the peak of a known curve, in the middle of its range."""
         search = CurveSearch([name], [values], [1, 2], 100.0, Options(Goal("peak", 0.001), math.inf, 100, False))
         members = self.members([name], settings, search.candidates)
         position = np.log(np.array(search.candidates)[:, 0] / values[0]) / math.log(values[-1] / values[0])
@@ -170,7 +170,7 @@ class Values(unittest.TestCase):
 
 
 class Choice(unittest.TestCase):
-    """Blocks of seeds on 41 places, whose errors are equal within three of them."""
+    """The choice of blocks of seeds on 41 places, whose errors are equal within groups of three."""
 
     NUMBER = 41
 
@@ -249,11 +249,11 @@ class Refine(RefineTest):
         stopped, hours = 0, 0.0002
         while (done := self.run_refine("line-tension", *SWEEP, GOAL, "--output", "s.h5", f"--max-hours={hours}")).returncode == 75:
             stopped += 1
-            hours *= 1.1  # on a busy machine a session may achieve nothing
+            hours *= 1.1  # on a busy machine a session may make no progress
             self.assertLess(stopped, 200)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertGreater(stopped, 0)
-        for seconds in (1.5, 2, 3, 4):  # SIGKILL of all processes
+        for seconds in (1.5, 2, 3, 4):  # then SIGKILL to all processes
             with subprocess.Popen(self.command("line-tension", *SWEEP, GOAL, "--output", "killed.h5"), cwd=self.folder, env=ENVIRONMENT,
                                   stderr=subprocess.DEVNULL, start_new_session=True) as process:
                 time.sleep(seconds)
@@ -269,7 +269,7 @@ class Refine(RefineTest):
     def test_an_unfinished_round_is_completed_before_another_is_planned(self):
         self.refine("line-tension", *SWEEP, "--until=curve=95%", "--output", "s.h5")
         (path,) = self.folder.glob("s.h5.refine-*.csv")
-        path.write_text(path.read_text() + "1.5,1001..1003\n")  # stored, not begun
+        path.write_text(path.read_text() + "1.5,1001..1003\n")  # stored, but not begun
         self.refine("line-tension", *SWEEP, "--until=curve=95%", "--output", "s.h5")
         self.assertEqual(sorted(table(self.folder / "s.h5").query("line_tension == 1.5 and seed > 1000").seed), [1001, 1002, 1003])
 
@@ -382,7 +382,8 @@ class CriticalAngle(RefineTest):
         rows = table(self.folder / "s.h5")
         self.assertLess(len(rows), 15)
         for row in rows.itertuples():
-            # Along the rows the slope is their tangent; a droplet that leaves them goes to the other side.
+            # A droplet that follows the rows has the tangent of their angle as its slope; a droplet that leaves them
+            # goes to the other side.
             if row.lattice_angle <= lower + 0.01:
                 self.assertLess(math.tan(math.radians(row.lattice_angle)) - row.lateral_displacement / row.distance, 0.05)
             else:
@@ -423,7 +424,7 @@ class CriticalAngle(RefineTest):
 
 
 class Optimiser(ProgramTest):
-    """The ten lines of docs/developer/optimiser.md."""
+    """The ten lines of code in docs/developer/optimiser.md"""
 
     def test_a_script_may_choose_the_points_and_goes_on_when_called_again(self):
         page = (ROOT / "docs" / "developer" / "optimiser.md").read_text()

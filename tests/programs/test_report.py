@@ -1,4 +1,4 @@
-"""The page of a sweep in a browser, as a person reads it."""
+"""The page of a sweep in a browser, as a reader uses it."""
 
 import base64
 import json
@@ -28,9 +28,9 @@ POINT = "svg.chart .point"
 
 
 def setUpModule():
-    """One browser for all tests: it takes seconds to start."""
+    """One browser for all tests, because starting one takes seconds."""
     options = webdriver.ChromeOptions()
-    # A container has little shared memory, and root no sandbox.
+    # A container has little shared memory, and root has no sandbox.
     for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1280,900"):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
@@ -40,7 +40,7 @@ def setUpModule():
 
 
 class Browser(ProgramTest):
-    """One page for all tests of a class, which load it anew."""
+    """One page for all tests of a class, each of which loads it again."""
 
     KEYS: list[str]  # of the sweep
     browser: webdriver.Chrome
@@ -65,7 +65,7 @@ class Browser(ProgramTest):
 
     def read_page(self):
         self.browser.get(self.page.as_uri())
-        self.point_at(self.find("h1"))  # the mouse is where another test left it
+        self.point_at(self.find("h1"))  # moves the mouse away from where another test left it
 
     def point_at(self, element):
         ActionChains(self.browser).move_to_element(element).perform()
@@ -80,12 +80,12 @@ class Browser(ProgramTest):
         return self.browser.find_element(By.CSS_SELECTOR, selector)
 
     def column(self, heading):
-        """Its cells from top to bottom."""
+        """Cells of a column from top to bottom."""
         titles = [title.text for title in self.find_all("th")]
         return [cell.text for cell in self.find_all(f"tbody td:nth-child({titles.index(heading) + 1})")]
 
     def shown(self):
-        """The text of the card beside the mouse, by its headings."""
+        """The text of the card beside the mouse, by the card's headings."""
         self.wait(self.find("#card").is_displayed)
         terms = [[element.text for element in self.find_all(f"#card {name}")] for name in ("dt", "dd")]
         return dict(zip(*terms, strict=True))
@@ -103,7 +103,7 @@ class Lengths(Browser):
 
     def test_nothing_is_loaded_and_nothing_fails(self):
         for log in ("browser", "performance"):
-            self.browser.get_log(log)  # of what was before
+            self.browser.get_log(log)  # discards earlier messages
         self.read_page()
         self.assertEqual(self.browser.get_log("browser"), [])
         events = [json.loads(entry["message"])["message"] for entry in self.browser.get_log("performance")]
@@ -126,9 +126,9 @@ class Lengths(Browser):
             for name in ("runs", "clogs"):
                 self.assertEqual(shown[name], str(group[name]))
             self.assertEqual(shown["seeds"], "1 to 4")
-            # Few runs clogged: clogfit says so, in a sentence.
+            # Few runs clogged, so clogfit's sentence about this appears.
             self.assertIn("more seeds are needed", shown["doubts"])
-            # Its curve, and no other one, is bright in the legend.
+            # Only the point's own curve is bright in the legend.
             bright = first_chart.find_elements(By.CSS_SELECTOR, ".legend.of")
             self.assertEqual(len(bright), 1)
             self.assertIn(point.get_attribute("data-groups"), bright[0].get_attribute("data-groups").split())
@@ -179,7 +179,7 @@ class Lengths(Browser):
         self.assertAlmostEqual(heading["y"], box["y"], delta=1)
 
     def colours_of_picture(self):
-        """The most frequent one, and how many there are of each brightness, in the first chart as it is seen."""
+        """Number of pixels of each brightness in the first chart, as shown."""
         (self.folder / "chart.png").write_bytes(base64.b64decode(self.find("svg.chart").screenshot_as_base64))
         with Image.open(self.folder / "chart.png") as picture:
             return picture.convert("L").histogram()

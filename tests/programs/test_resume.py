@@ -1,4 +1,4 @@
-"""Sweeps that are stopped, changed or wrong: nothing is lost, and the same command resumes them."""
+"""Sweeps that are stopped, changed or wrong: no row is lost, and the same command resumes them."""
 
 import json
 import os
@@ -17,18 +17,18 @@ from support import (BIN, BLOCKED, ENDLESS, FEW_LONG, LONGEST, MPI, QUICK, ROOT,
 
 class Resumed(SweepTest):
     def journal(self):
-        """Numbers of its records, and of those with snapshots."""
+        """Number of the journal's records, and of records with snapshots."""
         words = self.run_program("clogsweep", "verify", "s.h5").stdout
         found = re.search(r"s.h5.journal: (\d+) records?, (\d+) of them with snapshots", words)
         return (int(found[1]), int(found[2])) if found else (0, 0)
 
     def stop_with_unfinished_runs(self, sweep):
-        """Stops it where a run has a snapshot, at another try if need be. @return rows of the unfinished runs"""
+        """Stops the sweep where a run has a snapshot, if need be at a later attempt. @return rows of unfinished runs"""
         for attempt in range(100):
             # A busy machine needs longer for this.
             done = self.run_program("clogsweep", *sweep, f"--max-hours={0.0001 * 1.05**attempt:.6f}")
             if done.returncode != 75:
-                (self.folder / "s.h5").resolve().unlink()  # complete: once more from the beginning
+                (self.folder / "s.h5").resolve().unlink()  # the sweep is complete: start again
                 continue
             self.assertIn("stopped by --max-hours", done.stderr)
             rows = table(self.folder / "s.h5")
@@ -38,7 +38,7 @@ class Resumed(SweepTest):
         self.fail("no stop met a run with a snapshot")
 
     def stop_with_a_snapshot(self, sweep, signal_number, **options):
-        """@return its process and what it said; nothing if it was over before that"""
+        """@return the sweep's process and its messages; nothing if the sweep ended before"""
         process = self.start(*sweep, **options)
         self.wait_for(lambda: process.poll() is not None or (self.folder / "s.h5").exists() and
                       (table(self.folder / "s.h5").query("status == 'running'").steps > STEPS_PER_SNAPSHOT).any())
@@ -49,7 +49,7 @@ class Resumed(SweepTest):
     def test_a_signal_stops_and_the_same_command_resumes(self):
         for signal_number in (signal.SIGUSR1, signal.SIGINT, signal.SIGTERM):
             process, error = self.until_in_time(lambda: self.stop_with_a_snapshot(SLOW, signal_number))
-            if signal_number == signal.SIGUSR1:  # mpirun kills what is left a second after it forwarded the others
+            if signal_number == signal.SIGUSR1:  # a second after other signals, mpirun kills what is left
                 self.assertIn("the same command resumes the sweep", error)
                 rows = table(self.folder / "s.h5")
                 self.assertGreater((rows.status == "interrupted").sum(), 0)
@@ -92,7 +92,7 @@ class Resumed(SweepTest):
         self.assertFalse((self.folder / "s.h5").exists())
 
     def hold_while_it_runs(self, ranks):
-        """@return its process and those of its ranks, which are stopped; nothing if it was over before that"""
+        """@return the sweep's process and those of its ranks, which are stopped; nothing if the sweep ended before"""
         process = self.start(*SLOW, ranks=ranks)
 
         def runs():
@@ -141,7 +141,7 @@ class Resumed(SweepTest):
         self.wait_for(lambda: (self.folder / "s.h5").exists())
         watched = self.succeed("clogsweep", "status", "s.h5", "--watch").stdout
         self.assertIn("4 of 4 runs finished", watched)
-        self.assertNotIn("\x1b", watched)  # no terminal, whose screen would be cleared
+        self.assertNotIn("\x1b", watched)  # the output is no terminal, so the screen must not be cleared
 
     def test_status_counts_unfinished_runs_as_not_clogged(self):
         self.stop_with_unfinished_runs(SWEEP)
@@ -185,7 +185,7 @@ class Resumed(SweepTest):
         self.refuse("clogsweep", *FEW_LONG, words=["its table is gone", "put the table back"])
 
     def kill_with_records(self, number):
-        """@return whether the journal had this number; else the sweep was over before"""
+        """@return whether the journal had this number of records; otherwise the sweep ended before"""
         process = self.start(*SLOW)
         self.wait_for(lambda: process.poll() is not None or self.journal()[0] >= number)
         self.kill_all(process)
@@ -227,7 +227,7 @@ class Resumed(SweepTest):
             self.assertEqual((self.folder / name).read_text(), name)
 
     def test_a_table_that_cannot_be_made_leaves_no_journal(self):
-        # The draft's name is longer than a file's may be, the journal's is not.
+        # The draft's name is longer than a file name may be, the journal's name is not.
         self.refuse("clogsweep", *SWEEP[:-1], 240 * "s", words=["cannot create", "File name too long"])
 
     def test_many_sessions_with_long_commands_fit(self):
@@ -252,7 +252,7 @@ class Resumed(SweepTest):
         self.until_in_time(first_run_is_stopped)
         begun = table(self.folder / "s.h5")
         self.succeed("clogsweep", *long, "--instruction-set=baseline", ranks=2)
-        only_one = begun.instruction_set[0] == "baseline"  # this processor has nothing else
+        only_one = begun.instruction_set[0] == "baseline"  # this processor has no other set
         rows = table(self.folder / "s.h5").set_index("task")
         self.assertEqual(rows.instruction_set[begun.task[0]], "baseline" if only_one else "mixed")
         self.assertEqual((rows.instruction_set == "baseline").sum(), 2 if only_one else 1)
@@ -333,7 +333,7 @@ class Resumed(SweepTest):
         self.refuse("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "clog-energy=1e-16", "gravity=vertex",
                     "perimeter-spring=mean", "--output", "s.h5",
                     words=["clog-energy=1e-16 (file: 1e-17)", "gravity=vertex (file: area)", "another --output"])
-        # Numbers written otherwise are the same.
+        # Other texts of the same numbers count as equal.
         done = self.succeed("clogsweep", "vertices=64", "box=2e1", "max-time=20", "seeds=1", "--output", "s.h5")
         self.assertIn("nothing left to do", done.stderr)
 
@@ -399,7 +399,7 @@ class Batch(ProgramTest):
         return ["vertices=64", "box=20", "obstacle-gap=1.2", "seeds=1..20", *more, "--output", str(self.folder / "s.h5")]
 
     def warn(self, process, signal_number=signal.SIGUSR1):
-        """A warning interrupts its runs, and the job queues again."""
+        """A warning interrupts the job's runs, and the job queues again."""
         self.wait_for(lambda: process.poll() is not None or (
             (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()))
         process.send_signal(signal_number)
@@ -410,7 +410,7 @@ class Batch(ProgramTest):
     def test_a_warning_of_a_batch_system_ends_the_sweep_and_the_job_queues_again(self):
         for warned in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU):
             with self.subTest(signal=warned):
-                self.setUp()  # an empty folder
+                self.setUp()  # makes an empty folder
                 self.warn(self.script("slurm.sh", *self.sweep("max-time=1e5"), SLURM_JOB_ID="77"), warned)
 
     def test_a_warning_that_ends_mpirun_at_its_start_queues_again(self):
@@ -439,7 +439,7 @@ class Batch(ProgramTest):
 
     def test_a_complete_sweep_does_not_queue_again(self):
         self.write("lab.cfg", "diameter = 1 mm\nangle = 20 deg\ntension = 2 mN/m\nspeed = 1 mm/s\n")
-        # Relative paths are those of the job's folder, not of that in which a wrapper called the script.
+        # Relative paths refer to the job's folder, not to the folder in which a wrapper called the script.
         process = self.script("slurm.sh", *self.sweep("max-time=5", "--lab", "lab.cfg")[:-1], "s.h5", SLURM_JOB_ID="77")
         self.ended(process)
         self.assertEqual(self.called(), "")

@@ -24,12 +24,12 @@ OWN = ["obstacles=posts.csv", "box=10", "vertices=64", "max-time=60"]
 
 
 def read_rows(path):
-    """The table's rows, with the columns as attributes."""
+    """The table's rows, with columns as attributes."""
     return list(table(path).itertuples(index=False))
 
 
 class BreakUp(Analysis):
-    """A droplet that falls onto one circle, a tenth of its diameter beside the middle."""
+    """A droplet that sinks on one circle, a tenth of its diameter beside the middle."""
 
     KEYS = ["obstacles=one.csv", "box=20", "vertices=64", "max-time=250", "break-up-neck=0.03"]
 
@@ -68,7 +68,7 @@ class BreakUp(Analysis):
         self.assertEqual(head, "offset,symmetry,breaks_up_to,whole_from,capillary_number")
         low, high = map(float, near.split(",")[2:4])
         self.assertTrue(0.055 < low < high < 0.07 and high < 1.02 * low, near)
-        self.assertEqual(far.split(",")[2:], ["", "0.01", ""])  # none breaks
+        self.assertEqual(far.split(",")[2:], ["", "0.01", ""])  # no droplet breaks
         self.assertTrue((self.folder / "c.png").exists())
         for words, said in [(["--offsets", "0.6"], "0.6"), (["vertices"], "KEY=VALUE"), (["vertices=x"], "vertices"), (["--offsets", "0.4"], "nothing to draw")]:
             self.refuse_analysis("collision", "--output", "d", "--programs", BIN, *words, words=[said])
@@ -82,7 +82,7 @@ class Channels(Analysis):
         row = rows[1]
         self.succeed("clogrun", "channel", *CHANNEL, "line-tension=0.6", "--sample-interval", 0.001, "--output", "r.h5")
         with h5py.File(self.folder / "r.h5") as file:
-            samples = file["trajectory"][1:]  # the row's are those of the checks, not of the release
+            samples = file["trajectory"][1:]  # the row has samples of the checks, not of the release
         largest = np.argmax(samples["shape_parameter"])
         self.assertEqual(row.largest_shape_parameter, samples["shape_parameter"][largest])
         self.assertEqual(row.largest_shape_parameter_at, samples["h"][largest])
@@ -92,7 +92,8 @@ class Channels(Analysis):
         slowest = np.argmin(fallen["speed_ratio"])
         self.assertEqual((row.smallest_relative_speed, row.smallest_relative_speed_at), (fallen["speed_ratio"][slowest], fallen["h"][slowest]))
         self.assertTrue(np.isnan(row.sag))
-        # Two caps on rounded tips have 1.0952: tests/core/scene. The widest shape is in the orifice.
+        # Two caps on rounded tips have a shape parameter of 1.0952 (tests/core/scene). The widest shape occurs in the
+        # orifice.
         self.assertAlmostEqual(row.largest_shape_parameter, 1.0952, delta=0.01)
         self.assertLess(abs(row.largest_shape_parameter_at), 0.05)
 
@@ -141,12 +142,12 @@ class Channels(Analysis):
             self.assertTrue(0 < passed < 3)
             self.assertIn(f"<li>orifice {orifice}: {passed} of 3 passed</li>", page)
         self.assertNotIn("lambda", page)
-        self.assertEqual((page.count("<svg"), page.count("<img")), (6, 0))  # one is of the busy ranks
+        self.assertEqual((page.count("<svg"), page.count("<img")), (6, 0))  # one shows the busy ranks
         self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html", "--examples", 0)
         page = (self.folder / "r.html").read_text()
         self.assertEqual((page.count("<svg"), page.count("<img")), (4, 0))
 
-        # Each point is a group's number, and each marker says how its run ended.
+        # Each point has the number of its group, and each marker shows how its run ended.
         axes = style.figure_of(passages.draw_curves, Groups(fit), "largest_shape_parameter").axes[0]
         self.assertEqual(axes.get_xlabel(), labels.AXES["line_tension"])
         drawn = [(line.get_xdata()[0], line.get_ydata()[0], line.get_marker()) for line in axes.lines if len(line.get_xdata()) == 1]
@@ -206,7 +207,7 @@ class Channels(Analysis):
             keys = [word for word in CHANNEL if word.split("=")[0] not in names]
             self.refuse("clogsweep", *keys, "line-tension=1", *words, "--output", "s.h5", words=told)
         self.refuse("clogsweep", "orifice=0.6", "obstacle-layout=random", "--output", "s.h5", words=["orifice=0.6", "obstacle-layout=channel"])
-        self.succeed("clogsweep", "orifice=0.7", "vertices=64", "max-time=1", "--output", "s.h5")  # means a channel
+        self.succeed("clogsweep", "orifice=0.7", "vertices=64", "max-time=1", "--output", "s.h5")  # implies a channel
         self.assertEqual([row.obstacle_filling for row in read_rows(self.folder / "s.h5")], ["channel"])
         self.refuse("clogrun", "channel", "obstacle-layout=wall", "--output", "r.h5", words=["obstacle-layout=channel"])
         self.refuse("clogrun", "array", "obstacle-layout=channel", "--output", "r.h5", words=["clogrun channel"])
@@ -234,7 +235,7 @@ class Walls(Analysis):
         self.succeed("clogsweep", "obstacle-layout=wall", "model=sp", "wall-stiffness=0.5,5", "--output", "s.h5")
         for row, stiffness in zip(read_rows(self.folder / "s.h5"), [0.5, 5], strict=True):
             self.assertAlmostEqual(row.sag, np.pi / (16 * stiffness), delta=1e-5)
-        # A disk has no outline to show.
+        # A disk has no outline that the report could show.
         self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
         page = (self.folder / "r.html").read_text()
         self.assertEqual((page.count("<svg"), page.count("<img")), (3, 0))
@@ -255,11 +256,11 @@ class OwnCircles(ProgramTest):
         (key, (name, table)), = self.circles("s.h5").items()
         self.assertEqual({row.obstacles for row in rows}, {key})
         self.assertEqual((name, len(table)), ("posts.csv", 6))
-        self.assertEqual(table["radius"].tolist(), [0.25, 0.15, 0.2, 0.3, 0.15, 0.5])  # 0: obstacle-diameter
+        self.assertEqual(table["radius"].tolist(), [0.25, 0.15, 0.2, 0.3, 0.15, 0.5])  # 0.15: half of obstacle-diameter
         self.assertEqual({row.obstacle_filling for row in rows}, {"file"})
         self.assertEqual({row.obstacle_density for row in rows}, {0.06})
         self.assertAlmostEqual(rows[0].obstacle_gap, np.hypot(1.2, 0.6) - 0.4)
-        # The same run as clogrun's.
+        # clogrun gives the same run.
         self.succeed("clogrun", "array", *OWN, "line-tension=1", "--output", "r.h5")
         run, = read_rows(self.folder / "r.h5")
         self.assertEqual((run.distance, run.lateral_displacement, run.obstacles), (rows[1].distance, rows[1].lateral_displacement, key))
@@ -295,7 +296,7 @@ class OwnCircles(ProgramTest):
         first, second = read_rows(self.folder / "s.h5")
         self.assertNotEqual(first.obstacles, second.obstacles)
         names = {key: name for key, (name, _) in self.circles("s.h5").items()}
-        self.assertEqual(names, {first.obstacles: "posts.csv", second.obstacles: ""})  # that of the last command first
+        self.assertEqual(names, {first.obstacles: "posts.csv", second.obstacles: ""})  # first: the last command's run
         self.succeed("clogsweep", "replay", "s.h5", 1)
         self.succeed("clogsweep", "verify", "s.h5")
 
@@ -316,7 +317,8 @@ class OwnCircles(ProgramTest):
         self.assertNotIn("leaves y=", told)
 
     def test_droplets_that_fall_through_a_lane_met_nothing(self):
-        # Posts between two walls at y = 1 and 7 of a device that is 8 wide: the walls' backs leave a lane of 1.7, in which a droplet touches nothing.
+        # Posts between two walls at y = 1 and 7 of a device that is 8 wide. Behind the walls there is a lane of 1.7, in
+        # which a droplet touches nothing.
         walls = [(0.53 * i % 16, y) for i in range(30) for y in (1, 7)] + [(1.0 + 2 * i, 0.5 * (i % 2) + y) for i in range(8) for y in (2, 3.1, 4.2, 5.3)]
         keys = ["box=8", "boxes=2", "release=anywhere", "vertices=64", "line-tension=4", "terminal-speed=0.1", "max-time=100", "seeds=1..12"]
         (self.folder / "walls.csv").write_text("x,y,diameter\n" + "".join(f"{x:.4f},{y},0.3\n" for x, y in walls))
@@ -355,7 +357,7 @@ class OwnCircles(ProgramTest):
         self.assertGreater(clogs, 0)
         self.assertAlmostEqual(group["clogging_length_met"], (met.distance - met.first_contact_at).sum() / clogs, places=9)
         self.assertLess(group["clogging_length_met"], group["clogging_length"] / 2)
-        # Default keys of devices are not mentioned.
+        # Default keys of devices do not appear.
         text = self.succeed("clogfit", "walls.csv.h5").stdout
         for word in ("side_walls", "entrance", "exit=", " length="):
             self.assertNotIn(word, text)

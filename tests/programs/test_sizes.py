@@ -19,7 +19,7 @@ from clogsweep.drawing import critical_angles, device, lengths  # noqa: E402
 from clogsweep.pages import poster  # noqa: E402
 from clogsweep.reading import fits  # noqa: E402
 
-GRAVITY = 9.81 * (0.997 - 0.703) / 0.703  # [m/s^2], of octane in water between upright plates
+GRAVITY = 9.81 * (0.997 - 0.703) / 0.703  # [m/s^2], for octane in water between upright plates
 LAB = {"diameter": "0.8 mm, 1.6 mm", "angle": "20 deg, 45 deg", "speed": "1 mm/s", "tension": "2 mN/m"}
 SETS = [(diameter, angle) for diameter in (0.8, 1.6) for angle in (20, 45)]
 ARRAY = ["obstacle-gap=0.4mm", "obstacle-diameter=0.24mm", "obstacle-density=0.8/mm^2", "vertices=64", "box=12", "max-time=40", "seeds=1..2"]
@@ -115,7 +115,7 @@ class Sizes(ProgramTest):
                 np.testing.assert_allclose(np.stack([circles["x"], circles["y"], 2 * circles["radius"]], axis=1) * diameter,
                                            np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=2), rtol=1e-12, atol=1e-12)
                 self.assertAlmostEqual(row["box"] * diameter, 10.2)
-        # The circles of one size are those of a file that was drawn for it.
+        # The circles of one size equal those of a file that was drawn for that size.
         self.write("small.csv", POSTS.replace("droplet=1mm", "droplet=0.8mm"))
         self.succeed("clogsweep", "--lab", self.lab(diameter="0.8 mm", angle="20 deg"), *keys[1:], "obstacles=small.csv", "--output", "one.h5")
         rows, one = table(self.folder / "s.h5"), table(self.folder / "one.h5")
@@ -207,7 +207,7 @@ class Sizes(ProgramTest):
         heading, *lines = [line.split() for line in self.succeed("clogfit", "s.h5").stdout.split("\n\n")[1].splitlines()]
         self.assertEqual(heading[:3], ["diameter/mm", "angle/degrees", "lambda/mm"])
         self.assertEqual(heading[-3:], ["line_tension", "terminal_speed", "note"])
-        self.assertNotIn("tension/(mN/m)", heading)  # 2 of all
+        self.assertNotIn("tension/(mN/m)", heading)  # 2 for all droplets
         self.assertEqual({tuple(map(float, line[:2])) for line in lines}, set(SETS))
         summary = clogsweep.open(self.folder / "s.h5", BIN).fit().summary
         self.assertEqual({"diameter_mm", "angle_degrees"} & set(summary.columns), {"diameter_mm", "angle_degrees"})

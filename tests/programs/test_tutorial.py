@@ -1,6 +1,6 @@
 """Commands of the handbook's pages, with fewer seeds and shorter runs: programs and module know their keys and options.
 
-What they print and draw as they stand is a matter of slow_tutorial.
+slow_tutorial tests what they print and draw as they are.
 """
 
 import re
@@ -9,10 +9,10 @@ import unittest
 import pages
 from drawing import Analysis
 
-# What takes long to compute, and what replaces it.
+# Parts that take long to compute, and their replacements
 SHORTER = [(r"\bmpirun -np \d+ ", ""), (r"\bseeds( *)=( *)1\.\.\d+", r"seeds\1=\g<2>1..2"), (r"\bmax-time( *)=( *)\d{3,}", r"max-time\1=\g<2>300"),
            (r"\bstart=-2 end=\d\b", "start=-1 end=-0.9"), (r"\bfor tension in [\d. ]+", "for tension in 1"), (r"\bvertices=128\b", "vertices=64")]
-# These only write down what they are called with: the test calls it without starting Python anew.
+# This function only records its arguments: the test then makes the calls without starting Python anew.
 LATER = "later() { echo \"$@\" >> later.txt; }\n"
 
 
@@ -34,7 +34,7 @@ class Commands(Analysis):
                         self.draw(*line.split())
 
     def test_those_of_the_tutorial(self):
-        """Its pages tell the reader to stay in one folder."""
+        """The tutorial tells the reader to stay in one folder."""
         for page in pages.tutorial():
             self.follow(page)
 

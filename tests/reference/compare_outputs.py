@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Do two builds print and write the same for the commands of the handbook?
+"""Compares what two builds print and write for the commands of the handbook.
 
     compare_outputs.py BEFORE AFTER [--trees TREE TREE] [--only WORD]     (folders of the programs; source trees)
 
@@ -21,7 +21,7 @@ import subprocess
 import sys
 import tempfile
 
-LIMIT = 240  # seconds; a busy machine makes much of a minute
+LIMIT = 240  # seconds; a minute can take this long on a busy machine
 UNITS = "steps/s|s|ms|us|min|minutes?|hours?|h|days?|seconds?|core-hours?|core-seconds|ranks? s|kB|MB|GB|MiB|GiB"
 MASKS = [(r"[\d.,e+-]+ (runs/min|ns per vertex-step|runs per minute)", r"SOME \1"),
          (r"/tmp/[\w./-]*", "TMP"), (r"\d{4}-\d\d-\d\d([T ]\d\d:\d\d(:\d\d)?(\.\d+)?Z?( UTC)?)?", "DATE"), (r"\d?\d:\d\d(:\d\d)?", "TIME"),
@@ -41,7 +41,7 @@ def masked(text):
 
 
 def digest(path):
-    """@return lines that describe a file's contents"""
+    """@return lines that describe the contents of a file"""
     import compare_rows
     import numpy as np
     from PIL import Image

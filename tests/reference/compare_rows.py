@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Do two builds write the same files, bit for bit?
+"""Compares the files that two builds write, bit for bit.
 
     tests/reference/compare_rows.py BEFORE AFTER        (folders of the programs)
 
@@ -51,7 +51,7 @@ CASES = {
     "contact-angles": f"{SWEEP} wall-tension=0.6 receding-angle=100 advancing-angle=150 line-tension=0.3",
     "dry-friction": f"{SWEEP} preset=elastic friction=0.2 film-friction=on,off line-tension=0.1",
     "yield-traction": f"{SWEEP} preset=elastic yield-traction=0.1 self-contact=on,off line-tension=0.1",
-    # This droplet folds round an obstacle and clogs.
+    # This droplet folds around an obstacle and clogs.
     "film-friction": "clogsweep preset=elastic friction=0.2 obstacle-gap=0.3 line-tension=0.05 self-contact-range=0.03 "
                      "box=20 max-time=1000 vertices=64 seeds=3 obstacle-density=saturated",
     "break-up": f"{ARRAY} break-up-neck=0.3 line-tension=0.05 obstacle-gap=0.4 max-time=200",
@@ -77,7 +77,7 @@ CASES = {
 
 
 def uncovered(programs):
-    """@return the keys that have no other value than their default in any case, and the words of keys that no case has"""
+    """@return the keys that have only their default value in all cases, and the words of keys that occur in no case"""
     given = collections.defaultdict(set)
     for word in shlex.split("\n".join(CASES.values())):
         key, _, values = word.partition("=")
@@ -91,7 +91,7 @@ def uncovered(programs):
 
 
 def interrupt(command, folder):
-    """Stops the sweep up to three times. @return whether that happened at all"""
+    """Stops the sweep up to three times. @return whether any stop came in time"""
     for count in range(3):
         process = subprocess.Popen(command, cwd=folder, stderr=subprocess.DEVNULL)
         time.sleep(0.6)
@@ -118,7 +118,7 @@ def make(programs, name, folder):
 
 
 def contents(path):
-    """@return all that a file holds, by its name: type, shape and bytes"""
+    """@return everything in a file, by name: type, shape and bytes"""
     found = {}
 
     def add(name, value):
@@ -143,7 +143,7 @@ def contents(path):
 
 
 def differences(before, after):
-    """Names of what differs between two files."""
+    """Names of the differences between two files."""
     one, two = contents(before), contents(after)
     for name in sorted({*one, *two}):
         if name not in one or name not in two:
@@ -153,7 +153,7 @@ def differences(before, after):
 
 
 def compare(programs, name):
-    """@return names of what differs, or what failed"""
+    """@return names of the differences, or of what failed"""
     with tempfile.TemporaryDirectory(prefix="clog_reference_") as place:
         try:
             paths = [make(folder, name, pathlib.Path(place) / which) for which, folder in programs.items()]

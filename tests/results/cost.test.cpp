@@ -101,7 +101,7 @@ WaitingRuns waiting(std::int64_t set, std::int64_t number, double longest) {
 }
 
 TEST(CostLeft, IsThatOfTheParameterSetsThatWait) {
-  // All long runs have begun, of the short ones a few.
+  // All long runs have begun, and a few of the short ones.
   std::vector<RunCost> begun(20, of_set(0, finished(20, 100)));
   for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, finished(seconds, 100)));
   const std::vector<WaitingRuns> waits = {waiting(0, 0, 100), waiting(1, 16, 100)};
@@ -117,7 +117,7 @@ TEST(CostLeft, HasWhatUnfinishedRunsStillTake) {
   for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, finished(seconds, 100)));
   begun.push_back(of_set(1, unfinished(0.4, 100)));
   const SweepCost left = cost_left(begun, {});
-  EXPECT_GT(left.expected, 0.2);  // a short one, judged by the short ones
+  EXPECT_GT(left.expected, 0.2);  // a short run, estimated from the short ones
   EXPECT_LT(left.expected, 2);
   EXPECT_GT(left.upper, left.expected);
   EXPECT_LT(left.lower, left.expected);
@@ -170,10 +170,10 @@ TEST(CostLeft, CoversTheTruthWhereLongRunsBeginFirst) {
   EXPECT_GT(num_covered, 0.85 * num_trials);
 }
 
-/// How often the interval covers the truth where short and long runs mix, in so many parameter sets.
+/// How often the interval contains the true cost of a mixture of short and long runs in this number of
+/// parameter sets.
 double coverage(int num_sets) {
-  // A third of the runs takes 0.1 s on the average, a third 2 s, a third 40 s; each of 24 is followed for 0.4
-  // s.
+  // A third of the runs takes 0.1 s on average, a third 2 s, a third 40 s; each of 24 is followed for 0.4 s.
   std::mt19937 random(7);
   int num_covered = 0;
   constexpr int num_trials = 400;
@@ -193,9 +193,9 @@ double coverage(int num_sets) {
 }
 
 TEST(SweepCost, CoversTheTruthWhereShortAndLongRunsMix) {
-  EXPECT_GT(coverage(1), 0.8);   // mixed in every set
-  EXPECT_GT(coverage(3), 0.9);   // each in a set of its own
-  EXPECT_GT(coverage(24), 0.9);  // sets of which one run is known
+  EXPECT_GT(coverage(1), 0.8);   // every set has the mixture
+  EXPECT_GT(coverage(3), 0.9);   // each kind has a set of its own
+  EXPECT_GT(coverage(24), 0.9);  // one run of each set is known
 }
 
 }  // namespace

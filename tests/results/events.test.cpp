@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A sweep's file as it is read again and again, with runs that a test moves on.
+/// A sweep's file as readers find it again and again, with runs that a test advances.
 class EventsTest : public testing::Test {
  protected:
   store::SweepFile file_ = file_of("1..3");
@@ -49,7 +49,7 @@ class EventsTest : public testing::Test {
     for (const std::string& line : events_.look(file_)) all.push_back(json::parse(line));
     return all;
   }
-  /// The only event since the last look; null if there are more, or none.
+  /// The only event since the last look; null if there are several, or none.
   json only() {
     const std::vector<json> all = look();
     return all.size() == 1 ? all.front() : json();

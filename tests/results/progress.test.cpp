@@ -62,7 +62,7 @@ TEST_F(ProgressTest, CountsTowardsTheWholeAfterAResume) {
 TEST_F(ProgressTest, CountsFurtherRounds) {
   expect(4, 4);
   end(0, RunStatus::clogged);
-  expect(3, 8);  // one of the four that were added was done before
+  expect(3, 8);  // one of the four added runs was done before
   EXPECT_EQ(line().find("2/8 done, 1 of them before; now 0 running, 1 clogged, "), 0) << line();
 }
 
@@ -79,7 +79,7 @@ TEST(Progress, JudgesWhatIsLeftByItsOwnParameterSet) {
   for (const std::int64_t task : {0, 2, 4}) end(task, 1e6);
   end(1, 10);
   progress.finish();
-  // Two of ten seconds each wait for two ranks.
+  // Two runs of ten seconds each wait for two ranks.
   EXPECT_NE(out.str().find(", 3 s to 36 s left"), std::string::npos) << out.str();
 }
 

@@ -31,7 +31,7 @@ TEST(DifferingResults, AreTheColumnsWithOtherValues) {
   sweep::RunRow other = row;
   EXPECT_TRUE(differing_results(row, other).empty());
   other.distance = 4;
-  other.rank = 7;  // no result
+  other.rank = 7;  // the rank is not a result
   EXPECT_EQ(differing_results(row, other), std::vector<std::string>{"distance"});
 }
 

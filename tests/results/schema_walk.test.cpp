@@ -1,5 +1,5 @@
-/// Two values of any parameter are two runs, everywhere: what compares, groups, lists or shares runs has no
-/// list of parameters of its own that could lack one.
+/// Two values of any parameter are two runs, everywhere: code that compares, groups, lists or shares runs has
+/// no own list of parameters, which could lack one.
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ namespace {
 
 class EveryKey : public testing::TestWithParam<Parameter> {};
 
-/// Settings in which the parameter means something.
+/// Settings to which the parameter applies.
 sweep::Settings settings_for(const Parameter& parameter) {
   sweep::Settings settings;
   settings.set("seeds", "1");
@@ -63,20 +63,21 @@ sweep::Settings settings_for(const Parameter& parameter) {
     settings.set("preset", "elastic");
     settings.set("friction", "0.1");
   }
-  if (key == "advancing-angle") settings.set("wall-tension", "0.5");  // Young's is not the largest there is
+  if (key == "advancing-angle")
+    settings.set("wall-tension", "0.5");  // Young's angle must not be the largest possible angle
   if (parameter.key == std::string("gravity")) settings.set("preset", "heavy-interface");
   if (parameter.key == std::string("model")) settings.set("wall-stiffness", "1");
   return settings;
 }
 
-/// Another value than that of the settings, in the text of a config.
+/// Another value than in the settings, as text of a config.
 std::string other_value(const Parameter& parameter, const sweep::Settings& settings) {
   if (parameter.kind == ValueKind::file) return "other.csv";
   if (parameter.kind == ValueKind::text) return "angle = 20 deg; diameter = 1 mm";
   const ParameterValue value = parameter.get(sweep::Plan(settings).task(0));
   if (parameter.kind == ValueKind::word)
     return *std::ranges::find_if(parameter.words, [&](const std::string& word) {
-      return word != "auto" && ParameterValue(word) != value;  // auto may stand for the same value
+      return word != "auto" && ParameterValue(word) != value;  // auto may mean the same value
     });
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer + 1);
   if (parameter.key == std::string("advancing-angle")) return "150";
@@ -96,7 +97,7 @@ sweep::Plan plan_of_both(const Parameter& parameter) {
   return sweep::Plan(settings);
 }
 
-/// The two runs; a word takes no list.
+/// The two runs; words take no list.
 std::vector<RunParameters> both_runs(const Parameter& parameter) {
   sweep::Settings settings = settings_for(parameter);
   const RunParameters one = sweep::Plan(settings).task(0);
@@ -115,8 +116,8 @@ TEST_P(EveryKey, MakesTwoGroups) {
   EXPECT_EQ(group_runs(rows, 0.95).size(), GetParam().role == ParameterRole::ensemble ? 1u : 2u);
 }
 
-/// Four values of another number, each with two values of this parameter: two curves, and a comparison that
-/// names what differs.
+/// Four values of another number, each with two values of this parameter, give two curves, and a comparison
+/// that names the difference.
 TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
   const Parameter& parameter = GetParam();
   if (parameter.role != ParameterRole::physics || parameter.key == std::string("line-tension")) return;
@@ -136,7 +137,7 @@ TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
   const auto column = std::ranges::find_if(group_columns(), [&](const sweep::Column* one) {
     return one->parameter && one->parameter->key == std::string(parameter.key);
   });
-  if (column == group_columns().end()) return;  // another column shows it
+  if (column == group_columns().end()) return;  // another column has the value
   EXPECT_NE(separating_value(**column, sides[0].front()), separating_value(**column, sides[1].front()));
   const Comparisons found =
       compare({{"one", sides[0], {"line_tension"}}, {"other", sides[1], {"line_tension"}}}, 0.95, {});
@@ -148,7 +149,8 @@ TEST_P(EveryKey, MakesTwoArraysIfItShapesThem) {
   EXPECT_EQ(sweep::array_key(runs[0]) != sweep::array_key(runs[1]), GetParam().shapes_array);
 }
 
-/// Where droplets may start in a device depends on their reach: no run may get the walls of the one before.
+/// The possible places of release in a device depend on the droplet's reach: no run may get the walls of the
+/// run before.
 TEST_P(EveryKey, LeavesTheNextRunOfADeviceItsOwnWalls) {
   sweep::Settings settings;
   settings.attach("one.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.3}}));
@@ -164,7 +166,7 @@ TEST_P(EveryKey, LeavesTheNextRunOfADeviceItsOwnWalls) {
       runs.push_back(sweep::Plan(settings).task(0));
     }
   } catch (const Error&) {
-    return;  // the key means nothing in a device
+    return;  // the key does not apply to a device
   }
   sweep::ObstacleArrays arrays;
   arrays.get(runs[0]);
@@ -177,7 +179,7 @@ TEST_P(EveryKey, LeavesTheNextRunOfADeviceItsOwnWalls) {
 }
 
 TEST_P(EveryKey, MakesTwoLinesOfADryRun) {
-  if (GetParam().kind == ValueKind::word) return;  // no sweep goes over one
+  if (GetParam().kind == ValueKind::word) return;  // no sweep has lists of words
   const sweep::Plan plan = plan_of_both(GetParam());
   testing::internal::CaptureStdout();
   print_tasks(plan);

@@ -14,14 +14,14 @@ namespace clog::results {
 namespace {
 
 TEST(SeedRule, AsksForMoreOnlyWhereTheIntervalIsWide) {
-  // One of two parameter sets clogs always, the other every fourth time. 60 % takes 14 clogs.
+  // In one of two parameter sets every droplet clogs, in the other every fourth. 60 % takes 14 clogs.
   const auto has_clogged = [](std::int64_t task) { return task % 2 == 0 || task / 2 % 4 == 3; };
   SeedRule rule(0.6, 2, 16, 100);
   const std::vector<std::int64_t> next = rule.next_round(has_clogged);
   EXPECT_EQ(rule.num_reached(), 1);
-  ASSERT_EQ(next.size(), 16u);  // as many as it has, though 4 clogs of 16 speak for 40 more
+  ASSERT_EQ(next.size(), 16u);  // as many as the set has, although 4 clogs of 16 require 40 more
   for (std::size_t i = 0; i < next.size(); ++i) EXPECT_EQ(next[i], 2 * (16 + static_cast<int>(i)) + 1);
-  EXPECT_EQ(rule.next_round(has_clogged).size(), 24u);  // 8 of 32 clogs: 56 seeds in all
+  EXPECT_EQ(rule.next_round(has_clogged).size(), 24u);  // 8 of 32 clog: 56 seeds in all
   EXPECT_TRUE(rule.next_round(has_clogged).empty());
   EXPECT_EQ(rule.num_reached(), 2);
 }

@@ -22,12 +22,12 @@
 
 namespace {
 
-/// Somebody else moves a file over this one just after it was renamed and its folder synchronised.
+/// A move by somebody else of a file onto this one just after it was renamed and its folder synchronised.
 struct Move {
   std::filesystem::path from, to;
 };
 std::optional<Move> move_at_sync_of_folder;
-/// A slow disk: drafts of tables and journals take this time.
+/// While is_disk_slow, fsync() of a draft of a table or a journal waits.
 std::atomic<bool> is_disk_slow = false, is_draft_waiting = false;
 
 bool is_draft(int descriptor) {
@@ -54,7 +54,7 @@ int our_fsync(int descriptor) {
 namespace clog::results {
 namespace {
 
-/// A sweep of two runs, whose state is opened again and again as after kills.
+/// A sweep of two runs, whose state is opened repeatedly, as after kills.
 class SweepStateTest : public testing::Test {
  protected:
   std::filesystem::path folder_ =
@@ -371,7 +371,7 @@ TEST_F(SweepStateTest, RefusesAJournalOfRunsWithOtherSettings) {
   };
   sweep::Settings settings = settings_;
   settings.set("line-tension", "0.7");
-  left_by(settings, model_version);  // of a larger plan of this sweep
+  left_by(settings, model_version);  // from a larger plan of this sweep
   EXPECT_EQ(open().num_beyond(), 1);
   std::filesystem::remove(journal);
   settings.set("max-time", "17");

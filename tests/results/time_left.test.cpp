@@ -65,7 +65,7 @@ TEST(TimeLeft, CoversTheTruthWhereLongRunsBeginFirst) {
     const TimeLeft left = time_left(sets, 1);
     num_covered += left.shortest < truth && truth < left.longest;
   }
-  EXPECT_GT(num_covered, 0.7 * num_trials);  // of 80 %
+  EXPECT_GT(num_covered, 0.7 * num_trials);  // the range is 80 %
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ namespace {
 
 using namespace clog;
 
-/// Ways in which a task crashes, with the words of its row.
+/// Ways in which a task crashes, with the words in its row
 const std::map<std::int64_t, std::pair<int, std::string>> crashes = {
     {3, {SIGSEGV, "its process was ended by SIGSEGV (Segmentation fault)"}},
     {8, {SIGFPE, "its process was ended by SIGFPE (Floating point exception)"}},
@@ -50,7 +50,7 @@ int oom_score_adj() {
   return score;
 }
 
-/// Crashes in its last slice, if it is one of those. Its row contains its process.
+/// A job that crashes in its last slice, if its task is one of `crashes`. Its row contains its process.
 class CrashingJob final : public SyntheticJob {
  public:
   using SyntheticJob::SyntheticJob;
@@ -62,7 +62,7 @@ class CrashingJob final : public SyntheticJob {
     }
     if (getpid() != rank_pid && task >= first_task_that_kills_the_helper) {
       kill(getppid(), SIGKILL);
-      while (true) pause();  // dies with the helper, and does not end its task before
+      while (true) pause();  // dies with the helper before it can end its task
     }
     if (task >= first_hanging_task && task < first_task_that_kills_the_helper) std::raise(SIGSTOP);
     if (task >= first_slow_task && task < first_hanging_task)
@@ -124,7 +124,7 @@ void a_crash_fails_its_task_and_no_other(const scheduler::Communicator& ranks,
     expect(!of_rank.contains(getpid()), "no rank computes itself");
     num_processes += of_rank.size();
   }
-  // Every task that crashes is tried twice, and once more if its rank was in doubt.
+  // Every task that crashes is tried twice, and once more if its rank is doubted.
   expect(num_processes <= ranks.size() + 3 * crashes.size(), "a process serves many tasks");
 }
 
@@ -166,7 +166,7 @@ void a_stopped_task_goes_on_from_its_snapshot(const scheduler::Communicator& ran
 }
 
 void hanging_tasks_block_nobody(const scheduler::Communicator& ranks, const sweep::JobFactory& make_job) {
-  // Every rank has one, and reports on it are due all the time.
+  // Every rank has one hanging task, and reports on it are due all the time.
   std::vector<std::int64_t> tasks(ranks.size());
   std::iota(tasks.begin(), tasks.end(), first_hanging_task);
   const std::vector<std::byte> snapshot(3);

@@ -60,7 +60,7 @@ TEST(RankTrust, BlamesATaskThatFailsOnATrustedRankToo) {
 }
 
 TEST(RankTrust, BelievesNoRankThatHasNotSucceeded) {
-  // Two ranks of one broken node.
+  // Two ranks are on one broken node.
   RankTrust trust({0, 1, 2});
   fail_three(trust, 1);
   fail_three(trust, 2);

@@ -63,7 +63,7 @@ void a_stop_ends_running_tasks_as_interrupted(const scheduler::Communicator& ran
 }
 
 void running_tasks_report_and_go_on_from_there(const scheduler::Communicator& ranks) {
-  // Stopped at its first report, the sweep resumes from the last report.
+  // The sweep is stopped at its first report, and resumes from the last report.
   std::map<std::int64_t, std::vector<std::byte>> snapshots;
   int num_reports = 0;
   bool stop = false;
@@ -95,7 +95,7 @@ void running_tasks_report_and_go_on_from_there(const scheduler::Communicator& ra
   expect(num_ended == static_cast<int>(left.size()), "every interrupted task goes on");
 }
 
-/// Fails in its first attempts.
+/// A job that fails in its first attempts.
 class FailingJob final : public sweep::Job {
  public:
   explicit FailingJob(std::int64_t task, bool fails) : task_(task), fails_(fails) {}
@@ -113,7 +113,7 @@ class FailingJob final : public sweep::Job {
 };
 
 void failed_tasks_are_tried_again(const scheduler::Communicator& ranks) {
-  // Task 3 never succeeds, task 5 does in its second attempt, which a snapshot of one byte marks here.
+  // Task 3 never succeeds; task 5 succeeds in its second attempt, which a snapshot of one byte marks here.
   std::map<std::int64_t, std::int64_t> attempts;
   std::map<std::int64_t, int> successes;
   const auto make_failing = [](std::int64_t task, std::span<const std::byte> snapshot) {
@@ -136,7 +136,8 @@ void failed_tasks_are_tried_again(const scheduler::Communicator& ranks) {
   expect(attempts[5] == 2 && attempts[6] == 1, "no more attempts than needed");
 }
 
-/// Fails on broken ranks, takes some milliseconds on others, and fails everywhere if it is to.
+/// Makes jobs that fail on broken ranks, take some milliseconds on others, and fail everywhere if the task is
+/// impossible.
 sweep::JobFactory failing_on(const scheduler::Communicator& ranks,
                              const std::function<bool(int rank)>& is_broken,
                              const std::function<bool(std::int64_t task)>& is_impossible) {
@@ -220,7 +221,7 @@ void who_was_set_aside_stays_so_in_the_next_round(const scheduler::Communicator&
 }
 
 void most_ranks_may_be_broken(const scheduler::Communicator& ranks) {
-  // One attempt only: failures of broken ranks must not count.
+  // There is only one attempt, so failures of broken ranks must not count.
   const auto make_job = failing_on(
       ranks, [](int rank) { return rank > 0; }, never);
   const Outcome outcome = sweep(ranks, 60, 1, make_job);

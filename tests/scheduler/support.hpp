@@ -23,7 +23,7 @@ inline void expect(bool holds, const char* what) {
   std::_Exit(1);
 }
 
-/// Takes a number of slices that differs from task to task.
+/// A job whose number of slices differs from task to task.
 class SyntheticJob : public sweep::Job {
  public:
   SyntheticJob(std::int64_t task, std::span<const std::byte> snapshot)
@@ -33,7 +33,7 @@ class SyntheticJob : public sweep::Job {
     return --slices_left_ <= 0;
   }
   std::vector<std::byte> snapshot() const override {
-    return std::vector<std::byte>(1 + task_ * 7 % 5 - slices_left_);  // as many bytes as slices are done
+    return std::vector<std::byte>(1 + task_ * 7 % 5 - slices_left_);  // one more byte than slices done
   }
   sweep::RunRow row() const override {
     sweep::RunRow row;

@@ -83,7 +83,8 @@ TEST(TaskOrder, HandsOutTheLongestOfAllGroups) {
   std::mt19937 random(7);
   double now = 0;
   for (int i = 0; i < num_tasks; ++i, now += 0.125) {
-    // Most time for each task that ended first; then fewest tasks begun.
+    // The group with the longest time per ended task is first; of equal ones the group with fewest begun
+    // tasks.
     const auto turn = [&](const Known& group) {
       double time = group.time_ended;
       for (const auto& [task, start] : group.starts) time += now - start;

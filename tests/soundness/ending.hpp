@@ -8,12 +8,12 @@
 
 namespace clog::soundness {
 
-/// The ways in which a droplet ends that did not clog in the time given.
+/// How a droplet ends that has not clogged in the given time.
 enum class Ending {
   moving,      ///< travels: mean speed of its centre above `slowest_travel` V_t
   decaying,    ///< stopped, its kinetic energy is falling
   steady,      ///< stopped, its interface creeps on
-  chattering,  ///< stopped, vertices shake about their places and get nowhere
+  chattering,  ///< stopped, its vertices shake about their places
 };
 const char* name(Ending ending);
 
@@ -23,12 +23,13 @@ const char* name(Ending ending);
 /// chattering  coherence < least_coherence: the vertices' way is much shorter than their speed would take
 /// them steady      all others
 struct Tail {
-  double mean_speed = 0;  ///< way of the centre along a straight line over the time [V_t]
+  double mean_speed = 0;  ///< distance of the centre along a straight line over the time [V_t]
   double level = 0;       ///< median of log10(E_k/E_t) in the last quarter
-  double fall = 0;       ///< by how much the median of log10(E_k/E_t) fell from the first quarter to the last
-  double last_fall = 0;  ///< the same from the third quarter to the last
-  double band = 0;       ///< log10(E_k/E_t) in the last quarter, 95 % quantile minus 5 % quantile
-  double coherence = 0;  ///< way of the vertices between looks / way that E_k would take them
+  double fall = 0;        ///< fall of the median of log10(E_k/E_t) from the first quarter to the last
+  double last_fall = 0;   ///< the same from the third quarter to the last
+  double band = 0;        ///< log10(E_k/E_t) in the last quarter, 95 % quantile minus 5 % quantile
+  double coherence =
+      0;  ///< distance of the vertices between looks divided by the distance that follows from E_k
 
   Ending ending() const;
 };
@@ -42,9 +43,9 @@ class TailRecorder {
  public:
   explicit TailRecorder(double terminal_speed) : terminal_speed_(terminal_speed) {}
 
-  /// To be called at even intervals, each of the length `interval` [t0].
+  /// Call this at even intervals, each of length `interval` [t0].
   void add_energy(double energy_ratio, double interval);
-  /// To be called once before add_energy(), then more seldom than it, by many relaxation times V_t/g.
+  /// Call this once before add_energy(), then more seldom, at intervals of many relaxation times V_t/g.
   void add_place(const DropletState& state);
   /// Empty if there were too few samples.
   std::optional<Tail> tail() const;

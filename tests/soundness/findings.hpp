@@ -19,16 +19,17 @@ struct Findings {
   void keep_worst(const Findings& other);
 };
 
-/// Contact is soft: the interface may come nearer to an obstacle's centre than its radius by this much
+/// Contact is soft: the interface may come nearer to an obstacle's centre than the radius by this much
 /// [vertex diameters]. A depth allowed for 128 vertices is also allowed for a finer mesh.
 inline constexpr double deepest_overlap = 0.25;
-/// The area may not be wrong by more than this.
+/// Largest accepted relative error of the area.
 inline constexpr double largest_area_error = 0.05;
 
 bool is_sound(const Findings& findings);
 
 /// Checks every edge of the refined interface (see refined()) and every obstacle near the droplet, without
-/// the contact lists of the forces, so it also finds obstacles that those missed. Leaves `substeps` alone.
+/// the contact lists of the forces, so it also finds obstacles missing from those. Does not change
+/// `substeps`.
 Findings look_at(const DropletState& state, const ObstacleArray& obstacles);
 
 }  // namespace clog::soundness

@@ -1,4 +1,5 @@
-/// soundness: does every droplet stay physically sound? See docs/explanation/soundness.md.
+/// Program `soundness`: tests whether every droplet stays physically sound. See
+/// docs/explanation/soundness.md.
 
 #include <algorithm>
 #include <atomic>
@@ -51,10 +52,10 @@ The exit code is 0 when all were sound, 1 when one was not, 75 when it was stopp
 
 /// Time between two looks at a droplet, in checks of its run: 2 t0 at the default time step.
 constexpr int checks_per_look = 32;
-/// The last part of a run that tells how it ends.
+/// The last part of a run, in which its ending is judged.
 constexpr double tail_part = 0.2;
 
-/// CPU time of this thread: other work on the machine does not count [s].
+/// CPU time of this thread, which excludes other work on the machine [s].
 double cpu_seconds() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -76,7 +77,7 @@ struct CaseReport {
   bool is_sound() const {
     return refusal.empty() && result.status != RunStatus::failed && soundness::is_sound(worst) &&
            release_force <=
-               1.01 * release_force_tolerance;  // sums may run in another order than in the release
+               1.01 * release_force_tolerance;  // sums may have another order than in the release
   }
   /// The ending in one word.
   std::string ending() const {
@@ -94,7 +95,7 @@ void look(const DropletRun& run, double substeps, CaseReport& report) {
   report.worst.keep_worst(findings);
 }
 
-/// @param longest  the run is given up after so much computing [s]
+/// @param longest  computing time after which the run is given up [s]
 void follow(DropletRun& run, double longest, CaseReport& report) {
   const RunParameters& parameters = report.run;
   const double check_time = DropletRun::steps_per_check * *parameters.time_step;
@@ -131,7 +132,7 @@ CaseReport run_case(const RunParameters& parameters, double longest) {
   return report;
 }
 
-/// Looks only at the release, and at the force that it leaves behind.
+/// Checks only the release, and the remaining force.
 CaseReport release_case(const RunParameters& parameters) {
   CaseReport report;
   report.run = parameters;
@@ -292,7 +293,7 @@ void print_release_table(const std::vector<CaseReport>& reports, std::size_t num
   table.print();
 }
 
-/// One line for each run, for users who need more than the table.
+/// Writes one line for each run, for users who need more than the table.
 void write_runs(std::ofstream& out, const std::string& path, const std::vector<CaseReport>& all) {
   std::vector<CaseReport> reports;
   std::copy_if(all.begin(), all.end(), std::back_inserter(reports), [](const auto& r) { return r.done; });
@@ -312,7 +313,8 @@ void write_runs(std::ofstream& out, const std::string& path, const std::vector<C
   if (!out.flush()) throw Error("cannot write " + path);
 }
 
-/// Small line tension and narrow gaps stretch a droplet and split its steps: these take longest.
+/// Cases ordered by expected duration: small line tension and narrow gaps stretch a droplet and split its
+/// steps, so these take longest.
 std::vector<std::size_t> longest_first(const std::vector<CaseReport>& reports) {
   std::vector<std::size_t> order(reports.size());
   std::iota(order.begin(), order.end(), 0);
@@ -356,7 +358,7 @@ std::vector<CaseReport> planned_runs(const sweep::Plan& plan) {
   return reports;
 }
 
-/// The grid that is run without any arguments.
+/// Sets the grid that the program runs without arguments, and parses its options.
 bool parse(cli::CommandLine& line, int argc, char** argv) {
   line.option("releases", "only release so many droplets, each with a new seed")
       .option("threads", "threads to use (all cores)")
@@ -370,7 +372,7 @@ bool parse(cli::CommandLine& line, int argc, char** argv) {
   settings.set("max-time", "2000");
   settings.set("box", "100");
   if (!cli::parse_command(line, argc, argv)) return false;
-  if (line.has("releases")) {  // the hardest gap, in boxes that cost nothing
+  if (line.has("releases")) {  // the hardest gap, in boxes that take no time
     if (!line.has("obstacle-gap")) settings.set("obstacle-gap", "0.2");
     if (!line.has("obstacle-density")) settings.set("obstacle-density", "saturated");
     if (!line.has("box")) settings.set("box", "20");
@@ -385,7 +387,7 @@ bool parse(cli::CommandLine& line, int argc, char** argv) {
   return true;
 }
 
-/// Says how many were sound. Returns the exit code.
+/// Prints how many droplets were sound. Returns the exit code.
 int conclude(const std::vector<CaseReport>& reports) {
   const auto done = std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.done; });
   const auto sound =
@@ -415,7 +417,7 @@ int body(int argc, char** argv) {
     runs.open(line.get("runs"));
     if (!runs) throw Error("cannot write " + line.get("runs"));
   }
-  console::catch_stop_signals();  // then only finished cases are reported
+  console::catch_stop_signals();  // after a signal only finished cases are reported
   std::vector<CaseReport> reports;
   if (line.has("releases")) {
     reports = planned_releases(plan, line.get_whole("releases", 0, 1, 10'000'000));

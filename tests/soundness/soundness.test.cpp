@@ -28,7 +28,8 @@ TEST(Findings, OfACircleAreThoseOfACircle) {
   EXPECT_NEAR(findings.shape, 1, 1e-3);
 }
 
-/// A circle below an edge of the droplet, its surface so many vertex diameters away from the edge.
+/// A circle below an edge of the droplet, with its surface at this distance from the edge, in vertex
+/// diameters.
 Findings with_obstacle_at(double distance) {
   const DropletState state = circle();
   const double radius = 0.15;
@@ -92,7 +93,7 @@ TEST(Ending, IsMovingWhenTheCentreTravelsAcrossFrames) {
   EXPECT_NEAR(tail.coherence, 1, 1e-6);
 }
 
-/// Vertices creep outwards and inwards in turn, at 1e-3 V_t.
+/// Moves vertices outwards and inwards in turn, at 1e-3 V_t.
 void creep(DropletState& state, double time) {
   for (Eigen::Index i = 0; i < state.size(); ++i) state.y()[i] += 0.03e-3 * time * (i % 2 == 0 ? 1 : -1);
 }

@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace {
-/// What the next calls of fsync() fail with, the last one first.
+/// Errors with which the next calls of fsync() fail, the last one first.
 std::vector<int> next_errors;
 }  // namespace
 

@@ -75,7 +75,7 @@ TEST_F(JournalTest, DropsATornRecordAndGoesOnWhereItBegan) {
   { add_entries(*std::make_unique<Journal>(place()), 0, 5); }
   const auto whole = fs::file_size(path());
   for (const std::uintmax_t cut :
-       {1u, 100u, 400u, 401u, 1000u}) {  // the last record has 400 bytes of snapshot
+       {1u, 100u, 400u, 401u, 1000u}) {  // the last record has a snapshot of 400 bytes
     { add_entries(*std::make_unique<Journal>(place()), 5, 5); }
     fs::resize_file(path(), whole - cut);
     Journal journal(place());
@@ -120,7 +120,7 @@ TEST_F(JournalTest, LosesNoOtherRecordToADamagedOne) {
   struct Case {
     const char* what;
     std::vector<std::uintmax_t> places;
-    std::vector<std::int64_t> tasks;  // that are left
+    std::vector<std::int64_t> tasks;  // tasks of the remaining records
   };
   for (const Case& damaged :
        {Case{"a row", {begins[1] + 100}, {0, 2, 3, 4}}, Case{"a size", {begins[1] + 1}, {0, 2, 3, 4}},

@@ -58,7 +58,7 @@ std::vector<sweep::RunRow> some_rows(int number) {
 }
 
 TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
-  for (const int number : {0, 1, 200, 1000}) {  // each replaces the table before
+  for (const int number : {0, 1, 200, 1000}) {  // each table replaces the one before
     const std::vector<sweep::RunRow> rows = some_rows(number);
     publish(path(), rows, {{"version", "1.2.3"}, {"empty", ""}});
     const SweepFile file = read_sweep(path());
@@ -122,7 +122,7 @@ TEST_F(RunTableTest, IsPublishedOnlyInPlaceOfTheFileThatIsKnown) {
   const std::string stamp = place.stamp();
   EXPECT_TRUE(publish_sweep(place, stamp, {some_rows(2), {}, {}}));
   EXPECT_EQ(read_sweep(path()).rows.size(), 2u);
-  // Somebody has put another file there.
+  // Another file is in the place.
   write_text("other", "another's");
   fs::rename(path("other"), path());
   EXPECT_FALSE(publish_sweep(place, stamp, {some_rows(3), {}, {}}));
@@ -135,7 +135,7 @@ TEST_F(RunTableTest, IsPublishedOnlyInPlaceOfTheFileThatIsKnown) {
 }
 
 TEST_F(RunTableTest, IsTheSameUnderAnotherInode) {
-  // As some network file systems show it after a while.
+  // Some network file systems change the inode after a while.
   publish(path(), some_rows(2), {});
   const OutputPath place = OutputPath::resolve(path());
   const std::string stamp = place.stamp();
@@ -170,7 +170,7 @@ TEST_F(RunTableTest, LeavesTheDraftOfALivingProcessAlone) {
 TEST_F(RunTableTest, UpdatesTheFileThatALinkLeadsTo) {
   fs::create_directory(path("scratch"));
   fs::create_symlink("scratch/target.h5", path());
-  for (const int number : {1, 2}) {  // it leads nowhere at first
+  for (const int number : {1, 2}) {  // the link leads nowhere at first
     publish(path(), some_rows(number), {});
     EXPECT_TRUE(fs::is_symlink(path()));
     EXPECT_EQ(read_sweep(path("scratch/target.h5")).rows.size(), static_cast<std::size_t>(number));
@@ -198,7 +198,7 @@ TEST_F(RunTableTest, IsWholeForAReaderAtEveryMoment) {
 }
 
 TEST_F(RunTableTest, IsNeverLockedWhereReadersLookForIt) {
-  // HDF5 does this before it reads, in h5py and pandas.
+  // HDF5 locks files before it reads them, in h5py and pandas.
   publish(path(), some_rows(1), {});
   const pid_t writer = fork();
   if (writer == 0) {
@@ -262,7 +262,7 @@ TEST_F(RunTableTest, NoticesEveryFlippedBit) {
       EXPECT_EQ(read_sweep(path("flipped.h5")).checked, Checked::rows_and_settings) << byte;
       EXPECT_GE(byte, seal) << "only one that hides the seal goes by with a word of caution";
     } catch (const Error&) {
-      // as it should
+      // refused, as expected
     }
   }
 }
@@ -304,12 +304,12 @@ TEST_F(RunTableTest, LosesNoAttributeByADamagedListOfChecksums) {
       std::string damaged = content;
       damaged[byte] = static_cast<char>(damaged[byte] ^ (1 << bit));
       write_text("damaged.h5", damaged);
-      // Between the digits and the name, and in a digit's case, a flip changes nothing that is read.
+      // A flip between the digits and the name, or in a digit's case, does not change what is read.
       try {
         EXPECT_EQ(read_sweep(path("damaged.h5")).provenance, read_sweep(path()).provenance)
             << byte << ' ' << bit;
       } catch (const Error&) {
-        // noticed
+        // the damage was noticed
       }
     }
 }

@@ -47,7 +47,7 @@ class FolderTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// Writes a table, in place of one that is there.
+/// Writes a table, replacing an existing one.
 inline void publish(const std::string& path, const std::vector<sweep::RunRow>& rows,
                     const Provenance& provenance, const std::vector<CircleFile>& circles = {}) {
   const OutputPath place = OutputPath::resolve(path);
@@ -65,7 +65,7 @@ inline void publish(const std::string& path, const std::vector<sweep::RunRow>& r
   try {
     action();
   } catch (const Error& error) {
-    setrlimit(RLIMIT_FSIZE, &before);  // the error stream may be a file
+    setrlimit(RLIMIT_FSIZE, &before);  // before printing, because the error stream may be a file
     std::fputs(error.what(), stderr);
     std::_Exit(2);
   }

@@ -14,7 +14,7 @@ bool goes_back = false;
 time_t seconds_back = 0;
 }  // namespace
 
-/// Takes the place of the C library's function in this program: each call is ten seconds before the last one.
+/// Replaces the C library's function in this program: each call is ten seconds before the last one.
 // NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the library's names are reserved
 extern "C" int clock_gettime(clockid_t clock, timespec* now) noexcept {
   const auto code = static_cast<int>(syscall(SYS_clock_gettime, clock, now));

@@ -39,8 +39,7 @@ RunParameters run_in(const ObstacleParameters& obstacles, std::uint32_t seed) {
   return run;
 }
 
-/// A seed that no other test, run at the same time, shares with this one; nor does one have the odd seed
-/// after it.
+/// A seed that no other test that runs at the same time has; no test has the odd seed after it either.
 std::uint32_t own_seed() { return 2 * static_cast<std::uint32_t>(getpid()); }
 
 ObstacleParameters lattice() {
@@ -83,10 +82,10 @@ int num_sockets(pid_t process) {
   return number;
 }
 
-/// Another process that works, reports, and stays until it is killed, without a chance to clean up.
+/// Another process that works, reports, and stays until the test kills it, without a chance to clean up.
 class OtherProcess {
  public:
-  /// @param work  what it returns is told
+  /// @param work  returns the text that the process reports
   explicit OtherProcess(const std::function<std::string()>& work) {
     int ends[2];
     if (pipe(ends) != 0) std::abort();
@@ -153,11 +152,11 @@ TEST(ObstacleArrays, TakesNoOtherForTheSame) {
 TEST(ObstacleArrays, AreInMemoryOnceForAllProcesses) {
   const auto get = [seed = own_seed()] {
     ObstacleArrays arrays;
-    static std::shared_ptr<const ObstacleArray> array;  // kept as long as the process stays
+    static std::shared_ptr<const ObstacleArray> array;  // kept until the process ends
     array = arrays.get(run_in(large, seed));
     return std::to_string(arrays.num_built()) + " built, in " + file_behind(array->obstacles().data());
   };
-  // All at once: one builds, the others wait for it.
+  // All processes begin at once: one builds, and the others wait for it.
   std::vector<std::unique_ptr<OtherProcess>> others(4);
   for (auto& other : others) other = std::make_unique<OtherProcess>(get);
   std::vector<std::string> told;
@@ -198,7 +197,7 @@ TEST(ObstacleArrays, AreBuiltByTheNextWhenTheirBuilderIsKilledAtWork) {
   const ObstacleParameters slow{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 600};
   {
     const OtherProcess builder([&] {
-      if (fork() == 0) {  // tells, and is at work when it is killed
+      if (fork() == 0) {  // reports that it has begun, and is at work when killed
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         ObstacleArrays().get(run_in(slow, seed));
         _exit(0);
@@ -224,7 +223,7 @@ TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
       builds.get(run_in(slow, seed));
       for (;;) pause();
     }
-    while (num_sockets(builder) <= num_sockets(getpid())) usleep(1000);  // until it has the lock
+    while (num_sockets(builder) <= num_sockets(getpid())) usleep(1000);  // until the builder has the lock
     kill(builder, SIGSTOP);
     return builder;
   };
@@ -242,12 +241,12 @@ TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
   get_and_signal(arrays, start_and_stop_builder(), SIGKILL);
   EXPECT_EQ(arrays.num_built(), 1);
 
-  // The next one would be there in the end, but is not waited for.
+  // The next array would be ready in the end, but this process does not wait for it.
   arrays.get(run_in(small, 1));
   get_and_signal(arrays, start_and_stop_builder(), SIGCONT);
   EXPECT_EQ(arrays.num_built(), 3);
 
-  // The array that is there is still found; then the wait begins again.
+  // A shared array that exists is still found; then waiting begins again.
   ObstacleArrays other;
   other.get(run_in(large, seed));
   arrays.get(run_in(large, seed));
@@ -276,7 +275,8 @@ TEST(ObstacleArrays, AreBuiltAtOnceWhereNothingCanBeLocked) {
   const OtherProcess without_files([seed = own_seed()] {
     rlimit usual;
     getrlimit(RLIMIT_NOFILE, &usual);
-    // Who waits until then finds the array. Begun before: sanitizers look at a new thread by way of a file.
+    // A process that waits until then finds the array. The thread must begin before the limit is set, because
+    // sanitizers inspect a new thread by opening a file.
     std::atomic<bool> has_begun = false;
     std::thread later([&] {
       has_begun = true;
@@ -311,8 +311,8 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
   const auto take = [&](bool as_another) {
     return std::make_unique<OtherProcess>([&name, as_another] {
       static const NameLock lock(name);
-      // Another user's process is one that /proc shows as foreign; without root one cannot start it, but can
-      // be shown as one.
+      // A process of another user is one that /proc shows as foreign. Without root the test cannot start one,
+      // but can make its own process look foreign.
       const bool is_root = geteuid() == 0;
       constexpr uid_t nobody = 65534;
       if (as_another && is_root && setuid(nobody) != 0) return std::string("cannot become another");

@@ -56,7 +56,7 @@ const std::vector<Keys> sweeps = {
     {{"max-time", "200"}, {"model", "sp"}, {"wall-stiffness", "100"}, {"terminal-speed", "100"}},
 };
 
-/// A stiff polygon that has clogged: a row that has everything.
+/// A stiff polygon that has clogged, so that its row has all results.
 const RunRow& clogged() {
   static const RunRow row = row_of(sweeps.front());
   return row;
@@ -89,7 +89,7 @@ TEST(FaultOf, NoRunThatFailed) {
   EXPECT_EQ(fault_of(row), "failed without a reason");
 }
 
-/// A row of an earlier version's file, which has only some of the columns.
+/// Rows in files of earlier versions have only some of the columns.
 TEST(FaultOf, NoColumnThatAnOlderVersionDidNotHave) {
   RunRow row = clogged();
   for (const char* name :
@@ -102,7 +102,7 @@ TEST(FaultOf, NoColumnThatAnOlderVersionDidNotHave) {
   EXPECT_EQ(fault_of(row), "");
 }
 
-/// The end of a short run in another scene.
+/// The final row of a short run in another scene.
 RunRow row_in(ObstacleLayout layout) {
   RunParameters run;
   run.dp.vertices = 64;
@@ -170,7 +170,7 @@ TEST(Unpack, NamesEveryWordThatIsUnknown) {
   int num_tried = 0;
   for (const Column& column : columns()) {
     if (column.kind != ValueKind::word || column.role == ColumnRole::circumstance) continue;
-    if (column.name == "preset") continue;  // another version may have others
+    if (column.name == "preset") continue;  // another version may have other presets
     const char* what = column.name == "obstacles" ? "is no checksum of circles"
                        : column.name == "laboratory"
                            ? "is no description of a laboratory; give a file by --lab"
@@ -232,7 +232,8 @@ TEST(FaultOf, NamesEveryNumberThatIsNone) {
     for (const char* part : {"", "_at", "_from"}) may_be_unknown.insert(dwell_column(i) + part);
   for (const Column& column : columns()) {
     if (column.kind != ValueKind::number) continue;
-    const bool means_nothing = column.name == "lattice_angle";  // the array is random
+    const bool means_nothing =
+        column.name == "lattice_angle";  // the array is random, so the column does not apply
     std::vector<double> values = {std::nan(""), std::numeric_limits<double>::infinity(), -1e300};
     if (column.role != ColumnRole::parameter) values.push_back(1e300);
     for (const double value : values) {
@@ -289,7 +290,7 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
   }
 }
 
-/// The end of a run that rested twice, and hangs.
+/// The final row of a run that rested twice, and ended hanging over an obstacle.
 const RunRow& hanging() {
   static const RunRow row = [] {
     RunRow one = row_of({{"max-time", "1000"},
@@ -370,7 +371,7 @@ TEST(FaultOf, NamesContactsThatCannotBe) {
 }
 
 TEST(FarthestWay, IsHardlyMoreThanAFreeSoftDiskFalls) {
-  // No obstacle pushes it, so only its weight acts.
+  // No obstacle pushes the disk, so only its weight acts.
   RunRow row = describe(plan_of({{"model", "sp"}, {"wall-stiffness", "1"}}).task(0));
   row.parameters.obstacles.gap = std::nan("");
   row.time = 1000;

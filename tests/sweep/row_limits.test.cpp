@@ -188,7 +188,7 @@ TEST(ObstacleSpacing, IsFromCentreToCentre) {
 
 TEST(ObstacleSpacing, OfOwnCirclesFollowsFromHowManyThereAre) {
   Settings settings;
-  // Four in 8 x 8, of which two are near to each other and none is as wide as obstacle-diameter.
+  // Four circles in 8 x 8; two are close to each other, and none is as wide as obstacle-diameter.
   settings.attach("posts.csv", OwnCircles({{1, 1, 0.2}, {2, 1, 0.2}, {5, 3, 0.2}, {3, 6, 0.2}}, "posts.csv"));
   settings.set("obstacles", "posts.csv");
   settings.set("box", "8");

@@ -21,18 +21,20 @@ class CommandLine {
  public:
   enum class SweepKeys { none, accepted };
 
-  /// @param program  as it is called, with the name of a command: `clogsweep merge`
+  /// @param program  its name as called, with the command if there is one: `clogsweep merge`
   CommandLine(std::string program, std::string usage, SweepKeys sweep_keys = SweepKeys::none);
 
   /// Declares an option without a value; like all declarations, call it before parse().
   CommandLine& flag(const char* name, const char* help);
   /// Declares an option with a value. @param otherwise  its default
   CommandLine& option(const char* name, const char* help, const char* otherwise = nullptr);
-  /// Declares an option that may be a word without dashes: the first, the second ...
+  /// Declares an option that may also be given as a word without dashes; such words belong to these options
+  /// in the order of their declarations.
   CommandLine& word(const char* name, const char* help);
   /// Declares an option for all further words without dashes.
   CommandLine& words(const char* name, const char* help);
-  /// Declares what the first word may be instead of a file; after a misspelling the message suggests it.
+  /// Declares the commands that the first word may name instead of a file; the message about a misspelt word
+  /// suggests them.
   void add_commands(std::vector<std::string> names) { commands_ = std::move(names); }
   /// Declares the message for surplus words, e.g. "one sweep file is read at a time".
   void explain_surplus_words(std::string remedy) { surplus_remedy_ = std::move(remedy); }
@@ -46,7 +48,7 @@ class CommandLine {
   std::vector<std::string> get_all(const std::string& option) const;
   /// @throws Error if the option was not given
   std::string require(const std::string& option) const;
-  /// @throws Error if there are fewer
+  /// @throws Error if there are fewer values than `least`
   std::vector<std::string> require_all(const std::string& option, std::size_t least = 1) const;
   /// @throws Error if the option's value is none of these words
   std::string get_word(const std::string& option, const std::vector<std::string>& words) const;
@@ -62,7 +64,7 @@ class CommandLine {
   const std::string& program() const { return program_; }
   const sweep::Settings& settings() const { return settings_; }
   sweep::Settings& settings() { return settings_; }
-  /// Texts of keys with units, which only --lab can convert; the settings lack them.
+  /// Values with units, by key. Only --lab can convert them; the settings do not contain them.
   const std::map<std::string, std::string>& texts_with_units() const { return texts_with_units_; }
   /// The command as it was given, in one line.
   const std::string& text() const { return text_; }
@@ -78,7 +80,7 @@ class CommandLine {
       "0.2,0.3  1..50  'lin(a,b,n)'  'log(a,b,n)'  (quotes, since shells read parentheses)"};
   boost::program_options::options_description keys_{"Keys of all else"};
   boost::program_options::positional_options_description positional_;
-  std::set<std::string> words_;  // options that may be words without dashes
+  std::set<std::string> words_;  // options whose values may be words without dashes
   std::vector<std::string> commands_;
   std::string surplus_remedy_ = "options start with --, settings are key=value";
   boost::program_options::variables_map values_;

@@ -8,7 +8,7 @@ namespace clog::console {
 struct BuildInfo {
   std::string version;
   std::string git_describe;  ///< of the sources: tag, commits since, hash; or the hash alone
-  std::string git_hash;      ///< a tag may be moved, this not
+  std::string git_hash;      ///< unlike a tag, it never moves
   std::string compiler;
   std::string build_type;
 };

@@ -5,10 +5,11 @@
 
 namespace clog::console {
 
-/// 1,350 or 12,345,678, which 0,350 and 1,35 are not.
+/// Whether the commas of a number may separate thousands: those of 1,350 and 12,345,678 may, those of 0,350
+/// and 1,35 may not.
 bool may_have_thousands(std::string_view number);
 
-/// Numbers of one table, whose commas are decimal, or separate thousands.
+/// Decides whether the commas in the numbers of one table are decimal commas or separate thousands.
 class DecimalCommas {
  public:
   /// The number with a decimal point in place of its comma.
@@ -20,7 +21,7 @@ class DecimalCommas {
 
  private:
   bool is_one_decimal_ = false;
-  std::string perhaps_thousands_;  // the first of them
+  std::string perhaps_thousands_;  // the first number whose comma may separate thousands
 };
 
 }  // namespace clog::console

@@ -16,14 +16,13 @@ struct Finding {
 /// Whether a sweep on these ranks, with this `output`, would have problems.
 std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::string& output);
 
-/// srun without PMIx, and the mpirun of another MPI, start programs that each believe to be alone. @throws
-/// Error if this is one of them
+/// Programs under srun without PMIx, or under the mpirun of another MPI, each believe to be alone. @throws
+/// Error if this program is one of them
 void refuse_to_be_alone(int num_ranks);
 
-/// The setting that lets ranks use every core of their host.
-/// @param mpi  name and version, as Communicator::library_version() gives them. Since Open MPI 5, its
-/// launcher PRRTE
-///             reads variables of other names.
+/// The setting that lets ranks use every core of their host. @param mpi  name and version, as
+/// Communicator::library_version() gives them. Since Open MPI 5, its launcher PRRTE reads variables of other
+/// names.
 std::string how_to_unbind(const std::string& mpi);
 
 }  // namespace clog::diagnostics

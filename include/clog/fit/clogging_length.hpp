@@ -23,8 +23,8 @@ struct Interval {
 /// @throws std::invalid_argument unless 0 < confidence < 1
 void require_confidence(double confidence);
 
-/// The z with a share `confidence` of a standard normal number between -z and z. z^2 is chi-squared's
-/// quantile for one degree of freedom; it underflows where little confidence is asked for, z does not.
+/// The z for which a standard normal number lies between -z and z with the probability `confidence`. z^2 is
+/// chi-squared's quantile for one degree of freedom; for very small `confidence` it underflows, z does not.
 double normal_deviate(double confidence);
 
 /// Estimate of the clogging length lambda, the mean distance of an exponential law P(r) = exp(-r/lambda)
@@ -44,10 +44,10 @@ struct CloggingLength {
 /// The interval is 2 S/chi2_{1-q} .. 2 S/chi2_q with q = (1 - confidence)/2. With d fixed beforehand, or when
 /// every run has clogged, 2 S/lambda is chi-squared distributed with exactly 2d degrees of freedom (Epstein
 /// and Sobel 1953). Here runs are censored after a given time and d is as random as S: the next clog might
-/// have come just after the last look, which asks for 2d + 2, or just before, which asks for 2d. 2d + 1 lies
-/// between and covers the truth nearly as often as it claims (Cox, Biometrika 40, 354 (1953); Lawless,
+/// come just after the runs ended, for which 2d + 2 would be exact, or just before, for which 2d would be.
+/// The number between, 2d + 1, has nearly the nominal coverage (Cox, Biometrika 40, 354 (1953); Lawless,
 /// Statistical Models and Methods for Lifetime Data, ch. 4). Without clogs there is a one-sided lower bound,
-/// S/log(1/(1 - confidence)), which is 2d + 2.
+/// S/log(1/(1 - confidence)), which corresponds to 2d + 2.
 ///
 /// `profile` holds all lambda with 2 (l(S/d) - l(lambda)) below chi-squared's quantile for one degree of
 /// freedom, l(lambda) = -d log lambda - S/lambda.
@@ -57,8 +57,8 @@ struct CloggingLength {
 /// @throws std::invalid_argument unless 0 < confidence < 1
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence = 0.95);
 
-/// Half of the chi-squared interval's width over the estimate; infinite without clogs. The width if all runs
-/// have clogged, which is a little larger than with censored ones.
+/// Half of the chi-squared interval's width divided by the estimate; infinite without clogs. This is the
+/// width if all runs have clogged, which is a little larger than with censored runs.
 double relative_half_width(std::int64_t num_clogs, double confidence = 0.95);
 
 /// Least squares of exp(-r/lambda) on P(r) = 1 - N_clog(r)/N at every clog, as published (Cheng et al.,

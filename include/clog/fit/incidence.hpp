@@ -19,16 +19,16 @@ struct CompetingEnd {
 /// causes.
 struct IncidenceStep {
   double distance;        ///< of one or more ends by this cause [sigma]
-  int num_at_risk;        ///< runs that came so far
-  int num_ends;           ///< of them, by this cause at this distance
-  double probability;     ///< F_c just beyond
+  int num_at_risk;        ///< runs that reached this distance
+  int num_ends;           ///< of these, ends by this cause at this distance
+  double probability;     ///< F_c just beyond this distance
   double standard_error;  ///< by the delta method
-  Interval interval;      ///< of F_c; NaN where that is 1
+  Interval interval;      ///< of F_c; NaN where F_c is 1
 };
 
 /// Aalen and Johansen's estimate (Scand. J. Stat. 5, 141 (1978)): F_c grows by P d_c/n at every distance with
-/// ends, P the probability to have come so far (survival_curve() of all causes), n the runs at risk, d_c
-/// those of them that end by the cause. So F_c of all causes and P add up to 1, unlike one minus the survival
+/// ends, P the probability to have reached it (survival_curve() of all causes), n the runs at risk, d_c those
+/// of them that end by the cause. So F_c of all causes and P add up to 1, unlike one minus the survival
 /// curves of single causes with the other ends censored. One step per distance with ends by the cause, in
 /// increasing order; at equal distances ends come before censorings. The variance is that of Dinse and Larson
 /// (Biometrika 73, 379 (1986)), binomial without censoring. Intervals are symmetric in log(-log F_c), as

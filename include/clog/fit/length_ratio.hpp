@@ -10,27 +10,27 @@ namespace clog::fit {
 struct Pair {
   Observation here;
   Observation there;
-  bool is_alike = false;  ///< both end at the same place, or neither clogs: the pair tells no difference
+  bool is_alike = false;  ///< both end at the same place, or neither clogs: the pair shows no difference
 };
 
-/// Ratio of the clogging length here to that there.
+/// Ratio of the clogging length `here` to the one `there`.
 struct LengthRatio {
   double ratio = 0;     ///< NaN without clogs on both sides
-  Interval interval{};  ///< of the two that follow; NaN without clogs
+  Interval interval{};  ///< `paired` or `unpaired`; NaN without clogs
   /// From the numbers of clogs, as if all runs were independent: a ratio of two lengths follows Snedecor's F,
   /// with the degrees of freedom of fit_clogging_length().
   Interval unpaired{};
   /// From the scatter over the pairs: the jackknife of log lambda/lambda with Student's t (Miller, Biometrika
   /// 61, 1 (1974)). NaN for fewer than three pairs, or if at most one pair has clogs.
   Interval paired{};
-  double paired_ratio = 0;  ///< of the pairs alone
-  bool is_paired = false;   ///< is `interval` the paired one, and `ratio` that of the pairs?
+  double paired_ratio = 0;  ///< from the runs of the pairs alone
+  bool is_paired = false;   ///< whether `interval` is `paired`, and `ratio` is `paired_ratio`
   int num_pairs = 0;
   int num_unlike = 0;  ///< pairs that are not alike
   /// Correlation of the two logarithms over the pairs. If it is positive, pairing helps: the error of the
   /// ratio is `gain` times smaller than that of two independent lengths.
-  double correlation = 0;  ///< NaN where it is not known
-  double gain = 0;  ///< standard error without pairing over that with it, from the same pairs; NaN likewise
+  double correlation = 0;  ///< NaN where it is unknown
+  double gain = 0;  ///< ratio of the unpaired to the paired standard error of the same pairs; NaN likewise
 };
 
 /// The paired interval is used if pairs certainly help: the correlation is positive (one-sided, 2.5 %), and

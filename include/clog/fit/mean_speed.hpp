@@ -6,7 +6,7 @@ namespace clog::fit {
 
 /// Mean over runs, with the standard error of that mean from the scatter between runs.
 struct MeanSpeed {
-  int num_runs = 0;           ///< that have a speed
+  int num_runs = 0;           ///< runs that have a speed
   double mean = 0;            ///< NaN for no runs
   double standard_error = 0;  ///< NaN for fewer than two
 };
@@ -21,8 +21,8 @@ struct Travel {
 };
 
 /// Speed of all runs together, (sum of distances)/(sum of times), which weighs a run by its time. The error
-/// is the jackknife's over runs: sqrt((n - 1)/n sum (R_i - mean)^2), with R_i the ratio without run i. @param
-/// runs one each; those with a NaN are excluded. NaN where a sum is not finite
+/// is the jackknife's over runs: sqrt((n - 1)/n sum (R_i - mean)^2), with R_i the ratio without run i. NaN
+/// where a sum is not finite. @param runs  one entry each; runs with a NaN are excluded
 MeanSpeed fit_pooled_speed(std::span<const Travel> runs);
 
 }  // namespace clog::fit

@@ -14,24 +14,25 @@ Interval log_log_interval(double probability, double log_variance, double confid
 /// A step of the estimated P(r), the probability to travel farther than r without a clog.
 struct SurvivalStep {
   double distance;        ///< of one or more clogs [sigma]
-  int num_at_risk;        ///< runs that came so far
-  int num_clogs;          ///< of them, at this distance
-  double probability;     ///< P just beyond
+  int num_at_risk;        ///< runs that reached this distance
+  int num_clogs;          ///< of these, clogs at this distance
+  double probability;     ///< P just beyond this distance
   double standard_error;  ///< Greenwood's
   Interval interval;      ///< of P; NaN where P is 0
 };
-/// Kaplan and Meier's product-limit estimate (J. Am. Stat. Assoc. 53, 457 (1958)): unbiased whatever the law,
-/// censored runs count as long as they are seen. One step per distance with clogs, in increasing order; at
-/// equal distances clogs come before censorings. Intervals are symmetric in log(-log P), so that they stay
-/// within 0 and 1 (Kalbfleisch and Prentice, The Statistical Analysis of Failure Time Data, ch. 1).
+/// Kaplan and Meier's product-limit estimate (J. Am. Stat. Assoc. 53, 457 (1958)): it assumes no law, and
+/// censored runs count up to the distance at which they were last seen. One step per distance with clogs, in
+/// increasing order; at equal distances clogs come before censorings. Intervals are symmetric in log(-log P),
+/// so that they stay within 0 and 1 (Kalbfleisch and Prentice, The Statistical Analysis of Failure Time Data,
+/// ch. 1).
 /// @throws std::invalid_argument unless 0 < confidence < 1
 std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs, double confidence = 0.95);
 
-/// Is P(r) an exponential? The likelihood ratio against Weibull's law P(r) = exp(-(r/scale)^shape): with
-/// shape above 1 clogging gets likelier on the way, below 1 it was likelier at the beginning (or runs differ
-/// among each other). Distances below a thousandth of their mean count as that, for
-/// Weibull's law knows no zero. The p-value is asymptotic: p < 0.05 occurs in 5, 6.5 and 11 % of exponential
-/// samples of 50, 10 and 5 clogs.
+/// Tests whether P(r) is an exponential, by the likelihood ratio against Weibull's law P(r) =
+/// exp(-(r/scale)^shape). With a shape above 1 clogging gets likelier with distance; with a shape below 1 it
+/// gets rarer, or runs differ from each other. Distances below a thousandth of their mean are raised to it,
+/// because Weibull's law excludes zero. The p-value is asymptotic: p < 0.05 occurs in 5, 6.5 and 11 % of
+/// exponential samples of 50, 10 and 5 clogs.
 struct WeibullTest {
   int num_clogs = 0;
   double shape = 0;  ///< NaN for fewer than two clogs at different distances, or infinite ones
@@ -39,13 +40,13 @@ struct WeibullTest {
   double exponential_likelihood = 0;  ///< log, maximal
   double weibull_likelihood = 0;      ///< log, maximal
   double likelihood_ratio = 0;        ///< twice the difference, chi-squared with one degree of freedom
-  double p_value = 0;                 ///< of a ratio at least as large, were P(r) exponential
+  double p_value = 0;                 ///< probability of a ratio at least as large if P(r) is exponential
 };
 WeibullTest test_exponentiality(std::span<const Observation> runs);
 
-/// Which of these groups are not exponential, p < 0.05 by Holm's step-down test (Scand. J. Stat. 6, 65
-/// (1979)) of all groups with ten clogs or more: one table in twenty of exponential groups has any, however
-/// many groups it has. The p-value of fewer clogs is too small to be used.
+/// Which groups are not exponential: p < 0.05 by Holm's step-down test (Scand. J. Stat. 6, 65 (1979)) of all
+/// groups with ten clogs or more. So one table in twenty of exponential groups has any such group, however
+/// many groups it has. With fewer clogs the p-value is too small to be used.
 std::vector<bool> are_not_exponential(std::span<const WeibullTest> groups);
 
 }  // namespace clog::fit

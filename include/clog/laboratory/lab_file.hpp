@@ -21,18 +21,19 @@ struct MeasuredSpeed {
 struct Laboratory {
   Experiment experiment;  ///< terminal_speed 0, interfacial_tension NaN where they are not known
   double thickness = std::numeric_limits<double>::quiet_NaN();  ///< of the cell [m]
-  /// Gamma of the model over Gamma_exp: that of the three droplets of Cheng et al. "likely stems from the
-  /// fact that we compare values of the dimensionless line tension in 2D to values of the dimensionless
-  /// surface tension in 3D".
+  /// Gamma of the model divided by Gamma_exp. The ratio of the three droplets of Cheng et al. "likely stems
+  /// from the fact that we compare values of the dimensionless line tension in 2D to values of the
+  /// dimensionless surface tension in 3D".
   double tension_ratio = 0.3;
   std::optional<MeasuredSpeed> measured = {};  ///< from which the terminal speed follows, if it was scaled
   std::string text;                            ///< `key = value; key = value`
 };
 
-/// Lines, or parts between semicolons, `key = value`; `#` begins a comment. @throws Error naming file and key
-/// One for each combination of the diameters and the angles that the file lists, angles fastest.
+/// Reads lines `key = value`, or several of them between semicolons; `#` begins a comment. Returns one
+/// laboratory for each combination of the diameters and the angles that the file lists; angles vary fastest.
+/// @throws Error naming file and key
 std::vector<Laboratory> read_laboratories(const std::string& path);
-/// The only one. @throws Error if there are several, too
+/// Reads a file of one laboratory. @throws Error likewise, and if there are several
 Laboratory read_laboratory(const std::string& path);
 /// How the terminal speed was scaled, in one line; empty if it was measured.
 std::string law_of_speed(const Laboratory& lab);

@@ -15,11 +15,11 @@ struct Scales {
   double gravity = 0;  ///< g_exp [m/s^2]
   double time = 0;     ///< t0 = sqrt(sigma/g_exp) [s]
   double speed = 0;    ///< v_t [m/s]
-  double tension = 0;  ///< of Gamma = 1: interfacial tension of the droplet that moves so [N/m]
+  double tension = 0;  ///< of Gamma = 1: interfacial tension of a droplet with this motion [N/m]
   double line_tension_experiment = 0;  ///< Gamma_exp
   double line_tension = 0;             ///< Gamma of the model, tension_ratio times Gamma_exp
   double sag = 0;                      ///< of that droplet on a flat wall [sigma]
-  double wall_stiffness = 0;           ///< E_w of the soft disk that sags as far
+  double wall_stiffness = 0;           ///< E_w of the soft disk with the same sag
   double terminal_speed = 0;           ///< V_t
   double capillary_number = 0;         ///< Ca = pi/(4 Gamma), at the terminal speed
   double line_tension_of_cell = 0;     ///< interfacial tension times thickness [N]

@@ -19,32 +19,32 @@ struct Side {
   std::vector<std::string> lists;  ///< see listed_columns()
 };
 
-/// A parameter set of one side, and the one that it is compared with.
+/// A parameter set of one side, and the one with which it is compared.
 struct Comparison {
   std::string here, there;    ///< names of the sides
   std::vector<Value> common;  ///< see Comparisons::columns
   fit::CloggingLength length_here{}, length_there{};
-  fit::LengthRatio ratio{};  ///< of the length here over that there
+  fit::LengthRatio ratio{};  ///< of the length here to the length there
   int num_both_clogged = 0;  ///< pairs
   int num_same_place = 0;    ///< of these, pairs that clogged at the same place
 };
 struct Comparisons {
-  std::vector<std::string> columns;    ///< on either side's list, with a common value; they name a comparison
-  std::vector<std::string> differing;  ///< columns with other values here than there
+  std::vector<std::string>
+      columns;  ///< in a list of either side, with a common value; they name a comparison
+  std::vector<std::string> differing;  ///< columns whose values here and there differ
   std::vector<Comparison> all;
   std::string unit = "sigma";      ///< of lengths: "sigma" or "mm"
   std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are wanted in mm, too
-  double within = 0;  ///< clogs no farther apart are at the same place [sigma]; 0: half a spacing
+  double within = 0;  ///< clogs at most this far apart count as at the same place [sigma]; 0: half a spacing
 };
 
 /// @throws Error if the side has no runs, or runs without a clogging length
 void require_lengths(const Side& side);
 
-/// The sides of a comparison of files; the others are compared with the first. @throws Error as
-/// read_with_caution()
+/// The sides of a comparison of files; the first file is the reference. @throws Error as read_with_caution()
 std::vector<Side> sides_of_files(const std::vector<std::string>& paths);
-/// The sides of a comparison of a column's values, in the order of numbers or words: the others are compared
-/// with the first.
+/// The sides of a comparison of a column's values, in the order of numbers or words: the first value is the
+/// reference.
 /// @throws Error if there is no such column of parameters, or only one value
 std::vector<Side> sides_of_column(const std::string& name, const store::SweepFile& file);
 

@@ -8,10 +8,10 @@ namespace clog::results {
 /// The cost of one run so far. Work is counted in steps times vertices.
 struct RunCost {
   std::int64_t parameter_set = 0;
-  double begin_seconds = 0;  ///< until it moved: its obstacles, its release
+  double begin_seconds = 0;  ///< sampling of its obstacles, and its release
   double seconds = 0;        ///< since then
   double work = 0;           ///< done in these seconds
-  double longest_work = 0;   ///< if it lasts to max-time
+  double longest_work = 0;   ///< work of the run if it lasts to max-time
   bool is_over = false;
 };
 
@@ -19,7 +19,7 @@ struct RunCost {
 struct WaitingRuns {
   std::int64_t parameter_set = 0;
   std::int64_t number = 0;
-  double longest_work = 0;  ///< of each
+  double longest_work = 0;  ///< of each run
 };
 
 /// Computing time of a whole sweep, or of the rest of it [s].
@@ -32,7 +32,7 @@ struct SweepCost {
   double upper = 0;
 };
 
-/// Cost of a sweep, estimated from some of its runs, which were chosen as if at random.
+/// Estimates the cost of a sweep from a sample of its runs, which is treated as random.
 ///
 /// The remaining time of unfinished runs is estimated from late ends, those after half the shortest time of
 /// an unfinished run, because earlier ends say little about it. The lower limit assumes that late ends are

@@ -38,14 +38,14 @@ using Scales = std::map<std::string, LaboratoryScale>;
 /// tilt [degrees] separate groups, too
 DistanceTable distances_of(const Side& side, const Scales& scales = {});
 
-/// Lengths, intervals, doubts and survival of each group, estimated as those of a sweep.
+/// Lengths, intervals, doubts and survival of each group, estimated as for a sweep.
 /// @param sigma_mm  the droplet's diameter in mm, if it is known: then lengths are given in both units
 std::string lengths_text(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
 std::string lengths_json(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
 
-/// Compares each group of the other tables with each one of the first that has the same values of the labels
-/// that both tables have. No runs are pairs.
+/// Compares each group of the other tables with each group of the first table that has the same values of the
+/// labels that both tables have. The runs are not paired.
 /// @throws Error if units differ and sigma_mm is unknown, or if no groups can be compared
 Comparisons compare_distances(const std::vector<DistanceTable>& tables, double confidence,
                               std::optional<double> sigma_mm);

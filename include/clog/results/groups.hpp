@@ -34,7 +34,7 @@ enum class Doubt {
   below_spacing,
   untested
 };
-/// One letter each for tables, a word for files, a sentence for readers.
+/// A doubt as one letter in tables, as a word in files, and as a sentence for readers.
 struct DoubtText {
   Doubt doubt;
   char letter;
@@ -108,20 +108,20 @@ struct Passage {
 
 /// The runs of a sweep that differ in their seed only, and their results.
 struct Group {
-  sweep::RunRow first_row;                                 ///< its parameters are those of all
+  sweep::RunRow first_row;                                 ///< parameters of all runs, except the seed
   double dwell = std::numeric_limits<double>::infinity();  ///< see group_runs() [t0]
   double dwells_known_from = 0;                            ///< of all its runs, NaN if not of all [t0]
   fit::CloggingLength clogging;
-  double least_squares_length = 0;  ///< the published way, biased; NaN for fewer than two clogs
+  double least_squares_length = 0;  ///< by the published, biased method; NaN for fewer than two clogs
   fit::WeibullTest weibull;
-  /// The runs that met an obstacle, each from its first one on. The runs that met an obstacle, each from its
-  /// first one on.
+  /// The runs that met an obstacle, each counted from the first one on.
   fit::CloggingLength clogging_met;
-  double contacts_per_length = std::numeric_limits<double>::quiet_NaN();  ///< of all that tell [1/sigma]
+  double contacts_per_length =
+      std::numeric_limits<double>::quiet_NaN();  ///< of runs that record them [1/sigma]
   std::vector<fit::SurvivalStep> survival;
   std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
-  /// One of each Cause, in their order: the runs that it ended, all others censored. Empty if the mechanism
-  /// of a clog is unknown.
+  /// One entry for each Cause, in their order: the runs that this cause ended count, all others are censored.
+  /// Empty if the mechanism of a clog is unknown.
   struct EndsBy {
     const CauseText* text;
     fit::CloggingLength ends;
@@ -129,31 +129,33 @@ struct Group {
   };
   std::vector<EndsBy> causes;
   fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
-  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, way over time of all runs together
-  /// v_g/v_t, way over time of all runs until they ended or came to their arrest, however short their way
-  /// was. If droplets clog, only the faster runs go far enough to have a mean speed of their own.
+  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, distance over time of all runs together
+  /// v_g/v_t, distance over time of all runs until they ended, clogged ones until their last dwell began,
+  /// however short the distance was. If droplets clog, only the faster runs go far enough to have a mean
+  /// speed of their own.
   fit::MeanSpeed relative_speed_all;
   fit::Migration migration;
-  /// Tilt of the rows of posts from the flow towards +y, of lattices their own; NaN: unknown [degrees].
+  /// Tilt of the rows of posts from the flow towards +y, given by a lattice or by --row-angle; NaN: unknown
+  /// [degrees].
   double row_angle = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::uint32_t> seeds;  ///< of the runs behind the clogging length
-  int num_passed = 0;                ///< came to the exit of their device
-  int num_flowing = 0;               ///< ended by max-time
+  std::vector<std::uint32_t> seeds;  ///< of the runs that count for the clogging length
+  int num_passed = 0;                ///< runs whose droplet reached the exit of the device
+  int num_flowing = 0;               ///< runs that max-time ended
   /// Of num_flowing: runs whose droplet had rested for longer than a free droplet takes to fall ten
   /// diameters; and the shortest such rest [t0].
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity();
   int num_interrupted = 0;
-  int num_repeated = 0;   ///< shorter runs of a droplet that counts with a longer one (pooled)
+  int num_repeated = 0;   ///< runs left out because a longer run of the same droplet counts (pooled)
   int num_failed = 0;     ///< left out of all fits
   int num_damaged = 0;    ///< likewise
   int num_left_out = 0;   ///< ended before distances are counted, see group_runs(); likewise
   int num_on_mesh = 0;    ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
   int num_free = 0;       ///< met no obstacle
   int num_repeating = 0;  ///< went farther than their array's period
-  std::vector<Passage> passages;  ///< of a device, downstream; the exit is the last
+  std::vector<Passage> passages;  ///< through a device, downstream; the exit is the last
   std::vector<Doubt> doubts;
-  std::optional<LaboratoryScale> laboratory = {};  ///< in whose units results are wanted, too
+  std::optional<LaboratoryScale> laboratory = {};  ///< units in which results are also given
 };
 
 /// Whether there are user-supplied circles with an entrance or an exit.
@@ -163,12 +165,12 @@ bool is_device(const RunParameters& run);
 /// met, and nothing if it met none.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
-/// Groups rows by everything but the seed, in the order of their parameters. See observation_of(). @param
-/// from_distance distances are measured from here [sigma]: runs that ended earlier are excluded, the others
-/// count with the distance beyond it (left truncation) @param dwell  a droplet that rested for longer than
-/// this counts as clogged where it first did so [t0]. A droplet that has neither rested so long nor clogged
-/// is censored where its last dwell began, because the full length of that dwell is unknown. A value of
-/// max-time or more changes nothing.
+/// Groups rows by everything but the seed, in the order of their parameters. Runs count as in
+/// observation_of(). @param from_distance  distances are measured from here [sigma]: runs that ended earlier
+/// are excluded, the others count with the distance beyond it (left truncation) @param dwell  a droplet that
+/// rested for longer than this counts as clogged where it first did so [t0]. A droplet that has neither
+/// rested so long nor clogged is censored where its last dwell began, because the full length of that dwell
+/// is unknown. A value of max-time or more changes nothing.
 /// @param pooled  columns of max-time and boxes that do not separate groups. Of the runs of one seed in the
 /// same array the one with the largest max-time counts; with other boxes the array is another one @param
 /// lines x of the passages in devices; by default those of the rows of posts [sigma] @throws Error if the

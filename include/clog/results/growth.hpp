@@ -12,16 +12,17 @@
 /// each of them, a file and the sweep that resumes it must share a value.
 namespace clog::results {
 
-/// Names the fixed keys for which two sweeps have no value in common; empty if one may continue the other.
+/// Names the fixed keys for which two sweeps have no value in common; empty if one sweep may continue the
+/// other.
 std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here);
 
-/// The plan's values of fixed keys, which identify rows of other sweeps. Automatic values are not
-/// compared: they may follow from line tensions and gaps that only an earlier plan of the sweep had.
+/// The plan's values of fixed keys, which identify rows of other sweeps. Automatic values are not compared:
+/// they may follow from line tensions and gaps that only an earlier plan of the sweep contained.
 class FixedValues {
  public:
   FixedValues(const sweep::Plan& plan, sweep::Settings settings);
 
-  /// Names the keys whose value in this row no task has, or the model version, if it differs.
+  /// Names the keys whose value in this row occurs in no task, or the model version, if it differs.
   std::string differing_keys(const sweep::RunRow& row) const;
 
  private:

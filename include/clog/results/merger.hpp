@@ -27,18 +27,17 @@ struct MergedSweep {
 /// damaged or being written, or has other circles under the same name
 MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance& maker);
 
-/// The rows of several files together, for reading only, including running sweeps and files whose config is
-/// unreadable. A single file is returned as it is.
+/// Reads the rows of several files together, also of running sweeps and of files whose config is unreadable.
+/// A single file is returned as it is.
 store::SweepFile read_together(const std::vector<std::string>& paths);
 
 /// Gives tasks the numbers, and circles the names, that they have in the settings; rows of runs outside the
 /// settings follow at the end.
 void number_tasks(const sweep::Settings& settings, store::SweepFile& table);
 
-/// Provenance of a file that is made from rows of other files.
-/// @param maker  the program that makes the file, as cli::origin() says it
-/// @param config  of the new file
-/// @param parts  a line for each part, see part_line()
+/// Provenance of a file that is made from rows of other files. @param maker  provenance of the program that
+/// makes the file, from cli::origin() @param config  of the new file @param parts  a line for each part, see
+/// part_line()
 store::Provenance joint_provenance(const store::Provenance& maker, const std::string& config,
                                    const std::vector<const store::SweepFile*>& files,
                                    const std::string& parts);

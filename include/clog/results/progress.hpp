@@ -25,18 +25,18 @@ class Progress {
   Progress(std::ostream& out, Screen screen, int num_computing_ranks, sweep::GroupOf set_of);
 
   /// Adds tasks to the total against which progress is measured.
-  /// @param num_wanted  runs of the whole sweep; those that are not expected were done before
+  /// @param num_wanted  runs of the whole sweep; the others were done before
   void expect(std::span<const std::int64_t> tasks, std::int64_t num_wanted);
 
   void started(std::int64_t task);
   void ended(const sweep::RunRow& row);
   /// An attempt failed; the task will be tried again.
   void tried(std::int64_t task) { running_.erase(task); }
-  /// A task that ended as failed will run again.
+  /// Takes back the end of a failed task that will run again.
   void not_ended(const sweep::RunRow& failed);
   /// Prints a permanent line, on any screen.
   void say(const std::string& text) { status_.say(text); }
-  /// Prints if it is time.
+  /// Renews the line if it is due.
   void tick();
   void finish();
 
@@ -45,7 +45,7 @@ class Progress {
 
   console::StatusLine status_;
   sweep::GroupOf number_of_set_;
-  std::vector<SetTimes> sets_;  // without those that run: these are in running_, and wait here
+  std::vector<SetTimes> sets_;  // running_ has the running tasks, which count as waiting here
   std::int64_t num_tasks_ = 0;
   std::int64_t num_before_ = 0;
   int num_ranks_;

@@ -29,7 +29,7 @@ class RunList {
   void fill_seeds(std::size_t number);
 
   bool empty() const { return sets_.empty(); }
-  /// Lists, if the runs are their product, otherwise points; values increase.
+  /// Returns lists, if the runs are their product, otherwise points; values increase.
   sweep::Settings settings() const;
 
  private:
@@ -38,7 +38,7 @@ class RunList {
     std::set<std::uint32_t> seeds;
   };
   std::vector<ParameterSet> sets_;
-  std::unordered_map<std::string, std::size_t> places_;  // in sets_, by what they are
+  std::unordered_map<std::string, std::size_t> places_;  // places in sets_, by the content of the set
   sweep::CircleFiles circle_files_;
 
   ParameterSet& set_of(const sweep::Plan& plan, const sweep::RunRow& run, std::vector<std::string> texts);

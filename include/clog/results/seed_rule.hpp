@@ -33,7 +33,7 @@ class SeedRule {
   std::int64_t most_seeds() const { return most_seeds_; }
   /// Parameter sets that were precise enough at the last next_round().
   std::int64_t num_reached() const { return num_reached_; }
-  /// The clogs and seeds of a parameter set that was not measured as precisely.
+  /// The clogs and seeds of a parameter set that did not reach the precision.
   struct Unreached {
     std::int64_t group, num_clogs, num_seeds;
   };

@@ -20,8 +20,8 @@ class Condition {
   /// A row without a value in the column satisfies no condition.
   bool holds(const sweep::RunRow& row) const;
 
-  /// A misspelt word would equal no row's, and so select none or all. @throws Error if no row has one of the
-  /// words
+  /// A misspelt word would equal no row's value, and so select no row or all rows. @throws Error if no row
+  /// has one of the words
   void require_known_words(std::span<const sweep::RunRow> rows) const;
 
  private:
@@ -30,7 +30,7 @@ class Condition {
   std::string text_;
   const sweep::Column* column_;
   Relation relation_;
-  std::vector<std::string> words_;  // one of them
+  std::vector<std::string> words_;  // a row satisfies the condition with any of them
   std::vector<double> numbers_;
 
   template <class T>

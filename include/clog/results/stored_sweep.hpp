@@ -32,9 +32,9 @@ std::int64_t stored_num_wanted(const std::string& path, const store::Provenance&
 /// The number of runs of a file's sweep: those requested, and others in the file.
 struct RunCount {
   std::int64_t num_runs = 0;
-  std::int64_t num_beyond = 0;  ///< those outside the lists of its last command
+  std::int64_t num_beyond = 0;  ///< those outside the lists of the sweep's last command
 
-  /// The latter in brackets, with a space before; empty for none.
+  /// num_beyond in brackets, with a space before; empty for none.
   std::string text_of_beyond() const;
 };
 RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);

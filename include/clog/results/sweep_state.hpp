@@ -33,7 +33,7 @@ class SweepState {
   SweepState(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
              store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts);
 
-  /// Requests more of the plan's tasks; tasks_left() then returns the unfinished ones among these.
+  /// Requests more of the plan's tasks; tasks_left() then returns the unfinished ones.
   void want(const std::vector<std::int64_t>& tasks);
   std::int64_t num_wanted() const { return num_wanted_; }
   /// Tasks that have begun and are not over, requested or not.
@@ -66,7 +66,8 @@ class SweepState {
   /// Discards a failure: the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
-  /// Starts to publish the table if it is time, or detects that this has ended, without waiting for the disk.
+  /// Starts to publish the table if it is due, or detects that a publication has ended, without waiting for
+  /// the disk.
   void tick();
   bool is_publishing() const { return publication_.valid(); }
   /// Publishes the table, and removes the journal of a complete sweep. Returns a message if that fails.
@@ -86,7 +87,7 @@ class SweepState {
   using Entries = std::vector<std::unique_ptr<Entry>>;
   Entries runs_;                            // by task; nullptr: it has not begun
   Entries other_runs_;                      // in the file, but not of this plan
-  std::vector<store::CircleFile> circles_;  // that runs are among
+  std::vector<store::CircleFile> circles_;  // files of the circles of all runs
   std::int64_t num_wanted_;
   std::int64_t num_faulty_ = 0;
   std::vector<std::int64_t> tasks_left_;
@@ -107,7 +108,7 @@ class SweepState {
   Clock::time_point begin_ = Clock::now();
   bool is_published_ = false;
   Clock::time_point publication_begin_, publication_end_;
-  std::mutex changing_;                                  // rows that a publication may read meanwhile
+  std::mutex changing_;                                  // protects rows that a publication may be reading
   std::future<std::optional<std::string>> publication_;  // the stamp; the last member: it ends first
 
   Entry* entry(std::int64_t task) const {
@@ -131,7 +132,7 @@ class SweepState {
   double seconds_so_far() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
   sweep::RunRow published(const sweep::RunRow& row) const;
   void write_down(const Entry& entry);
-  /// With the rows of all runs, including those outside this plan.
+  /// Publishes the rows of all runs, also of those outside this plan.
   std::optional<std::string> publish_to(const store::OutputPath& place, const std::string& stamp,
                                         const std::vector<const Entry*>& all,
                                         const store::Provenance& provenance);

@@ -18,7 +18,8 @@ class Communicator {
   Communicator(const Communicator&) = delete;
   Communicator& operator=(const Communicator&) = delete;
 
-  /// Before MPI starts, from the launcher's variables: true on rank 0, and on others without such variables.
+  /// Whether this process may be rank 0, from the launcher's variables before MPI starts: true on rank 0, and
+  /// on every rank without such variables.
   static bool may_be_rank_0();
 
   int rank() const { return rank_; }

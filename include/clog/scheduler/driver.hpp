@@ -24,7 +24,7 @@ struct DriverOptions {
 
 /// Rank 0's part of a sweep, while the other ranks are in follow_sweep(): connects the scheduler with the
 /// state, the log and the progress line. Returns the exit code.
-/// @param rule  which requests more of the plan's tasks when those requested are over; nullptr: none
+/// @param rule  requests more of the plan's tasks when those requested are over; nullptr: none
 int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& options, const sweep::Plan& plan,
                 const sweep::JobFactory& make_job, results::SweepState& state, results::SeedRule* rule);
 

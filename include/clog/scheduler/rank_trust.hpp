@@ -25,8 +25,8 @@ class RankTrust {
   /// Returns the ranks that this sets aside.
   std::vector<int> succeeded(std::int64_t task, int rank);
   std::vector<int> failed(std::int64_t task, int rank);
-  /// Releases all ranks on hold that are still in service, when no rank is left that could decide whether
-  /// rank or task is at fault.
+  /// Releases all ranks on hold that are still in service, when no remaining rank could decide whether rank
+  /// or task is at fault.
   void let_go();
 
   int num_in_service() const { return num_in_service_; }
@@ -51,7 +51,7 @@ class RankTrust {
   static constexpr std::size_t most_failures = 3;
 
   std::unordered_map<int, Record> records_;                       // by rank
-  std::unordered_map<std::int64_t, std::vector<int>> failed_on_;  // by task, until it succeeds: ranks
+  std::unordered_map<std::int64_t, std::vector<int>> failed_on_;  // ranks, by task until it succeeds
   int num_in_service_;
   int num_ranks_;
   bool has_let_go_ = false;

@@ -36,10 +36,10 @@ struct SweepEvents {
   /// Called when a rank gets no more tasks. The row is that of the last task that failed on it, with rank and
   /// host.
   std::function<void(const sweep::RunRow& failed)> set_aside = [](const sweep::RunRow&) {};
-  /// About every 0.1 s; less often while this rank samples an array or releases a droplet (a second, in large
-  /// boxes).
+  /// Called about every 0.1 s; less often while this rank samples an array or releases a droplet (a second,
+  /// in large boxes).
   std::function<void()> idle = [] {};
-  /// Whether the sweep should stop now. Running tasks are then ended as interrupted, no more are handed out.
+  /// Whether the sweep should stop now. Then running tasks end as interrupted, and no more are handed out.
   std::function<bool()> stop_requested = [] { return false; };
 };
 
@@ -61,7 +61,7 @@ struct Schedule {
 
 enum class SweepEnd {
   complete,      ///< all tasks were handed out
-  stopped,       ///< as stop_requested() said
+  stopped,       ///< stop_requested() returned true
   no_rank_left,  ///< every rank was set aside
 };
 

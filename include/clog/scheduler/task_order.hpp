@@ -32,7 +32,7 @@ class TaskOrder {
   /// moment on, the same in all calls
   std::int64_t take(double now);
   void ended(std::int64_t task, double now);
-  /// A task that ended before starts again.
+  /// Records that a task that had ended has started again.
   void begun_again(std::int64_t task, double now);
 
  private:

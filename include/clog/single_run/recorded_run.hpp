@@ -36,7 +36,7 @@ class RecordedRun {
   /// Samples, polygons, the obstacles near them, and the row's columns of results. @param row  the columns of
   /// parameters, see sweep::describe() @param origin  of the trajectory
   store::Trajectory trajectory(sweep::RunRow row, store::Provenance origin) const;
-  /// Two lines about its end. Returns the exit code.
+  /// Prints two lines about the run's end. Returns the exit code.
   int report() const;
 
  private:

@@ -40,12 +40,12 @@ class Journal {
   };
 
   /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, another kind of
-  /// file, or cannot be written. @param table  whose mode, owner, group and access list a new one gets
+  /// file, or cannot be written. @param table  gives a new file its mode, owner, group and access list
   explicit Journal(OutputPath place, const OutputPath* table = nullptr);
   Journal(Journal&&) = delete;
   ~Journal();
 
-  /// Whether a sweep writes to this one.
+  /// Whether a sweep has the journal open.
   static bool is_open(const std::string& path);
   /// Reads the records without changing the file; nothing if there is no file. @throws Error if it cannot be
   /// read
@@ -61,20 +61,20 @@ class Journal {
   /// The file's content when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(contents_.entries); }
   std::int64_t num_unreadable() const { return contents_.num_unreadable; }
-  /// @throws Error if the disk is full, or the file is no longer the one at the path; so do flush() and
-  /// rewrite()
+  /// Appends a record. @throws Error if the disk is full, or the file is no longer the one at the path; so do
+  /// flush() and rewrite()
   void add(const sweep::RunRow& row, std::span<const std::byte> snapshot);
   /// Another thread may call this once begin() has returned, while this one adds records.
   void flush();
   /// Writes the header of a new file, and removes an incomplete record at the end; so does the first add().
   void begin();
   std::uint64_t num_bytes() const { return contents_.num_bytes; }
-  /// Whether it is larger than 64 MB, and more than twice as large as after its last rewrite.
+  /// Whether the file is larger than 64 MB, and more than twice as large as after its last rewrite.
   bool is_to_be_rewritten() const;
   /// Replaces the file by one with only these entries.
   void rewrite(std::span<const Entry* const> entries);
-  /// Prepares a file with these entries and the records that were added after the first `begin` bytes, to be
-  /// put in place by replace(). Another thread may call this, as flush().
+  /// Prepares a file with these entries and the records behind the first `begin` bytes; replace() puts it in
+  /// place. Another thread may call this, as flush().
   void prepare(std::span<const Entry* const> entries, std::uint64_t begin);
   bool is_prepared() const { return next_ != nullptr; }
   void replace();

@@ -26,15 +26,15 @@ class OutputPath {
   /// @throws Error if the path names no file, its folder cannot be opened, or a link on the path is in a
   /// world-writable sticky folder and belongs neither to this user nor to the folder's owner
   static OutputPath resolve(const std::string& path);
-  /// The same folder, and the name with this ending. A link there is not followed.
+  /// A path in the same folder: the name with this ending. A link there is not followed.
   OutputPath beside(const std::string& ending) const;
   bool is_link() const;
 
   /// For messages and readers: links followed.
   const std::string& path() const { return path_; }
-  /// The file there, never through a link; not open: see errno.
+  /// Opens the file, never through a link. The descriptor is not open if this fails: see errno.
   Descriptor open(int flags) const;
-  /// A new file, to read and write; not open if something exists already. @throws Error
+  /// Creates a file, to read and write; the descriptor is not open if something exists already. @throws Error
   Descriptor create(mode_t mode) const;
   bool exists() const { return status().has_value(); }
   /// Whether this open file is still the one here. Somebody may have replaced or removed it meanwhile. @param
@@ -42,22 +42,22 @@ class OutputPath {
   bool holds(int descriptor, std::error_code* failure = nullptr) const;
   /// Removes the file, if there is one. Returns why that failed, or nothing.
   std::error_code remove() const;
-  /// Renames the file of another name of this folder to this one, replacing the file with this stamp(), or
-  /// none if that was removed or the stamp is empty. Returns why that failed, or nothing: `file_exists` if a
-  /// different file is here; both then stay. If the file system can exchange two names at once, a file that
-  /// appears here at the last moment is kept, too.
+  /// Renames the file at `other`, in the same folder, to this name. It replaces the file with this stamp(),
+  /// or no file if that was removed or the stamp is empty. Returns why that failed, or nothing: `file_exists`
+  /// if a different file is here; both then stay. If the file system can exchange two names at once, a file
+  /// that appears here at the last moment is kept, too.
   std::error_code replace(const std::string& stamp, const OutputPath& other) const;
   /// Synchronises the folder to disk, so that renames survive a power cut.
   void sync_folder() const;
-  /// Why the last failed sync_folder() of this place, its copies and those beside() it failed; empty: none
-  /// has.
+  /// The reason why the last sync_folder() of this place, its copies and those beside() it failed; empty if
+  /// none has failed.
   const std::string& sync_fault() const { return folder_->sync_fault; }
   /// Copies mode, owner, group and access list of the file here, if there is one, to an open file, as far as
   /// permitted.
   void lend_access_to(int descriptor) const;
-  /// The file's identity: size and seal, or, of a file without a seal, device, inode and size. It differs
-  /// from that of any other file moved here and does not depend on mode and times; some network file systems
-  /// change the inode. Empty if there is no file.
+  /// The file's identity: size and seal or, without a seal, device, inode and size. Any other file moved here
+  /// has another stamp. The stamp does not depend on mode and times; some network file systems change the
+  /// inode. Empty if there is no file.
   std::string stamp() const;
 
  private:
@@ -70,7 +70,7 @@ class OutputPath {
   std::string path_;
 
   OutputPath(std::shared_ptr<Folder> folder, std::string name, std::string path);
-  /// None, and errno, if it cannot be read.
+  /// Empty, with errno set, if the status cannot be read.
   std::optional<struct stat> status() const;
   std::error_code rename_to(const OutputPath& other, unsigned flags) const;
 };

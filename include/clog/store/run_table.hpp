@@ -37,7 +37,7 @@ struct CircleFile {
 /// Parts of a file that have been compared with a checksum.
 enum class Checked {
   everything,         ///< every bit of it
-  rows_and_settings,  ///< each row and each attribute: another program copied or changed the file
+  rows_and_settings,  ///< each row and each attribute: another program has copied or changed the file
 };
 
 struct SweepFile {
@@ -47,21 +47,21 @@ struct SweepFile {
   Checked checked = Checked::everything;
 };
 
-/// The rows for a file. Each is requested once, in this order, so they need not be in one place.
+/// The rows for a file. Each is requested once, in this order, so the rows need not be in one array.
 struct Rows {
   std::size_t number;
   std::function<sweep::RunRow(std::size_t i)> row;
 
-  /// Given rows, which must live as long.
+  /// From given rows, which must outlive this object.
   static Rows of(std::span<const sweep::RunRow> rows) {
     return {rows.size(), [rows](std::size_t i) { return rows[i]; }};
   }
 };
 
-/// Writes a sweep's file, replacing the one with this OutputPath::stamp(), if that is still there: at every
-/// moment the path names a complete table, the old or the new, so it can be read at any time. It is on the
-/// disk when this returns. Returns the stamp of the file that it wrote, even if somebody has replaced that
-/// since; nothing if a different file is there, which stays. @throws Error, and the old file stays
+/// Writes a sweep's file in place of the file with this OutputPath::stamp(). At every moment the path names a
+/// complete table, the old or the new, so readers may read it at any time. The new table is on the disk when
+/// this returns. Returns the stamp of the written file, even if somebody has replaced the file since; nothing
+/// if a different file is there, which stays. @throws Error, and the old file stays
 std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp, const Rows& rows,
                                          const Provenance& provenance,
                                          const std::vector<CircleFile>& circles);
@@ -70,11 +70,12 @@ inline std::optional<std::string> publish_sweep(const OutputPath& place, const s
   return publish_sweep(place, stamp, Rows::of(content.rows), content.provenance, content.circles);
 }
 
-/// Files of format versions 9 and 10. Missing columns get Parameter::before, or are unknown. @throws Error if
-/// the file is missing, not HDF5, not ours, of another format version, or damaged
+/// Reads a file of format version 9 or 10. Missing columns get Parameter::before, or are unknown. @throws
+/// Error if the file is missing, not HDF5, not ours, of another format version, or damaged
 SweepFile read_sweep(const std::string& path);
 /// Tries to read a file without a valid seal in a child process, so that a later read_sweep() of the same
-/// bytes does not fork: a process that has called MPI_Init must not. Throws nothing: read_sweep() does.
+/// bytes does not fork: a process that has called MPI_Init must not fork. Throws nothing, because
+/// read_sweep() throws the error.
 void try_before_mpi(const std::string& path);
 /// A warning for readers of this file; empty if all of it was verified.
 std::string caution(const std::string& path, const SweepFile& file);
@@ -83,8 +84,7 @@ std::string caution(const std::string& path, const SweepFile& file);
 struct Examination {
   SweepFile whole;
   std::vector<std::string> damage;  ///< a sentence each
-  /// HDF5 has checksums of its own: is there one that does not agree, so that h5py and others refuse the
-  /// file?
+  /// Whether one of HDF5's own checksums does not match, so that h5py and other readers refuse the file.
   bool is_refused_by_others = false;
 };
 /// @throws Error if the file is missing, not ours, or completely unreadable

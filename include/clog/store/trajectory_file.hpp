@@ -26,13 +26,13 @@ struct PolygonFrame {
 struct Trajectory {
   std::vector<TrajectoryColumn> columns;  ///< all of the same size
   std::vector<PolygonFrame> polygons;     ///< may be empty; all of the same size
-  std::vector<Obstacle> obstacles;        ///< along the way, in the polygons' coordinates; may be empty
+  std::vector<Obstacle> obstacles;        ///< near the path, in the polygons' coordinates; may be empty
   std::vector<Wedge> wedges;              ///< the same for wedges
   sweep::RunRow row;                      ///< what a sweep would have stored for this run
   Provenance provenance;
 };
 
-/// Writes a new file, complete or not at all. @throws Error if it exists or cannot be written
+/// Writes a new file, complete or not at all. @throws Error if the file exists or cannot be written
 void write_trajectory(const std::string& path, const Trajectory& trajectory);
 
 }  // namespace clog::store

@@ -19,7 +19,7 @@ namespace clog::sweep {
 enum class ColumnRole {
   parameter,     ///< what was run: equal runs have equal values
   result,        ///< equal runs have equal values, bit for bit
-  circumstance,  ///< by whom, how long it took: differs from one time to the next
+  circumstance,  ///< who made the row, how long it took: differs between equal runs
 };
 
 }  // namespace clog::sweep
@@ -57,9 +57,9 @@ struct Column {
     return parameter && parameter->may_be_automatic(run);
   }
 
-  /// Writes `size` bytes in a file's layout, where an unknown value is NaN, -1, or an empty text.
+  /// Writes `size` bytes in a file's layout; unset values are stored as NaN, -1 or "".
   void pack(const RunRow& row, std::byte* bytes) const;
-  /// Reads them; columns are to be read in the order of columns(). Keeps the first fault.
+  /// Reads these bytes; columns must be read in the order of columns(). Keeps the first fault.
   void unpack(const std::byte* bytes, UnpackedRow& unpacked) const;
 };
 

@@ -19,7 +19,7 @@ class Job {
   /// status `failed`; advance() does not throw.
   virtual bool advance() = 0;
   /// Whether row() and snapshot() have the task's present state. Never waits. A job in another process asks
-  /// it, and is up to date for one call after advance() has received the answer.
+  /// that process, and is up to date for one call after advance() has received the answer.
   virtual bool refresh() { return true; }
   /// The task's row; `interrupted` if it is not over.
   virtual RunRow row() const = 0;

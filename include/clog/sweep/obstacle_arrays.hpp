@@ -14,15 +14,15 @@ std::string array_key(const RunParameters& run);
 
 /// The walls of a sweep's runs, usually obstacle arrays. The last one is kept, because a sweep requests the
 /// same one many times in a row. Large ones are shared by all processes of the same user and executable on a
-/// machine: one of them builds each, while the others wait, and it is in memory once. If sharing fails, every
-/// process waits in vain once, and builds its own, without other consequences.
+/// machine: one of them builds each array while the others wait, and memory holds it once. If sharing fails,
+/// every process waits in vain once and then builds its own array.
 class ObstacleArrays {
  public:
   /// @param run  resolved
   /// @throws Error as Scene::walls()
   std::shared_ptr<const ObstacleArray> get(const RunParameters& run);
 
-  /// Number of the arrays so far that were built here.
+  /// Number of arrays that this process has built.
   int num_built() const { return num_built_; }
 
   /// Timeout for another process that builds the array: at least ten times as long as that takes, because the
@@ -33,7 +33,7 @@ class ObstacleArrays {
   std::string key_;  ///< of the array that is kept; empty: there is none
   std::shared_ptr<const ObstacleArray> array_;
   int num_built_ = 0;
-  bool is_waiting_worthwhile_ = true;  ///< until a wait was in vain, and again once another's is found
+  bool is_waiting_worthwhile_ = true;  ///< false after a wait in vain, until a shared array is found again
 
   ObstacleArray build(const RunParameters& run);
   ObstacleArray find_or_build(const RunParameters& run);

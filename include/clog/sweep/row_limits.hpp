@@ -8,19 +8,19 @@
 
 namespace clog::sweep {
 
-/// The parameters of a run outside the tested range of soundness, each with its value and that range:
-/// "line-tension=30 (robust is tested from 0.02 to 10)".
+/// The parameters of a run outside the range that was tested for soundness, each with its value and that
+/// range: "line-tension=30 (robust is tested from 0.02 to 10)".
 std::vector<std::string> untested_parameters(const RunRow& row);
-/// One line about all runs of a plan; empty if all are within.
+/// One line about all runs of a plan; empty if all are within the tested range.
 std::string untested_parameters(const Plan& plan);
 
 /// Distance after which a droplet may meet the same obstacles again [sigma]: the length of an array that
 /// represents a random one. Periodicity across the flow does not shorten it. Infinite for lattices, which
 /// repeat by nature, and without an array.
 double repetition_length(const RunRow& row);
-/// Whether the droplet has come this far.
+/// Whether the droplet has come as far as repetition_length().
 bool has_met_repetition(const RunRow& row);
-/// One line on whether runs of a plan may come this far; empty if none does.
+/// One line on whether runs of a plan may come as far as their repetition_length(); empty if none may.
 std::string possible_repetition(const Plan& plan);
 
 /// Lines about files of circles that leave a conspicuous part of their array bare, or have circles without a
@@ -33,9 +33,9 @@ std::vector<std::string> limits_of_results(const Plan& plan);
 /// Largest share of the droplet's weight that the polygon's corners may carry; beyond it, a clog is
 /// attributed to the corners, not to the obstacles.
 inline constexpr double tolerated_mesh_hold = 0.01;
-/// Largest difference of the weights of two lobes, as a share of the droplet's weight, that friction of both
-/// interfaces bears on half of a round obstacle: their tensions have a ratio of at most exp(pi mu) (capstan).
-/// Zero if friction does not act on both.
+/// Largest difference between the weights of two lobes, as a share of the droplet's weight, that the friction
+/// of both interfaces bears on half of a round obstacle: their tensions have a ratio of at most exp(pi mu)
+/// (capstan). Zero if friction does not act on both interfaces.
 double weight_borne_by_friction(const DpParameters& dp);
 /// Whether the corners may hold this clog. True if they can bear more than friction; if mesh_hold is unknown,
 /// or friction acts on one interface only, true for every droplet that hangs over obstacles

@@ -43,7 +43,7 @@ struct RunRow {
   RunParameters parameters;                       ///< resolved
   std::set<const Parameter*> unknown_parameters;  ///< which the row's file does not have
   double obstacle_density = 0;                    ///< of a saturated array the jamming limit, see Scene
-  std::string preset;              ///< the one that the interface agrees with, "custom", or "none" for sp
+  std::string preset;              ///< the preset with this interface, "custom", or "none" for sp
   std::int64_t model_version = 0;  ///< see parameters.hpp
 
   RunStatus status = RunStatus::running;
@@ -64,7 +64,7 @@ struct RunRow {
   double wrapped_support = not_known;
   std::optional<std::int64_t> num_wrapped, num_gaps, num_arcs;
   double mesh_hold = not_known;
-  double largest_shape_parameter = not_known;  ///< of a passage through a channel; so the next
+  double largest_shape_parameter = not_known;  ///< of a passage through a channel, like the next five
   double largest_shape_parameter_at = not_known;
   double largest_relative_speed = not_known;
   double largest_relative_speed_at = not_known;

@@ -20,7 +20,7 @@ namespace clog::sweep {
 /// would end or cut the line (control characters, #, a backslash, blanks at the ends) become a backslash, x
 /// and two digits.
 std::string escaped(const std::string& text);
-/// The way back. Any other backslash stays a backslash.
+/// The inverse of escaped(). Any other backslash stays a backslash.
 std::string unescaped(const std::string& text);
 
 /// Circles by the name of their file, as in the key obstacles.
@@ -39,8 +39,8 @@ class Settings {
 
   /// @throws Error if there is no such key or its list cannot be read
   void set(const std::string& name, const std::string& text);
-  /// Whether set() gave the key its text. Other keys have that of the preset, one that follows, or the
-  /// default.
+  /// Whether set() gave the key its text. Other keys have the text of the preset, a text that follows from
+  /// other keys, or the default.
   bool is_given(const std::string& name) const;
   /// The reference is valid until the key's text changes.
   const std::string& text(const std::string& name) const { return entry(name).text; }
@@ -55,9 +55,9 @@ class Settings {
   void set_shard(Shard shard) { shard_ = shard; }
   const Shard& shard() const { return shard_; }
 
-  /// Calls for each combination of words of each point, with settings that have no points and one value for
-  /// each key of words, so that the runs are the product of the other lists. @param point  its place; -1
-  /// without points
+  /// Calls `visit` for each combination of words of each point, with settings that have no points and one
+  /// value for each key of words, so that the runs are the product of the other lists. @param point  its
+  /// place; -1 without points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;
   /// The values() of each key in all branches together.

@@ -11,14 +11,14 @@
 
 namespace clog::sweep {
 
-/// Splits a list as written in a config file into single values, in order:
-/// `0.2,0.3`; `lin(a,b,n)` and `log(a,b,n)`, n values from a to b; for integers `1..50`; words as they are.
+/// Splits a list as written in a config file into single values, in order: `0.2,0.3`; `lin(a,b,n)` and
+/// `log(a,b,n)`, n values from a to b; for integers `1..50`; words as they are.
 /// Numbers come back in their shortest exact decimal form.
-/// @param words  what may stand instead of a number (e.g. auto), or all that is allowed for kind word
+/// @param words  words allowed instead of a number (e.g. auto), or all words allowed for kind word
 /// @throws Error, without the key's name, that says what is wrong with which item
 std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
                                      const std::vector<std::string>& words);
-/// The same if values may repeat.
+/// The same, but values may repeat.
 std::vector<std::string> expand_values(std::string_view text, ValueKind kind,
                                        const std::vector<std::string>& words);
 
@@ -31,9 +31,9 @@ std::string counted(std::int64_t number, const std::string& noun);
 struct NumberWithUnit : Error {
   using Error::Error;
 };
-/// @throws Error if the whole text is not one finite number, NumberWithUnit if it has one
+/// @throws Error if the whole text is not one finite number, NumberWithUnit if a unit follows the number
 double to_number(std::string_view text);
-/// @throws Error if the whole text is not one integer, NumberWithUnit if it has one
+/// @throws Error if the whole text is not one integer, NumberWithUnit if a unit follows the number
 long long to_integer(std::string_view text);
 
 /// The number `0.3` that `0,3` means with a decimal comma; empty for any other text.

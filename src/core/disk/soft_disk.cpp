@@ -19,7 +19,7 @@ namespace clog {
 namespace {
 
 /// Up to a dozen obstacles of a saturated array overlap a soft disk at once. The bound on (omega dt)^2 of all
-/// contacts together is that of the polygon's modes.
+/// contacts together is the bound for the polygon's modes.
 constexpr double most_contacts = 12;
 constexpr double max_omega_dt2 = 3.0;
 
@@ -57,7 +57,7 @@ ContactReach contact_reach_of_disk(const RunParameters& run) {
   return {.range = reach(run), .by_edges = false};
 }
 
-/// Relaxes from the void nearest to the centre.
+/// Relaxes a disk that starts in the void nearest to the box's centre.
 DropletState release_disk(const RunParameters& run, const ObstacleArray& obstacles) {
   const Period& period = obstacles.period();
   DropletState state =

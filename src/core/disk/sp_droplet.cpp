@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_steps_per_check = 32;
 constexpr double contact_range = units::droplet_diameter / 2;
-/// Distance that a disk moves in some hundred steps: the list stays short and is seldom renewed.
+/// Distance that a disk moves in some hundred steps: the list stays short and is seldom renewed [sigma].
 constexpr double usual_skin = 0.02;  // [sigma]
 
 }  // namespace
@@ -56,7 +56,7 @@ Eigen::Array2d SpForces::wedge_force(const Eigen::Array2d& place, const LocalFra
 [[gnu::always_inline]] inline Eigen::Array2d SpForces::scaled_force(double scale, const Eigen::Array2d& place,
                                                                     const LocalFrame& frame) const {
   const double stiffness = scale * contact_stiffness(wall_stiffness_, units::droplet_diameter);
-  Eigen::Array2d push(0, 0);  // stiffness of springs of zero length, on arms as long as the reach
+  Eigen::Array2d push(0, 0);  // the part that needs a root: stiffness times reach along each arm
   Eigen::Array2d rest = scale * weight_;
   for (const Obstacle& obstacle : near_) {
     const Eigen::Array2d arm = place - Eigen::Array2d(obstacle.x, obstacle.y);

@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 constexpr int most_stiffnesses = 30;  // most searches compute two
-constexpr int most_steps = 50;        // with one computed stiffness; most need 15
+constexpr int most_steps = 50;        // with one stiffness; most searches need 15
 constexpr int most_rejections = 10;   // of steps in a row
 constexpr int most_halvings = 10;
 /// Step of the central differences [sigma]: much smaller than a contact's range, much larger than round-off.
@@ -45,10 +45,10 @@ bool is_definite(double bound, const MatrixXd& k) {
   return Eigen::LLT<MatrixXd>(shifted).info() == Eigen::Success;
 }
 
-/// Whether every displacement decays under drag, dx/dt = -Kx, faster than with stiffness `bound`. True if K -
-/// bound is positive definite, which is cheaper to test; if the forces have an energy, K is symmetric and
-/// this is also necessary. Springs along the interface have no energy: they make K slightly unsymmetric, and
-/// a soft K may be stable without being definite.
+/// Whether every displacement decays under drag, dx/dt = -Kx, faster than with stiffness `bound`. This is the
+/// case if K - bound is positive definite, which is cheaper to test; if the forces have an energy, K is
+/// symmetric and this is also necessary. Springs along the interface have no energy: they make K slightly
+/// unsymmetric, and a soft K may be stable without being definite.
 bool is_stable(double bound, const MatrixXd& k, bool has_energy) {
   if (is_definite(bound, k)) return true;
   return !has_energy && Eigen::EigenSolver<MatrixXd>(k, false).eigenvalues().real().minCoeff() > bound;
@@ -86,10 +86,10 @@ class Stiffness {
     return move;
   }
 
-  /// Changes K by a matrix of rank one, so that solve() gives `step` for the change of force along it, as far
-  /// as least_part allows. A contact changes K by rank one, too, so a few corrections are enough. C. G.
+  /// Changes K by a matrix of rank one, so that solve() gives `step` for the change of force along `step`, as
+  /// far as least_part allows. A contact changes K by rank one, too, so a few corrections are enough. C. G.
   /// Broyden, Math. Comp. 19, 577 (1965); J. J. More and J. A. Trangenstein, Math. Comp. 30, 523 (1976).
-  /// @param found  what solve() gives for that change until now
+  /// @param found  what solve() gave for that change of force before
   void learn(const VectorXd& step, const VectorXd& found) {
     const double part_kept = step.dot(found) / step.squaredNorm();
     const double share = part_kept < least_part ? (1 - least_part) / (1 - part_kept) : 1;
@@ -111,7 +111,7 @@ class Stiffness {
   Eigen::PartialPivLU<MatrixXd> along_, shape_factor_;
 };
 
-/// Forces along the axes of a given state, at states nearby.
+/// Forces along the axes of a given state, for states nearby.
 class ForceField {
  public:
   ForceField(const EquilibriumForces& forces, DropletState state)
@@ -168,10 +168,11 @@ class ForceField {
 
 /// Newton's method. A step is accepted if it shortens the remaining Newton step, computed with the present
 /// stiffness (P. Deuflhard's natural monotonicity test): a test on forces would reject nearly every step,
-/// because contacts that open or close dominate them. Computing a stiffness costs as much as 80 steps, so
-/// each step, accepted or not, corrects it for the next one. It is recomputed where corrections do not help,
-/// and finally within difference_step of the rest. If such steps fail, or lead to a place without resistance,
-/// the search returns to the last computed stiffness and continues without corrections, with halved steps.
+/// because contacts that open or close dominate the forces. Computing a stiffness costs as much as 80 steps,
+/// so each step, accepted or not, corrects the stiffness for the next step. The stiffness is recomputed where
+/// corrections do not help, and finally within difference_step of the rest. If such steps fail, or lead to a
+/// place without resistance, the search returns to the last computed stiffness and continues without
+/// corrections, with halved steps.
 class Search {
  public:
   Search(const EquilibriumForces& forces, const DropletState& initial)
@@ -211,7 +212,7 @@ class Search {
   // At the position:
   Axes axes_;
   VectorXd force_;
-  VectorXd move_;  // displacement to the rest, by the stiffness
+  VectorXd move_;  // displacement to the rest, according to the stiffness
 
   DropletState state() {
     field_.move_to(position_);
@@ -228,15 +229,15 @@ class Search {
     return longest() < move_tolerance && force_.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight_;
   }
 
-  /// Axes of an earlier place do not apply.
+  /// Tests rest with the axes of the present place.
   bool rests_along_own_axes() {
     find_axes_and_force();
     move_ = stiffness_.solve(force_);
     return rests();
   }
 
-  /// Moves by a part of the step if this leaves at most a given fraction of the distance, and returns whether
-  /// it did.
+  /// Moves by a part of the step if at most the fraction `share` of the distance then remains. Returns
+  /// whether it moved.
   bool tries(double part, double share) {
     const VectorXd step = part * move_;
     const ArrayXd place = position_ + (axes_.directions * step).array();
@@ -254,8 +255,8 @@ class Search {
     return succeeds;
   }
 
-  /// Takes steps with the stiffness computed here. Returns whether they reduced the distance, or the droplet
-  /// rests, and whether it is near enough.
+  /// Takes steps with the stiffness computed here. Returns whether they reduced the distance or the droplet
+  /// rests, and whether the place is within farthest_rest of the start.
   bool approach() {
     begun_at_ = position_;
     move_ = stiffness_.solve(force_);

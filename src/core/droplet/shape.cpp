@@ -86,7 +86,7 @@ int num_self_crossings(const Eigen::ArrayXd& position) {
   const int n = static_cast<int>(position.size() / 2);
   const auto x = position.head(n);
   const auto y = position.tail(n);
-  // Edges sorted by their lower ends along the contour's longer side, where few overlap.
+  // Sorts edges by their lower ends along the contour's longer side, where few edges overlap.
   const bool is_wide = x.maxCoeff() - x.minCoeff() > y.maxCoeff() - y.minCoeff();
   const double* along = is_wide ? position.data() : position.data() + n;
   const double* across = is_wide ? position.data() + n : position.data();

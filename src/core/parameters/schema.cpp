@@ -101,7 +101,7 @@ struct Outside<Enum> {
   }
 };
 
-/// A word, or `auto`.
+/// A word; empty optional: `auto`.
 template <class Enum>
 requires std::is_enum_v<Enum>
 struct Outside<std::optional<Enum>> : Outside<Enum> {
@@ -178,7 +178,7 @@ struct Facts {
   ParameterRange range = {};
   bool has_own_column = true;
   bool shapes_array = false;
-  std::vector<std::string> words = {};  ///< if not all of the type's
+  std::vector<std::string> words = {};  ///< if not all words of the type
   ParameterValue elsewhere = {};
   ParameterValue before = {};
 };
@@ -411,7 +411,7 @@ std::vector<Parameter> channel_entries() {
   };
 }
 
-/// Lattices, and what repeats: seeds, boxes.
+/// Lattices, and what repeats a run: seeds, boxes.
 std::vector<Parameter> period_entries() {
   return {
       entry("lattice", [](auto& run) -> auto& { return run.obstacles.lattice; },

@@ -17,8 +17,8 @@ struct Polygon {
   Eigen::Index next(Eigen::Index i) const { return i + 1 < size() ? i + 1 : 0; }
   Eigen::Array2d vertex(Eigen::Index i) const { return {position[i], position[size() + i]}; }
 
-  /// Calls visit(coordinate) wherever the contour crosses the line on which coordinate `axis` is `value`,
-  /// with the other coordinate.
+  /// Calls visit() with the other coordinate wherever the contour crosses the line on which coordinate `axis`
+  /// is `value`.
   template <class Visit>
   void visit_crossings(int axis, double value, Visit visit) const {
     for (Eigen::Index i = 0; i < size(); ++i) {
@@ -51,8 +51,8 @@ std::vector<Post> posts_of(std::span<const Obstacle> circles) {
   return posts;
 }
 
-/// Whether the droplet hangs over a post. Its interface covers the upstream side, at most one radius away,
-/// and reaches beyond the post on both sides.
+/// Whether the droplet hangs over a post. The interface then covers the upstream side, at most one radius
+/// away, and reaches beyond the post on both sides.
 bool hangs_over(const Polygon& polygon, const Post& post) {
   const Obstacle& upstream = post.most_upstream();
   bool covers = false;
@@ -76,7 +76,7 @@ struct Touched {
   bool is_wrapped = false;
   std::vector<Obstacle> circles;  ///< of a post
   std::optional<Wedge> wall;
-  double longest_link = 0;  ///< length of a touching edge divided by the radius at which it lies; 0 for walls
+  double longest_link = 0;  ///< longest touching edge divided by the radius at which it lies; 0 for walls
 };
 
 /// The obstacle that each edge overlaps most; -1: none.
@@ -135,7 +135,8 @@ class Contacts {
   std::vector<int> of_edge_;
   std::vector<double> deepest_;
 
-  /// Whether the edge touches the obstacle that touched_ gets next. If so, adds its force along the flow.
+  /// Whether the edge touches the obstacle that touched_ gets next. If so, adds the edge's force along the
+  /// flow.
   bool take(Eigen::Index edge, double overlap, double push, Touched& obstacle) {
     if (overlap <= 0) return false;
     obstacle.support -= push;
@@ -147,7 +148,7 @@ class Contacts {
   }
 };
 
-/// Whether there is no gap between the two, because a post overlaps a wall.
+/// Whether there is no gap between two obstacles, because a post overlaps a wall.
 bool overlap(const Touched& one, const Touched& other) {
   if (!one.wall) return other.wall && overlap(other, one);
   return std::ranges::any_of(other.circles, [&](const Obstacle& circle) {
@@ -156,8 +157,8 @@ bool overlap(const Touched& one, const Touched& other) {
   });
 }
 
-/// A run of successive edges that touch the same obstacle, counter-clockwise. On a post of several circles,
-/// edges between two of them do not end it.
+/// A run of successive edges that touch the same obstacle, counter-clockwise. Edges between two circles of
+/// one post do not end the run.
 struct Arc {
   int obstacle;
   Eigen::Index first_edge, last_edge;
@@ -219,7 +220,7 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& a
     const Arc& to = arcs[(i + 1) % arcs.size()];
     if (from.obstacle == to.obstacle) continue;
     if (overlap(contacts.touched()[from.obstacle], contacts.touched()[to.obstacle])) continue;
-    // One side may push only across the flow, or a little downstream; it still is a side of the gap.
+    // One side may push only across the flow, or a little downstream; it is a side of the gap even then.
     const std::vector<Touched>& touched = contacts.touched();
     if (std::max(touched[from.obstacle].support, touched[to.obstacle].support) <= 0) continue;
     // The outward normal of a counter-clockwise contour points downstream where y grows.

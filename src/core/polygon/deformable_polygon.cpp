@@ -34,8 +34,8 @@ Eigen::ArrayXd free_polygon(const RunParameters& run) {
       run.dp.perimeter_spring == PerimeterSpring::rest ? run.dp.perimeter_stiffness.value() * n : 0;
   const double rest_edge = units::regular_edge_length(n);
   // K_a (a_0 - a) = T dP/da, with T the tension of an edge and dP/da = P/(2a). The correction is small, so
-  // the iteration converges at once. If the area is no stiffer than the tension there is no such state, and
-  // half of a_0 is kept.
+  // the iteration converges at once. If the area is not stiffer than the tension there is no such state, and
+  // the area stays half of a_0.
   double area = units::rest_area;
   for (int i = 0; i < 50; ++i) {
     const double edge = units::regular_edge_length(n, area);
@@ -100,12 +100,12 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   const EquilibriumForces asked = EquilibriumForces::of(rest_forces, axes, have_energy);
   std::optional<DropletState> rest = find_equilibrium(asked, state);
   if (!forces.has_anchors()) return rest;
-  // Walls hold the droplet by springs, whose anchors stay fixed during a search. A wall whose limit is
+  // Springs tie the droplet to walls, with anchors that stay fixed during a search. A wall whose limit is
   // exceeded exerts its largest force, whatever the droplet does; the search continues until every wall bears
   // its force.
   constexpr int most_yields = 20;
-  // If all walls can bear their forces, the excess is below the first one by then
-  // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above after all yields.
+  // If all walls can bear their forces, the excess is below the first excess by then
+  // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above even after all yields.
   constexpr int yields_until_excess_has_fallen = 12;
   const double bearable = 1e-6 * units::droplet_mass * units::gravity / *run.dp.vertices;
   WallTouches touches(run, obstacles);

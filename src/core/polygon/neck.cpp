@@ -8,16 +8,17 @@
 namespace clog {
 namespace {
 
-/// A part of the droplet is a lobe if a circle of its area is at least this many times as wide as the neck. A
-/// chord cuts off a circle at most half of the area of a circle of the chord's width.
+/// A part of the droplet is a lobe if a circle of its area is at least this many times as wide as the neck.
+/// What a chord cuts off from a circle has at most half of the area of a circle as wide as the chord.
 constexpr double lobe_width = 2;
 /// A lobe also has at least this fraction of the droplet's area. Otherwise a droplet would only lose a bead:
 /// retracting films end in beads of a thousandth.
 constexpr double lobe_share = 0.02;
 
-/// Cosine of an angle that counts as right: all segments of a bridge with straight sides are equal.
+/// Cosine of an angle that counts as right: all segments of a bridge with straight sides have the same
+/// length.
 constexpr double round_off = 1e-9;
-/// Whether a cosine, or sine, times both lengths is at most this. Without square roots.
+/// Whether a cosine, or sine, times both lengths is at most the round-off. Avoids square roots.
 bool is_hardly_positive(double value, double squared_lengths) {
   return value <= 0 || value * value <= round_off * round_off * squared_lengths;
 }
@@ -55,7 +56,7 @@ class Outline {
     return is_hardly_positive(cross(come, go), dot(come, come) * dot(go, go));
   }
 
-  /// Towards the outside.
+  /// Points to the outside.
   Array2d normal_of_edge(Eigen::Index i) const {
     const Array2d along = edge(i);
     return Array2d(along[1], -along[0]) / length(along);

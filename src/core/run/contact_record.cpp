@@ -36,7 +36,7 @@ double distance_from(const Obstacle& circle, const DropletState& state, bool mee
                   distance_to_edge(centre, middle, vertex(nearest + 1)));
 }
 
-/// Distance of the closest point that moves [sigma].
+/// Distance of a wedge from the closest point that moves [sigma].
 double gap_to(const Wedge& wedge, const DropletState& state) {
   double gap = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < state.size(); ++i) {
@@ -78,7 +78,7 @@ void ContactRecord::look_around(const DropletState& state, const ObstacleArray& 
   lower_ = lower - skin;
   upper_ = upper + skin;
   near_.clear();
-  // Obstacles just out of reach must be seen once more, so that they count as left.
+  // Also lists obstacles just out of reach, so that they count as left.
   obstacles.gather(
       {origin_[0], origin_[1], lower_[0], upper_[0], lower_[1], upper_[1], reach_.range + parting + 2 * skin},
       near_);

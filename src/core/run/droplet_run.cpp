@@ -21,10 +21,10 @@ namespace {
 constexpr double relaxation_times_before_a_clog = 10;
 
 /// E_k/E_t below which the program searches for an equilibrium. The droplet must also be so slow that it
-/// coasts, in the relaxation time at its speed, no farther than the allowed distance.
+/// coasts at most the distance farthest_rest within the relaxation time.
 double first_search(const RunParameters& run) {
   constexpr double slow = 1e-4;
-  // While walls with friction yield, a droplet may creep, come free and continue, which no search predicts
+  // While walls with friction yield, a droplet may creep, come free and move on, which no search predicts
   // (docs/notes/2026-11-25-searches-with-friction.md).
   constexpr double slow_with_friction = 1e-10;
   const bool has_friction = run.dp.friction > 0 || run.dp.yield_traction > 0;

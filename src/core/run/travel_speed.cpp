@@ -28,7 +28,7 @@ std::vector<double> means_of_pieces(std::span<const double> values, std::size_t 
 
 /// Squared standard error of the mean of independent values; exactly zero if they are equal.
 double squared_error_of_mean(std::span<const double> values) {
-  double mean = 0, sum = 0;  // from the first value on
+  double mean = 0, sum = 0;  // relative to the first value
   for (const double value : values) mean += (value - values.front()) / static_cast<double>(values.size());
   for (const double value : values) {
     const double deviation = value - values.front() - mean;

@@ -8,16 +8,16 @@
 
 namespace clog {
 
-/// The droplet must not meet its own periodic image across the flow. @throws Error
+/// Refuses a box in which the droplet would meet its own periodic image across the flow. @throws Error
 void check_box(const ObstacleParameters& obstacles);
 
-/// The common part of both arrays that follow from a gap and a diameter. @throws Error
+/// Checks gap and diameter of random arrays and lattices. @throws Error
 void check_spacing(const RunParameters& run);
 
 /// The density as text, as in the key `obstacle-density`: `0.35`, `12.5%`, `saturated`.
 std::string density_text(const ObstacleDensity& density);
 
-/// Largest curvature of the interface, around obstacles.
+/// Diameter of the sharpest bend of the interface, around the smallest obstacle.
 double smallest_diameter(const RunParameters& run);
 
 /// Releases the droplet in the void nearest to the centre. @throws Error if there is no room for it

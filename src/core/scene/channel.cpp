@@ -62,7 +62,7 @@ void check_clearance(RunParameters& run) {
   if (!(channel.end > channel.start)) refuse("end", channel.end, "must lie downstream of the start) try 3");
 }
 
-/// Largest curvature of the interface, around the tips.
+/// Diameter of the sharpest bend of the interface, around the tips.
 double tip_diameter(const RunParameters& run) {
   constexpr double sharpest = 1e-3;
   return std::max(2 * run.channel.tip_radius, sharpest);
@@ -80,7 +80,7 @@ ObstacleArray wedges(const RunParameters& run) {
   return {open_box, {}, std::move(both)};
 }
 
-/// On the channel's axis.
+/// Releases the droplet on the channel's axis.
 DropletState release_upstream(const RunParameters& run, const ObstacleArray&) {
   return state_at_rest(model_of(run).free_shape(run),
                        middle_of_open_box() + Eigen::Array2d(run.channel.start, 0), period_of_open_box());

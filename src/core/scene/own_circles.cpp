@@ -45,7 +45,7 @@ double smallest_circle(const RunParameters& run) {
   return 2 * smallest->radius;
 }
 
-/// With walls, images of the circles beyond them must be out of reach.
+/// The period. With side walls, space beside the box keeps images of the circles out of reach.
 Period period_of(const ObstacleParameters& obstacles) {
   Period period = obstacles.period();
   if (obstacles.side_walls == SideWalls::off) return period;
@@ -94,7 +94,7 @@ GapAtWall smallest_gap_at_wall(const ObstacleArray& array, double box) {
   return smallest;
 }
 
-/// Properties of all circles of one period; kept, because most tasks of a plan have the same circles.
+/// Properties of all circles of one period; cached, because most tasks of a plan have the same circles.
 struct Examined {
   ObstacleArray::Pair pair;
   GapAtWall at_wall;
@@ -121,7 +121,7 @@ Examined examined(const ObstacleParameters& obstacles) {
   return found;
 }
 
-/// A post may grow out of a wall. Otherwise the gap between both must be resolved.
+/// Refuses gaps between a wall and a post that the mesh does not resolve. A post may overlap a wall.
 void check_gaps_at_walls(const RunParameters& run) {
   const ObstacleParameters& obstacles = run.obstacles;
   if (obstacles.side_walls == SideWalls::off) return;
@@ -134,7 +134,7 @@ void check_gaps_at_walls(const RunParameters& run) {
                                place_of(circle), gap, edge));
 }
 
-/// Walls separate the droplet from its images across the flow, but not from those along it.
+/// Checks the period along the flow: side walls separate the droplet only from its images across the flow.
 void check_period(const ObstacleParameters& obstacles) {
   if (obstacles.side_walls == SideWalls::off) check_box(obstacles);
   const double length = obstacles.period().along();
@@ -213,7 +213,7 @@ void find_gap_and_density(RunParameters& run) {
   obstacles.density = static_cast<double>(examined(obstacles).num_posts) / obstacles.period().area();
 }
 
-/// A random number in [0, 1); the constant keeps this stream apart from others.
+/// Two random numbers in [0, 1); the constant keeps this stream apart from others.
 Eigen::Array2d drawn_from(std::uint32_t seed) {
   std::seed_seq sequence{seed, std::uint32_t{0x0bc1c1e5}};
   std::mt19937_64 engine(sequence);
@@ -267,7 +267,8 @@ ObstacleArray shifted_device(const RunParameters& run) {
   return {period_of(obstacles), std::move(circles), std::move(walls)};
 }
 
-/// On the line of the entrance if there is room, as without obstacles; otherwise in the nearest void.
+/// Releases the droplet on the line of the entrance, in its shape without obstacles, if there is room;
+/// otherwise in the nearest void.
 DropletState release_in_device(const RunParameters& run, const ObstacleArray& device) {
   const Period& period = device.period();
   const bool starts_free = run.obstacles.release == Release::entrance &&

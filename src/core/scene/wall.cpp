@@ -10,8 +10,8 @@ namespace clog {
 
 namespace {
 
-// A flat wall, and a circular droplet that touches it, before it has weight: its displacement to rest under
-// gravity is the sag delta_s (Cheng et al., Fig. 7b).
+// A flat wall, and a circular droplet that touches it without weight: the displacement to rest under gravity
+// is the sag delta_s (Cheng et al., Fig. 7b).
 
 void nothing_to_check(const RunParameters&) {}
 void nothing_to_resolve(RunParameters&) {}
@@ -27,18 +27,18 @@ DropletState touching(const RunParameters& run, const ObstacleArray&) {
 
 }  // namespace
 
-const Scene wall_scene = {
-    .finding = Finding::sag,
-    .walls_from = WallsFrom::droplet,
-    .is_random = false,
-    .gap_key = nullptr,
-    .check = nothing_to_check,
-    .resolve = nothing_to_resolve,
-    // The automatic values of droplets among obstacles of the usual size, with which sags are compared.
-    .sharpest_bend = smallest_diameter,
-    .density = no_density,
-    .walls = flat_wall,
-    .release = touching,
-    .way = endless_way};
+const Scene wall_scene = {.finding = Finding::sag,
+                          .walls_from = WallsFrom::droplet,
+                          .is_random = false,
+                          .gap_key = nullptr,
+                          .check = nothing_to_check,
+                          .resolve = nothing_to_resolve,
+                          // These are the automatic values of droplets among obstacles of the usual size,
+                          // with which sags are compared.
+                          .sharpest_bend = smallest_diameter,
+                          .density = no_density,
+                          .walls = flat_wall,
+                          .release = touching,
+                          .way = endless_way};
 
 }  // namespace clog

@@ -8,7 +8,7 @@
 namespace clog {
 namespace {
 
-/// The names that people use.
+/// The names of the option --instruction-set.
 std::string name_of(std::int64_t target) {
   if (target == HWY_AVX3) return "avx512";
   if (target == HWY_AVX2) return "avx2";
@@ -33,7 +33,7 @@ std::vector<std::string> instruction_sets() {
 }
 
 std::string instruction_set() {
-  // Highway asks the processor each time, unless targets are set by name; under a hypervisor this takes
+  // Highway queries the processor each time, unless targets are set by name; under a hypervisor this takes
   // longer than the rest of a task's description.
   [[maybe_unused]] static const bool is_asked_once = (allow_targets(hwy::SupportedTargets()), true);
   return name_of(hwy::SupportedAndGeneratedTargets().front());

@@ -9,8 +9,8 @@
 namespace clog {
 namespace {
 
-/// A disc of diameter + gap, its `spacing`, keeps a gap between surfaces if discs do not overlap. So all
-/// numbers follow from the smallest and the widest spacing, and the area.
+/// A disc of diameter + gap, its `spacing`, keeps the gap between surfaces if such discs do not overlap. So
+/// all numbers follow from the smallest and the widest spacing, and the area.
 struct Spacings {
   double smallest, widest;
   double edge;  // edge of a square of the same area
@@ -22,25 +22,26 @@ Spacings spacings_of(const ObstacleParameters& obstacles) {
 }
 
 /// Mean density of saturated arrays. Measured from widest/smallest = 1 to 5, in boxes of at least 10 widest
-/// spacings (smaller ones agree); the fit is up to 0.5 % below the measurements.
+/// spacings (smaller boxes agree); the fit is up to 0.5 % below the measurements.
 double mean_density(const Spacings& spacings) {
   const double x = portable::log(spacings.widest / spacings.smallest);
   return saturated_density(spacings.smallest, 0) / (1 + x * (0.59 + x * (0.1 - x * 0.032)));
 }
 
-/// Fluctuations of the density of saturated arrays. Their number of obstacles fluctuates in proportion to the
-/// edge of a square box: 0.200 box/smallest for equal discs in boxes of 5 to 100 spacings, 0.263 at
-/// widest/smallest = 2, 0.346 at 3, 0.43 at 5. Skewness and excess kurtosis are within 0.1 of a Gaussian's.
-/// Of a million seeds (equal discs, box of 10 spacings) none is 5.5 deviations below the mean, so eight
-/// exclude none of all 2^32 seeds.
+/// Fluctuations of the density of saturated arrays. The standard deviation of the number of obstacles is
+/// proportional to the edge of a square box: 0.200 box/smallest for equal discs in boxes of 5 to 100
+/// spacings, 0.263 at widest/smallest = 2, 0.346 at 3, 0.43 at 5. Skewness and excess kurtosis are within 0.1
+/// of a Gaussian's. Of a million seeds (equal discs, box of 10 spacings) none is 5.5 deviations below the
+/// mean, so eight deviations exclude none of the 2^32 seeds.
 double standard_deviation(const Spacings& spacings) {
   const double of_number = 0.205 + 0.075 * (spacings.widest / spacings.smallest - 1);
   return of_number / (spacings.smallest * spacings.edge);
 }
 
-/// No saturated array has a lower density. Where no smallest disc fits, every place is within (smallest +
-/// widest)/2 of a disc's centre, and circles that cover a plane have at least 2 pi/sqrt(27) times its area
-/// (Kershner, Am. J. Math. 61, 665 (1939)). 2/sqrt(27) is rounded down, by more than places are.
+/// A lower bound of the density of saturated arrays. Where no smallest disc fits, every place is within
+/// (smallest + widest)/2 of a disc's centre, and circles that cover a plane have at least 2 pi/sqrt(27) times
+/// its area (Kershner, Am. J. Math. 61, 665 (1939)). 2/sqrt(27) is rounded down by more than coordinates
+/// are rounded.
 double covering_density(const Spacings& spacings) {
   const double reach = (spacings.smallest + spacings.widest) / 2;
   return 0.3848 / (reach * reach);

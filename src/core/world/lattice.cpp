@@ -28,7 +28,7 @@ constexpr double box_rounding = 1e-9;  // relative
 /// included.
 constexpr double free_radius = 0.55 * units::droplet_diameter;
 
-/// tan t over q/p
+/// tan t divided by q/p
 double tangent_unit(LatticeKind kind) { return kind == LatticeKind::triangular ? sqrt3 : 1; }
 
 /// Length of the shortest vector of a triangular lattice in the direction (u, sqrt(3) w), in spacings.
@@ -73,8 +73,8 @@ std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstac
   return fits ? std::optional(fitting) : std::nullopt;
 }
 
-/// Calls visit(lattice) for those with allowed periods that are nearest to the angle for each p, on both
-/// sides of it.
+/// Calls visit(lattice) for the lattices with allowed periods that are nearest to the angle for each p, on
+/// both sides of it.
 template <class Visit>
 void for_each_near(const ObstacleParameters& obstacles, Visit visit) {
   const double spacing = obstacles.spacing();
@@ -178,8 +178,8 @@ CellPlace free_place(const ObstacleParameters& parameters, const IntegerLattice&
   boost::random::uniform_01<double> uniform;
   const double taken = (parameters.diameter / 2 + free_radius) / (parameters.diameter + parameters.gap);
   const double i_x = lattice.i_x, i_y = lattice.i_y, j_x = lattice.j_x, j_y = lattice.j_y;
-  // Distance of the emptiest place from its three obstacles (square: 0.707); excludes corners too small to
-  // hit.
+  // Distance of the emptiest place from its three obstacles (square: 0.707); excludes corners that random
+  // places almost never hit.
   const double third = std::min(std::hypot(i_x - j_x, i_y - j_y), std::hypot(i_x + j_x, i_y + j_y));
   const double widest = std::hypot(i_x, i_y) * std::hypot(j_x, j_y) * third / (2 * (i_x * j_y - i_y * j_x));
   const bool has_free_places = taken < 0.69 * std::numbers::sqrt2 * widest;
@@ -207,7 +207,8 @@ std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obs
   if (const auto fitting = lattice_with(obstacles)) return fitting;
   std::optional<CommensurateLattice> nearest;
   const double angle = obstacles.lattice_angle;
-  // The box of square lattices grows with p, so of two equally near candidates the later one is the larger.
+  // The box of square lattices grows with p, so of two equally near candidates the later one has the larger
+  // box.
   for_each_near(obstacles, [&](const CommensurateLattice& candidate) {
     if (!nearest || std::abs(candidate.angle - angle) <= std::abs(nearest->angle - angle) + same_angle)
       nearest = candidate;

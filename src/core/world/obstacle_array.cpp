@@ -44,8 +44,8 @@ CellAxis rows_of(const Period& period) {
   return {period.across(), num_cells_in(period.across()), num_cells_in(period.across())};
 }
 
-/// Whether one of two circles has its centre within the other. Circles with the same centre are a mistake, or
-/// one and its own image.
+/// Whether one of two circles has its centre within the other. Circles with the same centre do not count:
+/// they are a mistake, or a circle and its own image.
 bool share_a_post(double apart, double first_radius, double second_radius) {
   return apart > 0 && apart < std::max(first_radius, second_radius);
 }
@@ -150,7 +150,7 @@ void ObstacleArray::gather(const Window& window, std::vector<Obstacle>& out) con
 }
 
 std::vector<std::uint32_t> ObstacleArray::posts() const {
-  // A forest: each circle points to another of its post, the root to itself.
+  // A forest: each circle points to another circle of its post, the root to itself.
   std::vector<std::uint32_t> post(binned_.obstacles.size());
   std::iota(post.begin(), post.end(), 0u);
   const auto root_of = [&](std::uint32_t circle) {
@@ -201,7 +201,7 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
   const bool repeats_across = period().beside == 0;
   const double nearest_image =
       repeats_across ? std::min(period().along(), period().across()) : period().along();
-  // All pairs nearer than the margin are seen; widens it until the smallest distance is certain.
+  // All pairs nearer than the margin are found; the margin grows until the smallest distance is certain.
   double margin = 0.125 * units::droplet_diameter;
   do {
     margin *= 2;

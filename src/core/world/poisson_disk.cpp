@@ -107,23 +107,23 @@ class SequentialAddition {
   }
 
  private:
-  /// Few at first, while most of them have room. Any numbers give the same statistics; these are fast.
+  /// Few darts at first, while most of them have room. Any numbers give the same statistics; these are fast.
   static constexpr double first_rounds[] = {0.125, 0.25, 0.5, 1, 0.5};  // darts per cell
   static constexpr double darts_per_square = 1;                         // in later rounds
   /// Number of a cell in the grid, whose margins repeat the opposite side.
   using Cell = std::int32_t;
-  /// A square that may still have room, or a dart: from the corner of its cell, and the low end of its range
-  /// of excesses.
+  /// A square that may still have room, or a dart: its place from the corner of its cell, and the low end of
+  /// its range of excesses.
   struct Square {
     float x, y, excess;
     Cell cell;
   };
 
-  /// Squares at rest; there are many, and only those of a mixture differ in their excess.
+  /// Squares between two rounds; there are many, and only squares of a mixture differ in their excess.
   class Squares {
    public:
     void assign(std::span<const Square> squares, bool have_excess) {
-      // Reuses the same memory, because their number falls.
+      // Reuses the same memory, because the number of squares falls.
       places_.clear();
       places_.reserve(squares.size());
       for (const Square& square : squares) places_.push_back({square.x, square.y, square.cell});
@@ -154,7 +154,7 @@ class SequentialAddition {
   double cell_size_;
   int margin_;  // number of cells to the farthest point within the largest distance
   int row_length_;
-  bool are_alike_;  // the usual discs, of one size
+  bool are_alike_;  // all discs have one size, as usual
   /// The points, each from its cell's corner. A cell can hold only one, as its diagonal is not longer than
   /// the smallest distance.
   std::vector<Point> points_;
@@ -213,7 +213,7 @@ class SequentialAddition {
     return !is_near;
   }
 
-  /// A Poisson process along the squares; keeps the darts that have room so far.
+  /// Adds darts of a Poisson process in the squares; keeps those that have room so far.
   /// @param square_at  (index) -> Square
   template <class SquareAt>
   void throw_darts(int num_squares, double darts_each, SquareAt square_at) {
@@ -244,7 +244,7 @@ class SequentialAddition {
       std::swap(darts_[i], darts_[other(engine_)]);
     }
     for (std::size_t i = 0; i < darts_.size() && num_points_ < target; ++i) {
-      constexpr std::size_t ahead = 8;  // random access is slow, so load early
+      constexpr std::size_t ahead = 8;  // random access is slow, so cells are loaded early
       if (i + ahead < darts_.size()) prefetch_around(darts_[i + ahead].cell);
       if (has_room(darts_[i])) add_point(darts_[i]);
     }
@@ -301,9 +301,9 @@ class SequentialAddition {
     num_parts_ = 0;
   }
 
-  /// Adds the quarters of a square, in each layer of excesses, that are not wholly within the distance of one
-  /// point. Distances agree with has_room() to the last bit where squares reach the resolution of numbers, so
-  /// such a square has room or is dropped.
+  /// Adds the quarters of a square, in each layer of excesses, that do not lie wholly within the distance of
+  /// one point. Distances agree with has_room() to the last bit where squares reach the resolution of
+  /// numbers, so such a square has room or is dropped.
   void add_parts(const Square& square) {
     if (is_taken(square.cell)) return;
     if (are_alike_) {

@@ -18,8 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace clog::HWY_NAMESPACE {
 namespace {
 
-/// Places are kept in single precision, relative to a cell; this much more distance makes up for the
-/// rounding.
+/// Coordinates have single precision, relative to a cell; this additional distance covers the rounding.
 constexpr double rounding = 1e-5;
 constexpr float nowhere = 1e6;
 
@@ -45,7 +44,7 @@ struct Surroundings {
   /// cells down and one up.
   static constexpr double smallest_cell = 1 / 1.49;
 
-  /// Whether a point is within the distance of a place in the cell.
+  /// Whether a point lies within the distance of a place in the cell.
   bool reach(float place_x, float place_y) const {
     Integers is_near{};
     visit_points(place_x, place_y, [&](const Floats& x, const Floats& y) {

@@ -129,7 +129,7 @@ TEST(SelfCrossings, AreOneInAFigureOfEight) {
       position[n + i] = std::sin(2 * angle);
     }
     EXPECT_EQ(num_self_crossings(position), 1) << n << " vertices";
-    // Its other side first: the sweep runs along y.
+    // The same contour with x and y exchanged, so that the edges are sorted along y.
     Eigen::ArrayXd turned(2 * n);
     turned << position.tail(n), 2 * position.head(n);
     EXPECT_EQ(num_self_crossings(turned), 1) << n << " vertices, turned";
@@ -137,7 +137,7 @@ TEST(SelfCrossings, AreOneInAFigureOfEight) {
 }
 
 TEST(SelfCrossings, CountWhereAFilmIsPulledThroughItself) {
-  // A flat box whose lower side bulges through its upper side: in and out again.
+  // A flat box whose lower side bulges out through its upper side and back in.
   Eigen::ArrayXd position(12);
   position << 0, 1, 2, 3, 3, 0, 0, 0, 2, 0, 1, 1;
   EXPECT_EQ(num_self_crossings(position), 2);

@@ -153,14 +153,14 @@ TEST_P(Certified, ADropletOnAFlatWallCouldDriftAside) {
 }
 
 TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
-  // Two springs k (r - d) at an angle to the flow: 2 k (r - d) (10 - x)/d = M g.
+  // Two springs k (r - d) at an angle to the flow balance the weight: 2 k (r - d) (10 - x)/d = M g.
   const RunParameters run = resolve(soft_disk());
   const double k = 4 * 5;
   const auto pull = [&](double x) {
     const double d = std::hypot(10 - x, 0.4);
     return pi / 4 - 2 * k * (0.65 - d) * (10 - x) / d;
   };
-  double low = 9.5, high = 9.7;  // the force pushes it from both towards the balance
+  double low = 9.5, high = 9.7;  // from both places the force pushes the disk towards the balance
   ASSERT_GT(pull(low), 0);
   ASSERT_LT(pull(high), 0);
   while (high - low > 1e-14) (pull((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
@@ -172,8 +172,8 @@ TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
   EXPECT_NEAR(found->position[1], 10, 1e-8);
 }
 
-/// Points on springs, to their places and to the next ones, each coordinate with a much stiffer contact on
-/// its upper side: all in units of a point's weight.
+/// Points that springs tie to their places and to their neighbours; each coordinate has a much stiffer
+/// contact on its upper side. All quantities are in units of a point's weight.
 class PointsWithContacts {
  public:
   static constexpr Eigen::Index num_points = 16;
@@ -193,7 +193,7 @@ class PointsWithContacts {
     }
   }
 
-  /// Solved for one set of contacts after another until it is the set of those that touch.
+  /// Solves for one set of contacts after another until the set equals the contacts that touch.
   Eigen::VectorXd rest() const {
     Eigen::VectorXd position = Eigen::VectorXd::Zero(size);
     for (int attempt = 0; attempt < 100; ++attempt) {
@@ -286,7 +286,7 @@ TEST(Equilibrium, TooFarAwayIsRefused) {
 TEST(Equilibrium, OnTopOfAnObstacleIsRefused) {
   const RunParameters run = resolve(soft_disk());
   Eigen::ArrayXd position(2);
-  position << 10 - 0.65 + pi / (16 * 5), 10;  // no force is left
+  position << 10 - 0.65 + pi / (16 * 5), 10;  // no force remains
   EXPECT_FALSE(
       model_of(run).equilibrium(run, ObstacleArray(20, single), test::state_of(position)).has_value());
 }

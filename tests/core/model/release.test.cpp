@@ -28,7 +28,7 @@ RunParameters in_small_box(double line_tension, double gap) {
   return run;
 }
 
-/// On a vertex, without weight, over the vertex's weight.
+/// Largest force on a vertex, without weight, divided by the vertex's weight.
 double largest_force(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {
   test::ReferenceForces forces(run, obstacles);
   forces.set_weight(0);
@@ -56,8 +56,8 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
 }
 
 TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
-  // The minimiser goes round in circles with the springs of growth in three of these, and with the droplet's
-  // own springs in one; one of them needs weaker springs, too.
+  // The minimiser cycles with the springs of growth in three of these cases, and with the droplet's own
+  // springs in one; one case needs weaker springs, too.
   for (const auto& [vertices, line_tension, seed] :
        {std::tuple{64, 0.1, 141u}, {64, 0.05, 113u}, {64, 0.05, 141u}, {32, 0.1, 76u}, {32, 0.05, 303u}}) {
     SCOPED_TRACE(std::to_string(vertices) + " vertices, seed " + std::to_string(seed));

@@ -23,7 +23,8 @@ struct Scene {
   ClogGeometry geometry() const { return clog_geometry(position, {obstacles, walls}, range); }
 };
 
-/// An obstacle that a disc of diameter 1 around the origin touches, seen from there at an angle [degrees].
+/// An obstacle that touches a disc of diameter 1 around the origin, at this angle seen from the origin
+/// [degrees].
 Obstacle against_the_disc(double angle) {
   const double distance = 0.5 + radius + 0.5 * range;
   const double t = angle * std::numbers::pi / 180;
@@ -53,8 +54,8 @@ Eigen::ArrayXd with_short_edges(const std::vector<Eigen::Array2d>& corners) {
 constexpr double inner = radius + 0.5 * range;
 constexpr double outer = 0.45;
 
-/// Hung over an obstacle at the origin: a half ring upstream of it, and a lobe of the given length on either
-/// side.
+/// A droplet that hangs over an obstacle at the origin: a half ring upstream of it, and a lobe of the given
+/// length on either side.
 Scene horseshoe(double right_lobe, double left_lobe) {
   std::vector<Eigen::Array2d> corners;
   const auto add_half_circle = [&](double r, double from, double to) {
@@ -72,7 +73,7 @@ Scene horseshoe(double right_lobe, double left_lobe) {
   return {with_short_edges(corners), {{0, 0, radius}}};
 }
 
-/// And each lobe stands on two small obstacles.
+/// The same droplet, each of whose lobes rests on two small obstacles.
 Scene horseshoe_with_lobes_in_gaps() {
   Scene scene = horseshoe(0.4, 0.4);
   constexpr double small = 0.05, overlap = 1.2 * range;
@@ -95,7 +96,7 @@ TEST(ClogGeometry, ADiscOnTwoObstaclesIsSqueezed) {
 }
 
 TEST(ClogGeometry, ADiscWedgedAgainstAnObstacleBesideItIsSqueezed) {
-  // The one beside it pushes across the flow, or a little downstream.
+  // The obstacle beside the disc pushes across the flow, or a little downstream.
   for (const double beside : {-90.0, -100.0}) {
     const ClogGeometry geometry = disc_on({beside, 17}).geometry();
     expect_counts(geometry, 0, 1, 2);
@@ -115,11 +116,11 @@ TEST(ClogGeometry, ADropletOnOneObstacleIsHeldByNeither) {
 
 TEST(ClogGeometry, ThereIsNoGapWithinAPost) {
   expect_counts(disc_on({-20, 20}).geometry(), 0, 1, 2);
-  // Now the circles between them make one post of all, which is one contact.
+  // With the circles between them, they form one post, which is one contact.
   const ClogGeometry geometry = disc_on({-20, 20, -10, 10, 0}).geometry();
   expect_counts(geometry, 0, 0, 1);
   EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
-  // Between two contacts with it, the droplet touches another.
+  // Between two contacts with the post, the droplet touches another obstacle.
   expect_counts(disc_on({-20, -10, 0, 10, 20, 100}).geometry(), 0, 1, 2);
 }
 
@@ -160,13 +161,13 @@ TEST(ClogGeometry, WallsAloneHoldNothing) {
   expect_counts(geometry, 0, 0, 2);
   EXPECT_TRUE(std::isnan(geometry.wrapped_support));
   EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
-  // An obstacle from behind supports nothing either.
+  // An obstacle upstream of the disc supports nothing either.
   scene = disc_on({140});
   scene.walls = {side_wall(-1)};
   EXPECT_EQ(scene.geometry().mechanism(), ClogMechanism::none);
 }
 
-/// In front of a narrow channel, two wedges at 45 degrees whose surfaces the disc touches.
+/// The disc touches both surfaces of a narrow channel: two wedges at 45 degrees.
 TEST(ClogGeometry, ADiscBetweenTheTipsOfTwoWedgesIsSqueezed) {
   Scene scene = disc_on({});
   const double r = 0.1, distance = 0.5 + r + 0.5 * range, across = 0.4;
@@ -234,14 +235,16 @@ TEST(ClogGeometry, AHorseshoeWhoseLobesStandInGapsIsHybrid) {
   EXPECT_EQ(geometry.mechanism(), ClogMechanism::hybrid);
 }
 
-/// Two obstacles at angles t1, t2 that the disc overlaps alike support it as cos t1 and cos t2.
+/// A wrapped obstacle and an obstacle under a lobe share the support in proportion to their forces against
+/// the flow.
 TEST(ClogGeometry, WeighsSupportByTheForceAgainstTheFlow) {
   Scene scene = horseshoe(0.4, 0.4);
   scene.obstacles.push_back({0.4 + radius, 0.3, radius});  // under one lobe, overlap: the whole range
   const double before = horseshoe(0.4, 0.4).geometry().wrapped_support;
   EXPECT_EQ(before, 1);
-  // The half ring: overlap range/2 along a width of 2 inner. The flat end of the lobe, at the distance of the
-  // radius: overlap range - s^2/(2 radius) at s from the middle, 4/3 sqrt(2 radius range) range in all.
+  // The half ring has the overlap range/2 along a width of 2 inner. The lobe's flat end is at the distance of
+  // the radius; its overlap is range - s^2/(2 radius) at s from the middle, 4/3 sqrt(2 radius range) range in
+  // all.
   const double ring = range / 2 * 2 * inner;
   const double flat = 4.0 / 3 * std::sqrt(2 * radius * range) * range;
   EXPECT_NEAR(scene.geometry().wrapped_support, ring / (ring + flat), 0.04);
@@ -250,10 +253,10 @@ TEST(ClogGeometry, WeighsSupportByTheForceAgainstTheFlow) {
 TEST(ClogGeometry, IsTheSameWhereverTheDropletIs) {
   const Scene scene = horseshoe_with_lobes_in_gaps();
   const ClogGeometry expected = scene.geometry();
-  DpParameters as_it_is;  // the polygon's own edges
+  DpParameters as_it_is;  // uses the polygon's own edges
   as_it_is.wall_contact = WallContact::vertex;
   as_it_is.contact_range = range;
-  // Across both borders of the box, too.
+  // The places include both borders of the box.
   for (const Eigen::Array2d& place :
        {Eigen::Array2d(10, 10), Eigen::Array2d(19.9, 10), Eigen::Array2d(0.05, 19.95)}) {
     std::vector<Obstacle> moved = scene.obstacles;

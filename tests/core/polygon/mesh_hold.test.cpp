@@ -43,7 +43,7 @@ RunParameters elastic(double line_tension, int vertices) {
 ObstacleArray one_obstacle() { return {box, {{middle, middle, obstacle_radius}}}; }
 
 /// A circle straight upstream of the obstacle, turned so that a vertex (phase 0) or the middle of an edge
-/// (1/2) looks at it.
+/// (1/2) faces the obstacle.
 DropletState above_the_obstacle(const RunParameters& run, double phase, double aside = 0) {
   const int n = *run.dp.vertices;
   const Eigen::ArrayXd circle = regular_polygon(n, units::rest_area);
@@ -56,7 +56,8 @@ DropletState above_the_obstacle(const RunParameters& run, double phase, double a
   return state;
 }
 
-/// The mean of a state and its mirror image; vertex `i` looks at vertex `first - i` then.
+/// Replaces a state by the mean of it and its mirror image, in which vertices `i` and `first - i` are
+/// exchanged.
 void make_symmetric(DropletState& state, int first) {
   const auto n = static_cast<int>(state.size());
   const Eigen::ArrayXd before = state.position;
@@ -67,7 +68,8 @@ void make_symmetric(DropletState& state, int first) {
   }
 }
 
-/// At rest under the constraint that its lobes are equal: without it, it would slide off.
+/// A droplet at rest under the constraint that its lobes are equal; without the constraint it would slide
+/// off.
 struct Hanging {
   double energy = 0;
   ClogGeometry geometry;
@@ -103,8 +105,8 @@ Hanging hang(const RunParameters& run, bool on_an_edge) {
   return hanging;
 }
 
-/// As the droplet slides over the obstacle its energy has a ripple, once per edge. Its ends are the two
-/// symmetric states. @return the largest force of the ripple over the weight
+/// As the droplet slides over the obstacle, its energy has a ripple with a period of one edge, whose extremes
+/// are the two symmetric states. @return the largest force of the ripple divided by the weight
 double held_by_ripple(const Hanging& vertex, const Hanging& edge) {
   return std::numbers::pi * std::abs(vertex.energy - edge.energy) / vertex.longest_edge /
          (units::droplet_mass * units::gravity);
@@ -138,7 +140,7 @@ TEST_P(MeshHold, IsBoundedByItsColumnAndFallsAsTheSquareOfTheEdge) {
   EXPECT_LT(bound_before, 0.01) << "of 512 vertices";
 }
 
-/// At rest it would be held by its mesh: nothing else can hold two lobes over one obstacle.
+/// A droplet at rest would be held by its mesh: nothing else can hold two lobes over one obstacle.
 TEST_P(MeshHold, LetsADropletSlideOffAsItHasTo) {
   const RunParameters run = GetParam().parameters(GetParam().line_tension, 256);
   const auto obstacle = std::make_shared<const ObstacleArray>(one_obstacle());
@@ -154,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(OfPresets, MeshHold,
                          testing::Values(Case{"robust", robust_hanging, 0.24}, Case{"elastic", elastic, 0.1}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// A tighter bend and a longer edge hold more.
+/// A tighter bend and a longer edge can hold more weight.
 TEST(MeshHoldOfAPlan, FollowsFromTheSmallestObstacle) {
   RunParameters run;
   run.dp.line_tension = 0.05;

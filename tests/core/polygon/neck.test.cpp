@@ -78,7 +78,7 @@ TEST(ThinnestNeck, IsTheBridgeBetweenTwoCircles) {
             << pieces << " pieces, turned by " << angle;
 }
 
-/// Nor has any other convex shape, however thin and however few its vertices.
+/// No convex shape has a neck, however thin it is and however few vertices it has.
 TEST(ThinnestNeck, IsNotThereInCirclesAndEllipses) {
   for (const int num_vertices : {32, 128, 129, 512, 2048})
     for (const double across : {0.5, 0.1, 0.01, 0.001})
@@ -87,21 +87,21 @@ TEST(ThinnestNeck, IsNotThereInCirclesAndEllipses) {
             << num_vertices << " vertices, " << across;
 }
 
-/// Half of one whose straight part is L long has the area w L/2 + pi w^2/8.
+/// Half of a stadium of width w whose straight part is L long has the area w L/2 + pi w^2/8.
 TEST(ThinnestNeck, IsTheWidthOfAStadiumIfItsHalvesAreLobes) {
   const double width = 0.1, enough = 2 * (pi - pi / 8) * width;
   EXPECT_NEAR(thinnest_neck(stadium(1.01 * enough, width, 64)), width, 1e-12);
   EXPECT_EQ(thinnest_neck(stadium(0.99 * enough, width, 64)), INFINITY);
 }
 
-/// A circle almost without a bridge, of 1.8 or 2.2 times its width.
+/// The smaller circle has 1.8 or 2.2 times the width of the bridge, which is very short.
 TEST(ThinnestNeck, JoinsPartsThatAreTwiceAsWide) {
   const double width = 0.2;
   EXPECT_EQ(thinnest_neck(bridged_circles(0.6, 0.9 * width, width, 64, 0.75)), INFINITY);
   EXPECT_NEAR(thinnest_neck(bridged_circles(0.6, 1.1 * width, width, 64, 0.79)), width, 1e-12);
 }
 
-/// A circle of 1.9 or 2.1 hundredths of the area of both.
+/// The smaller circle has 0.019 or 0.021 of the area of both.
 TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
   const double width = 0.01;
   for (const double share : {0.019, 0.021}) {
@@ -111,8 +111,9 @@ TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
   }
 }
 
-/// Distances to two points at +-a have the product b^2: 2 sqrt(b^2 - a^2) wide in the middle for a < b <
-/// sqrt(2) a. Edges are chords there, off the contour by l^2/8 times its curvature.
+/// The distances from two points at +-a have the product b^2: the oval is 2 sqrt(b^2 - a^2) wide in the
+/// middle for a < b < sqrt(2) a. Edges are chords there, whose distance from the contour is l^2/8 times its
+/// curvature.
 TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {
   const double a = 0.5;
   for (const double b : {0.5004, 0.502, 0.51}) {
@@ -147,11 +148,13 @@ TEST(ThinnestNeck, IsLookedForBelowABoundOnly) {
   EXPECT_EQ(thinnest_neck(shape, 0.0999), INFINITY);
 }
 
-/// A film over an obstacle, thickest at its ends; between its lobes there is water, however near they are.
+/// A film over an obstacle, thickest at its ends, and two lobes with water between them, however close they
+/// are.
 TEST(ThinnestNeck, IsTheFilmAboveAnObstacleAndNotTheGapBetweenLobes) {
   const double inner = 0.15, film = 0.04, lobe = 0.3, gap = 0.01;
   std::vector<Eigen::Array2d> points;
-  // Upstream is to the left. The film's back is off its front's centre, so that it is thinnest in the middle.
+  // Upstream is to the left. The back of the film has another centre than its front, so that the film is
+  // thinnest in the middle.
   add_arc(points, {0.05, 0}, inner + film + 0.05, pi / 2, 3 * pi / 2, 40);
   points.emplace_back(lobe, -(inner + film + 0.05));
   points.emplace_back(lobe, -gap / 2);

@@ -14,7 +14,8 @@
 namespace clog {
 namespace {
 
-/// A round droplet that is moved along the flow among given circles, released at x = 2, y = `across`.
+/// A round droplet that the test moves along the flow among given circles; it is released at x = 2, y =
+/// `across`.
 class Passage {
  public:
   explicit Passage(std::vector<Obstacle> circles, double across = 5, double range = 0)
@@ -32,7 +33,7 @@ class Passage {
     const Eigen::Array2d release = frame.global({0, 0}) - start_;
     record_.add(state_, obstacles_, release, x);
   }
-  /// Moves in steps as short as those between two checks.
+  /// Moves in steps as short as the distance between two checks.
   void move_by_steps_to(double x) {
     constexpr double step = 0.002;
     while (x_ + step < x) move_to(x_ + step);
@@ -87,7 +88,7 @@ std::vector<Obstacle> row(double from, double to) {
 }
 
 TEST(ContactRecord, CountsAPostOfManyCirclesOnce) {
-  // Longer than the range around the droplet that is searched.
+  // The row is longer than the range around the droplet that is searched.
   Passage along_a_row(row(4, 8));
   along_a_row.move_by_steps_to(8);
   EXPECT_EQ(along_a_row.found().number, 1);
@@ -107,7 +108,7 @@ TEST(ContactRecord, BeginsAtTheRangeOfTheContact) {
 }
 
 TEST(ContactRecord, SeesATouchBetweenTwoVertices) {
-  // A circle that sinks into the middle of an edge by less than to its ends.
+  // A circle overlaps the middle of an edge, by less than it would take to reach the edge's ends.
   const double edge = units::regular_edge_length(128);
   const double apothem = edge / 2 / std::tan(std::numbers::pi / 128);
   const Obstacle circle{2 + apothem + 0.001 - 1e-6, 5, 0.001};

@@ -89,7 +89,7 @@ DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> 
                             snapshot);
 }
 
-/// A soft droplet among walls, before anything holds it.
+/// A soft droplet among walls, with no force that holds it.
 RunParameters soft_among_walls() {
   RunParameters run;
   run.obstacles.box = 20;
@@ -111,7 +111,7 @@ RunParameters with_friction(RunParameters run, double coefficient, FilmFriction 
   return run;
 }
 
-/// Goes on from a snapshot in which walls hold the droplet, and compares.
+/// Resumes from a snapshot in which walls hold the droplet, and compares the results.
 void expect_to_go_on(const RunParameters& run, const std::function<bool(const DropletState&)>& is_held) {
   DropletRun whole(run);
   std::vector<std::byte> snapshot;
@@ -183,8 +183,8 @@ TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
   EXPECT_THROW(resume_in_array(run, bytes), Error);
 }
 
-/// Snapshots with the right checksum and a wrong content: any of their numbers may be anything. Either they
-/// are refused, or the run continues to its end without a crash or an endless loop.
+/// Snapshots with a correct checksum and wrong content, with any value for any number. Either resume()
+/// refuses them, or the run continues to its end without a crash or an endless loop.
 TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
   RunParameters run = with_friction(soft_among_walls(), 0.02, FilmFriction::off);
   run.dp.vertices = 32;
@@ -217,7 +217,7 @@ TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
       std::memcpy(&bytes[at], before, word);
     }
   const auto numbers_of_shape = static_cast<int>(4 * 32);
-  EXPECT_GT(refused, 3 * numbers_of_shape);  // infinite, not a number, too large
+  EXPECT_GT(refused, 3 * numbers_of_shape);  // infinite, not a number, or too large
 }
 
 /// The time that a droplet rested before it clogged does not depend on how the clog is found.
@@ -278,7 +278,7 @@ TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   EXPECT_EQ(run.result().hold.mechanism, ClogMechanism::squeezed);
   EXPECT_GE(run.result().hold.geometry.num_arcs, 2);
 
-  // Further integration must not set it free: the same run with a threshold it cannot reach.
+  // Further integration must not free the droplet: the same run with a threshold that it cannot reach.
   RunParameters on = parameters;
   on.clog_energy = 1e-300;
   on.max_time = 2 * run.result().time + 100;
@@ -324,7 +324,7 @@ TEST(DropletRun, ADropletThatHasNotFallenYetIsNotClogged) {
   parameters.obstacles.gap = 1.2;
   parameters.obstacles.density = {};
   parameters.drag.terminal_speed = 10;
-  parameters.clog_energy = 5e-4;  // it is slower than this at its first checks
+  parameters.clog_energy = 5e-4;  // the droplet is slower than this at its first checks
   DropletRun run(parameters);
   run.advance(5);
   EXPECT_EQ(run.result().status, RunStatus::running);
@@ -369,9 +369,9 @@ RunParameters falls_onto_a_circle(double line_tension, double offset, int vertic
   return resolve(run);
 }
 
-/// When its liquid hangs on both sides of a thin film over the obstacle, four interfaces of tension Gamma
-/// carry all of its weight, at most: below Gamma = pi/16 none holds it. Stiffer ones lie on the obstacle as
-/// well.
+/// When the liquid hangs on both sides of a thin film over the obstacle, four interfaces of tension Gamma
+/// carry at most all of its weight: below Gamma = pi/16 none holds it. A stiffer droplet also lies on the
+/// obstacle itself.
 TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
   for (const int vertices : {64, 128, 256}) {
     const RunResult broken = result_of(falls_onto_a_circle(0.95 * std::numbers::pi / 16, 0, vertices), 100);
@@ -385,7 +385,8 @@ TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
   }
 }
 
-/// A droplet that breaks up head-on slips off to one side when it comes off-centre, unless it is softer.
+/// A droplet that breaks up in a head-on collision slips off to one side in an off-centre one, unless it is
+/// softer.
 TEST(BreakUp, OffCentreADropletHasToBeSofterToBreak) {
   for (const double side : {-1.0, 1.0}) {
     const RunResult passed = result_of(falls_onto_a_circle(0.15, 0.1 * side), 100);
@@ -410,8 +411,8 @@ TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
   EXPECT_EQ(same.kinetic_energy_ratio, broken.kinetic_energy_ratio);
 }
 
-/// A droplet that hangs over an obstacle, with a known rest, from where its neck still gets thinner: a rest
-/// with too thin a neck does not count, and the droplet breaks when its neck gets there.
+/// The run starts where the neck of a droplet that hangs over an obstacle still gets thinner; its rest is
+/// known. A rest with too thin a neck does not count, and the droplet breaks when its neck gets that thin.
 TEST(BreakUp, ComesBeforeACertifiedClog) {
   RunParameters run;
   run.dp.perimeter_spring = PerimeterSpring::rest;

@@ -11,7 +11,7 @@ namespace clog {
 namespace {
 
 constexpr double dwell_length = 0.05;
-constexpr double speed = 0.5;  // dwells of more than 1 t0 are kept
+constexpr double speed = 0.5;  // so that dwells of more than 1 t0 are recorded
 
 /// A course with checks once in a unit of time: the droplet rests at each place in turn, for the given time.
 struct Stand {
@@ -75,7 +75,7 @@ TEST(DwellRecord, CountsTheDwellUnderWayUnlessItIsAClogs) {
 TEST(DwellRecord, SeesADropletThatCreepsAsStandingUntilItHasCrept) {
   DwellRecord record(dwell_length, speed);
   for (int time = 1; time <= 1000; ++time) record.add(time, time / 1024.0);
-  // It is beyond 0.05 after 52, and again after as long.
+  // The droplet is beyond 0.05 after a time of 52, and again after the same time.
   EXPECT_EQ(lengths(record.found(1000, false)), std::vector<double>{52});
   EXPECT_EQ(record.found(1000, false).last_distance, 19 * 52 / 1024.0);
 }
@@ -89,7 +89,7 @@ TEST(DwellRecord, ADropletThatIsPushedBackStandsWhereItWas) {
 TEST(DwellRecord, OfTooManyRecordsTheEarliestAreNoLongerKnown) {
   std::vector<Stand> stands;
   for (int i = 1; i <= 11; ++i) stands.push_back({.place = 1.0 * i, .time = 10 * i});
-  const Dwells dwells = Course(stands).found();  // the last is a tenth as long as it will be
+  const Dwells dwells = Course(stands).found();  // the last dwell is unfinished
   ASSERT_EQ(lengths(dwells).size(), Dwells::most);
   EXPECT_EQ(dwells.longest.front().length, 109);
   EXPECT_EQ(dwells.longest.back().length, 40);
@@ -115,7 +115,7 @@ TEST(DwellRecord, AgreesWithAListOfAllDwells) {
     for (int i = 0; i < 300; ++i) {
       const double place = 0.1 * i;
       for (int stay = draw(random); stay >= 0; --stay) record.add(++time, place);
-      const double end = time + 1;  // the next check is farther on, but for the last
+      const double end = time + 1;  // at the next check the droplet is farther, except after the last stay
       all.push_back({.length = end - begin, .distance = place, .begin = begin});
       begin = end;
     }

@@ -195,7 +195,7 @@ TEST(Resolve, FillsInTheLargestStepThatHolds) {
         const RunParameters resolved = resolve(run);
         EXPECT_EQ(resolve(resolved).time_step, resolved.time_step);
         EXPECT_LE(*resolved.time_step, 0.2 * terminal_speed);
-        // Two digits are kept of the smallest of its bounds.
+        // The step has two digits of the smallest of its bounds.
         const double vertex_mass = units::droplet_mass / vertices;
         const double contact = std::sqrt(
             0.01 * vertex_mass / expected_pressure(resolved, scene_of(resolved).sharpest_bend(resolved)));
@@ -226,7 +226,7 @@ TEST(Resolve, TakesShorterStepsWithStrongerDragOrElasticInterface) {
 }
 
 TEST(Resolve, TakesStepsAsLongAsTheRootOfTheInertia) {
-  // And contact, area and springs are as stiff as before. Where drag limits the step it grows faster.
+  // Contact, area and springs keep their stiffness. Where drag limits the step, the step grows faster.
   RunParameters run;
   run.dp.line_tension = 0.3;
   run.drag.terminal_speed = 0.1;
@@ -247,7 +247,7 @@ TEST(Resolve, FillsInTheSoftestAreaThatKeepsItsSize) {
                   units::rest_area,
               2e-3, 1e-4);
   run.dp.line_tension = 10;
-  EXPECT_EQ(resolve(run).dp.area_stiffness, 1e4);  // the published one
+  EXPECT_EQ(resolve(run).dp.area_stiffness, 1e4);  // the published value
 }
 
 TEST(Resolve, FillsInThePerimeterSpring) {

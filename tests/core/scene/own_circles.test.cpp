@@ -117,7 +117,7 @@ TEST(OwnCircles, MayBeAnyLengthAndFindEachOtherOverItsBorder) {
 }
 
 TEST(OwnCircles, StandBetweenWallsWithoutImagesAcross) {
-  // These would overlap across the border of a periodic array.
+  // These circles would overlap across the border of a periodic array.
   const RunParameters run = resolve(between_walls({{12, 0.1, 0.3}, {12, 9.9, 0.3}}));
   const ObstacleArray device = scene_of(run).walls(run);
   ASSERT_EQ(device.wedges().size(), 2u);
@@ -195,12 +195,13 @@ RunResult end_of(const RunParameters& run) {
 }
 
 TEST(OwnCircles, BlockOrPassADropletInANarrowChannelByItsStiffness) {
-  // A circle of diameter 1 fits where 1.45 - 0.4 are free. Where 1.05 - 0.4 are, only a soft droplet does.
+  // A circle of diameter 1 fits into the free width of 1.45 - 0.4. Into 1.05 - 0.4 only a soft droplet fits.
   EXPECT_EQ(end_of(narrow_channel(1.45, 3)).status, RunStatus::passed);
   EXPECT_EQ(end_of(narrow_channel(1.05, 0.1)).status, RunStatus::passed);
   const RunResult stiff = end_of(narrow_channel(1.05, 3));
   EXPECT_EQ(stiff.status, RunStatus::clogged);
-  // It rests on bump and wall: a circle of radius 1/2 on the upper wall touches that of 0.4 at (8, 0).
+  // The droplet rests on bump and wall: a circle of radius 1/2 on the upper wall touches the circle of radius
+  // 0.4 at (8, 0).
   const double height = 1.05 - 0.5, reach = 0.5 + 0.4;
   EXPECT_NEAR(stiff.release[0] + stiff.distance, 8 - std::sqrt(reach * reach - height * height), 0.1);
 }

@@ -108,7 +108,7 @@ TEST(OnAWall, TheProfileIsThatOfYoungAndLaplaceFromTopToBottom) {
   for (int i = 0; i < 512; ++i) {
     const int next = (i + 1) % 512;
     const double z = (position[i] + position[next]) / 2 - apex;
-    if (z > 0.98 * exact.height) continue;  // lies on the wall
+    if (z > 0.98 * exact.height) continue;  // this part lies on the wall
     const double ex = position[next] - position[i];
     const double ey = position[512 + next] - position[512 + i];
     const double cosine = std::abs(ey) / std::hypot(ex, ey);
@@ -310,7 +310,8 @@ TEST(InAChannel, ParallelWallsSlowACircleByTheMeanDragOfItsVertices) {
   RunParameters run = parameters(1, 128);
   run.drag.near_wall = 0.07;
   run.drag.terminal_speed = 0.03;
-  // Springs that hold the vertices: they do not slide along the interface, back from the walls.
+  // Springs to the rest length hold the vertices, so that they do not slide along the interface away from the
+  // walls.
   run.dp.perimeter_spring = PerimeterSpring::rest;
   run.dp.gravity = Gravity::vertex;
   run.dp.perimeter_stiffness = 1;

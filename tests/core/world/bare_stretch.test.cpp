@@ -36,8 +36,8 @@ TEST(BareStretch, MayBeAmongTheCircles) {
 }
 
 TEST(BareStretch, IsNotWhatACircleCoversOverTheBorder) {
-  // The last one reaches from 13 to 26 and so covers 0 to 6: from 2.5 to 9.4 only 3.4 are bare, from 10.4 to
-  // 12 there are 1.6.
+  // The last circle covers 13 to 26, that is 0 to 6, too. So of the stretch from 2.5 to 9.4 only 3.4 are
+  // bare, and from 10.4 to 12 there are 1.6.
   const std::vector<Obstacle> circles = {{2, 3, 0.5}, {9.9, 3, 0.5}, {12.5, 3, 0.5}, {19.5, 12, 6.5}};
   EXPECT_FALSE(conspicuous_bare_stretch(circles, &Obstacle::x, period));
 }

@@ -34,7 +34,7 @@ RunParameters lattice_disk(double angle, std::uint32_t seed = 1, LatticeKind kin
   return resolve(run);
 }
 
-/// Its pitch is 2, its periods are at most `box`.
+/// A lattice of pitch 2 whose periods are at most `box`.
 ObstacleParameters small_lattice(LatticeKind kind, double angle, double box) {
   RunParameters run;
   run.obstacles.layout = ObstacleLayout::lattice;
@@ -89,9 +89,9 @@ TEST(Lattice, HasFourNeighboursAtTheExactGapAcrossItsBox) {
 }
 
 TEST(Lattice, HasTheCellOfCrystallography) {
-  // tan = 1/3: ten cells of the square lattice. The triangular one at 30, 0 and 19.1 degrees (tan =
-  // sqrt(3)/5, the cell sqrt(7) by sqrt(21) of graphene): 2, 2 and 14 posts. The rhombic one with a shift of
-  // a third: three columns. Multiples of small cells fill the box.
+  // tan = 1/3: ten cells of the square lattice. The triangular lattice at 30, 0 and 19.1 degrees (tan =
+  // sqrt(3)/5, the cell sqrt(7) by sqrt(21) of graphene) has 2, 2 and 14 posts. The rhombic lattice with a
+  // shift of a third has three columns. Multiples of small cells fill the box.
   struct Cell {
     LatticeKind kind;
     double tangent, largest_box, length, box;
@@ -135,7 +135,8 @@ TEST(Lattice, HasItsNearestNeighboursAtThePitchAcrossItsPeriod) {
 }
 
 TEST(Lattice, IsTheNearestThatIsPeriodicOfEveryKind) {
-  // The reference: vectors along and across the flow among all of the lattice, whose angle is the least off.
+  // The reference searches all of the lattice's vectors along and across the flow for the smallest difference
+  // of the angle.
   for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
     for (const double angle : {0.0, 4.0, -20.0, 27.7}) {
       const auto found = nearest_lattice({.box = 20, .lattice = kind, .pitch = 0.7, .lattice_angle = angle});
@@ -176,8 +177,8 @@ TEST(Lattice, IsTheNearestThatIsPeriodic) {
 }
 
 TEST(Lattice, LeavesTheReleaseToTheSeed) {
-  // Uniform in the part of a unit cell where the droplet is free: in the frame of the lattice, both halves of
-  // either coordinate are equally likely. 400 seeds, five standard deviations of a fair coin.
+  // The start is uniform in the part of a unit cell where the droplet is free: in the frame of the lattice,
+  // both halves of either coordinate are equally likely. 400 seeds, five standard deviations of a fair coin.
   const double taken = (0.15 + 0.55) / 1.5;
   int num_ahead = 0;
   int num_above = 0;
@@ -217,9 +218,9 @@ TEST(Lattice, StartsAFreeDropletAtTheCentreOfTheBox) {
 }
 
 // A rigid disk that slowly sinks past an obstacle leaves it at a lateral distance b = (sigma + sigma_ob)/2,
-// on the side to which it was pushed. It meets the next one of a row that is tilted by t if a sin t < b, and
-// is then locked to the direction of the row (Frechette and Drazer, J. Fluid Mech. 627, 379 (2009)). Rows of
-// the square lattice have tilts t and spacing a, or t - 45 degrees and spacing sqrt(2) a.
+// on the side to which it was pushed. The disk meets the next obstacle of a row that is tilted by t if a sin
+// t < b, and then follows the row (Frechette and Drazer, J. Fluid Mech. 627, 379 (2009)). Rows of the square
+// lattice have tilts t and spacing a, or t - 45 degrees and spacing sqrt(2) a.
 TEST(Lattice, LeadsADiskAlongItsRows) {
   for (const double angle : {-20.0, -8.0, 8.0, 20.0})
     EXPECT_NEAR(slope(lattice_result(DropletRun(lattice_disk(angle)))), std::tan(angle * degree), 0.02)
@@ -229,8 +230,8 @@ TEST(Lattice, LeadsADiskAlongItsRows) {
         << angle;
 }
 
-// The rows of the triangular lattice are sqrt(3)/2 a apart; b = 0.65 needs a sin t < b. Those of the rhombic
-// one have obstacles a/cos t apart.
+// The rows of the triangular lattice are sqrt(3)/2 a apart; b = 0.65 needs a sin t < b. The rows of the
+// rhombic lattice have obstacles a/cos t apart.
 TEST(Lattice, LeadsADiskAlongTheRowsOfEveryKind) {
   for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
     for (const double angle : {-12.0, 8.0})

@@ -53,7 +53,7 @@ TEST(SampleObstacles, SaturatesAtTheJammingLimitOfRandomSequentialAddition) {
   EXPECT_NEAR(coverage, 0.547069, 0.001);
 }
 
-/// For one more of the same diameter and gap, whose sum is 0.7.
+/// Expects no room for another obstacle of the same diameter and gap, whose sum is 0.7.
 void expect_no_room(const ObstacleArray& array) {
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> along(0, array.period().along()), across(0, array.period().across());
@@ -104,7 +104,7 @@ TEST(SampleObstacles, ReachesAGivenDensityExactly) {
 }
 
 TEST(SampleObstacles, TheSmallestGapDoesNotFixTheDensity) {
-  // Two arrays that the published rule, all gaps wider than w_ob, both allows, one ten times as dense.
+  // The published rule, all gaps wider than w_ob, allows both arrays, one of which is ten times as dense.
   const ObstacleParameters sparse{.gap = 0.2, .diameter = 0.3, .density = 0.25, .box = 40};
   const ObstacleParameters saturated{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 40};
   const ObstacleArray few = sample_obstacles(sparse, 1), many = sample_obstacles(saturated, 1);
@@ -137,8 +137,8 @@ std::uint64_t digest(const ObstacleArray& array) {
 }
 
 TEST(SampleObstacles, GivesDiscsOfOneSizeThatNeverChange) {
-  // Made by the sampler that lets discs arrive square by square. Renew only with a change that alters the
-  // course of runs.
+  // These digests were recorded with the sampler that adds discs square by square. Renew them only with a
+  // change that alters the course of runs.
   EXPECT_EQ(digest(sample_obstacles({.gap = 0.4, .density = {}, .box = 30}, 4)), 0xea87e7a8c4585524u);
   EXPECT_EQ(digest(sample_obstacles({.gap = 0.2, .density = 0.35, .box = 50}, 1)), 0x10fc226cc1015f64u);
   EXPECT_EQ(digest(sample_obstacles({.gap = 1.1, .density = {}, .box = 17.3}, 11)), 0x9241ec7695805bf0u);
@@ -190,8 +190,8 @@ TEST(SampleObstacles, DrawsTheDiametersOfADilutedMixtureUniformly) {
   EXPECT_LT(chi2, 27.9);
 }
 
-/// The definition of random sequential addition, disc by disc, with std's own random numbers: the first
-/// `count` discs that stay.
+/// The definition of random sequential addition, disc by disc, with random numbers of the standard library:
+/// the first `count` discs that stay.
 ObstacleArray one_by_one(const ObstacleParameters& parameters, std::size_t count, std::uint32_t seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> place(0, parameters.box);
@@ -230,7 +230,7 @@ double close_pairs(const ObstacleArray& array, double widest) {
 }
 
 TEST(SampleObstacles, PacksLikeDiscsThatArriveOneByOne) {
-  // Near saturation (2.79 per sigma^2): the number of neighbours near the smallest distance.
+  // Near saturation (2.79 per sigma^2), the number of neighbours near the smallest distance.
   const ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = 2.25, .box = 6};
   constexpr int num_arrays = 250;
   double difference = 0;
@@ -248,7 +248,7 @@ TEST(SampleObstacles, PacksLikeDiscsThatArriveOneByOne) {
 }
 
 TEST(SampleObstacles, MixesLikeDiscsThatArriveOneByOne) {
-  // Near saturation (4.1 per sigma^2 for this mixture), where most of the large ones find no room.
+  // Near saturation (4.1 per sigma^2 for this mixture), most large discs find no room.
   const ObstacleParameters parameters = mixture(0.5, 6, 3.2);
   constexpr int num_arrays = 100;
   double difference = 0;
@@ -304,7 +304,7 @@ TEST_P(Gathering, FindsWhatBruteForceFinds) {
   const ObstacleArray array =
       sample_obstacles({.gap = 0.4, .diameter = 0.3, .density = {}, .box = 12.5, .boxes = GetParam()}, 2);
   const Period& period = array.period();
-  // Across the far end of the period and the near side of it.
+  // The window crosses the end of the period along the flow and its near side across it.
   const ObstacleArray::Window window{period.along() - 1.5, 0.5, -0.6, 2.7, -1.1, 0.9, 0.4};
   std::vector<Obstacle> found;
   array.gather(window, found);
@@ -329,7 +329,7 @@ TEST(ObstacleArray, SeesOverlapsOfMixedSizes) {
 }
 
 TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
-  // A row over the border of the period, a circle that only overlaps its end, and a copy.
+  // A row across the border of the period, a circle that only overlaps the row's end, and a copy.
   const ObstacleArray array(
       10, {{9.8, 5, 0.3}, {0, 5, 0.3}, {0.2, 5, 0.3}, {0.6, 5, 0.3}, {5, 5, 0.3}, {5, 5, 0.3}});
   const std::vector<std::uint32_t> posts = array.posts();
@@ -353,7 +353,8 @@ TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
 }
 
 TEST(ObstacleArray, FindsPostsAmongAFewCircles) {
-  // The circle that joins the first two comes last; then a copy of it, and one that only overlaps.
+  // The circle that joins the first two is the last of these; then follow a copy of it, and a circle that
+  // only overlaps.
   const std::vector<Obstacle> circles{
       {1, 1, 0.2}, {1.3, 1, 0.2}, {1.55, 1, 0.2}, {1.15, 1, 0.2}, {1.15, 1, 0.2}};
   EXPECT_EQ(posts_among(circles), (std::vector<int>{0, 0, 1, 0, 0}));

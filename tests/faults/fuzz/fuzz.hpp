@@ -17,13 +17,13 @@ inline std::string text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// Input may be refused; any other failure is a finding.
+/// Input may be refused with an Error; any other failure is a finding.
 template <typename Read>
 void may_be_refused(Read read) {
   try {
     read();
   } catch (const Error&) {
-    // A refusal is the answer to most inputs.
+    // Most inputs are refused.
   }
 }
 

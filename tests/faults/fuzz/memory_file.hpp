@@ -7,7 +7,7 @@
 
 namespace clog {
 
-/// A file of the given bytes that lies in memory, for readers that ask for a path.
+/// A file of the given bytes in memory, for readers that need a path.
 class MemoryFile {
  public:
   explicit MemoryFile(std::span<const std::uint8_t> content);

@@ -20,7 +20,7 @@ class SpForces {
   void forget_contacts() { listed_ = false; }
   /// Force on a disk at `place` [g rho sigma^2].
   Eigen::Array2d force_at(const Eigen::Array2d& place, const LocalFrame& frame) const;
-  /// The same times `scale`, for the loop over steps.
+  /// force_at() times `scale`, for the loop over steps.
   Eigen::Array2d scaled_force(double scale, const Eigen::Array2d& place, const LocalFrame& frame) const;
   /// force: (f_x, f_y)
   void evaluate(const DropletState& state, Eigen::ArrayXd& force) const;
@@ -42,8 +42,9 @@ class SpForces {
   void visit_wedges(const Eigen::Array2d& place, const LocalFrame& frame, Visit visit) const;
 };
 
-/// Soft disk: one point of mass M with drag -b_inf v. It has the integrator of DpDroplet, but keeps the state
-/// at half steps in between, so that a step depends on one root, one division and a few sums.
+/// Soft disk: one point of mass M with drag -b_inf v. It has the integrator of DpDroplet, but the loop over
+/// steps keeps the displacement of half a step instead of the velocity, so that a step waits only for one
+/// root, one division and a few sums.
 class SpDroplet final : public Droplet {
  public:
   SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial);

@@ -42,7 +42,7 @@ class Droplet {
   /// Area, perimeter; those of the undeformed disk for the soft disk.
   virtual PolygonShape shape() const = 0;
 
-  /// From now on adds up the work against the drag, which costs a pass over the velocities per step.
+  /// Starts to add up the work against the drag, which costs a pass over the velocities per step.
   void measure_dissipation() { measures_dissipation_ = true; }
   /// Since measure_dissipation() [g rho sigma^3]: energy lost to drag, and work of the springs along the
   /// interface, which have no energy. The trapezoidal rule makes it second order in the time step, like the

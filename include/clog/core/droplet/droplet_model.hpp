@@ -17,11 +17,12 @@ inline constexpr double no_neck = std::numeric_limits<double>::infinity();
 /// The parts of a droplet that walls push.
 struct ContactReach {
   double range;   ///< distance from a wall's surface at which it begins [sigma]
-  bool by_edges;  ///< edges as well as the points that move?
+  bool by_edges;  ///< whether walls push edges as well as the points that move
 };
 
-/// What a droplet is. There is one for each Model. A new one needs a word of Model, a folder beside `polygon`
-/// and `disk` with an object of its own, a line in model.cpp, and the steps of docs/developer/add-a-model.md.
+/// The operations and properties of a droplet model; there is one object for each Model. A new model needs a
+/// word of Model, a folder beside `polygon` and `disk` with an object of its own, a line in model.cpp, and
+/// the steps of docs/developer/add-a-model.md.
 struct DropletModel {
   /// Key of the parameter that is the droplet's stiffness.
   const char* stiffness_key;
@@ -48,15 +49,15 @@ struct DropletModel {
   DropletState (*release)(const RunParameters& run, const ObstacleArray& obstacles);
   /// The energy with which a droplet may be released, beyond that of a free droplet [g rho sigma^3].
   double (*most_energy_at_release)(const RunParameters& run);
-  /// One that moves. The obstacles must outlive it.
+  /// A moving droplet. The obstacles must outlive it.
   std::unique_ptr<Droplet> (*make)(const RunParameters& run, const ObstacleArray& obstacles,
                                    DropletState initial);
-  /// The equilibrium that it approaches, see find_equilibrium().
+  /// The equilibrium that the droplet approaches, see find_equilibrium().
   std::optional<DropletState> (*equilibrium)(const RunParameters& run, const ObstacleArray& obstacles,
                                              const DropletState& state);
   /// The mechanism that holds a clogged droplet.
   Hold (*hold)(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state);
-  /// Width of its thinnest neck; no_neck if it has none that is narrower than `below` [sigma].
+  /// Width of the droplet's thinnest neck; no_neck if none is narrower than `below` [sigma].
   double (*neck)(const DropletState& state, double below);
 };
 

@@ -22,7 +22,7 @@ struct LocalFrame {
   Eigen::Array2d global(const Eigen::Array2d& local) const {
     return image.cast<double>() * period + origin + local;
   }
-  /// Displacement from a place of another frame of the same period, without forming large coordinates.
+  /// Displacement from a place in another frame of the same period, without forming large coordinates.
   Eigen::Array2d displacement(const Eigen::Array2d& local, const LocalFrame& from,
                               const Eigen::Array2d& from_local) const {
     return (image - from.image).cast<double>() * period + (origin - from.origin) + (local - from_local);
@@ -54,7 +54,8 @@ struct Travel {
   double absolute = 0;
   double relative = 0;  ///< to the mean of the points
 };
-/// Bound on the distance in a time [t0]: twice that at the fastest point's present speed plus free fall.
+/// Upper bound on the distance covered in a time [t0]: twice the distance of the fastest point at its
+/// present speed plus free fall.
 inline double possible_way(double speed, double time) { return 2 * time * (speed + units::gravity * time); }
 /// Contact lists extend at most this far ahead [sigma]: anything faster has diverged.
 inline constexpr double widest_skin = 4;

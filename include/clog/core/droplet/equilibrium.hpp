@@ -12,7 +12,7 @@ namespace clog {
 /// Largest distance of any coordinate of a vertex, or of the soft disk, from its equilibrium [sigma].
 inline constexpr double farthest_rest = 0.03;
 /// Smallest stiffness that an equilibrium must have against any displacement [M g/sigma]: the restoring force
-/// on a droplet divided by its displacement as a whole.
+/// divided by the displacement when the droplet moves as a whole.
 inline constexpr double least_stiffness = 1e-3;
 
 /// Coordinates of a displacement: the normal ones of all vertices (perpendicular to the chord between a
@@ -34,7 +34,7 @@ struct EquilibriumForces {
   /// Forces on all points, all x then all y [g rho sigma^2].
   std::function<void(const DropletState& state, Eigen::ArrayXd& force)> evaluate;
   std::function<Axes(const DropletState& state)> axes;
-  bool have_energy;  ///< then the stiffness is symmetric
+  bool have_energy;  ///< if so, the stiffness is symmetric
 
   /// @param forces  has update_contacts(state, travel) and evaluate(state, force); must outlive this
   template <class Forces>

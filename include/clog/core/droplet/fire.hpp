@@ -10,7 +10,7 @@
 
 namespace clog {
 
-/// The steps of both ways to a minimum on all coordinates, compiled for several instruction sets.
+/// Steps of both methods below on all coordinates, compiled for several instruction sets.
 namespace kernel {
 struct ForceSums {
   double largest;                ///< |f_i|
@@ -92,8 +92,8 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   return result;
 }
 
-/// Damped motion to rest, like a droplet's. Slower than FIRE, but it may settle forces without an energy;
-/// FIRE, which judges by the work done, may cycle there.
+/// Relaxes by damped motion, like that of a droplet. It is slower than FIRE, but it may settle forces that
+/// derive from no energy; there FIRE, which judges by the work done, may cycle.
 template <class Forces>
 FireResult settle(Forces& forces, DropletState& state, const FireOptions& options, double damping_rate) {
   const double dt = options.largest_step;

@@ -22,7 +22,7 @@ struct ClogGeometry {
   /// Fraction of the obstacles' upstream support that wrapped ones give; NaN without support.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
   int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
-  /// Pairs of obstacles, one at least supporting, between which the interface looks downstream.
+  /// Gaps: pairs of obstacles, at least one of them supporting, between which the interface faces downstream.
   int num_gaps = 0;
   int num_arcs = 0;  ///< runs of successive edges in contact with one obstacle, a post or a wall
   /// Part of the weight that the corners of the polygon can hold at most: of all wrapped obstacles, their

@@ -31,8 +31,9 @@ int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 /// Largest force component, without weight and springs, with which a droplet may be released: relative to the
 /// weight of one vertex (DP), to its own weight (SP).
 inline constexpr double release_force_tolerance = 1e-4;
-/// The same for an interface that springs along it, which have no energy, keep sliding for ever in a cycle of
-/// 1e-3 sigma; no observed force exceeded 0.01. The droplet as a whole stays in place.
+/// The same tolerance for an interface with springs along it. These have no energy and keep the interface
+/// sliding for ever in a cycle of 1e-3 sigma; no observed force exceeded 0.01. The droplet as a whole stays
+/// in place.
 inline constexpr double release_sliding_tolerance = 0.02;
 
 }  // namespace clog

@@ -5,8 +5,8 @@
 namespace clog {
 
 /// The interface that walls meet is the polygon refined once by the four-point rule (Dubuc 1986; Dyn, Gregory
-/// and Levin 1987): the middle of an edge is that of the cubic through its two vertices and their two
-/// neighbours. A chord deviates from the curve through its ends by l^2/8 times the curvature, half of a
+/// and Levin 1987): the middle of an edge becomes the middle of the cubic through its two vertices and their
+/// two neighbours. A chord deviates from the curve through its ends by l^2/8 times the curvature, half of a
 /// refined edge by a quarter of that. The middle is near (q_i + q_(i+1)) + far (q_(i-1) + q_(i+2)).
 inline constexpr double refined_near = 9.0 / 16;
 inline constexpr double refined_far = -1.0 / 16;
@@ -53,7 +53,7 @@ double distance_to_segment(const Eigen::Array2d& point, const Eigen::Array2d& be
 
 /// Area centroid [sigma].
 Eigen::Array2d area_centroid(const Eigen::ArrayXd& position);
-/// Its rate of change when the vertices move with these velocities.
+/// The centroid's rate of change when the vertices move with these velocities.
 Eigen::Array2d area_centroid_velocity(const Eigen::ArrayXd& position, const Eigen::ArrayXd& velocity);
 
 }  // namespace clog

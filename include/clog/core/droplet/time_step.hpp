@@ -16,8 +16,8 @@ struct Rate {
 /// Time in which the speed of a droplet far from walls follows the forces, S V_t/g [t0].
 double relaxation_time(const RunParameters& run);
 
-/// Resolves the drag's relaxation time: five times, and ten times if walls or the motion relative to the mean
-/// increase the drag or springs carry tension [t0].
+/// The step that resolves the drag's relaxation time: a fifth of it, or a tenth if walls or the motion
+/// relative to the mean increase the drag or springs carry tension [t0].
 double drag_time_step(const RunParameters& run);
 
 /// Uses this automatic step. @param rates  in addition to that of the drag @throws Error naming the key of

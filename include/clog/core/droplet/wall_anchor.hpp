@@ -18,8 +18,8 @@ struct WallPlace {
   double radius = 0;        ///< [sigma]
   Eigen::Index wedge = -1;  ///< number of the wedge; -1: a circle
 
-  /// Whether it is the same wall. Centres from two lists may differ by rounding, those of two walls by much
-  /// more.
+  /// Whether it is the same wall. Two lists may give a wall's centre with different rounding; centres of
+  /// two walls differ by much more.
   bool is(const WallPlace& other) const {
     constexpr double rounding = 1e-6;
     return wedge == other.wedge && std::abs(x - other.x) < rounding && std::abs(y - other.y) < rounding;
@@ -39,10 +39,10 @@ inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> w
 struct WallAnchor {
   Eigen::Index holder;  ///< what the spring holds: a vertex, or the first (0) or last (1) end of an arc
   WallPlace wall;       ///< to which it is tied
-  double x, y;      ///< where, from the wall's centre; of an arc's end x is its place along the wall [sigma]
-  double slip = 0;  ///< way along the wall from there to what it holds, when the wall was last asked [sigma]
-  /// 1: the wall yields, and the spring's force is that of `slip` wherever it holds on. Only while an
-  /// equilibrium is searched; a moving droplet updates its anchors at every step.
+  double x, y;          ///< place, from the wall's centre; at an arc's end, x is the place along it [sigma]
+  double slip = 0;      ///< distance along the wall from the anchor to its holder at the last update [sigma]
+  /// 1: the wall yields, and `slip` gives the spring's force wherever the holder moves. Used only while the
+  /// program searches for an equilibrium; a moving droplet updates its anchors at every step.
   Eigen::Index yields = 0;
 
   double slip_of_force(double slip_now) const { return yields != 0 ? slip : slip_now; }
@@ -51,7 +51,7 @@ struct WallAnchor {
 /// Anchors by the vertices or ends that they hold. It keeps its memory, so that a step allocates none.
 class KnownAnchors {
  public:
-  /// Adopts the anchors and leaves none. @param num_holders  anchors of others are never found
+  /// Takes the anchors out of `anchors`. @param num_holders  find() never finds anchors of other holders
   void take(std::vector<WallAnchor>& anchors, Eigen::Index num_holders) {
     std::swap(anchors_, anchors);
     anchors.clear();
@@ -75,21 +75,21 @@ class KnownAnchors {
   std::vector<std::size_t> first_, next_;  // of a holder; of the same holder
 };
 
-/// Why walls are asked.
+/// What an update of the anchors is for.
 enum class Purpose { motion, equilibrium };
 
 /// The energy that walls dissipated, and the largest excess of a spring's force.
 struct WallYield {
   double dissipated = 0;  ///< [g rho sigma^3]
-  double excess = 0;      ///< most by which a spring's force was not what its wall bears [g rho sigma^2]
+  double excess = 0;      ///< largest difference of a spring's force from what its wall bears [g rho sigma^2]
 
-  /// A spring that its wall lost.
+  /// Counts the energy of a spring that its wall has released.
   void forget(const WallAnchor& anchor, double stiffness) {
     dissipated += 0.5 * stiffness * anchor.slip * anchor.slip;
     excess = std::max(excess, stiffness * std::abs(anchor.slip));
   }
-  /// The remaining slip if the wall bears slips from `least` to `most`. The anchor then moves by the
-  /// difference.
+  /// Limits the slip to what the wall bears, `least` to `most`, and returns it. The caller then moves the
+  /// anchor by the difference.
   double hold(WallAnchor& anchor, double slip, double least, double most, double stiffness, Purpose purpose) {
     const double held = std::clamp(slip, least, most);
     excess = std::max(excess, stiffness * std::abs(held - anchor.slip_of_force(slip)));

@@ -51,8 +51,8 @@ template <>
 struct Words<WallContact> {
   static constexpr Worded<WallContact> all[] = {{WallContact::edge, "edge"}, {WallContact::vertex, "vertex"}};
 };
-/// What the droplet meets: circles by random sequential addition, a tilted square lattice of them, or
-/// user-supplied circles; the two wedges of a channel; a flat wall.
+/// What the droplet meets: circles placed by random sequential addition, in a tilted lattice, or by the user;
+/// the two wedges of a channel; a flat wall.
 enum class ObstacleLayout { random, lattice, file, channel, wall };
 template <>
 struct Words<ObstacleLayout> {
@@ -132,9 +132,9 @@ struct DpParameters {
   /// Empty: on with friction and self-contact.
   std::optional<FilmFriction> film_friction;
   Gravity gravity = Gravity::area;
-  std::optional<int> vertices;  ///< N_v; empty: automatic S, inertial mass divided by the droplet's mass.
-                                ///< Weight and drag do not change, so it only matters how soon the droplet's
-                                ///< speed follows the forces; steps may be sqrt(S) times as long.
+  std::optional<int> vertices;  ///< N_v; empty: automatic
+  /// S, inertial mass divided by the droplet's mass. Weight and drag do not depend on it. S only determines
+  /// how soon the droplet's speed follows the forces; steps may be sqrt(S) times as long.
   double inertia = 1;
   /// A droplet with a thinner neck has broken up [sigma]; 0: none does.
   double break_up_neck = 0;
@@ -247,14 +247,15 @@ struct RunParameters {
   std::optional<double> time_step;  ///< [t0]; empty: automatic
   double max_time = 2e5;            ///< [t0]
   std::optional<LaboratoryText> laboratory = {};
-  double dwell_length = 0.05;  ///< a droplet that comes no farther stands [sigma]
+  double dwell_length = 0.05;  ///< a droplet that advances by less rests [sigma]
   double clog_energy = 1e-17;  ///< E_k/E_t below which a droplet counts as clogged
   ClogDetection clog_detection = ClogDetection::certified;
   std::uint32_t seed = 1;
 };
 
 /// Contact stiffness k_c, force over overlap [g rho sigma], of the wall energy U_w = (E_w/2)(1 - 2d/size)^2:
-/// k_c = 4 E_w / size^2. `size` is the vertex diameter (DP) or sigma (SP). And the way back.
+/// k_c = 4 E_w / size^2. `size` is the vertex diameter (DP) or sigma (SP). The function below inverts this
+/// one.
 inline double contact_stiffness(double wall_stiffness, double size) {
   return 4 * wall_stiffness / (size * size);
 }

@@ -38,7 +38,7 @@ struct Words<ParameterRole> {
 /// Runs to which a parameter applies.
 struct ParameterScope {
   const char* word;    ///< "dp", "lattice", ...
-  const char* reason;  ///< why it means nothing to the others
+  const char* reason;  ///< why the parameter does not apply to other runs
   const char* remedy;
   bool (*holds)(const RunParameters&);
 };
@@ -56,7 +56,7 @@ struct ParameterRange {
 
 struct Parameter {
   const char* key;      ///< in config files and on command lines, e.g. "line-tension"
-  const char* column;   ///< of the table of runs, that tells of it
+  const char* column;   ///< the column of the table of runs that holds its value
   const char* symbol;   ///< as TeX writes it
   const char* unit;     ///< e.g. "g rho sigma^2"; empty: a pure number, or a word
   const char* meaning;  ///< one line
@@ -64,15 +64,15 @@ struct Parameter {
   const ParameterScope* scope;
   const ParameterScope* automatic_in;  ///< runs in which its value follows from the others unless it is given
   ParameterRange range;                ///< of numbers
-  bool has_own_column;                 ///< otherwise the column tells of others as well
-  bool shapes_array;                   ///< do two values of it make two obstacle arrays?
+  bool has_own_column;                 ///< false: the column describes other parameters as well
+  bool shapes_array;                   ///< whether two values of it make two obstacle arrays
   /// The column's value for other runs; usually unset.
   ParameterValue elsewhere;
   /// The value of all runs in files older than the parameter. Unset: unknown.
   ParameterValue before;
 
   ValueKind kind;
-  std::vector<std::string> words;  ///< of a word: all; of a number: what stands for an automatic value
+  std::vector<std::string> words;  ///< of a word: all values; of a number: those that mean automatic
   ParameterValue (*get)(const RunParameters&);
   /// @throws Error if the value is out of the type's range, or the word is unknown
   void (*set)(RunParameters&, const ParameterValue&);

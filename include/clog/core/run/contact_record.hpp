@@ -48,13 +48,13 @@ class ContactRecord {
   };
   /// An obstacle near the droplet.
   struct Seen {
-    double gap = std::numeric_limits<double>::infinity();  ///< between its surface and what moves [sigma]
+    double gap = std::numeric_limits<double>::infinity();  ///< between its surface and the droplet [sigma]
     Place nearest{0, 0};                                   ///< of its circles
     bool is_met = false;                                   ///< one of its circles was in met_
   };
   ContactReach reach_;
   Contacts contacts_;
-  std::vector<Place> met_;  // and not left since: of each, the circle that is nearest
+  std::vector<Place> met_;  // met and not left since: the nearest circle of each obstacle
   // Circles near the droplet, in its frame, as long as it stays within the window, and their posts.
   std::vector<Obstacle> near_;
   std::vector<int> post_of_;
@@ -67,7 +67,7 @@ class ContactRecord {
                    const Eigen::Array2d& upper);
   /// Adds a circle, or a wedge, to the data of its obstacle, and removes it from met_.
   void include(Seen& obstacle, const Place& place, double gap);
-  /// Returns it to met_ if the droplet touches it, or touched it and has not left.
+  /// Returns the obstacle to met_ if the droplet touches it, or touched it and has not left it.
   void count(const Seen& obstacle, double distance);
 };
 

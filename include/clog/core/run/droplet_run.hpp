@@ -55,7 +55,7 @@ struct RunResult {
   double distance = 0;  ///< displacement along the flow since release, certified: at rest [sigma]
   double lateral = 0;   ///< displacement across the flow, certified: at rest [sigma]
   double time = 0;      ///< [t0]
-  TravelSpeed speed;    ///< of the way so far
+  TravelSpeed speed;    ///< of the run so far
   Dwells dwells;
   Contacts contacts;
   double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
@@ -90,8 +90,8 @@ class DropletRun {
   explicit DropletRun(const RunParameters& run);
   /// The same with given walls.
   DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
-  /// @param initial  the droplet at its release @param way  displacement along the flow at which it has
-  /// `passed` [sigma]
+  /// @param initial  the droplet at its release @param way  displacement along the flow at which the droplet
+  /// has `passed` [sigma]
   DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
              double way = std::numeric_limits<double>::infinity());
 
@@ -138,7 +138,7 @@ class DropletRun {
   int quiet_checks_ = 0;
   RunStatus status_ = RunStatus::running;
   std::optional<ClogDetection> clogged_by_;
-  double next_search_;                // E_k/E_t below which an equilibrium is looked for
+  double next_search_;                // E_k/E_t below which the run searches for an equilibrium
   std::unique_ptr<Droplet> at_rest_;  // of a certified clog
   std::string message_;
   DisplacementRecord record_;

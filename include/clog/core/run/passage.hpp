@@ -16,9 +16,9 @@ struct Extreme {
 struct Passage {
   Extreme largest_shape_parameter;
   Extreme largest_speed;   ///< along the flow [V_t]
-  Extreme smallest_speed;  ///< the same; not of the beginning, when the droplet falls from rest
+  Extreme smallest_speed;  ///< the same, without the beginning, when the droplet falls from rest
 
-  /// @param is_falling  whether it has had time to reach its speed
+  /// @param is_falling  whether the droplet has had time to reach its speed
   void add(double place, double shape_parameter, double speed, bool is_falling);
   void save(ByteWriter& bytes) const { bytes.put(*this); }
   void restore(ByteReader& bytes) { bytes.get(*this); }

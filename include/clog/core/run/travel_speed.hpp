@@ -20,7 +20,7 @@ struct TravelSpeed {
   double mean = unknown;       ///< [sqrt(sigma g)]
   double error = unknown;      ///< standard error of the mean, from the speed's course in this run
   double transient = unknown;  ///< time at which the transient ends [t0]
-  double time = unknown;       ///< that the mean is taken over [t0]
+  double time = unknown;       ///< time over which the mean is taken [t0]
 };
 
 /// Mean of the speed after its transient, (r(t_e) - r(t_b))/(t_e - t_b), with t_e the last sample's time. All

@@ -11,9 +11,9 @@ enum class Finding { clogging_length, passage, sag };
 
 /// The source of the walls.
 enum class WallsFrom {
-  parameters,  ///< of the obstacles alone; they may take long to sample
+  parameters,  ///< of the obstacles alone; sampling them may take long
   circles,     ///< that a user gave
-  droplet      ///< where they stand depends on it; they are made at once
+  droplet      ///< which determines their places; making them takes no time
 };
 
 /// Which obstacles a droplet meets, where it starts, and where its path ends. There is one scene for each

@@ -10,14 +10,14 @@
 
 namespace clog {
 
-/// A lattice with a rectangular period along the flow. It does if its tilt t is rational: tan t = q/p
-/// with integers p and q, of a triangular one sqrt(3) q/p. Then p first - q second is a period along the flow
-/// of the square one, L = a sqrt(p^2 + q^2).
+/// A lattice with a rectangular period along the flow. A lattice has one if its tilt t is rational: tan t =
+/// q/p with integers p and q; for a triangular lattice tan t = sqrt(3) q/p. With the lattice's vectors v1 and
+/// v2, p v1 - q v2 is then a period of the square lattice along the flow, of length a sqrt(p^2 + q^2).
 struct CommensurateLattice {
   int p = 1;
   int q = 0;
   double box = 0;     ///< period across the flow [sigma]
-  double length = 0;  ///< along it; 0: as long [sigma]
+  double length = 0;  ///< period along the flow; 0: equal to box [sigma]
   double angle = 0;   ///< t [degrees]
 };
 
@@ -30,9 +30,9 @@ double largest_tilt(LatticeKind kind);
 /// spacings and `narrowest_period`; of several equally near, the one with the largest box. Empty if no
 /// lattice has such periods.
 std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles);
-/// The same; empty if its tilt is too far from lattice_angle.
+/// nearest_lattice(); empty if its tilt is too far from lattice_angle.
 std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);
-/// The smallest whole-numbered box for which there is one [sigma].
+/// The smallest whole-numbered box that has such a lattice [sigma].
 double box_that_fits(const ObstacleParameters& obstacles);
 /// The nearest lattices on both sides of lattice_angle, if there are any.
 std::vector<CommensurateLattice> neighbouring_lattices(const ObstacleParameters& obstacles);

@@ -28,7 +28,7 @@ class ObstacleArray {
   /// @throws Error if a centre is not finite or a radius not positive and finite
   ObstacleArray(const Period& period, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges = {});
 
-  /// The same array in another one's binned() memory, possibly copied from another process. @param memory
+  /// The same array in another one's binned() memory, which may come from another process. @param memory
   /// keeps it alive
   ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory);
   const BinnedObstacles& binned() const { return binned_; }
@@ -55,8 +55,8 @@ class ObstacleArray {
     Obstacle first, second;
     double gap;
   };
-  /// The post of each obstacle: circles of which one has its centre within the other form one post, and
-  /// together its outline. A copy of a circle forms a post of its own.
+  /// The post of each obstacle: circles of which one has its centre within the other form one post, which has
+  /// the outline of their union. A copy of a circle forms a post of its own.
   std::vector<std::uint32_t> posts() const;
   /// The two posts with the smallest gap, including their images, but not those beyond side walls. The gap is
   /// infinite if no pair is nearer than a box.

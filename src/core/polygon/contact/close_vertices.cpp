@@ -58,7 +58,7 @@ class Search {
   std::vector<double>& groups_;
   std::vector<VertexPair>& pairs_;
 
-  /// From each vertex to the one `ahead` along the contour.
+  /// Squared distance from each vertex to the one `ahead` along the contour.
   HWY_INLINE V distance2(int i, int ahead) const {
     return square(hn::Sub(load(c_.x + i + ahead), load(c_.x + i)),
                   hn::Sub(load(c_.y + i + ahead), load(c_.y + i)));
@@ -66,8 +66,9 @@ class Search {
 
   bool excluded_are_long() const { return (c_.exclusion - 1) * c_.longest_edge >= c_.arc; }
 
-  /// False only if no pair along the contour is close. Vertices up to 7 apart are all tested. Those 9 apart,
-  /// with a reach longer by one edge, represent 8 to 10; those 13 apart, longer by two edges, 11 to 15.
+  /// False only if no pair along the contour is close. Tests all vertices up to 7 apart. Vertices 9 apart,
+  /// with a reach longer by one edge, represent 8 to 10; vertices 13 apart, with a reach longer by two edges,
+  /// represent 11 to 15.
   bool along_may_meet() const {
     constexpr int last_tested = 7, third = 9, fifth = 13;
     if (c_.exclusion > last_tested || excluded_are_long()) return true;
@@ -85,7 +86,7 @@ class Search {
   }
 
   void list_along() {
-    // Pairs with the contour's other half were found from the other side.
+    // Pairs with the contour's other half are found from the other vertex.
     const int last = std::min(last_along, c_.n / 2);
     for (int k = excluded_are_long() ? 1 : c_.exclusion; k <= last; ++k) {
       const int end = 2 * k == c_.n ? k : c_.n;

@@ -32,7 +32,7 @@ void FilmTouches::find_walls(const std::vector<WallTouch>& touches) {
       walls_.push_back(touch.wall);
 }
 
-/// As DpForces does.
+/// Computes the forces of self-contact as DpForces does.
 void FilmTouches::find_pushes(const Contour& contour, const SelfContacts& self) {
   pushes_.resize(static_cast<std::size_t>(contour.size), {0, 0});
   for (const SelfContacts::Pair& pair : self.pairs()) {

@@ -49,7 +49,8 @@ bool SelfContacts::hold(double moved, const Travel& travel) const {
 }
 
 void SelfContacts::renew(const DropletState& state, const Travel& travel) {
-  // Thin enough to exclude neighbours along a straight contour at rest, unless the droplet moves very fast.
+  // The skin is thin enough to exclude neighbours along a straight contour at rest, unless the droplet moves
+  // very fast.
   const double usual_skin = (exclusion_ * rest_edge_ - range_) / 4;
   rebuild(state, std::clamp(2 * travel.relative, usual_skin, widest_skin));
 }
@@ -122,7 +123,7 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
   };
   const auto add_edges_of = [&](int vertex, int other) {
     add_if_near({vertex, other});
-    // The edge that ends here is found from its beginning, if that is near.
+    // The edge that ends at `other` is found through its first vertex, if that is near, too.
     const int before = other > 0 ? other - 1 : n - 1;
     if (!is_near(vertex, before)) add_if_near({vertex, before});
   };
@@ -152,7 +153,7 @@ void SelfContacts::fill_items(const DropletState& state) {
   const double* y = x + n;
   items_.clear();
   sort_pairs_by_groups(n);
-  item_of_.assign(2 * static_cast<std::size_t>(n), -1);  // the latest
+  item_of_.assign(2 * static_cast<std::size_t>(n), -1);  // the latest item
   for (const Pair& pair : pairs_) {
     const int before = pair.vertex > 0 ? pair.vertex - 1 : n - 1, after = (pair.vertex + 1) % n;
     const int end = (pair.edge + 1) % n;

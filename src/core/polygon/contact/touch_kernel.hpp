@@ -26,7 +26,7 @@ struct GroupTouches {
 };
 
 struct TouchKernel {
-  /// @param x, y  of the group's first vertex; read from one vertex before to two after the group
+  /// @param x, y  coordinates of the group's first vertex; read from one vertex before to two after the group
   void (*touch)(const double* x, const double* y, const Circle& circle, double stiffness,
                 GroupTouches& touches);
   /// Computes directions of `n` vectors, and `numerators` divided by their lengths. Arrays are read and

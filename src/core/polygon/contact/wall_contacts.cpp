@@ -66,8 +66,8 @@ void WallContacts::gather_nearby(const DropletState& state) {
         nearby_.push_back({centre[0], centre[1], wedge.radius});
       }
   if (keep_ != Keep::nearest_to_vertex) return;
-  // In a sparse array the nearest obstacle may be far away, so search up to one period (a periodic array with
-  // obstacles has one there).
+  // In a sparse array the nearest obstacle may be far away, so the search extends to one period, within which
+  // a periodic array has an obstacle.
   for (window.margin = 0.5; window.margin < 2 * array_->period().along(); window.margin *= 2) {
     nearby_.clear();
     array_->gather(window, nearby_);

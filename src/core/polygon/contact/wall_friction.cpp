@@ -42,11 +42,11 @@ WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> t
     if (!(bears > 0)) continue;
     WallAnchor* const before = known.find(touch.vertex, touch.wall);
     if (before == nullptr) {
-      state.anchors.push_back({touch.vertex, touch.wall, at.point[0], at.point[1]});  // it pulls nowhere yet
+      state.anchors.push_back({touch.vertex, touch.wall, at.point[0], at.point[1]});  // no force yet
       continue;
     }
     WallAnchor anchor = *before;
-    before->holder = -1;  // it is not lost
+    before->holder = -1;  // not lost
     const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
     const double most = bears / (stiffness_ * at.gradient);
     const double held = yield.hold(anchor, slip, -most, most, stiffness_, purpose);

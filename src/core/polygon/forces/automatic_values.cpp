@@ -23,8 +23,8 @@ StiffModes stiff_modes_of_circle(const DpParameters& dp, double wall_stiffness) 
   return stiff_modes(dp, wall_stiffness, circumference, circumference / *dp.vertices);
 }
 
-/// An automatic contact, and all that has its stiffness, follows the step; so only the other modes limit the
-/// step.
+/// The stiffness of an automatic contact, and all that follows from it, depends on the step; so only the
+/// other modes limit the step.
 double largest_step_with_automatic_contact(const DpParameters& dp) {
   const StiffModes modes = stiff_modes_of_circle(dp, 1);
   const double others = modes.sum() - modes.contact - modes.friction;
@@ -46,7 +46,7 @@ std::vector<Rate> polygon_rates(const RunParameters& run) {
 /// The automatic time step [t0]. K_a and K_l must be set.
 double automatic_time_step(const RunParameters& run, double sharpest_bend) {
   const double drag = drag_time_step(run);
-  constexpr double depth = 0.02;  // obstacle plus contact range, divided by the vertex diameter
+  constexpr double depth = 0.02;  // overlap of obstacle and contact range, divided by the vertex diameter
   const double vertex_mass = run.dp.inertia * units::droplet_mass / *run.dp.vertices;
   if (run.wall_stiffness)
     return rounded_down(
@@ -58,7 +58,7 @@ double automatic_time_step(const RunParameters& run, double sharpest_bend) {
   return rounded_down(std::min({drag, stable, stiff_contact}));
 }
 
-/// The droplet keeps its area under its line tension.
+/// Checks that the droplet keeps its area under its line tension.
 void validate_compression(const DpParameters& dp, bool automatic_area) {
   constexpr double largest = 0.05;
   const double softest_per_tension = 1 / (units::droplet_diameter / 2) / (largest * units::rest_area);
@@ -76,7 +76,7 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
   });
 }
 
-/// N_v l of the longest edges l on an obstacle [sigma], measured (docs/explanation/wrapped.md).
+/// Length l of the longest edges on an obstacle, times N_v [sigma]; measured (docs/explanation/wrapped.md).
 double length_over_obstacles(const RunParameters& run) {
   // The whole interface, if the mesh is even.
   const double even = std::numbers::pi * units::droplet_diameter + 0.33 / run.dp.line_tension;
@@ -102,7 +102,7 @@ void resolve_contact_angles(DpParameters& dp) {
         "and the interface on a wall would buckle) use angles for at least {}",
         tension, smallest);
   });
-  const bool is_young = !dp.wall_tension && dp.receding_angle == dp.advancing_angle;  // apart from round-off
+  const bool is_young = !dp.wall_tension && dp.receding_angle == dp.advancing_angle;  // up to round-off
   if (is_young || !dp.receding_angle) dp.receding_angle = young;
   if (is_young || !dp.advancing_angle) dp.advancing_angle = young;
   dp.wall_tension = tension;
@@ -139,7 +139,7 @@ void resolve_film_friction(DpParameters& dp) {
 
 int automatic_vertices(const RunParameters& run, double obstacle_diameter) {
   constexpr int fewest = 128, most = 1024, group = 8;
-  constexpr double longest_edge = 0.28;  // over the obstacle's radius
+  constexpr double longest_edge = 0.28;  // divided by the obstacle's radius
   const double needed = length_over_obstacles(run) / (longest_edge * obstacle_diameter / 2);
   if (!(needed < most)) return most;
   return std::max(fewest, group * static_cast<int>(std::ceil(needed / group)));

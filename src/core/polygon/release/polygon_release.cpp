@@ -38,7 +38,7 @@ struct Seed {
 Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
   const int n = *run.dp.vertices;
   const Eigen::Array2d place = nearest_void(obstacles);
-  // A hundredth less, so that nothing touches.
+  // A hundredth less, so that the circle touches nothing.
   const double room = 0.99 * (clearance(obstacles, place[0], place[1], 2 * radius) - *run.dp.contact_range);
   const double smallest_radius = 4 * run.dp.self_contact_range / (2 * std::numbers::pi);
   if (room < smallest_radius)
@@ -49,17 +49,17 @@ Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
   return {state_at_rest(regular_polygon(n, area), place, {period.along(), period.across()}), area};
 }
 
-/// The droplet grows with every contact and evenly spread vertices, whatever its own interface is: bunched
-/// vertices make the interface too stiff for any step, and obstacles slip between distant ones. Springs along
-/// the interface have no energy, so they must be weak for the minimiser; under a large tension they must be
-/// strong, because contact then pulls vertices together at the corners of a squeezed droplet.
+/// The droplet grows with all kinds of contact and evenly spread vertices, whatever its own interface is:
+/// bunched vertices make the interface too stiff for any step, and obstacles slip between distant ones.
+/// Springs along the interface have no energy, so they must be weak for the minimiser; under a large tension
+/// they must be strong, because contact then pulls vertices together at the corners of a squeezed droplet.
 RunParameters with_growing_interface(RunParameters run) {
-  run.dp.inertia = 1;  // it starts at rest
+  run.dp.inertia = 1;  // the droplet starts at rest
   run.dp.perimeter_spring = PerimeterSpring::along;
   run.dp.perimeter_stiffness = 0.01 + 0.03 * run.dp.line_tension;
   run.dp.wall_contact = WallContact::edge;
   run.dp.self_contact = SelfContact::on;
-  run.dp.receding_angle.reset();  // walls hold it only from the start of the run
+  run.dp.receding_angle.reset();  // walls hold the droplet only from the start of the run
   run.dp.advancing_angle.reset();
   run.dp.gravity = Gravity::vertex;  // without weight the springs need no reaction on the area
   return run;
@@ -76,7 +76,7 @@ DpForces weightless_forces(const RunParameters& run, const ObstacleArray& obstac
 }
 
 /// Grows the droplet in stages to its full area.
-/// @param area  that it has
+/// @param area  the droplet's present area
 void grow(const RunParameters& growing, double area, DpForces& forces, DropletState& state) {
   constexpr double growth = 1.02;  // growth of the area per stage
   RestForces rest_forces(growing, forces);
@@ -93,14 +93,14 @@ void grow(const RunParameters& growing, double area, DpForces& forces, DropletSt
 
 constexpr double damping_rate = 3;  // near the softest modes' frequency [1/t0]
 
-/// Returns whether it does.
+/// Relaxes the grown droplet. Returns whether it comes to rest.
 bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpForces& forces,
                    const FireOptions& options, const FireOptions& longer, DropletState& state) {
   RestForces rest_forces(growing, forces);
   bool rests = minimize_fire(rest_forces, state, options).converged ||
                settle(rest_forces, state, longer, damping_rate).converged;
   // Springs along the interface have no energy, so the remaining sliding may follow a small cycle for ever.
-  // Weaker springs drive it less.
+  // Weaker springs drive the sliding less.
   constexpr double weaker = 0.3;
   constexpr int most_weakenings = 4;
   for (int i = 0; i < most_weakenings && !rests; ++i) {
@@ -126,7 +126,8 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   FireOptions longer = options;
   longer.max_iterations = 500000;
   bool rests = comes_to_rest(growing, obstacles, forces, options, longer, state);
-  // Then relaxes with its own interface; springs with a tension of their own start only with the run.
+  // Then the droplet relaxes with its own interface; springs with a tension of their own start only with the
+  // run.
   RunParameters own = run;
   own.dp.inertia = growing.dp.inertia;
   own.dp.receding_angle = growing.dp.receding_angle;

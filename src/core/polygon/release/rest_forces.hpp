@@ -10,8 +10,8 @@
 
 namespace clog {
 
-/// The negative gradient of DpForces' energy, by the passes of a step, because releases and searches for rest
-/// need it thousands of times.
+/// The negative gradient of DpForces' energy, computed by the fast passes of a step, because releases and
+/// searches for rest need it thousands of times.
 class RestForces {
  public:
   /// @param run     resolved parameters
@@ -34,8 +34,8 @@ class RestForces {
   std::vector<kernel::WedgePlace> wedges_;
   WettedWalls::Forces wetting_;
   NearContacts near_;
-  double way_ = 0;            // for which they hold [sigma]
-  Eigen::ArrayXd looked_at_;  // where vertices were then, all x then all y, and room for a whole vector
+  double way_ = 0;            // displacement for which the contacts are valid [sigma]
+  Eigen::ArrayXd looked_at_;  // vertices at the last look, all x then all y, and room for a whole vector
 
   bool contacts_hold(const Travel& travel) const;
   void look(const DropletState& state, const Travel& travel);

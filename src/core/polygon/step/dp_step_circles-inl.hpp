@@ -60,7 +60,7 @@ struct NearestOnHalves {
   V dx, dy;    ///< from the centre
   V distance2;
 
-  /// @param span  1: the half edge counts, 0: its beginning alone
+  /// @param span  1: the whole half edge counts, 0: its beginning alone
   HWY_INLINE NearestOnHalves(V begin_x, V begin_y, V end_x, V end_y, V centre_x, V centre_y, V span) {
     const V ex = hn::Sub(end_x, begin_x), ey = hn::Sub(end_y, begin_y);
     const V to_x = hn::Sub(centre_x, begin_x), to_y = hn::Sub(centre_y, begin_y);
@@ -72,7 +72,7 @@ struct NearestOnHalves {
     distance2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
   }
   HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
-  /// stiffness (reach - distance), where they touch.
+  /// The force stiffness (reach - distance), where they touch.
   HWY_INLINE Pair push(M touch, V reach, V stiffness) const {
     // A point exactly at the centre gets no direction, but no NaN.
     const V inverse_distance = square_root(hn::Max(distance2, all(1e-300))).inverse;

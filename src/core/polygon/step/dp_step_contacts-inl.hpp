@@ -79,7 +79,7 @@ class EdgePushes {
   V x_, y_, along_x_, along_y_;
 
   static HWY_INLINE void hand_out(V whole, V end, double* p) {
-    // Added at once, because data just stored elsewhere could not be loaded immediately.
+    // Adds to memory at once, because data just stored elsewhere could not be loaded immediately.
     store(hn::Add(load(p), hn::Add(hn::Sub(whole, end), to_next_lane(end))), p);
     p[lanes] += hn::ExtractLane(end, lanes - 1);
   }
@@ -98,7 +98,7 @@ constexpr auto orders = [] {
 /// Consecutive vertices, one for each edge of a vector.
 class PairedVertices {
  public:
-  /// @param lane  of the item's edges the first
+  /// @param lane  the first of the item's edges that counts
   HWY_INLINE PairedVertices(const SelfContacts::Item& item, int lane, const StepArrays& a)
       : first_(item.vertices + (item.backwards ? edges_per_group - lanes - lane : lane)),
         order_(orders[item.backwards].data()) {
@@ -108,8 +108,8 @@ class PairedVertices {
   }
   HWY_INLINE const Pair& place() const { return place_; }
 
-  /// Reaction on the vertices of the force on edges. Reads and writes whole aligned vectors: one across two
-  /// that were just stored would have to wait for the cache.
+  /// Reaction on the vertices of the force on edges. Reads and writes whole aligned vectors: a load across
+  /// two vectors that were just stored would have to wait for the cache.
   HWY_INLINE void push_back(const Pair& push, const StepArrays& a) const {
     const int beyond = first_ & (lanes - 1), aligned = first_ - beyond;
     const auto turned = hn::SetTableIndices(D(), order_ + lanes - beyond);
@@ -325,7 +325,7 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
     }
   }
   shrink_to_wedge_distances(n, walls, shortest, a, a.rate);
-  // Separate from the search, so that the processor overlaps more of these long chains.
+  // This loop is separate from the search, so that the processor overlaps more of its long chains.
   for_vectors(n, [&](int i, auto) CLOG_INLINE {
     const V distance = load(a.rate + i);
     V rise;

@@ -51,7 +51,7 @@ HWY_INLINE void fold_ends(const ContourPair& p, int n, int beyond = 2) {
   fold_ends(p.y, n, beyond);
 }
 
-/// The vertices that a circle holds, and their anchors.
+/// Whether friction acts through films, and whether films of several circles may overlap.
 enum class Films { none, those_of_one_circle, those_of_several };
 
 /// A circle and the vertices of a vector.
@@ -90,7 +90,7 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
             push_y = pushes ? load(walls.push.y + i) : all(0);
     const M is_known = lanes_of(static_cast<int>(held_before), lane);
     M touched_or_held = hn::Or(is_known, hn::Or(hn::Ne(push_x, all(0)), hn::Ne(push_y, all(0))));
-    // The closest point of a half edge may be its end, so the wall does not push all that it wets.
+    // The closest point of a half edge may be its end, so the wall does not push every vertex that it wets.
     if constexpr (wets && pushes)
       touched_or_held = hn::Or(touched_or_held, hn::Gt(load(walls.wetted + i), all(0)));
     V self_x = all(0), self_y = all(0);
@@ -195,7 +195,7 @@ double push_off_and_hold(int n, const HoldingCircles& given, const WallGrip& gri
   return sum(taken);
 }
 
-/// Finds the distances of the vertices from the nearest of the circles that push the droplet.
+/// Finds the distance of each vertex from the nearest circle that pushes the droplet.
 void find_nearest(int num_groups, const HoldingCircles& walls, const StepArrays& a) {
   const auto visit = [&](auto what) CLOG_INLINE {
     for (std::size_t c = 0; c < walls.num; ++c)

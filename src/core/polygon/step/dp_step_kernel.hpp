@@ -36,8 +36,8 @@ struct StepArrays {
   ContourPair grad_x, grad_y;  ///< 6 a times the gradient of the centroid's x, of its y
   ContourArray rate;           ///< drag rate of a vertex [1/t0], if it differs
   ContourArray damping, kept;  ///< s and s (1 - h2 r), with the rate; see KickCoefficients
-  ContourPair kicked;          ///< w, if it is wanted; see KickCoefficients
-  ContourPair chord;           ///< between a vertex' neighbours, with an implicit pressure
+  ContourPair kicked;          ///< w, if keeps_kicked; see KickCoefficients
+  ContourPair chord;           ///< between a vertex's neighbours, for an implicit pressure
 };
 
 /// Sums over the edges.
@@ -51,7 +51,7 @@ struct Sums {
 /// A kick is the change of a vertex' velocity by a force in half a time step: F below is the force times
 /// h/(M/N_v).
 struct InterfaceKick {
-  double line_tension;  ///< tension where the spring is at length 0
+  double line_tension;  ///< tension at zero length of the spring
   double spring;        ///< of springs that carry tension
   double spreading;     ///< of springs along the interface
   double half_pressure;
@@ -72,9 +72,9 @@ struct KickCoefficients {
   double h1, h2;         ///< [t0]
   double weight;         ///< (h1 + h2) / half_step, h1 / half_step where no time step begins
   double half_step;      ///< that of the forces [t0]
-  bool keeps_kicked;     ///< is w wanted afterwards?
-  /// Of an implicit pressure: K_a half_step^2/(M/N_v), K_a the area stiffness. The half kick that ends a step
-  /// of another length has the value of the step that begins.
+  bool keeps_kicked;     ///< whether w is needed afterwards
+  /// For an implicit pressure: K_a half_step^2/(M/N_v), with K_a the area stiffness. The half kick that ends
+  /// a step of another length has the value of the step that begins.
   double softening = 0;
 };
 /// The terms of a kick. Each combination is compiled separately.
@@ -82,12 +82,12 @@ struct KickTerms {
   bool elastic;                     ///< springs that carry tension; otherwise those along the interface
   bool on_area;                     ///< weight and mean drag act on the area; they are then coupled
   bool varying_rate;                ///< drag rates are those of the array; otherwise `rate`
-  bool coupled;                     ///< does any force depend on all velocities?
+  bool coupled;                     ///< whether any force depends on all velocities
   bool implicit_pressure;           ///< see Coupling
   double rate;                      ///< [1/t0]
   double relative_rate, area_rate;  ///< at which the mean velocities of vertices and area act [1/t0]
 };
-/// Mean velocities, and their contributions to those of the vertices.
+/// Mean velocities, and what they contribute to the velocities of the vertices.
 ///
 /// An implicit pressure follows from the area after a time step with its present acceleration: A + dt^2
 /// d^2A/dt^2, with the acceleration by all forces on vertices and area, including the added pressure, and by
@@ -100,12 +100,12 @@ struct Coupling {
   double area_x = 0, area_y = 0;  ///< of the area's centroid
   double c_x = 0, c_y = 0;
   double a_x = 0, a_y = 0;   ///< with the force on the area, over 6 a
-  double half_pressure = 0;  ///< that an implicit pressure adds, as a kick
+  double half_pressure = 0;  ///< pressure that the implicit pressure adds, as a kick
 };
 /// Powers, each for M/N_v = 1.
 struct Power {
   double drag;                ///< sum r_i v_i^2, the vertices' own share of the dissipation
-  double spreading;           ///< sum F_i v_i of what spreads vertices along the interface, F_i the kick
+  double spreading;           ///< sum F_i v_i, with F_i the kick that spreads vertices along the interface
   double spread_x, spread_y;  ///< sum F_i
 };
 /// A circle and the edges_per_group edges from `first` on; bits mark those that may touch it.
@@ -127,8 +127,9 @@ struct WallWindows {
   const WallWindow* all;
   int num_own;  ///< the first of them share no edge with each other
   int num_all;
-  const int* groups;  ///< of vertices that windows may push; -1 and the one behind the last are the other
-                      ///< end's
+  /// Groups of vertices that windows may push. Group -1 and the one behind the last belong to the contour's
+  /// other end.
+  const int* groups;
   int num_groups;
   WindowPushArrays pushes;
 };
@@ -138,8 +139,8 @@ struct HoldingCircle {
   int first_window, end_window;
   int first_group, end_group;  ///< of vertices that it may push, by itself or through films
   int end_own_group;           ///< behind the groups that it may push by itself, which come first
-  bool wraps;                  ///< does it push vertices -1, n or n + 1, which are the other end's?
-  WindowPushArrays pushes;     ///< of its own
+  bool wraps;                  ///< whether it pushes vertices -1, n or n + 1, which belong to the other end
+  WindowPushArrays pushes;     ///< of this circle
 };
 /// Repulsion and friction of circles; see WallHold. Every group of vertices that a circle may push
 /// has edges_per_group entries of anchor_x, anchor_y, slip, and one of holds.
@@ -149,14 +150,14 @@ struct HoldingCircles {
   const WallWindow* windows;
   const int* groups;
   double *anchor_x, *anchor_y;  ///< from the circle's centre [sigma]
-  double* slip;                 ///< way along the wall from the anchor to what it holds [sigma]
+  double* slip;                 ///< distance along the wall from the anchor to its vertex [sigma]
   std::uint8_t* holds;          ///< vertices that have an anchor, as bits
   ContourPair push;             ///< on the vertices, by one circle; memory
   ContourArray wetted;          ///< length of the interface on one circle [sigma]; memory
   double *added_x, *added_y;    ///< what circles add to self-contact, an entry for each anchor; memory
   ContourArray nearest;   ///< distance of the vertices from the nearest circle that pushes [sigma]; memory
-  std::uint8_t* touches;  ///< does a circle push the droplet? memory
-  bool are_close;         ///< may a vertex be in the film's reach of two circles?
+  std::uint8_t* touches;  ///< whether a circle pushes the droplet; memory
+  bool are_close;         ///< whether a vertex may be in the film's reach of two circles
 };
 /// Limits of friction, as kicks.
 struct WallGrip {
@@ -164,7 +165,7 @@ struct WallGrip {
   double traction;         ///< for each sigma of wetted length
   double stiffness;        ///< k_t of the springs between interface and wall
   double film_reach;       ///< of friction through films, from the surface; 0: there is none [sigma]
-  double least_film_push;  ///< less of self-contact is none
+  double least_film_push;  ///< smaller forces of self-contact count as zero
 };
 struct Contact {
   double stiffness;   ///< k_c as a kick
@@ -176,13 +177,13 @@ struct NearWalls {
   const WallContacts::Item* items;  ///< circles, by group
   std::size_t num_items;
   double range;   ///< of the items' reach [sigma]
-  bool alike;     ///< have all circles this radius?
+  bool alike;     ///< whether all circles have this radius
   double radius;  ///< [sigma]
   const WedgePlace* wedges;
   std::size_t num_wedges;
 };
 struct NearWallDrag {
-  double shortest;  ///< distances count as no less [sigma]
+  double shortest;  ///< smaller distances count as this one [sigma]
   double relative, near_wall, exponent;
   double far_rate;  ///< [1/t0]
 };
@@ -198,8 +199,8 @@ struct Survey {
 struct StepKernel {
   /// Edges and sums over them.
   Sums (*measure)(int n, const StepArrays& arrays);
-  /// @param walls, self  where vertices were, all x then all y, the latter relative to their mean; may be
-  /// null
+  /// @param walls, self  earlier positions of the vertices, all x then all y, `self` relative to their mean;
+  /// may be null
   Survey (*survey)(int n, const double* walls, const double* self, const StepArrays& arrays);
   /// Gap between every edge of every item and its contact range, edges_per_group for each; negative in
   /// contact [sigma]. Returns the smallest, at most 0.
@@ -224,8 +225,8 @@ struct StepKernel {
   /// wedge's tip first, which is a circle.
   void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
                           double stiffness, const StepArrays& arrays);
-  /// rate = far_rate (relative + near_wall (sigma/d)^exponent), with d a vertex' distance to the nearest
-  /// wall; and the coefficients of a kick that follow from it.
+  /// Computes rate = far_rate (relative + near_wall (sigma/d)^exponent), with d a vertex's distance to the
+  /// nearest wall, and the coefficients of a kick that follow from the rate.
   void (*near_wall_rates)(int n, const NearWalls& walls, const NearWallDrag& drag,
                           const KickCoefficients& coefficients, const StepArrays& arrays);
   /// First pass: forces and velocities.

@@ -71,7 +71,8 @@ HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force
     const double ng_x = unit * sums.ng_x, ng_y = unit * sums.ng_y;
     if constexpr (implicit_pressure) {
       outwards += ng_x * kick_x + ng_y * kick_y;
-      // If s is the same for all vertices the pressure moves them by s n, which adds up to zero.
+      // If s is the same for all vertices, the pressure moves them by s n, and the sum of these vectors is
+      // zero.
       const double pressed = k.closing_ratio * softening * one_nth * sums.s;
       right_x -= pressed * ng_x * outwards;
       right_y -= pressed * ng_y * outwards;
@@ -109,7 +110,8 @@ struct Corner {
   V length, tx, ty, length_before, tx_before, ty_before;
   V ex, ey, ex_before, ey_before;
 
-  /// In this order, because the compiler may fuse a product with the next sum, which changes the last bits.
+  /// The order matters, because the compiler may fuse a product with the next sum, which changes the last
+  /// bits.
   HWY_INLINE void multiply() {
     ex = hn::Mul(length, tx);
     ey = hn::Mul(length, ty);

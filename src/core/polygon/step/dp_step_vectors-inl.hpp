@@ -65,8 +65,8 @@ HWY_INLINE std::array<double, 4> sums(V a, V b, V c, V d) {
 #endif
 }
 
-/// The vector that begins `num` entries before p. `before` and `here` are those at p - lanes and p, so that
-/// two cache lines are not read again.
+/// The vector that begins `num` entries before p. `before` and `here` are the vectors at p - lanes and p,
+/// which avoids reading two cache lines again.
 template <int num>
 HWY_INLINE V shifted_back([[maybe_unused]] const double* p, [[maybe_unused]] V before,
                           [[maybe_unused]] V here) {
@@ -125,17 +125,17 @@ HWY_INLINE V reciprocal(V v) {
 #endif
 }
 
-/// Towards zero, of numbers that an integer can hold.
+/// Rounds towards zero, for numbers that fit an integer.
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> truncated(V v) {
 #if HWY_TARGET == HWY_AVX3
   return hn::Vec<hn::RebindToSigned<D>>{
-      _mm512_cvttpd_epi64(v.raw)};  // Highway's also handles all other numbers
+      _mm512_cvttpd_epi64(v.raw)};  // Highway's version also handles all other numbers
 #else
   return hn::ConvertTo(hn::RebindToSigned<D>(), v);
 #endif
 }
 
-/// For the bodies of for_vectors(): otherwise their sums would be in memory, which is slow.
+/// Makes the bodies of for_vectors() inline: otherwise their sums would be in memory, which is slow.
 #undef CLOG_INLINE
 #if defined(__GNUC__)
 #define CLOG_INLINE __attribute__((always_inline))

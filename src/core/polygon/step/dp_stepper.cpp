@@ -35,8 +35,8 @@ int steps_between_surveys(double time_step) {
   return steps;
 }
 
-/// The pressure may be implicit if the drag on relative motion of vertices damps the energy that it feeds
-/// into a swinging droplet (docs/notes/2026-11-26-time-step.md).
+/// Allows an implicit pressure if the drag on the relative motion of vertices damps the energy that the
+/// pressure feeds into a swinging droplet (docs/notes/2026-11-26-time-step.md).
 Pressure most_pressure(const RunParameters& run) {
   constexpr double most_steps = 32;
   const bool is_damped =
@@ -73,7 +73,7 @@ std::int64_t DpStepper::move(DropletState& state, int num_steps, Droplet::Work* 
   load(state);
   for (int done = 0; done < num_steps; done += steps_per_survey_) {
     const kernel::Survey now = survey();
-    // Its contact lists would take all memory. The run detects this at its next check.
+    // The contact lists of a burst droplet would take all memory. The run detects this at its next check.
     if (!(now.perimeter < burst_perimeter)) break;
     const int steps = std::min(steps_per_survey_, num_steps - done);
     prepare_contacts(state, now, steps * run_.time_step.value(), work);
@@ -144,7 +144,7 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
   }
 }
 
-/// Leaves the last half kick open: positions are those at the end of the steps, velocities those half a step
+/// Leaves the last half kick open: positions belong to the end of the steps, velocities to half a step
 /// earlier.
 void DpStepper::advance(DropletState& state, const Steps& steps, Droplet::Work* work) {
   open_.pressure = steps.pressure;
@@ -159,8 +159,8 @@ void DpStepper::finish(DropletState& state, Droplet::Work* work) {
   near_.hold.hand_back(state);
 }
 
-/// One force evaluation, the half kicks on its two sides, and the drift to the next one; without a drift only
-/// the first half kick.
+/// Evaluates the forces once, makes the half kicks on both sides, and drifts to the next evaluation; without
+/// a drift makes only the first half kick.
 void DpStepper::kick_and_drift(DropletState& state, double half_step, double drift_time,
                                Droplet::Work* work) {
   kernel::StepArrays& a = memory_.arrays();
@@ -237,7 +237,7 @@ void DpStepper::renew_rates(const kernel::KickCoefficients& coefficients) {
     --rates_.steps_left;
     return;
   }
-  const double way = rates_.fastest * 2 * coefficients.half_step;  // of the fastest vertex in a step
+  const double way = rates_.fastest * 2 * coefficients.half_step;  // distance of the fastest vertex in a step
   const double steps = 1 + farthest_way_per_rate * run_.drag.near_wall_cutoff / way;
   rates_.steps_left = static_cast<int>(std::min(most_steps_per_rate, steps)) - 1;
   rates_.h1 = coefficients.h1;
@@ -282,7 +282,7 @@ void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::W
   const WallYield yield = forces_->friction().follow(state, touches, Purpose::motion,
                                                      friction_.touches.known_anchors(), &friction_.force);
   if (work != nullptr) work->dissipated += yield.dissipated;
-  for (const WallAnchor& anchor : state.anchors) {  // if a vertex has two, the first adds both forces
+  for (const WallAnchor& anchor : state.anchors) {  // the first of two anchors of a vertex adds both forces
     const Eigen::Index x = anchor.holder, y = n_ + x;
     a.push.x[x] += impulse * std::exchange(friction_.force[x], 0.0);
     a.push.y[x] += impulse * std::exchange(friction_.force[y], 0.0);

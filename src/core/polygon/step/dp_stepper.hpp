@@ -72,7 +72,7 @@ class DpStepper {
   int steps_per_survey_;
   Pressure most_pressure_;
   kernel::KickTerms terms_;
-  kernel::StepKernel kernel_, implicit_kernel_;  // the latter with an implicit pressure
+  kernel::StepKernel kernel_, implicit_kernel_;  // the latter for an implicit pressure
   StepMemory memory_;
   kernel::Sums sums_{};
   Near near_;
@@ -93,7 +93,7 @@ class DpStepper {
   void renew_rates(const kernel::KickCoefficients& coefficients);
   void add_wetting(DropletState& state, double impulse, Droplet::Work* work);
   void hold_by_friction(DropletState& state, double impulse, Droplet::Work* work);
-  double vertex_mass() const;  // mass that resists a change of speed
+  double vertex_mass() const;  // inertial mass of a vertex
   Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,
                       const kernel::Coupling& coupling) const;
 };

@@ -9,7 +9,7 @@
 namespace clog {
 namespace {
 
-// Groups before and after the contour, and their neighbours, are read.
+// The step also reads groups before and after the contour, and their neighbours.
 constexpr int before = 2, behind = 2;
 
 }  // namespace

@@ -20,15 +20,16 @@ class WallHold {
   struct Near {
     const std::vector<WallContacts::Item>& walls;  ///< see list_windows()
     const std::vector<SelfContacts::Item>& self;
-    double way;  ///< largest displacement of any vertex until then [sigma]
+    double way;  ///< largest displacement of any vertex until the next make() [sigma]
   };
 
   /// @param range  distance from a circle's surface at which contact begins [sigma]
   /// @param film_reach  see kernel::WallGrip
   WallHold(int num_vertices, double range, double film_reach);
 
-  /// Adopts the anchors. @param vertices  where they are Returns half the sum of the squared slips of those
-  /// anchors that none of these circles can hold [sigma^2].
+  /// Takes over the droplet's anchors. @param vertices  their positions
+  /// Returns half the sum of the squared slips of those anchors that none of these circles can hold
+  /// [sigma^2].
   double make(const Near& near, const kernel::ContourPair& vertices, DropletState& droplet);
   /// Copies the anchors into the droplet, if make() was called since forget().
   void hand_back(DropletState& droplet) const;
@@ -45,10 +46,10 @@ class WallHold {
   struct Memory {
     hwy::AlignedFreeUniquePtr<double[]> numbers;
     std::size_t capacity = 0;
-    /// Zeroes the first ones, or all if they have to be new.
+    /// Zeroes the first `num_zeroed` numbers, or all if the memory must grow.
     void make_room(std::size_t needed, std::size_t num_zeroed);
   };
-  Memory memory_;   // circles' pushes: zero but where windows_ stored some
+  Memory memory_;   // pushes of circles: zero except where windows_ stored some
   Memory anchors_;  // one entry for each vertex of groups_, and each circle
   std::vector<kernel::WallWindow> windows_;
   std::vector<kernel::HoldingCircle> all_;

@@ -160,7 +160,7 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
     if (vertex(k).share < 1) continue;
     for (const Index side : {Index{0}, Index{1}}) {
       const Index step = side == 1 ? 1 : -1;
-      Index last = k;  // of the arc
+      Index last = k;  // last vertex of the arc
       const auto goes_on = [&] { return step > 0 ? follows(last) : follows(last - 1); };
       while (last - k < num && k - last < num && goes_on() && vertex(last + step).share < 1) last += step;
       if (goes_on() && vertex(last + step).share >= 1) continue;
@@ -172,7 +172,7 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
       double sum = zone.wall.wedge >= 0 ? here.on_wedge
                                         : zone.wall.radius * portable::atan2(here.normal[1], here.normal[0]);
       double way_before = 0;
-      Eigen::Array2d carried = here.forward;  // weight of u of the present vertex so far
+      Eigen::Array2d carried = here.forward;  // weight so far of u of the present vertex
       for (Index j = k;; j += step) {
         const bool is_last = j == last;
         const Index next = around(vertex(j).vertex + step, n);

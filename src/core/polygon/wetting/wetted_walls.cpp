@@ -128,7 +128,7 @@ void WettedWalls::add_tension(const VertexPlaces& vertices, Forces& forces) cons
     const double length_before = edge_before.matrix().norm(), length_after = edge_after.matrix().norm();
     push(i, -extra_tension_ * of(i).share.slope * (length_before + length_after) / 2 * of(i).normal);
     pull_together(before, i, edge_before, length_before);
-    // Otherwise the loop adds this edge when it reaches `after`.
+    // Otherwise the loop adds this edge when it reaches vertex `after`.
     if (!(of(after).share.share > 0)) pull_together(i, after, edge_after, length_after);
   }
 }

@@ -25,8 +25,8 @@ namespace {
 using namespace test;
 using std::numbers::pi;
 
-/// Arcs of a contour around the origin, from angle to angle and back, each at its own radius; the last one
-/// leads back to the first far outside.
+/// A contour of arcs around the origin, in alternating directions, each at its own radius; the last arc leads
+/// back to the first far outside.
 class Stack {
  public:
   static constexpr double disc = 0.5, range = 0.02, stiffness = 4e4;
@@ -71,7 +71,7 @@ class Stack {
 };
 
 TEST(FilmTouches, OfAStackBearTogetherWhatTheWallBears) {
-  // Three interfaces: each bears the normal force of its own tension.
+  // Each of the three interfaces bears the normal force that balances its own tension.
   constexpr double first = 8e-3, second = 1e-3, third = 5e-4;
   const double by_wall = Stack::stiffness * first * Stack::on_arc;
   const std::vector<double> alone = Stack({first}).held();
@@ -80,7 +80,7 @@ TEST(FilmTouches, OfAStackBearTogetherWhatTheWallBears) {
   EXPECT_NEAR(held[0] + held[1] + held[2], by_wall, 0.05 * by_wall);
   EXPECT_GT(held[2], 0);
   EXPECT_NEAR(held[3], 0, 1e-12);
-  // Its own contact and those of the others with its edges push every vertex.
+  // Every vertex is pushed by its own contact and by the contacts of other vertices with its edges.
   const double unit = held[2] / third;
   EXPECT_NEAR(held[1], unit * (second - third), 0.05 * by_wall);
 }
@@ -100,9 +100,8 @@ TEST(FilmTouches, EndWhereTheWallDoesNotPushAnyInterface) {
   EXPECT_EQ(held[0] + held[1], 0);
 }
 
-/// Two ropes over half of a disc, the upper one on the lower one, with straight ends that hang along +x: the
-/// two interfaces of a droplet that hangs over a post, without its lobes, of which the weights pull at the
-/// ends.
+/// Two ropes over half of a disc, the upper one on the lower one, with straight ends that hang along +x. They
+/// represent the two interfaces of a droplet that hangs over a post; forces at the ends replace the lobes.
 class Band {
  public:
   static constexpr double radius = 0.5, film = 0.02;
@@ -146,7 +145,7 @@ class Band {
     constexpr int loading = 6000, waiting = 16000;
     double lower = 0, upper = 0;
     for (int step = 0; step < loading + waiting; ++step) {
-      // All forces grow in proportion: none exceeds what the others bear.
+      // All forces grow in proportion, so that none exceeds what the others bear.
       move(pulls, std::min(1.0, static_cast<double>(step) / loading));
       if (step == loading + waiting / 2) lower = state_.position[each_ - 1], upper = state_.position[each_];
     }
@@ -169,8 +168,8 @@ class Band {
   bool is_lower(int i) const { return i < each_; }
   int along(int i) const { return is_lower(i) ? i : n_ - 1 - i; }
   double radius_of(int i) const { return is_lower(i) ? radius : radius + film; }
-  // One edge more on the upper rope: its corners meet those of the lower one in all phases, and do not
-  // interlock.
+  // The upper rope has one edge more, so that its corners meet the lower rope's corners in all phases and do
+  // not interlock.
   int edges_of(int i) const { return is_lower(i) ? on_disc_ : on_disc_ + 1; }
   double edge_of(int i) const { return pi * radius_of(i) / edges_of(i); }
 
@@ -223,8 +222,8 @@ class Band {
 };
 
 TEST(BandOverADisc, WithoutWeightSlidesAtExpMuTheta) {
-  // dT/dtheta = mu T in each of the two, with its own tension as normal force: T_2 = exp(mu theta) T_1,
-  // independent of the other one. Both together are held like a single rope.
+  // In each rope dT/dtheta = mu T, with its own tension as normal force: T_2 = exp(mu theta) T_1, independent
+  // of the other rope. Friction holds both together like a single rope.
   constexpr double mu = 0.3;
   const double exact = std::exp(mu * pi);
   const double less = 0.97 * exact, more = 1.03 * exact;
@@ -239,8 +238,8 @@ TEST(BandOverADisc, WithoutWeightSlidesAtExpMuTheta) {
 }
 
 TEST(BandOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
-  // A heavy rope slides at L_2 = exp(mu pi) L_1 + 2 mu R (1 + exp(mu pi))/(1 + mu^2). So does each of the
-  // two, on its own radius.
+  // A heavy rope slides at L_2 = exp(mu pi) L_1 + 2 mu R (1 + exp(mu pi))/(1 + mu^2). So does each of the two
+  // ropes, with its own radius.
   constexpr double mu = 0.5, weight = 2;
   constexpr int edges = 32;
   const double grip = std::exp(mu * pi);
@@ -261,9 +260,9 @@ TEST(BandOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
 }
 
 TEST(BandOverADisc, IsHeldByCornersAloneIfNothingHoldsItsUpperRope) {
-  // Both ropes bear the weights of the lobes, of which one is heavier. Without friction through the film the
-  // upper one yields at once, whatever holds the lower one; the force of its corners falls with the square of
-  // its edges.
+  // Both ropes bear the weights of the lobes, one of which is heavier. Without friction through the film the
+  // upper rope yields at once, whatever holds the lower rope; the force of its corners falls with the square
+  // of their edge length.
   const auto upper_slides = [](Band::Law law, int edges, double imbalance) {
     return Band(law, edges, 0).slides({1, 1 + imbalance, 1, 1 + imbalance}).upper;
   };

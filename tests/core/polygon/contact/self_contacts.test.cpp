@@ -74,9 +74,9 @@ Eigen::ArrayXd flattened(int n, double thickness, double shaking, unsigned seed)
 }
 
 TEST(SelfContacts, AreThoseOfAllVerticesAndEdgesWithEveryInstructionSet) {
-  // Fewer vertices than two groups, groups that are not full, contours on which pairs along the contour and
-  // across it are the same, fine ones of which many vertices are excluded; stretched ones of which the length
-  // decides.
+  // The numbers of vertices cover less than two groups, groups that are not full, contours on which pairs
+  // along the contour and across it are the same, and fine contours with many excluded vertices; on stretched
+  // contours the length decides.
   for (const std::string& set : instruction_sets())
     for (const int n : {16, 17, 24, 25, 30, 31, 32, 33, 64, 101, 256, 700})
       for (const double stretch : {0.7, 1.0, 2.5}) {
@@ -103,7 +103,7 @@ TEST(SelfContacts, AreThoseOfAllVerticesAndEdgesWithEveryInstructionSet) {
   use_instruction_set("auto");
 }
 
-/// How many vertices on one side of a circle's first count as its neighbours.
+/// Number of vertices on one side of a circle's first vertex that count as its neighbours.
 int neighbours_of_first(double stretch) {
   const int n = 128;
   const double range = 0.0125, rest_edge = 0.025;
@@ -116,8 +116,8 @@ int neighbours_of_first(double stretch) {
 }
 
 TEST(SelfContacts, LeavesOutThreeRangesOfTheContour) {
-  // Three ranges are 1.5 edges at rest: the next vertex is excluded, the one after it is not, in any
-  // compressed contour; in a stretched contour none is excluded.
+  // Three ranges are 1.5 edges at rest: any compressed contour excludes the next vertex and not the one after
+  // it; a stretched contour excludes none.
   EXPECT_EQ(neighbours_of_first(1), 1);
   EXPECT_EQ(neighbours_of_first(0.2), 1);
   EXPECT_EQ(neighbours_of_first(1.4), 1);
@@ -130,7 +130,7 @@ TEST(SelfContacts, ItemsAreThePairs) {
     for (const int first : {0, n / 4 + 1}) {
       const double rest_edge = units::regular_edge_length(n);
       SelfContacts contacts(rest_edge, rest_edge);
-      // One half is compressed upon itself, so that a strand touches itself along its own direction as well.
+      // One half is compressed upon itself, so that a strand also touches itself along its own direction.
       Eigen::ArrayXd position = test::dumbbell(n, 0.03);
       position.tail(n) *= (position.head(n) > 0).select(Eigen::ArrayXd::Constant(n, 0.05), 1.0);
       const Eigen::ArrayXd narrow = (position.head(n) > 0).select(0.2 * position.head(n), position.head(n));

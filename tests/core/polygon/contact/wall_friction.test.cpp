@@ -87,10 +87,10 @@ TEST(WallTouches, PushesAddUpToTheContactsForce) {
   EXPECT_GT(wetted, 2 * units::regular_edge_length(64));
 }
 
-/// How well the energy of a held droplet and the dissipated energy add up.
+/// How well the sum of a held droplet's energy and the dissipated energy is conserved.
 struct Balance {
-  double worst = 0;  ///< difference from what it was at first
-  double rise = 0;   ///< of the energy alone, from one time to the next
+  double worst = 0;  ///< largest difference of the sum from its first value
+  double rise = 0;   ///< largest rise of the energy alone between two times
   double anchors = 0, dissipated = 0;
 };
 Balance balance(RunParameters run, const ObstacleArray& wall, const Eigen::ArrayXd& initial,
@@ -170,7 +170,7 @@ TEST(WallAnchors, OfFrictionThroughAFilmBalanceTheEnergyToSecondOrder) {
 }
 
 TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
-  // On an incline, where no end is torn off: that happens within a step.
+  // On an incline no end is torn off, which happens within a step.
   RunParameters run = bare_parameters();
   run.dp.perimeter_spring = PerimeterSpring::along;
   run.dp.perimeter_stiffness = 0.3;
@@ -183,8 +183,9 @@ TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
   expect_balance(run, ObstacleArray(20, {}, {incline}), 0.2);
 }
 
-/// A rope over half of a disc, with straight ends that hang along +x: vertices joined by stiff springs,
-/// pushed off by the disc, held by it. It is pulled at both ends, until it rests or slides.
+/// A rope over half of a disc, with straight ends that hang along +x: vertices joined by stiff springs. The
+/// disc pushes the vertices off and holds them by friction. Forces pull at both ends until the rope rests or
+/// slides.
 class Rope {
  public:
   static constexpr double radius = 0.5;
@@ -209,13 +210,13 @@ class Rope {
     }
   }
 
-  /// Does it slide towards its second end?
+  /// Whether the rope slides towards its second end.
   bool slides(double first_pull, double second_pull) {
     constexpr int loading = 6000, waiting = 40000;
     double before = 0;
     for (int step = 0; step < loading + waiting; ++step) {
       const double share = std::min(1.0, static_cast<double>(step) / loading);
-      // Both pulls grow together, in proportion: none exceeds what the other bears.
+      // Both pulls grow in proportion, so that neither exceeds what the other bears.
       move(share * first_pull, share * second_pull, share * weight_);
       if (step == loading + waiting / 2) before = state_.position[n_ - 1];
     }
@@ -299,8 +300,8 @@ TEST(RopeOverADisc, WithoutWeightSlidesAtExpMuTheta) {
 }
 
 TEST(RopeOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
-  // dT/dphi = mu (T + w R sin phi) + w R cos phi from end to end of half a turn: L_2 = exp(mu pi) L_1 + 2 mu
-  // R (1 + exp(mu pi))/(1 + mu^2), where the ends are pulled by the weight of what is missing.
+  // The solution of dT/dphi = mu (T + w R sin phi) + w R cos phi over half a turn is L_2 = exp(mu pi) L_1 + 2
+  // mu R (1 + exp(mu pi))/(1 + mu^2). Forces at the ends replace the weight of missing lengths.
   const double mu = 0.5, weight = 2;
   const double grip = std::exp(mu * pi);
   const double hanging = 0.3 * 0.5 * pi;
@@ -329,7 +330,7 @@ TEST(RopeOverADisc, ThatOnlySticksSlidesAtPiRTau) {
   });
 }
 
-/// An elastic droplet let down on a small disc, a little beside its middle.
+/// An elastic droplet that sinks on a small disc, a little beside its middle.
 DropletRun falls_on_disc(double friction, ClogDetection detection, double clog_energy) {
   RunParameters run;
   run.dp.vertices = 128;
@@ -357,8 +358,8 @@ RunResult ended(DropletRun run) {
 }
 
 TEST(WallFriction, HoldsADropletThatHangsOverADisc) {
-  // Without friction it slips off. Proved or waited for, it is the same rest: it is searched for once the
-  // walls hardly yield any more.
+  // Without friction the droplet slips off. The certificate and the threshold find the same rest; the search
+  // for it starts once the walls hardly yield any more.
   constexpr double quiet = 1e-15;
   EXPECT_EQ(ended(falls_on_disc(0, ClogDetection::certified, quiet)).status, RunStatus::passed);
   const RunResult certified = ended(falls_on_disc(0.1, ClogDetection::certified, quiet));

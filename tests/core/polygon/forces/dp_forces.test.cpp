@@ -123,7 +123,7 @@ TEST(DpForces, InternalForcesExertNoNetForceAndNoTorque) {
 }
 
 TEST(DpForces, SpringsAlongTheInterfaceDoNotPushTheDroplet) {
-  // Each vertex is pulled without a reaction on its neighbours; the liquid takes it.
+  // Each vertex is pulled without a reaction on its neighbours; the liquid takes the reaction.
   const ObstacleArray nothing = no_obstacles();
   RunParameters run;
   run.dp.vertices = 64;
@@ -182,11 +182,11 @@ TEST(DpForces, LaplacePressureOfACircleIsLineTensionOverRadius) {
 }
 
 class ContactLists : public testing::TestWithParam<double> {};
-// Slow, as a sinking droplet; so fast that the usual skin is crossed between two updates.
+// From slow, like a sinking droplet, to so fast that a droplet crosses the usual skin between two updates.
 INSTANTIATE_TEST_SUITE_P(Speeds, ContactLists, testing::Values(0.05, 0.8, 5.0));
 
 TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
-  // Against every obstacle and image of the array, for a droplet that drifts through it.
+  // Compares with every obstacle and image of the array, for a droplet that drifts through it.
   ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 12.5};
   const ObstacleArray array = sample_obstacles(parameters, 5);
   RunParameters run = only([](RunParameters& r) { r.drag.near_wall = 0.1; });
@@ -200,7 +200,7 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
   const double cutoff = run.drag.near_wall_cutoff;
   const double stiffness = contact_stiffness(*run.wall_stiffness, 2 * range);
   for (int step = 0; step < 2000; ++step) {
-    // An update every other step: what is checked in between relies on the skin.
+    // Lists are updated every other step, so the checks in between rely on the skin.
     if (step % 2 == 0) {
       if (state.recentre().any()) forces.forget_contacts();
       forces.update_contacts(state, state.possible_travel(0.2));
@@ -221,7 +221,7 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
           };
           const Eigen::Array2d begin = vertex(i), end = vertex(next);
           nearest[i] = std::min(nearest[i], (begin - centre).matrix().norm() - obstacle.radius);
-          // Each half of the refined edge pushes by itself; the middle hands its push to four vertices.
+          // Each half of the refined edge pushes by itself; the middle passes its push on to four vertices.
           const int before = (i + 63) % 64, after = (i + 2) % 64;
           const Eigen::Array2d middle =
               (9 * (vertex(i) + vertex(next)) - vertex(before) - vertex(after)) / 16;
@@ -294,8 +294,8 @@ TEST(DpForces, WettedWallsPullWithTheGradientOfTheirEnergy) {
 }
 
 TEST(DpForces, WettedWallsNeitherPullAlongTheInterfaceNorAlongTheWall) {
-  // Springs along the interface carry no tension, so what the polygon's edges leave of a pull along it is
-  // taken by the liquid: the droplet as a whole is not pushed along a flat wall.
+  // Springs along the interface carry no tension, so the liquid takes what the polygon's edges leave of a
+  // pull along the interface: nothing pushes the droplet as a whole along a flat wall.
   const ObstacleArray wall(20, {}, {{.tip = {0.37, 0}, .axis = {1, 0}, .half_angle = std::numbers::pi / 2}});
   RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 1.3; });
   run.dp.perimeter_spring = PerimeterSpring::along;
@@ -341,7 +341,7 @@ TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {
 }
 
 TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
-  // The published coordinates would lose 13 of 16 digits of an edge there.
+  // Coordinates as published would lose 13 of an edge's 16 digits there.
   const ObstacleArray array = sample_obstacles({.gap = 0.2, .diameter = 0.3, .density = {}, .box = 25}, 3);
   ReferenceForces near(bare_parameters(256), array);
   ReferenceForces far(bare_parameters(256), array);
@@ -357,7 +357,7 @@ TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
   EXPECT_NEAR(downstream.frame.global({0, 0})[0], 6003, 1e-9);
   EXPECT_LE((force - force_downstream).abs().maxCoeff(), 1e-12 * force.abs().maxCoeff());
 
-  // The same droplet in coordinates that go on for ever.
+  // The same droplet in coordinates that are not shifted.
   const ObstacleArray nothing = no_obstacles(8000);
   ReferenceForces here(bare_parameters(256), nothing), there(bare_parameters(256), nothing);
   DropletState literal = state_of(state.position, 8000);

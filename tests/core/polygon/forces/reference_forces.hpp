@@ -34,8 +34,8 @@ class ReferenceForces : public DpForces {
       net_spreading += wetting_.net_spreading;
     }
     if (run_.dp.gravity == Gravity::area) {
-      // Tension and pressure add up to nothing. The springs along the interface have no reaction on their
-      // neighbours, so they push off the liquid: the droplet as a whole feels no force from them.
+      // The forces of tension and pressure add up to zero. The springs along the interface have no reaction
+      // on their neighbours, so they push off the liquid: the droplet as a whole feels no force from them.
       find_centroid_gradient();
       for (int i = 0; i < n_; ++i)
         add(force, i,
@@ -145,11 +145,11 @@ class ReferenceForces : public DpForces {
   }
   /// k_c (reach - d) along `away`, whose length is d.
   Eigen::Array2d push(const Eigen::Array2d& away, double reach) const {
-    const double d = away.matrix().norm() + 1e-300;  // a point on the very centre gets no NaN
+    const double d = away.matrix().norm() + 1e-300;  // avoids NaN for a point exactly at the centre
     return contact_stiffness() * std::max(0.0, reach - d) / d * away;
   }
-  /// The half's two ends share the push as the nearest point divides it. The force on a middle acts on the
-  /// four vertices that determine it.
+  /// The nearest point divides the push between the half's two ends. The force on a middle acts on the four
+  /// vertices that determine it.
   void push_half_edge(Eigen::ArrayXd& force, int i, bool is_first, const Eigen::Array2d& centre,
                       double reach) const {
     const Eigen::Array2d begin = is_first ? vertex(i) : middle(i), end = is_first ? middle(i) : vertex(i + 1);

@@ -44,7 +44,7 @@ TEST(StiffModes, BoundTheStiffestModeOfTheDroplet) {
       run.dp.line_tension = line_tension;
       StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, polygon_shape(position).perimeter,
                                      polygon_shape(position).perimeter / *run.dp.vertices);
-      modes.contact = 0;  // nothing to touch here
+      modes.contact = 0;  // there are no walls here
       const double stiffest = stiffest_omega2(run, position);
       EXPECT_LE(stiffest, 1.001 * modes.sum()) << "Gamma " << line_tension;
       EXPECT_GE(stiffest, 0.3 * modes.sum())
@@ -92,9 +92,9 @@ Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
 }
 
 TEST(StiffModes, LeaveRoomForAContactThatTurnsWithItsEdges) {
-  // On a round obstacle half edges that turn dig into it, the more the deeper they are: the stiffest mode is
-  // above the bound of a flat contact, by what the bounds of all modes together leave below 4. The overlap is
-  // the one that the automatic step allows.
+  // On a round obstacle, half edges that turn dig into it, the more the deeper they are. So the stiffest mode
+  // exceeds the bound of a flat contact, by less than the bounds of all modes together leave below 4. The
+  // overlap is the one that the automatic step allows.
   const double radius = 0.15;
   for (const int n : {64, 128, 256, 512}) {
     RunParameters run = bare_parameters(n);
@@ -128,7 +128,7 @@ TEST(StableSteps, AreAsManyAsTheModesNeed) {
   EXPECT_EQ(num(1, largest), 1);
   EXPECT_EQ(num(1, 1.01 * largest), 2);
   EXPECT_EQ(num(1, 5.5 * largest), 6);
-  // Only as many more as are needed.
+  // There are no more steps than needed.
   EXPECT_EQ(num(8, largest), 8);
   EXPECT_EQ(num(8, 1.01 * largest), 9);
   EXPECT_EQ(num(8, 1.99 * largest), 16);

@@ -101,7 +101,7 @@ TEST(DpDroplet, IsOfSecondOrderInTheTimeStepWithAreaDrag) {
 }
 
 TEST(DpDroplet, WithAreaDragFallsRoundAtTheTerminalSpeed) {
-  // Weight and drag act on the same area, so nothing pulls along the interface: the droplet stays a circle.
+  // Weight and drag act on the same area, so no force pulls along the interface: the droplet stays a circle.
   RunParameters run = robust_polygon(64);
   const ObstacleArray nothing = no_obstacles();
   DpDroplet droplet(run, nothing, state_of(regular_polygon(64, units::rest_area)));
@@ -180,7 +180,7 @@ TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
         const double begin = energy();
         double worst = 0;
         double contact = 0;
-        const int times = inertia > 1 ? 20 : 10;  // it takes longer to the obstacle
+        const int times = inertia > 1 ? 20 : 10;  // the heavy droplet takes longer to the obstacle
         for (int i = 0; i < times; ++i) {
           droplet.advance(static_cast<int>(std::lround(0.08 / dt)));
           worst = std::max(worst, std::abs(energy() - begin));
@@ -190,7 +190,8 @@ TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
         EXPECT_GT(droplet.work().dissipated, 0.01);
         return worst;
       };
-      // Over four halvings: where a contact begins within a step changes the error of single ones.
+      // The error is compared over four halvings, because the step in which a contact begins changes the
+      // error of a single one.
       const double coarse = imbalance(8e-4);
       const double fine = imbalance(5e-5);
       EXPECT_LT(fine, 4e-6);

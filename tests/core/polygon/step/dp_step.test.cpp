@@ -30,7 +30,7 @@ double distance_from(const Wedge& wedge, const DropletState& state) {
   return nearest;
 }
 
-/// In whichever order.
+/// Compares the anchors in any order.
 void expect_same_anchors(const DropletState& state, const DropletState& expected) {
   ASSERT_EQ(state.anchors.size(), expected.anchors.size());
   for (const WallAnchor& one : expected.anchors) {
@@ -63,7 +63,7 @@ class Step : public testing::TestWithParam<StepCase> {
     run.dp.vertices = vertices;
     run.dp.line_tension = 0.3;
     run.time_step = 1e-3;
-    // The published ranges: contacts are as large as the films and edges that the tests make.
+    // Uses the published ranges: contacts are as large as the films and edges that the tests make.
     run.dp.contact_range = units::regular_edge_length(vertices) / 2;
     run.dp.self_contact_range = units::regular_edge_length(vertices);
     GetParam().change(run);
@@ -146,11 +146,11 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
 }
 
 TEST_P(Step, JoinsStepsOfDifferentLengths) {
-  // The half kicks of two steps are one, whether the steps are equally long or not.
+  // Two steps share one half kick, whether they are equally long or not.
   for (const int vertices : {64, 101}) {
     const auto [run, initial, walls] = touching_droplet(vertices);
     constexpr double long_step = 1e-3, short_step = 0.3e-3;
-    // Entries of one step: the rates of near-wall drag, which are new after each, are those of every place.
+    // Entries have one step each, because the rates of near-wall drag are renewed after each entry.
     std::vector<Steps> all;
     for (int k = 0; k < 9; ++k) all.push_back({1, k % 3 == 1 ? short_step : long_step});
     for (const std::string& set : instruction_sets()) {
@@ -192,7 +192,7 @@ TEST_P(Step, IsThatOfTheReadableFormWithAnImplicitPressure) {
 }
 
 TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
-  // A neck that closes within 32 steps and opens again, at some first vertex and some last edge.
+  // A neck closes within 32 steps and opens again, with various first vertices and last edges.
   for (const int vertices : {64, 97, 101, 256}) {
     const RunParameters run = parameters(vertices);
     const double diameter = units::regular_edge_length(vertices);
@@ -221,8 +221,8 @@ TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
 }
 
 TEST_P(Step, MeetsCirclesThatShareEdges) {
-  // Circles all around, so close that most edges touch two of them, also at the contour's ends; and few
-  // vertices.
+  // Circles all around are so close that most edges touch two of them, also at the contour's ends and with
+  // few vertices.
   std::size_t num_compared = 0;
   for (const int vertices : {16, 30, 64, 101}) {
     RunParameters run = parameters(64);
@@ -273,7 +273,7 @@ Obstacle on_neck(const DropletState& state, double x, double radius, double dist
 
 TEST_P(Step, HoldsAThinNeckThroughItsFilm) {
   // The neck touches itself, and one circle, or two that are nearer to each other than friction through the
-  // film reaches. The contour begins in the lobe, or in the neck.
+  // film reaches. The contour begins in a lobe, or in the neck.
   int num_held = 0;
   for (const int vertices : {64, 101, 256}) {
     const RunParameters run = parameters(vertices);
@@ -358,7 +358,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return tested.param.name; });
 
 TEST(InstructionSet, DecidesTheForcesOfReleasesToo) {
-  // Other sets add in another order and round less often, so some bits differ.
+  // Other instruction sets add in another order and round less often, so some bits differ.
   RunParameters run;
   run.dp.vertices = 256;
   run.dp.line_tension = 0.3;

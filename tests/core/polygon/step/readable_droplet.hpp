@@ -9,7 +9,8 @@
 
 namespace clog::test {
 
-/// The step as it is written in the documentation, a line for each formula, on the readable force.
+/// The step as the documentation describes it, one line per formula, with the plain forces of
+/// ReferenceForces.
 class ReadableDroplet {
  public:
   ReadableDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial,
@@ -32,7 +33,7 @@ class ReadableDroplet {
     state_.velocity += h_over_m * force_ + h * drag(state_.velocity) + h * pressed(state_.velocity);
     state_.position += *run_.time_step * state_.velocity;
     find_forces();
-    // The drag of the second half kick is that of its end: by iteration.
+    // The drag of the second half kick belongs to the end of the kick, so the velocity is found by iteration.
     const Eigen::ArrayXd kicked = state_.velocity + h_over_m * force_;
     // Averaging keeps the iteration stable next to a wall.
     for (int i = 0; i < 300; ++i)
@@ -49,10 +50,10 @@ class ReadableDroplet {
   DropletState state_;
   Eigen::ArrayXd force_;
   Eigen::ArrayXd rate_;  // of the drag on each vertex
-  double fastest_ = 0;   // vertex, when contacts were last looked at
+  double fastest_ = 0;   // speed of the fastest vertex at the last look at contacts
   int num_evaluations_ = 0, num_kept_ = 0;
 
-  /// Walls that hold the droplet yield first.
+  /// Finds the forces after the walls that hold the droplet have yielded.
   void find_forces() {
     if (forces_.has_anchors())
       forces_.let_walls_yield(state_, touches_, forces_.walls().items(), Purpose::motion);
@@ -60,7 +61,7 @@ class ReadableDroplet {
     if (num_evaluations_ % most_steps_per_survey == 0)
       fastest_ =
           std::sqrt((state_.velocity.head(n_).square() + state_.velocity.tail(n_).square()).maxCoeff());
-    // New at the beginning and at the end of the first step.
+    // The rates are new at the beginning and at the end of the first step.
     if (num_evaluations_ > 1 && num_kept_ > 0) {
       --num_kept_;
     } else {
@@ -97,8 +98,8 @@ class ReadableDroplet {
     result << -far * n_ * (area_x * g(0) + area_y * g(2)), -far * n_ * (area_x * g(1) + area_y * g(3));
     return result;
   }
-  /// Acceleration by an implicit pressure: -K_a dt^2 times the area's acceleration, by the forces, the area's
-  /// drag and the added pressure itself.
+  /// Acceleration by an implicit pressure: -K_a dt^2 times the area's acceleration, which the forces, the
+  /// area's drag and the added pressure itself cause.
   Eigen::ArrayXd pressed(const Eigen::ArrayXd& v) {
     if (pressure_ == Pressure::present) return Eigen::ArrayXd::Zero(force_.size());
     Eigen::ArrayXd gradient(force_.size());  // of the area

@@ -20,8 +20,8 @@ inline double film_reach(double wall_range, double self_range) {
 /// Forces below this fraction of k_c times the range of self-contact may be round-off and count as zero.
 inline constexpr double least_film_push = 1e-9;
 
-/// Friction through closed films. An interface that lies on another one feels the wall below by what that one
-/// pushes it away from the wall; the lower one keeps what is left of the wall's push:
+/// Friction through closed films. An interface that lies on another one feels the wall through the force by
+/// which the lower interface pushes it off; the lower interface keeps the rest of the wall's push:
 ///   N_i = max(0, n (P_i + S_i)),
 /// P_i the wall's push on vertex i, S_i that of the droplet's other parts, n the wall's normal. S_i counts
 /// for the nearest of the walls that push the droplet, up to most_films ranges of self-contact from its
@@ -35,7 +35,7 @@ class FilmTouches {
   FilmTouches(double wall_range, double stiffness, std::span<const Wedge> wedges)
       : wall_range_(wall_range), stiffness_(stiffness), wedges_(wedges) {}
 
-  /// Changes the pushes of touches, and adds those through films.
+  /// Changes the pushes in `touches`, and adds touches through films.
   void add_to(std::vector<WallTouch>& touches, const Contour& contour, const SelfContacts& self);
 
  private:

@@ -43,12 +43,12 @@ class SelfContacts {
   /// Renews the pairs when the shape may change too much on the way to the next update.
   void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
-  /// Whether the pairs are valid until the next update. Changes nothing. @param moved  bound on the
+  /// Whether the pairs stay valid until the next update. Does not change them. @param moved  bound on the
   /// displacement of any vertex since renew(), relative to the mean of all [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
-  /// Positions of the vertices at that time, relative to their mean, all x then all y, followed by room for a
-  /// whole vector; null: there are no pairs.
+  /// Positions of the vertices at the last renew(), relative to their mean, all x then all y, followed by
+  /// room for a whole vector; null: there are no pairs.
   const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
   const std::vector<Pair>& pairs() const { return pairs_; }
   double range() const { return range_; }

@@ -27,12 +27,12 @@ class WallContacts {
   void update(const DropletState& state, const Travel& travel);
   /// Discards the lists: positions changed by more than a move (a new frame origin, a rescaled polygon).
   void invalidate() { reference_.resize(0); }
-  /// Whether the lists are valid until the next update. Changes nothing. @param moved  bound on the
+  /// Whether the lists stay valid until the next update. Does not change them. @param moved  bound on the
   /// displacement of any vertex since renew() [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
-  /// Positions of the vertices at that time, all x then all y, followed by room for a whole vector; null:
-  /// there are no lists.
+  /// Positions of the vertices at the last renew(), all x then all y, followed by room for a whole vector;
+  /// null: there are no lists.
   const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
 
   double range() const { return range_; }
@@ -66,7 +66,7 @@ class WallContacts {
   std::vector<Bounds> bounds_;        // of the groups of edges
   Eigen::ArrayXXd distances_;         // of the vertices from the circles nearby, a column for each
   Eigen::ArrayXd nearest_;            // of the vertices from the nearest
-  std::vector<std::size_t> item_of_;  // the latest of each circle
+  std::vector<std::size_t> item_of_;  // the latest item of each circle
   std::vector<Item> items_;
   double smallest_radius_ = 0, largest_radius_ = 0;
 

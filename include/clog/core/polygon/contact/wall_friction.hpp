@@ -34,9 +34,9 @@ class WallFriction {
   /// [g rho sigma^3]
   double energy(const DropletState& state) const;
   /// Moves anchors beyond their limits, adds those of new contacts, and removes those of ended ones. @param
-  /// state whose anchors are read and written @param touches  where the droplet is now @param known  memory
-  /// without a meaning before and after @param force  if not null, the forces of the springs are added: all
-  /// x, then all y [g rho sigma^2]
+  /// state the droplet whose anchors are updated @param touches where walls push the droplet now @param known
+  /// working memory; its content has no meaning before and after @param force  if not null, the forces of the
+  /// springs are added to it: all x, then all y [g rho sigma^2]
   WallYield follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
                    KnownAnchors& known, Eigen::ArrayXd* force = nullptr) const;
 

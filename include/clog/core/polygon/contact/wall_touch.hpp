@@ -22,8 +22,8 @@ struct WallTouch {
   int vertex;
   WallPlace wall;
   WallFoot foot;
-  double push;    ///< off the wall, as the contacts hand it to the vertex [g rho sigma^2]
-  double wetted;  ///< length of the interface on the wall that is the vertex' own [sigma]
+  double push;    ///< force of the contacts on the vertex, away from the wall [g rho sigma^2]
+  double wetted;  ///< length of the interface on the wall that belongs to the vertex [sigma]
 };
 
 /// A droplet's vertices. Readable from [-1] to [size + WallContacts::edges_per_group - 1]: entries beyond the

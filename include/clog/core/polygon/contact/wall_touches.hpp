@@ -14,7 +14,7 @@
 
 namespace clog {
 
-/// Finds the vertices that walls push, and hold by friction. Same contacts as in DpForces.
+/// Finds the vertices that walls push, and hold by friction. The contacts are those of DpForces.
 class WallTouches {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this
@@ -27,11 +27,11 @@ class WallTouches {
   const std::vector<WallTouch>& find(const DropletState& state, std::span<const WallContacts::Item> circles,
                                      const SelfContacts& self);
 
-  /// Memory for these queries.
+  /// Working memory of WallFriction::follow().
   KnownAnchors& known_anchors() { return known_anchors_; }
 
  private:
-  /// A vertex and a wall, so far.
+  /// A vertex and a wall, while contacts are added up.
   struct Part {
     int vertex;
     WallPlace wall;

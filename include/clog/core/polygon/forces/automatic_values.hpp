@@ -4,7 +4,7 @@
 
 namespace clog {
 
-/// Gamma above which a droplet sags by less than a hundredth of its diameter under its weight: a larger one
+/// Gamma above which a droplet sags by less than a hundredth of its diameter under its weight: a larger Gamma
 /// moves clogs by some hundredths of a diameter, and costs more.
 inline constexpr double nearly_rigid_tension = 30;
 
@@ -32,10 +32,10 @@ double expected_pressure(const RunParameters& run, double sharpest_bend);
 /// most the published 1e4. Soft droplets need less, and more would need more steps.
 double automatic_area_stiffness(const RunParameters& run, double sharpest_bend);
 
-/// DropletModel::resolve of the polygon. The automatic step resolves the drag's relaxation time five or ten
-/// times. Every stiff mode of a circle stays within auto_step_margin of its bound (stability.hpp), and the
-/// expected pressure overlaps an automatic contact, whose stiffness depends on the step, by a fiftieth of a
-/// vertex diameter. Rounded down to two digits.
+/// DropletModel::resolve of the polygon. The automatic step is at most drag_time_step(). Every stiff mode of
+/// a circle stays within auto_step_margin of its bound (stability.hpp), and the expected pressure overlaps an
+/// automatic contact, whose stiffness depends on the step, by a fiftieth of a vertex diameter. The step is
+/// rounded down to two digits.
 void resolve_polygon(RunParameters& run, double sharpest_bend);
 
 }  // namespace clog

@@ -34,9 +34,9 @@ class DpForces {
 
   /// @param travel  bound on the displacement until the next call
   void update_contacts(const DropletState& state, const Travel& travel);
-  /// Whether update_contacts() would leave the lists unchanged. Also false if only the state can tell. @param
-  /// moved bound on the displacement of any vertex since walls() were renewed [sigma] @param moved_relative
-  /// the same, relative to their mean, since self_contacts() were renewed [sigma]
+  /// Whether update_contacts() would leave the lists unchanged. False, too, if only the state can answer.
+  /// @param moved  bound on the displacement of any vertex since walls() were renewed [sigma] @param
+  /// moved_relative the same, relative to their mean, since self_contacts() were renewed [sigma]
   bool contacts_hold(double moved, double moved_relative, const Travel& travel) const;
   /// Whether there are valid contact lists.
   bool has_contact_lists() const {

@@ -7,7 +7,7 @@ namespace clog {
 /// Upper bounds on omega^2 [1/t0^2] of the stiff modes of a polygon with the given perimeter [sigma].
 /// Velocity Verlet is stable for omega dt < 2; the bounds are those of a chain of masses M/N_v.
 struct StiffModes {
-  double contact = 0;  ///< wall contact of one vertex, through both its edges if those count: 2 k_c N_v/M
+  double contact = 0;  ///< wall contact of one vertex, through both its edges if these count: 2 k_c N_v/M
   /// Two strands against each other, each vertex between two edges and each edge between two vertices: 8 k_c
   /// N_v/M.
   double self_contact = 0;
@@ -49,7 +49,7 @@ double largest_stable_step(const StiffModes& modes);
 /// The same with an implicit pressure (see Pressure).
 double largest_step_with_implicit_pressure(const StiffModes& modes);
 
-/// A droplet that needs more for one has burst; the run ends at its next check.
+/// A droplet that needs more sub-steps for one time step has burst; the run ends at its next check.
 inline constexpr int most_substeps = 1000;
 
 enum class Pressure {
@@ -64,10 +64,10 @@ struct Steps {
   double length;
   Pressure pressure = Pressure::present;
 };
-/// The fewest steps that cover `steps` time steps and keep every bound: at least as many, at most
-/// most_substeps times as many. Up to twice as many the number is exact; above that, where shapes are far
-/// from the regular polygons of the bounds, it is a multiple of `steps`. @param most  Pressure::implicit: the
-/// pressure may be implicit if this saves steps
+/// The fewest steps that cover `steps` time steps and keep every bound: at least `steps`, at most
+/// most_substeps times as many. The number is exact up to 2 `steps`; beyond, where shapes are far from the
+/// regular polygons of the bounds, it is a multiple of `steps`. @param most  Pressure::implicit: the pressure
+/// may be implicit if this saves steps
 Steps stable_steps(const StiffModes& modes, int steps, double time_step, Pressure most);
 
 }  // namespace clog

@@ -31,7 +31,7 @@ class WettedWalls {
   struct Forces {
     Eigen::ArrayXd gradient;  ///< minus the gradient of the energy
     /// Cancels the part of `gradient` along the interface if springs carry no tension (`along`), otherwise 0.
-    /// It derives from no energy.
+    /// These forces derive from no energy.
     Eigen::ArrayXd spreading;
     std::vector<int> vertices;  ///< on all others both forces are 0
     ContactLine::Ends ends;     ///< of wetted arcs
