@@ -114,7 +114,7 @@ foreach(library ${libraries})
 endforeach()
 configure_package_config_file(cmake/clogsweepConfig.cmake.in "${PROJECT_BINARY_DIR}/clogsweepConfig.cmake"
   INSTALL_DESTINATION "${package}" NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
-# Versions before 1.0 promise nothing to each other.
+# Minor versions may change the headers.
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/clogsweepConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/clogsweepConfig.cmake" "${PROJECT_BINARY_DIR}/clogsweepConfigVersion.cmake"
   DESTINATION "${package}" COMPONENT libraries)

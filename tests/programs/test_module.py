@@ -121,7 +121,7 @@ class Module(Analysis):
         self.sweep()
         stored_rows.edited(self.folder / "s.h5", edit)
         fit = clogsweep.open(self.folder / "s.h5", BIN).fit()
-        self.assertRegex(fit.curve().source, r"^clogsweep 0.2.0, git \S+\nclogsweep vertices")
+        self.assertRegex(fit.curve().source, rf"^clogsweep {clogsweep.__version__}, git \S+\nclogsweep vertices")
 
     def test_clogs_draw_themselves_and_say_what_holds_them(self):
         sweep = self.sweep("line-tension=3", "seeds=1..8")
