@@ -15,7 +15,7 @@ draw() { /usr/bin/python3 -m clogsweep "$@" --programs "$bin"; }
 
 for name in "$@"; do
   case $name in
-    clogging-length) # a minute and a half on two idle cores; docs/pictures/clogging-length.png
+    clogging-length) # little more than a minute on two idle cores; docs/pictures/clogging-length.png
       sweep=(mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$folder/sweep.h5")
       "${sweep[@]}"
       "${sweep[@]}" friction=0 line-tension=0.35,0.4,0.5,0.6
