@@ -18,6 +18,7 @@ import clogsweep
 DATA = pathlib.Path(__file__).parent / "data"
 COMMAND = ["line-tension=1,3", "model=dp", "vertices=32", "obstacle-gap=0.2", "obstacle-density=0.5", "box=20", "boxes=2",
            "max-time=1000", "seeds=1..4", "--instruction-set=baseline"]
+OUTCOME = ["task", "seed", "line_tension", "status", "clogged_by", "mechanism", "distance"]
 
 
 class LaterVersions(Analysis):
@@ -31,9 +32,12 @@ class LaterVersions(Analysis):
         self.succeed("clogsweep", *COMMAND, "--output", "again.h5")
         again = table(self.folder / "again.h5")
         self.assertLessEqual(set(rows.columns), set(again.columns))
-        order = {"by": "task", "ignore_index": True}
-        pandas.testing.assert_frame_equal(rows.drop(columns=TIMING).sort_values(**order),
-                                          again[rows.columns].drop(columns=TIMING).sort_values(**order), check_exact=True)
+        rows, again = (one.drop(columns=TIMING).sort_values("task", ignore_index=True) for one in (rows, again[rows.columns]))
+        compilers = {clogsweep.open(self.folder / file).attributes["compiler"] for file in ("s.h5", "again.h5")}
+        if len(compilers) == 1:
+            pandas.testing.assert_frame_equal(rows, again, check_exact=True)
+        else:  # which may round otherwise
+            pandas.testing.assert_frame_equal(rows[OUTCOME], again[OUTCOME], rtol=1e-4)
 
     def test_more_seeds_continue_it(self):
         self.succeed("clogsweep", *[word.replace("1..4", "1..5") for word in COMMAND], "--output", "s.h5")
