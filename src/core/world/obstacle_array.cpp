@@ -28,8 +28,11 @@ struct CellAxis {
   int num_per_edge;  ///< cells
   int number;        ///< cells in the period
 
-  /// The cell's index by floor(), possibly outside the period.
-  int index(double place) const { return static_cast<int>(std::floor(place * (num_per_edge / edge))); }
+  /// The cell's index by floor(), possibly outside the period. The limits keep droplets that diverged within
+  /// int.
+  int index(double place) const {
+    return static_cast<int>(std::floor(std::clamp(place * (num_per_edge / edge), -1e9, 1e9)));
+  }
   int index_within(double place) const {
     return std::min(static_cast<int>(place / edge * num_per_edge), number - 1);
   }
