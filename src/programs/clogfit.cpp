@@ -41,25 +41,25 @@ confidence interval and the mean speed with its standard error.
   clogfit sweep.h5
   clogfit sweep.h5 --format csv > table.csv
   clogfit a.h5 b.h5                            several files as one sweep
-  clogfit lengths distances.csv                the same from distances that you measured
+  clogfit lengths distances.csv                clogging lengths from distances that you measured
   clogfit compare a.h5 b.h5                    ratios of clogging lengths, paired by seed
   clogfit calibrate trial.csv --orifice 0.7    line tension and near-wall drag from measured speeds
-  clogfit deviation a.csv b.csv                Delta_v and Delta_A of one profile from others
+  clogfit deviation a.csv b.csv                deviations Delta_v and Delta_A of one profile from others
   clogfit drag speeds.csv                      exponent of the near-wall drag from speeds along a wall
-  clogfit units lab.cfg                        between a laboratory's quantities and the model's numbers
-  clogfit curve sweep.h5                       a smooth curve through the lengths, its peak, where it crosses a length
+  clogfit units lab.cfg                        converts a laboratory's quantities into the model's numbers
+  clogfit curve sweep.h5                       a smooth curve through the lengths, and its peak
   clogfit report sweep.h5 --output page.html   curves, doubts, example clogs, table, provenance on one page
 
 Runs that did not clog count as censored at the distance they reached. If no run clogged, lambda is a lower bound.
-Letters in the last column are doubts about a length. The mean speed is in units of the terminal speed; its error comes
-from the scatter between runs. For lattices, lateral/r is the lateral displacement per distance travelled, the tangent
-of the migration angle, positive towards +y; along rows is its ratio to the tangent of the rows: 1 for droplets that
-follow them (bump mode), 0 for those that go straight on (zigzag). --row-angle adds these columns for other arrays. csv
-and json have more: intervals by profile likelihood, the published least squares (biased), Weibull's shape with its
-p-value, capillary numbers; json also P(r).
+Letters in the last column are doubts: reasons why a length may be wrong. The mean speed is in units of the terminal
+speed; its error comes from the scatter between runs. For lattices, "lateral/r" is the lateral displacement per distance
+travelled, the tangent of the migration angle, positive towards +y. "along rows" is lateral/r divided by the tangent of
+the rows' angle: 1 for droplets that follow the rows (bump mode), 0 for droplets that go straight on (zigzag).
+--row-angle adds these columns for other arrays. csv and json also contain intervals by profile likelihood, the
+published least squares (biased), Weibull's shape with its p-value and capillary numbers; json also contains P(r).
 
 In rows with the same array, runs of the same seed met the same obstacles, so the errors of these rows are correlated,
-and overlapping intervals do not mean that they agree. clogfit compare pairs runs by seed.
+and overlapping intervals do not mean that the lengths agree. Use clogfit compare, which pairs runs by seed.
 
 An experiment calls a droplet clogged if it has not moved for a waiting time. --dwell applies this rule: a droplet that
 advanced by at most dwell-length (0.05 sigma by default) for longer than this time counts as clogged where it first did
@@ -93,16 +93,19 @@ int clogfit(int argc, const char* const* argv) {
   cli::CommandLine line("clogfit", clogfit_usage);
   line.words("file", "sweep files")
       .option("format", "text, csv or json", "text")
-      .option("confidence", "of the intervals", "0.95")
+      .option("confidence", "confidence level of the intervals", "0.95")
       .flag("all-parameters", "also list parameters that have their defaults in all runs")
       .option("from-distance",
               "count lambda from this distance on; runs that ended before are excluded [sigma]")
       .option("lab",
-              "file that describes the laboratory, see clogfit units: lengths, speeds and times in its "
-              "units, too")
-      .option("pool",
-              "max-time, boxes or both, with a comma between: join groups that differ in these keys only")
-      .option("lines", "x1,x2,...: lines across a device instead of the rows of its posts [sigma]")
+              "file that describes the laboratory, see clogfit units; the table then has lengths, speeds and "
+              "times in laboratory units, too")
+      .option(
+          "pool",
+          "join groups that differ only in these keys: max-time, boxes, or both with a comma between them")
+      .option("lines",
+              "x1,x2,...: count the droplets that passed these lines across a device, instead of the rows of "
+              "its posts [sigma]")
       .option("row-angle", "tilt of the rows of user-supplied circles from the flow towards +y [degrees]")
       .option("dwell", "droplets that rest for this time count as clogged [t0]");
   line.add_commands(cli::names_of(clogfit_commands));

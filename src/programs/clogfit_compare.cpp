@@ -29,10 +29,11 @@ constexpr const char* compare_usage =
   clogfit compare robust.h5 elastic.h5 --picture ratio.png
   clogfit compare own.csv sweep.h5 --lab lab.cfg      measured distances (see clogfit lengths) and simulated ones
 
-Every file is compared with the first, or every value of the key --by with the smallest, for equal values of all other
-parameters. Runs of the same seed met the same obstacles. If their lengths are correlated, the interval comes from these
-pairs and is narrower than that of two independent lengths. It comes from the numbers of clogs if fewer than ten pairs
-differ, if the correlation is uncertain, or if --by changes the array, so that equal seeds share no obstacles.
+Every file is compared with the first file, or every value of the key --by with the smallest value, for equal values of
+all other parameters. Two runs of the same seed form a pair: they met the same obstacles. If the two lengths are
+correlated, the interval of their ratio comes from the pairs and is narrower than for two independent lengths. The
+interval comes from the numbers of clogs if fewer than ten pairs differ, if the correlation is uncertain, or if --by
+changes the array, so that equal seeds share no obstacles.
 )";
 
 std::vector<results::Side> sides(const cli::CommandLine& line, const std::vector<std::string>& paths) {
@@ -81,12 +82,14 @@ int clogfit_compare(int argc, const char* const* argv) {
   line.words("file", "sweep files")
       .option("by", "key whose values are compared with each other")
       .option("within",
-              "clogs of a pair within this distance are at the same place (half an obstacle spacing) [sigma]")
+              "clogs of a pair within this distance are at the same place (half of obstacle diameter plus "
+              "gap) [sigma]")
       .option("format", "text, csv or json", "text")
-      .option("picture", "name of a picture to draw; .png and .pdf are made")
+      .option("picture", "draw a picture with this name, as .png and .pdf")
       .option("lab",
-              "file that describes the laboratory, see clogfit units: lengths in mm beside measured ones")
-      .option("confidence", "of the intervals", "0.95");
+              "file that describes the laboratory, see clogfit units; lengths of sweeps are then in mm like "
+              "measured lengths")
+      .option("confidence", "confidence level of the intervals", "0.95");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
   const std::vector<std::string> paths = line.require_all("file");
   const std::string format = line.get_word("format", {"text", "csv", "json"});

@@ -25,14 +25,14 @@ does from a sweep: maximum likelihood for censored distances, chi-squared interv
   clogfit lengths distances.csv --format csv > table.csv
   clogfit compare distances.csv sweep.h5 --lab lab.cfg   beside simulated ones
 
-The first line of the table names its columns, each further line is one droplet:
+The first line of the table names its columns, and each further line is one droplet:
 
   distance [mm],clogged,wall
   41.5,1,glass
   120,0,glass
 
-distance: how far the droplet travelled, in nm, um, mm, cm, m or sigma (droplet diameters); clogged: 1 if it clogged
-there, 0 if it left the picture or was still moving (censored). All other columns separate groups.
+distance: how far the droplet travelled, in nm, um, mm, cm, m or sigma (droplet diameters); clogged: 1 if the
+droplet clogged, 0 if it left the picture or was still moving (censored). All other columns separate groups.
 )";
 
 }  // namespace
@@ -41,9 +41,9 @@ int clogfit_lengths(int argc, const char* const* argv) {
   cli::CommandLine line("clogfit lengths", lengths_usage);
   line.word("file", "table of distances (CSV)")
       .option("format", "text, csv or json", "text")
-      .option("confidence", "of the intervals", "0.95")
+      .option("confidence", "confidence level of the intervals", "0.95")
       .option("lab",
-              "file that describes the laboratory, see clogfit units: its droplet's diameter is sigma");
+              "file that describes the laboratory, see clogfit units; the diameter in this file is sigma");
   if (!cli::parse_command(line, argc, argv)) return console::exit_success;
   const std::string format = line.get_word("format", {"text", "csv", "json"});
   const double confidence = line.get_share("confidence");

@@ -48,11 +48,13 @@ lab.cfg has lines key = value:
   thickness = 0.4 mm          of the cell
   tension-ratio = 0.3         Gamma of the model over Gamma_exp (likewise)
 
-diameter and angle are required, and may be lists: 0.8 mm, 1.2 mm. speed is then a list, one value for each droplet, or
-the speed at speed-diameter and speed-angle (the first of each list), which is scaled with sin(angle) and diameter to the
-power of speed-exponent (0). Gamma_exp = gamma/(g_exp rho sigma^2) belongs to three dimensions. In the model, which has
-two, the droplets of the article move like the measured ones with 0.3 Gamma_exp. clogfit calibrate finds this ratio for
-your droplet.
+diameter and angle are required, and may be lists, such as 0.8 mm, 1.2 mm. Then speed is a list with one value for each
+droplet, or a single value, measured at speed-diameter and speed-angle (by default the first value of each list). A single
+value is scaled with sin(angle) and with diameter to the power of speed-exponent (0 by default).
+
+Gamma_exp = gamma/(g_exp rho sigma^2) is the line tension that follows from the interfacial tension gamma. The
+two-dimensional model, however, reproduces the measured motion of the article's droplets with 0.3 Gamma_exp. clogfit
+calibrate finds this ratio for your droplet.
 )";
 
 constexpr double milli = 1e-3;
@@ -140,8 +142,8 @@ std::string advice_of(const Scales& scales) {
   if (!(scales.line_tension > nearly_rigid_tension)) return "";
   return fmt::format(
       "\nThis droplet is nearly rigid. The soft disk, model=sp wall-stiffness={}, clogs in the same places "
-      "and costs a tenth.\nSo does the polygon with line-tension={}, which costs less than this one, but was "
-      "not tested for soundness.\n",
+      "and takes a tenth of the time.\nThe polygon with line-tension={} clogs in the same places, too, and "
+      "takes less time than this droplet, but was not tested for soundness.\n",
       console::plain(scales.wall_stiffness), console::plain(nearly_rigid_tension));
 }
 
@@ -198,11 +200,13 @@ int show_droplets(const std::vector<Laboratory>& all, const std::string& format)
 int clogfit_units(int argc, const char* const* argv) {
   cli::CommandLine line("clogfit units", units_usage);
   line.word("file", "lab.cfg")
-      .option("length", "of the model, such as lambda [sigma]; each of these takes a list")
-      .option("time", "of the model [t0]")
-      .option("line-tension", "Gamma of the model")
-      .option("terminal-speed", "V_t of the model")
-      .option("wall-stiffness", "E_w of a soft disk")
+      .option("length",
+              "length of the model, such as lambda, to convert [sigma]; this and the next four options take "
+              "lists")
+      .option("time", "time of the model to convert [t0]")
+      .option("line-tension", "Gamma of the model to convert")
+      .option("terminal-speed", "V_t of the model to convert")
+      .option("wall-stiffness", "E_w of a soft disk to convert")
       .option("format", "text or json", "text");
   if (!cli::parse_command(line, argc, argv)) return console::exit_success;
   const std::string format = line.get_word("format", {"text", "json"});

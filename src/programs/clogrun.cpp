@@ -49,18 +49,20 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
   else
     line.option("file", "replay: file of clogsweep")
         .option("task", "replay: the row's number, column `task`");
-  line.flag("to-rest", "replay: continue until the droplet rests, not only until this is proved")
+  line.flag("to-rest",
+            "replay: continue until the droplet rests, not only until its coming to rest is proved")
       .option("output", "HDF5 file to create")
       .option("lab",
-              "file that describes the laboratory, see clogfit units: gives terminal-speed and line-tension "
-              "or\nwall-stiffness unless they are set, and what the run came to in mm and s")
+              "file that describes the laboratory, see clogfit units; determines terminal-speed and "
+              "line-tension or\nwall-stiffness unless these keys are set; clogrun then prints distance and "
+              "time in mm and s, too")
       .option("seed", "short for seeds=N")
       .option("sample-interval", "time between samples [t0]", "1")
-      .option("polygon-interval", "also write the polygon this often [t0]")
+      .option("polygon-interval", "also write the polygon, at this interval [t0]")
       .option("frames", "also make a film of the polygons with this name, which may end in .mp4 or .gif")
       .option("most-frames",
-              "film: this many frames at most; a longer one is thinned, or shows the end (600)")
-      .flag("dry-run", "print the config and how long the run takes at most, run nothing")
+              "largest number of frames of a film; a longer film skips frames, or shows only the end (600)")
+      .flag("dry-run", "print the config and an upper bound of the run's duration, run nothing")
       .option("write-obstacles", "array: write the obstacles as a CSV file");
   line.add_commands({"array", "channel", "sag", "replay"});
   line.settings().set("seeds", "1");

@@ -39,8 +39,9 @@ int follow_run(const cli::CommandLine& line, const RunParameters& parameters, co
 void say_what_is_coarse(const RunParameters& run) {
   constexpr int fine = 128;
   if (run.model == Model::dp && *run.dp.vertices < fine)
-    console::say("vertices=" + std::to_string(*run.dp.vertices) +
-                 " may clog where 128 and more pass (corners of the polygon catch on the wedges' tips); use "
+    console::say("with vertices=" + std::to_string(*run.dp.vertices) +
+                 " a droplet may clog where it passes with 128 or more (corners of the polygon catch on the "
+                 "wedges' tips); use "
                  "vertices=128 or more");
 }
 
@@ -57,7 +58,8 @@ void refuse_keys(const cli::CommandLine& line) {
 int clogrun_array(cli::CommandLine& line) {
   const Scene* scene = line.settings().scene();
   if (scene && scene->finding != Finding::clogging_length)
-    throw Error("obstacle-layout=" + line.settings().text("obstacle-layout") + " is no array; use clogrun " +
+    throw Error("obstacle-layout=" + line.settings().text("obstacle-layout") +
+                " is not an array of obstacles; use clogrun " +
                 (scene->finding == Finding::sag ? "sag" : "channel"));
   const RunParameters parameters = sweep::single_run(line.settings());
   return follow_run(line, parameters, line.settings().to_config(), [&](const DropletRun& run) {

@@ -48,13 +48,13 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 
   mpirun -np 4 clogsweep --config sweep.cfg --output sweep.h5 line-tension=0.2,1,5
   clogsweep --config sweep.cfg --dry-run
-  clogsweep status sweep.h5         progress: lambda, <v_g>, time left; also while it runs
-  clogsweep verify sweep.h5         is the file undamaged?
+  clogsweep status sweep.h5         prints lambda, <v_g> and the time left, also while the sweep runs
+  clogsweep verify sweep.h5         checks the file for damage
   clogsweep salvage sweep.h5 --output whole.h5     copies the undamaged rows of a damaged file
-  clogsweep replay sweep.h5 TASK    runs a task again: the same bits?
-  clogsweep merge a.h5 b.h5 --output c.h5          one file of several
-  clogsweep select sweep.h5 'line_tension>1' --output stiff.h5     some rows of a file
-  mpirun -np 4 clogsweep doctor     problems of a sweep started like this?
+  clogsweep replay sweep.h5 TASK    repeats a run and compares the bits of its result
+  clogsweep merge a.h5 b.h5 --output c.h5          makes one file of several
+  clogsweep select sweep.h5 'line_tension>1' --output stiff.h5     copies some rows of a file
+  mpirun -np 4 clogsweep doctor     looks for problems of a sweep that is started in this way
 
 The same command resumes a stopped or killed sweep.
 )";

@@ -21,9 +21,9 @@ constexpr const char* doctor_usage =
     R"(clogsweep doctor checks this machine for problems of sweeps, and prints remedies.
 
   clogsweep doctor
-  mpirun -np 4 clogsweep doctor --output results/sweep.h5    as the sweep will be started, on 4 cores
+  mpirun -np 4 clogsweep doctor --output results/sweep.h5    the sweep will be started on 4 cores, too
 
-Exit code 1 if there is something to fix.
+The exit code is 1 if there is a problem.
 )";
 
 /// Returns the exit code.
@@ -42,7 +42,7 @@ int print_findings(const std::vector<Finding>& findings) {
 int clogsweep_doctor(const scheduler::Communicator& ranks, int argc, const char* const* argv) {
   // Rank 0 reads the command line; the others wait for its result.
   cli::CommandLine line(doctor_name, doctor_usage);
-  line.option("output", "where the sweep will write", "sweep.h5");
+  line.option("output", "file that the sweep will write", "sweep.h5");
   bool is_answered = false;
   int exit_code = console::exit_success;
   if (ranks.rank() == 0)

@@ -19,8 +19,9 @@ constexpr const char* merge_usage = R"(clogsweep merge makes one sweep file of s
 
   clogsweep merge a.h5 b.h5 c.h5 --output all.h5
 
-A run in several files is copied once. Two rows of the same run with different results are an error. The new file names
-its parts: their sessions, versions and hosts. You can resume and extend it like any other sweep.
+A run that is in several files is copied once. Two rows of the same run with different results are an error. The new
+file lists its source files with their sessions, versions and hosts. You can resume and extend the new file like any
+other sweep.
 )";
 
 void print_merged(const std::string& output, const std::vector<std::string>& paths,

@@ -145,35 +145,38 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
       throw Error(
           "--refine is a command of its own: python3 -m clogsweep refine KEY KEY=FROM,TO --until curve=20% "
           "--output sweep.h5 -- mpirun -np 4");
-  line.option("output", "HDF5 file to make")
-      .option("lab",
-              "file that describes the laboratory, see clogfit units: gives terminal-speed and line-tension "
-              "or\nwall-stiffness unless they are set, and clogfit its units")
-      .flag("dry-run", "print the tasks, their number and cost, run nothing")
+  line.option("output", "HDF5 file to create or to resume")
+      .option(
+          "lab",
+          "file that describes the laboratory, see clogfit units; determines terminal-speed and line-tension "
+          "or\nwall-stiffness unless these keys are set; clogfit then prints laboratory units, too")
+      .flag("dry-run", "print the tasks, the number of tasks and their cost, run nothing")
       .flag("print-config", "print the settings, run nothing")
       .flag("schema", "print all keys and columns as JSON: meaning, unit, range, default; run nothing")
       .option("master-computes", "whether rank 0 also runs tasks: auto (with up to 16 ranks), yes, no",
               "auto")
-      .option("max-hours", "stop after so many hours, as after a signal; the same command resumes the sweep")
+      .option("max-hours",
+              "stop after this number of hours, as after a signal; the same command resumes the sweep")
       .option("points",
-              "CSV file whose first line names keys and whose lines are parameter sets, in place of these "
-              "keys' lists")
-      .option("shard", "run one part of the sweep, e.g. 2/5, the second of five")
+              "CSV file with parameter sets in place of lists: the first line names keys, each further line "
+              "has their values")
+      .option("shard", "run one part of the sweep, e.g. 2/5 for the second of five parts")
       .option("until-precision",
               "add seeds until half of lambda's 95 % interval is within this fraction of lambda, e.g. 10%")
       .option("most-seeds",
               "largest number of seeds of a parameter set with --until-precision (20 times `seeds`)")
       .option("seeds-per-set",
-              "add seeds to every parameter set until it has so many, those of the output's rows included")
+              "add seeds to every parameter set until it has this number, including seeds in the output file")
       .option("attempts", "number of attempts for a run that fails", "2")
       .option("report-seconds",
-              "interval at which a running task reports its progress; a kill loses at most this time", "10")
+              "interval at which a running task reports its progress; a killed task loses at most this time",
+              "10")
       .option(
           "isolate",
           "run each task in a separate process, so that a crash costs one task and not the sweep: yes, no",
           "yes")
-      .flag("verbose", "a line for every task that starts or ends")
-      .flag("quiet", "errors only");
+      .flag("verbose", "print a line for every task that starts or ends")
+      .flag("quiet", "print errors only");
   std::vector<std::string> commands = cli::names_of(file_commands);
   commands.emplace_back("doctor");
   line.add_commands(std::move(commands));

@@ -18,7 +18,7 @@ constexpr const char* salvage_usage =
 
   clogsweep salvage sweep.h5 --output whole.h5
 
-Damaged or useless rows and attributes are excluded and named. Results and snapshots that only the
+Damaged or useless rows and attributes are not copied, and a message lists them. Results and snapshots that only the
 journal beside the file has are copied, too. The sweep's own command, with --output whole.h5, then recomputes the
 missing runs and restores missing attributes.
 )";

@@ -91,11 +91,12 @@ std::string law_of_speed(const Status& status) {
 int clogsweep_status(int argc, const char* const* argv) {
   cli::CommandLine line("clogsweep status", status_usage);
   line.word("file", "sweep file")
-      .flag("watch", "again every two seconds, until the sweep ends")
+      .flag("watch", "print again every two seconds, until the sweep ends")
       .flag("follow",
-            "with --format json: a line for every start, end, new attempt and round, until the sweep ends")
+            "with --format json: print a line for every start, end, new attempt and round, until the sweep "
+            "ends")
       .option("format", "text or json", "text")
-      .option("confidence", "of the intervals", "0.95")
+      .option("confidence", "confidence level of the intervals", "0.95")
       .flag("all-parameters", "also list parameters that have their defaults in all runs");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
   const std::string format = line.get_word("format", {"text", "json"});

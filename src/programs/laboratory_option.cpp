@@ -255,13 +255,13 @@ void set_scales(const cli::CommandLine& line, std::vector<results::Group>& group
       replaces |= own && own->text() != of_all->text;
     } else if (own) {
       if (own->text().empty())
-        throw Error("the laboratory " + own->check_sum() +
-                    " of some rows is not in the file (another program changed it); give it by --lab");
+        throw Error("the file does not contain the laboratory " + own->check_sum() +
+                    " of some of its rows (another program changed the file); give this laboratory by --lab");
       group.laboratory = scale_of(laboratory::parse_laboratory(own->text(), "the laboratory of some rows"));
     }
   }
   if (replaces)
-    console::say(fmt::format("clogfit: {} replaces the laboratory that rows have", line.get("lab")));
+    console::say(fmt::format("clogfit: {} replaces the laboratory stored with the rows", line.get("lab")));
 }
 
 }  // namespace clog::programs

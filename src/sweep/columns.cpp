@@ -154,8 +154,8 @@ Column filling_column() {
           .symbol = "",
           .unit = "",
           .meaning =
-              "random arrays: saturated or density; lattices: lattice (square), triangular or rhombic; file, "
-              "channel, wall",
+              "saturated or density in random arrays; lattice (square), triangular or rhombic in lattices; "
+              "otherwise file, channel or wall",
           .role = ColumnRole::parameter,
           .kind = ValueKind::word,
           .size = 16,
@@ -205,28 +205,31 @@ std::vector<Column> columns_of_dwells() {
   std::vector<Column> all;
   for (std::size_t i = 0; i < Dwells::most; ++i) {
     const std::string name = dwell_column(i);
-    const std::string meaning =
-        i == 0 ? "longest time in which the droplet advanced by at most dwell_length; includes a dwell cut "
-                 "by the end of the run, excludes the clog; NaN: none above ten times dwell_length/V_t"
-               : "longest dwell before " + dwell_column(i - 1) + "; NaN: none";
+    const std::string meaning = i == 0
+                                    ? "longest time in which the droplet advanced by at most dwell_length; a "
+                                      "dwell cut off by the end of the run counts, the clog does not; NaN: "
+                                      "no dwell was longer than ten times dwell_length/V_t"
+                                    : "longest dwell before " + dwell_column(i - 1) + "; NaN: there was none";
     all.push_back(number_in(
         name, [i](auto& row) -> auto& { return row.dwells.longest[i].length; }, "t0", meaning));
     all.push_back(number_in(
         name + "_at", [i](auto& row) -> auto& { return row.dwells.longest[i].distance; }, "sigma",
-        "distance at which it began"));
+        "distance at which this dwell began"));
     all.push_back(number_in(
         name + "_from", [i](auto& row) -> auto& { return row.dwells.longest[i].begin; }, "t0",
-        "time at which it began"));
+        "time at which this dwell began"));
   }
   all.push_back(number_in(
       "dwells_known_from", [](auto& row) -> auto& { return row.dwells.known_from; }, "t0",
-      "for every longer duration, the columns contain the first dwell that exceeded it"));
+      "for every duration longer than this, the dwell columns contain the first dwell that exceeded that "
+      "duration"));
   all.push_back(number_in(
       "last_dwell_at", [](auto& row) -> auto& { return row.dwells.last_distance; }, "sigma",
-      "distance at which the last dwell began, of any length: that of the clog or of the end of the run"));
+      "distance at which the last dwell of any duration began, which is the clog or the dwell at the end of "
+      "the run"));
   all.push_back(number_in(
       "last_dwell_from", [](auto& row) -> auto& { return row.dwells.last_begin; }, "t0",
-      "time at which it began"));
+      "time at which this dwell began"));
   return all;
 }
 
@@ -243,17 +246,20 @@ std::vector<Column> make_columns() {
   const std::vector<Column> others = {
       // Allows any word: presets of another version may have other names.
       member("preset", &RunRow::preset, parameter, "",
-             "preset with these keys of the interface; custom: no preset has them; none: soft disk", 16),
+             "preset with these values of the interface's keys; custom: no preset has these values; none: "
+             "soft disk",
+             16),
       member("model_version", &RunRow::model_version, parameter, "",
-             "version of the model; runs of different versions differ even if their parameters agree"),
+             "version of the model; versions give different results for the same parameters"),
       member("status", &RunRow::status, result, "",
-             "clogged; broken: its neck got thinner than break_up_neck; flowing: max_time reached; passed: "
-             "at the exit or the end of the channel; failed: see message; running, interrupted: incomplete, "
-             "other columns show the state so far",
+             "clogged; broken: a neck of the droplet got thinner than break_up_neck; flowing: the run "
+             "reached max_time; passed: the droplet reached the exit or the end of the channel; failed: see "
+             "message; running, interrupted: the run is incomplete, and other columns show its state so far",
              16),
       member("clogged_by", &RunRow::clogged_by, result, "",
-             "certified: proved to be near a stable equilibrium, whose distance, lateral_displacement and "
-             "shape_parameter the row has; threshold: E_k/E_t fell below clog_energy; none: not clogged; "
+             "certified: the droplet was proved to be near a stable equilibrium, and distance, "
+             "lateral_displacement and shape_parameter are those of this equilibrium; threshold: E_k/E_t "
+             "fell below clog_energy; none: not clogged; "
              "empty: unknown",
              16),
       member("distance", &RunRow::distance, result, "sigma",
@@ -262,13 +268,13 @@ std::vector<Column> make_columns() {
              "displacement across the flow"),
       member("time", &RunRow::time, result, "t0", "time since release"),
       member("mean_speed", &RunRow::mean_speed, result, "sqrt(sigma g)",
-             "distance divided by time between transient and arrest; NaN if it moved less than half a "
-             "diameter in that time, or the transient took more than half of the run"),
+             "distance divided by time between transient and arrest; NaN if the droplet moved less than half "
+             "a diameter in that time, or if the transient took more than half of the run"),
       member("mean_speed_error", &RunRow::mean_speed_error, result, "sqrt(sigma g)",
-             "standard error of mean_speed from its variation during the run; NaN for too short a run"),
+             "standard error of mean_speed from its variation during the run; NaN if the run was too short"),
       member("transient", &RunRow::transient, result, "t0", "time at which the transient ends"),
       member("travel_time", &RunRow::travel_time, result, "t0",
-             "time from the end of the transient to the arrest, of which mean_speed is the mean"),
+             "time from the end of the transient to the arrest, over which mean_speed is averaged"),
       member("contacts", &RunRow::contacts, result, "",
              "number of contacts with obstacles, checked every 64 steps; an obstacle counts again after a "
              "separation of 0.1 sigma; -1: unknown"),
@@ -283,41 +289,46 @@ std::vector<Column> make_columns() {
              "obstacle makes a gap; empty: unknown",
              16),
       member("wrapped_support", &RunRow::wrapped_support, result, "",
-             "fraction of the upstream support that wrapped obstacles give; NaN unless a clogged polygon"),
+             "fraction of the upstream support that wrapped obstacles give; NaN unless the droplet is a "
+             "clogged polygon"),
       member("num_wrapped", &RunRow::num_wrapped, result, "",
-             "touched obstacles over which the clogged polygon hangs, otherwise 0; -1: unknown"),
+             "number of touched obstacles over which the clogged polygon hangs, 0 for other droplets; -1: "
+             "unknown"),
       member("num_gaps", &RunRow::num_gaps, result, "",
-             "gaps in front of the clogged polygon with a side that supports it; -1: unknown"),
-      member("num_arcs", &RunRow::num_arcs, result, "", "arcs of contact; -1: unknown"),
+             "number of gaps in front of the clogged polygon with a side that supports this polygon; -1: "
+             "unknown"),
+      member("num_arcs", &RunRow::num_arcs, result, "", "number of arcs of contact; -1: unknown"),
       member("mesh_hold", &RunRow::mesh_hold, result, "",
              "largest fraction of the weight that corners of the mesh can hold where a clogged polygon hangs "
-             "over obstacles; NaN otherwise"),
+             "over obstacles; NaN for other droplets"),
       member("largest_shape_parameter", &RunRow::largest_shape_parameter, result, "",
-             "largest A in a channel; NaN elsewhere, as for the next five"),
+             "largest A in a channel; this and the next five columns are NaN for other runs"),
       member("largest_shape_parameter_at", &RunRow::largest_shape_parameter_at, result, "sigma",
-             "h at which the droplet had it, from the line through the tips, positive downstream"),
+             "h at which A was largest, from the line through the wedges' tips, positive downstream"),
       member("largest_relative_speed", &RunRow::largest_relative_speed, result, "",
              "largest v_g/v_t in a channel"),
       member("largest_relative_speed_at", &RunRow::largest_relative_speed_at, result, "sigma",
-             "h at which the droplet had it"),
+             "h at which the droplet had this speed"),
       member("smallest_relative_speed", &RunRow::smallest_relative_speed, result, "",
              "smallest v_g/v_t in a channel, after ten relaxation times V_t/g"),
       member("smallest_relative_speed_at", &RunRow::smallest_relative_speed_at, result, "sigma",
-             "h at which the droplet had it"),
+             "h at which the droplet had this speed"),
       member("sag", &RunRow::sag, result, "sigma",
              "delta_s, how far the centroid of a droplet on a flat wall has sunk; NaN elsewhere"),
-      member("top_sag", &RunRow::top_sag, result, "sigma", "the same for its highest point"),
+      member("top_sag", &RunRow::top_sag, result, "sigma",
+             "how far the highest point of a droplet on a flat wall has sunk; NaN elsewhere"),
       number_in(
           "thinnest_neck", [](auto& row) -> auto& { return row.neck.width; }, "sigma",
           "smallest width of a neck between two lobes during the run (docs/explanation/wrapped.md); NaN: no "
           "neck, or break_up_neck is 0"),
       number_in(
           "thinnest_neck_at", [](auto& row) -> auto& { return row.neck.distance; }, "sigma",
-          "distance at which it was found"),
+          "distance at which the droplet had this neck"),
       member("release_x", &RunRow::release_x, result, "sigma",
              "place of release of the centre of mass in the coordinates of user-supplied circles, possibly a "
              "little outside the array; NaN elsewhere"),
-      member("release_y", &RunRow::release_y, result, "sigma", "the same across the flow"),
+      member("release_y", &RunRow::release_y, result, "sigma",
+             "place of release across the flow, in the same coordinates; NaN elsewhere"),
       member("steps", &RunRow::steps, result, "", "integrated steps; sub-steps count singly"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",
              "wall-clock time of the run in all sessions"),
@@ -328,10 +339,10 @@ std::vector<Column> make_columns() {
              "instruction set of the polygon's steps; mixed: several, so no replay reproduces the bits; "
              "none: soft disk",
              16),
-      member("host", &RunRow::host, circumstance, "", "host of that rank", 64),
-      member(
-          "attempt", &RunRow::attempt, circumstance, "",
-          "1 for the first attempt; interruptions, and failures that may be the rank's fault, do not count"),
+      member("host", &RunRow::host, circumstance, "", "host of the rank that computed the run", 64),
+      member("attempt", &RunRow::attempt, circumstance, "",
+             "number of the attempt that gave this row; interruptions, and failures that may be the rank's "
+             "fault, do not count"),
       member("message", &RunRow::message, circumstance, "", "why the run failed", 256),
   };
   all.insert(all.end(), others.begin(), others.end());

@@ -34,7 +34,7 @@ Key preset_key() {
           .help =
               "sets all keys of the interface that are not given separately: robust (weight on the liquid), "
               "heavy-interface (weight on the interface), elastic (weight on an interface that stretches "
-              "like rubber, K_l = 0.1 Gamma; with friction shows the published trends), literal (the "
+              "like rubber, K_l = 0.1 Gamma; elastic with friction shows the published trends), literal (the "
               "published equations)",
           .parameter = nullptr};
 }

@@ -83,7 +83,7 @@ class Run(ProgramTest):
         self.assertEqual(self.succeed("clogrun", "array", *SMALL, "max-time=1", "--output", "sound.h5").stderr, "")
 
     def test_a_coarse_polygon_in_a_channel_is_cautioned_against(self):
-        for vertices, told in ((96, ["vertices=96 may clog where 128 and more pass (corners of the polygon catch on the wedges' tips); "
+        for vertices, told in ((96, ["with vertices=96 a droplet may clog where it passes with 128 or more (corners of the polygon catch on the wedges' tips); "
                                      "use vertices=128 or more"]), (128, [])):
             done = self.succeed("clogrun", "channel", f"vertices={vertices}", "max-time=1", "--output", f"{vertices}.h5")
             self.assertEqual(done.stderr.splitlines(), told)

@@ -141,7 +141,7 @@ class Devices(Walls):
         self.assertIn("tension/(mN/m)", told.stdout)
         self.assertEqual(told.stderr, "")
         self.write("other.cfg", "diameter = 0.2 mm\nangle = 45 deg\n")
-        self.assertIn("other.cfg replaces the laboratory that rows have", self.succeed("clogfit", "s.h5", "--lab", "other.cfg").stderr)
+        self.assertIn("other.cfg replaces the laboratory stored with the rows", self.succeed("clogfit", "s.h5", "--lab", "other.cfg").stderr)
 
     def test_droplets_that_rest_uncertified_are_named(self):
         # The flat top of a row of circles across the flow holds no droplet sideways.

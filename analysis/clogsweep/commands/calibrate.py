@@ -33,9 +33,9 @@ from ..tools.errors import UserError
 from ..tools.texts import printable
 from . import command_line
 
-QUANTITIES = {"diameter": "of the undeformed droplet, e.g. 3.5mm", "speed": "terminal, far from walls, e.g. 7mm/s",
-              "angle": "of the plates to the horizontal, e.g. 28deg", "density": "of the droplet (0.703g/ml)",
-              "outer-density": "of the liquid around it (0.997g/ml)", "tension": "interfacial, e.g. 10mN/m: for Gamma_exp"}
+QUANTITIES = {"diameter": "diameter of the undeformed droplet, e.g. 3.5mm", "speed": "terminal speed far from walls, e.g. 7mm/s",
+              "angle": "angle of the plates to the horizontal, e.g. 28deg", "density": "density of the droplet (0.703g/ml)",
+              "outer-density": "density of the liquid around the droplet (0.997g/ml)", "tension": "interfacial tension, e.g. 10mN/m, to compute Gamma_exp"}
 OWN = (*QUANTITIES, "other", "format", "programs", "help", "version")
 FOUND = ("line-tension", "near-wall-drag")
 
@@ -45,7 +45,7 @@ def options() -> command_line.Parser:
     parser.add_argument("profiles", nargs="*", help="CSV files, or files written by clogrun channel, one per trial; and KEY=VALUE")
     for name, meaning in QUANTITIES.items():
         parser.add_argument(f"--{name}", help=meaning)
-    parser.add_argument("--other", help="another experiment's diameter and angle, to scale Gamma to")
+    parser.add_argument("--other", help="diameter and angle of another experiment, for which Gamma is scaled")
     command_line.add_format(parser)
     programs.add_option(parser)
     return parser

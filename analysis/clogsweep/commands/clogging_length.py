@@ -21,7 +21,7 @@ from . import command_line
 
 
 def add_measured(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--with", dest="measured", metavar="TABLE", type=pathlib.Path, help="table of measured distances, see clogfit lengths: drawn, too")
+    parser.add_argument("--with", dest="measured", metavar="TABLE", type=pathlib.Path, help="also draw the lengths from this table of measured distances, see clogfit lengths")
 
 
 def body() -> int:

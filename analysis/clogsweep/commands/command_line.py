@@ -55,7 +55,7 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, about: str | None) -> None:
         super().__init__(prog=name(), description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
-        self.add_argument("--version", action=ShowVersion, nargs=0, help="print versions and leave")
+        self.add_argument("--version", action=ShowVersion, nargs=0, help="print versions and exit")
 
     def error(self, message: str) -> NoReturn:
         raise UserError(f"{message}; {name()} --help lists the options")
@@ -146,12 +146,12 @@ def add_format(parser: argparse.ArgumentParser) -> None:
 
 
 def add_lab(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--lab", type=pathlib.Path, help="file that describes the laboratory, see clogfit units: scales in its units, too")
+    parser.add_argument("--lab", type=pathlib.Path, help="file that describes the laboratory, see clogfit units; adds scales in laboratory units")
 
 
 def add_width(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--width", type=between(4, 30, "a width in cm"), metavar="CM",
-                        help="lay the picture out for a column of a journal, such as 8.6; what its caption has to say is printed")
+                        help="lay the picture out for a column of a journal, of this width, such as 8.6, and print what the caption has to say")
 
 
 def save(picture: Picture, arguments: argparse.Namespace) -> int:

@@ -20,10 +20,10 @@ from .command_line import Parser, add_output, add_width, beside, save
 
 def body() -> int:
     parser = Parser(__doc__)
-    parser.add_argument("sweeps", type=pathlib.Path, nargs="+", help="files of clogsweep --output; the others are compared with the first")
+    parser.add_argument("sweeps", type=pathlib.Path, nargs="+", help="files of clogsweep --output; each further file is compared with the first")
     parser.add_argument("--by", help="key whose values are compared with each other")
-    parser.add_argument("--within", help="clogs of a pair so near to each other are at the same place [sigma]")
-    parser.add_argument("--confidence", help="of the intervals (0.95)")
+    parser.add_argument("--within", help="clogs of a pair within this distance are at the same place [sigma]")
+    parser.add_argument("--confidence", help="confidence level of the intervals (0.95)")
     add_output(parser, "name of the picture; .png and .pdf are made (FIRST-compare)", ".png", ".pdf")
     add_width(parser)
     programs.add_option(parser)

@@ -25,7 +25,7 @@ from . import command_line
 
 
 def add_format(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--format", choices=("picture", "csv"), default="picture", help="csv prints the table instead (%(default)s)")
+    parser.add_argument("--format", choices=("picture", "csv"), default="picture", help="draw a picture, or print the table as csv (%(default)s)")
 
 
 def read_angles(path: pathlib.Path, columns: Container[str]) -> pandas.DataFrame:

@@ -15,7 +15,7 @@ from . import command_line
 
 def body() -> int:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("profiles", nargs="*", help="CSV files or of clogrun channel, the measured one first")
+    parser.add_argument("profiles", nargs="*", help="CSV files or files of clogrun channel, with the measured passage first")
     programs.add_option(parser)
     arguments = parser.parse_args()
     if len(arguments.profiles) < 2:

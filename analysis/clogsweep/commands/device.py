@@ -16,9 +16,9 @@ from .command_line import save, sweep_to_draw, whole
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--ways", type=whole(0), default=3, help="runs of each panel drawn as lines (%(default)s)")
-    parser.add_argument("--map", type=whole(0), default=6, help="runs of each panel behind its map; 0: no map (%(default)s)")
-    parser.add_argument("--jobs", type=whole(1), default=2, help="runs at a time (%(default)s)")
+    parser.add_argument("--ways", type=whole(0), default=3, help="number of paths drawn in each panel (%(default)s)")
+    parser.add_argument("--map", type=whole(0), default=6, help="number of replayed runs in the map of each panel; 0: no map (%(default)s)")
+    parser.add_argument("--jobs", type=whole(1), default=2, help="number of simultaneous replays (%(default)s)")
 
 
 def body() -> int:

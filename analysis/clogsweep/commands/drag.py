@@ -40,9 +40,9 @@ def fit(distances: Numbers, speeds: Numbers) -> dict[str, float]:
 
 def body() -> int:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("file", nargs="?", help="CSV file")
-    parser.add_argument("--diameter", help="of the undeformed droplet, e.g. 0.98mm")
-    parser.add_argument("--speed", help="terminal, far from walls, e.g. 0.65mm/s")
+    parser.add_argument("file", nargs="?", help="CSV file with speeds along a wall")
+    parser.add_argument("--diameter", help="diameter of the undeformed droplet, e.g. 0.98mm")
+    parser.add_argument("--speed", help="terminal speed far from walls, e.g. 0.65mm/s")
     command_line.add_format(parser)
     programs.add_option(parser)
     arguments = parser.parse_args()

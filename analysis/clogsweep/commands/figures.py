@@ -22,15 +22,15 @@ from . import command_line
 
 def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("names", nargs="+", metavar="NAME", help="of figures, or list, or all")
-    parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="reduced: minutes on two cores; full: as published")
-    parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="MPI ranks of the sweeps, and runs at a time (2)")
-    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"), help="folder (results/figures)")
-    parser.add_argument("--draw-only", action="store_true", help="run nothing, draw from existing results")
+    parser.add_argument("names", nargs="+", metavar="NAME", help="names of figures; list shows the names, all means all figures")
+    parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="reduced sweeps take minutes on two cores; full sweeps have the published size")
+    parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="number of MPI ranks of the sweeps, and of simultaneous runs (2)")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"), help="folder of the results (results/figures)")
+    parser.add_argument("--draw-only", action="store_true", help="draw from existing results and run nothing")
     parser.add_argument("--profile", type=pathlib.Path, action="append", default=[], metavar="FILE.csv",
-                        help="measured passage h [sigma], v [v_t], A to draw in 2, 3 (twice: w = 0.9, 0.7), 4, or to compare with in B2")
+                        help="measured passage (h [sigma], v [v_t], A) to draw in figures 2, 3 (two profiles: w = 0.9, then 0.7) and 4, and to compare with in B2")
     parser.add_argument("--set", action="append", default=[], metavar="[CONFIG:]KEY=VALUE",
-                        help="another value than the config's, e.g. clogging-sp:seeds=1..50; keys that a figure itself sets stay")
+                        help="replace a value of the config, e.g. clogging-sp:seeds=1..50; keys that a figure itself sets cannot be replaced")
     programs.add_option(parser)
     return parser.parse_args()
 

@@ -25,9 +25,9 @@ from . import command_line
 
 def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep; line-tension may be a list")
+    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="keys of clogsweep; line-tension may be a list")
     command_line.add_output(parser, "name of a picture; .png and .pdf are made", ".png", ".pdf")
-    parser.add_argument("--with", dest="measured", metavar="SWEEP", type=pathlib.Path, help="file of clogsweep --output, whose lengths are drawn, too")
+    parser.add_argument("--with", dest="measured", metavar="SWEEP", type=pathlib.Path, help="also draw the lengths of this file of clogsweep --output")
     programs.add_option(parser)
     return parser.parse_args()
 

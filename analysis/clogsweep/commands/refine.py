@@ -38,18 +38,18 @@ SPACED = re.compile(r"(lin|log)\(([^,()]+),([^,()]+),\s*(\d+)\s*\)")
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", metavar="KEY[,KEY]", help="one key, or two with a comma between; their lists give the bounds")
-    parser.add_argument("settings", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUES", help="of clogsweep")
+    parser.add_argument("keys", metavar="KEY[,KEY]", help="one key, or two with a comma between; the lists of these keys give the bounds")
+    parser.add_argument("settings", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUES", help="keys of clogsweep")
     parser.add_argument("--config", help="file with lines `key = value`")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="HDF5 file to create, to resume or to add to")
     parser.add_argument("--until", metavar="GOAL",
                         help="curve=20%%, peak=10%%, crossing=10:5%% or, for a lattice, critical-angle=0.5")
-    parser.add_argument("--budget", metavar="H", help="core-hours that all runs may take, e.g. 10h")
+    parser.add_argument("--budget", metavar="H", help="largest number of core-hours of all runs together, e.g. 10h")
     parser.add_argument("--max-hours", type=command_line.between(0, 1e9, "hours"), default=math.inf, metavar="H",
                         help="stop after this number of hours, as after a signal")
     parser.add_argument("--most-seeds", type=command_line.whole(1), metavar="N",
                         help=f"largest number of seeds of a value ({BLOCKS_OF_A_VALUE} times `seeds`)")
-    parser.add_argument("--same-seeds", action="store_true", help="all values have the same seeds, not seeds of their own")
+    parser.add_argument("--same-seeds", action="store_true", help="use the same seeds for all values")
     parser.add_argument("--dry-run", action="store_true", help="print the first round and its cost, run nothing")
     for name in PASSED_ON:
         parser.add_argument(f"--{name}", help="as for clogsweep")

@@ -18,7 +18,7 @@ def body() -> int:
     parser = command_line.Parser(__doc__)
     parser.add_argument("sweep", type=pathlib.Path, help="output of clogsweep")
     command_line.add_output(parser, "HTML file to write (SWEEP-report.html)")
-    parser.add_argument("--examples", type=command_line.whole(0), default=4, help="clogs or outlines to show (4); 0 runs nothing")
+    parser.add_argument("--examples", type=command_line.whole(0), default=4, help="number of runs to replay and to show as clogs, outlines or paths (4); 0: replay nothing")
     command_line.add_lab(parser)
     programs.add_option(parser)
     arguments = parser.parse_args()

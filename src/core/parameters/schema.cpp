@@ -221,7 +221,7 @@ using enum ParameterRole;
 std::vector<Parameter> droplet_entries() {
   return {
       entry("model", [](auto& run) -> auto& { return run.model; },
-            {.column = "model", .meaning = "dp: deformable polygon, sp: soft disk"}),
+            {.column = "model", .meaning = "model of the droplet; dp: deformable polygon, sp: soft disk"}),
       entry("line-tension", [](auto& run) -> auto& { return run.dp.line_tension; },
             {.column = "line_tension",
              .symbol = R"(\Gamma)",
@@ -264,7 +264,8 @@ std::vector<Parameter> array_entries() {
       entry("obstacle-diameter-spread", [](auto& run) -> auto& { return run.obstacles.diameter_spread; },
             {.column = "obstacle_diameter_spread",
              .symbol = R"(\Delta\sigma_\mathrm{ob}/\sigma_\mathrm{ob})",
-             .meaning = "diameters of random obstacles are uniform in obstacle-diameter*(1 -+ spread)",
+             .meaning = "random obstacles have diameters distributed uniformly between obstacle-diameter*(1 "
+                        "- spread) and obstacle-diameter*(1 + spread)",
              .scope = &arrays,
              .range = {not_negative,
                        below(1, "the smallest obstacles would have no diameter", "use less than 1")},
@@ -275,7 +276,7 @@ std::vector<Parameter> array_entries() {
              .symbol = R"(\rho_\mathrm{ob})",
              .unit = "1/sigma^2",
              .meaning = "obstacles per area, or a share of the mean density of saturated arrays; saturated: "
-                        "no further obstacle fits. Refused if some seed cannot reach it",
+                        "as many obstacles as fit. A density that some seed cannot reach is refused",
              .scope = &arrays,
              .automatic_in = &arrays,
              .range = {positive, {}},
@@ -284,8 +285,9 @@ std::vector<Parameter> array_entries() {
              .words = {"saturated"}}),
       entry("obstacle-layout", [](auto& run) -> auto& { return run.obstacles.layout; },
             {.column = "obstacle_filling",
-             .meaning = "random: random sequential addition, lattice: by the keys lattice, pitch and "
-                        "lattice-angle, file: user-supplied circles, channel: two wedges, wall: a flat wall",
+             .meaning =
+                 "random: random sequential addition; lattice: posts in rows, see the keys lattice, pitch "
+                 "and lattice-angle; file: user-supplied circles; channel: two wedges; wall: a flat wall",
              .has_own_column = false,
              .shapes_array = true}),
   };
@@ -296,28 +298,31 @@ std::vector<Parameter> own_circle_entries() {
   return {
       entry("obstacles", [](auto& run) -> auto& { return run.obstacles.own; },
             {.column = "obstacles",
-             .meaning = "CSV file of user-supplied circles: x, y and, unless it is obstacle-diameter, the "
-                        "diameter; the result file stores the circles, each row their checksum",
+             .meaning =
+                 "CSV file of user-supplied circles with columns x, y and diameter (default: "
+                 "obstacle-diameter); the result file stores the circles, and each row stores their checksum",
              .scope = &own_circles,
              .shapes_array = true}),
       entry("release", [](auto& run) -> auto& { return run.obstacles.release; },
             {.column = "release",
-             .meaning = "start among user-supplied circles: near the centre of the array, or near a place "
-                        "that the seed determines, anywhere or on the line of the entrance",
+             .meaning = "where droplets start among user-supplied circles; centre: near the centre of the "
+                        "array; anywhere, entrance: near a place that the seed determines, in the whole "
+                        "array or on the line of the entrance",
              .scope = &own_circles,
              .shapes_array = true}),
-      entry("length", [](auto& run) -> auto& { return run.obstacles.length; },
-            {.column = "length",
-             .symbol = R"(L_x)",
-             .unit = "sigma",
-             .meaning =
-                 "length of user-supplied circles along the flow, after which they repeat; 0: boxes*box. For "
-                 "triangular and rhombic lattices the largest period along the flow, adjusted like box",
-             .role = numerics,
-             .scope = &lengths,
-             .range = {not_negative, to(1e7, "no droplet gets as far", "use at most 1e7")},
-             .shapes_array = true,
-             .before = 0.0}),
+      entry(
+          "length", [](auto& run) -> auto& { return run.obstacles.length; },
+          {.column = "length",
+           .symbol = R"(L_x)",
+           .unit = "sigma",
+           .meaning =
+               "length along the flow after which user-supplied circles repeat; 0: boxes*box. For triangular "
+               "and rhombic lattices: largest period along the flow, adjusted to the lattice like box",
+           .role = numerics,
+           .scope = &lengths,
+           .range = {not_negative, to(1e7, "no droplet travels so far", "use at most 1e7")},
+           .shapes_array = true,
+           .before = 0.0}),
       entry("side-walls", [](auto& run) -> auto& { return run.obstacles.side_walls; },
             {.column = "side_walls",
              .meaning = "on: straight walls along the flow at y=0 and y=box beside user-supplied circles; "
@@ -329,8 +334,8 @@ std::vector<Parameter> own_circle_entries() {
             {.column = "entrance",
              .symbol = R"(x_\mathrm{in})",
              .unit = "sigma",
-             .meaning = "x of the line on which release=entrance places droplets, or in the nearest void if "
-                        "it is not free",
+             .meaning = "x of the line on which release=entrance places droplets; if the place is not free, "
+                        "the droplet starts in the nearest void",
              .scope = &own_circles,
              .range = {not_negative, {}},
              .shapes_array = true,
@@ -357,8 +362,8 @@ std::vector<Parameter> own_circle_entries() {
             {.column = "exit",
              .symbol = R"(x_\mathrm{out})",
              .unit = "sigma",
-             .meaning = "x at which a droplet has passed user-supplied circles, which ends its run; 0: no "
-                        "exit, the circles repeat",
+             .meaning = "x at which a droplet has passed user-supplied circles and its run ends; 0: there is "
+                        "no exit, the circles repeat",
              .scope = &own_circles,
              .range = {not_negative, {}},
              .before = 0.0}),
@@ -382,8 +387,10 @@ std::vector<Parameter> channel_entries() {
              .unit = "degrees",
              .meaning = "angle between the wedges' flanks and the flow; 0: parallel walls",
              .scope = &channels,
-             .range = {from(0, "an angle between flank and flow", "use 5..85, or 0 for parallel walls"),
-                       to(85, "an angle between flank and flow", "use 5..85, or 0 for parallel walls")},
+             .range = {from(0, "it is the angle between the wedges' flanks and the flow",
+                            "use 5..85, or 0 for parallel walls"),
+                       to(85, "it is the angle between the wedges' flanks and the flow",
+                          "use 5..85, or 0 for parallel walls")},
              .shapes_array = true}),
       entry("tip-radius", [](auto& run) -> auto& { return run.channel.tip_radius; },
             {.column = "tip_radius",
@@ -391,21 +398,22 @@ std::vector<Parameter> channel_entries() {
              .unit = "sigma",
              .meaning = "radius of the wedges' rounded tips",
              .scope = &channels,
-             .range = {not_negative, to(10, "such tips are flat for a droplet", "try 0.03")},
+             .range = {not_negative, to(10, "tips of such a radius are nearly flat", "try 0.03")},
              .shapes_array = true}),
       entry("start", [](auto& run) -> auto& { return run.channel.start; },
             {.column = "start",
              .symbol = "h_0",
              .unit = "sigma",
-             .meaning =
-                 "h of the droplet's centre at release, from the line through the tips, negative upstream",
+             .meaning = "h of the droplet's centre at release: distance from the line through the wedges' "
+                        "tips, negative upstream",
              .scope = &channels,
              .range = {from(-100, "the approach would take most of the time", "try -10"), {}}}),
       entry("end", [](auto& run) -> auto& { return run.channel.end; },
             {.column = "end",
              .symbol = "h_1",
              .unit = "sigma",
-             .meaning = "h at which the droplet has passed",
+             .meaning =
+                 "h of the droplet's centre at which the droplet has passed the channel and its run ends",
              .scope = &channels,
              .range = {{}, to(100, "the path behind the orifice would take most of the time", "try 3")}}),
   };
@@ -436,14 +444,14 @@ std::vector<Parameter> period_entries() {
              .symbol = R"(\theta)",
              .unit = "degrees",
              .meaning = "angle of the lattice's rows from +x (the flow) towards +y; adjusted to the nearest "
-                        "with a period of at most box",
+                        "angle at which the lattice has a period of at most box",
              .scope = &lattices,
-             .range = {from(-45, "a square lattice turned by 90 degrees is the same", "use -45..45"),
-                       to(45, "a square lattice turned by 90 degrees is the same", "use -45..45")},
+             .range = {from(-45, "a square lattice turned by 90 degrees is the same lattice", "use -45..45"),
+                       to(45, "a square lattice turned by 90 degrees is the same lattice", "use -45..45")},
              .shapes_array = true}),
       entry("seeds", [](auto& run) -> auto& { return run.seed; },
             {.column = "seed",
-             .meaning = "one run for each: the seed determines obstacles and release",
+             .meaning = "one run for each seed, which determines obstacles and place of release",
              .role = ensemble,
              .scope = &arrays,
              .range = {from(0, "a seed is not negative", "use 0..4294967295"),
@@ -454,22 +462,24 @@ std::vector<Parameter> period_entries() {
             {.column = "box",
              .symbol = "L",
              .unit = "sigma",
-             .meaning = "period of the obstacle array across the flow, and along it with boxes=1",
+             .meaning = "period of the obstacle array across the flow and, with boxes=1, along the flow",
              .role = numerics,
              .scope = &arrays,
-             .range = {from(1, "the droplet would not find room",
+             .range = {from(1, "such a box has no room for a droplet",
                             "use at least 5, or more than 1 with side-walls=on"),
                        to(1e5, "no droplet travels that far", "use at most 1e5; the array is periodic")},
              .shapes_array = true}),
       entry("boxes", [](auto& run) -> auto& { return run.obstacles.boxes; },
             {.column = "boxes",
              .symbol = R"(n_\mathrm{box})",
-             .meaning = "number of boxes along the flow after which the array repeats; no droplet reaches "
-                        "this length with at least terminal-speed*max-time/box",
+             .meaning = "number of boxes along the flow after which the array repeats; no droplet gets so "
+                        "far in an array of terminal-speed*max-time/box boxes or more",
              .role = numerics,
              .scope = &arrays,
-             .range = {from(1, "boxes in a row along the flow, after which the array repeats", "use 1..1e6"),
-                       to(1e6, "boxes in a row along the flow, after which the array repeats", "use 1..1e6")},
+             .range = {from(1, "it is the number of boxes along the flow after which the array repeats",
+                            "use 1..1e6"),
+                       to(1e6, "it is the number of boxes along the flow after which the array repeats",
+                          "use 1..1e6")},
              .shapes_array = true,
              .elsewhere = std::int64_t{1}}),
   };
@@ -482,15 +492,15 @@ std::vector<Parameter> motion_entries() {
             {.column = "max_time",
              .symbol = "T",
              .unit = "t0",
-             .meaning = "time at which a run ends that has not clogged",
+             .meaning = "time at which a run ends if its droplet has not clogged",
              .role = numerics,
              .range = {positive, {}}}),
       entry("terminal-speed", [](auto& run) -> auto& { return run.drag.terminal_speed; },
             {.column = "terminal_speed",
              .symbol = "V_t",
              .unit = "sqrt(sigma g)",
-             .meaning = "V_t, speed without obstacles",
-             .range = {positive, to(100, "the drag would not matter before many boxes have passed",
+             .meaning = "V_t, terminal speed of the droplet far from obstacles",
+             .range = {positive, to(100, "the droplet would cross many boxes before drag matters",
                                     "use at most 100")}}),
       entry(
           "near-wall-drag", [](auto& run) -> auto& { return run.drag.near_wall; },
@@ -506,15 +516,16 @@ std::vector<Parameter> motion_entries() {
              .symbol = R"(\alpha)",
              .meaning = "alpha, exponent of sigma/d in the near-wall drag",
              .scope = &polygons,
-             .range = {from(0, "drag would grow away from walls", "the published exponent is 4/3"),
-                       to(4, "lubrication gives no more", "the published exponent is 4/3")}}),
+             .range = {from(0, "drag would grow away from walls", "use 0..4; the published exponent is 4/3"),
+                       to(4, "lubrication theory gives no larger exponent",
+                          "use 0..4; the published exponent is 4/3")}}),
       entry("near-wall-cutoff", [](auto& run) -> auto& { return run.drag.near_wall_cutoff; },
             {.column = "near_wall_cutoff",
              .symbol = R"(d_\mathrm{min})",
              .unit = "sigma",
              .meaning = "d_min, distance from a wall below which the near-wall drag is constant",
              .scope = &polygons,
-             .range = {positive, to(1, "drag would hardly depend on the distance",
+             .range = {positive, to(1, "drag would hardly depend on the distance from walls",
                                     "use at most 1, a droplet diameter")}}),
       entry("relative-drag", [](auto& run) -> auto& { return run.drag.relative; },
             {.column = "relative_drag",
@@ -538,37 +549,37 @@ std::vector<Parameter> interface_entries() {
              .role = numerics,
              .scope = &polygons,
              .automatic_in = &polygons,
-             .range = {from(16, "with fewer the polygon is far from a circle", "use 16..4096"),
+             .range = {from(16, "a polygon with fewer vertices is far from a circle", "use 16..4096"),
                        to(4096, "a run would take months", "use 16..4096")},
              .words = {"auto"},
              .elsewhere = std::int64_t{1}}),
       entry("inertia", [](auto& run) -> auto& { return run.dp.inertia; },
             {.column = "inertia",
              .symbol = "S",
-             .meaning = "S, inertial mass divided by the droplet's mass, without effect on weight and drag; "
-                        "the automatic time-step is sqrt(S) times as long",
+             .meaning = "S, inertial mass divided by the droplet's mass; S changes neither weight nor drag, "
+                        "and the automatic time-step is proportional to sqrt(S)",
              .role = numerics,
              .scope = &polygons,
-             .range = {from(0.01, "steps would be needlessly short", "use 0.01..16"),
-                       to(16, "the droplet would coast", "use 0.01..16")},
+             .range = {from(0.01, "time steps would be needlessly short", "use 0.01..16"),
+                       to(16, "inertia would carry the droplet on", "use 0.01..16")},
              .elsewhere = 1.0,
              .before = 1.0}),
       entry("time-step", [](auto& run) -> auto& { return run.time_step; },
             {.column = "time_step",
              .symbol = R"(\Delta t)",
              .unit = "t0",
-             .meaning = "step of the integrator; auto: the largest at which stiff modes do not affect the "
-                        "result; published: 1e-3",
+             .meaning = "step of the integrator; auto: the largest step at which stiff modes do not affect "
+                        "the result; the published step is 1e-3",
              .role = numerics,
              .automatic_in = &every_run,
-             .range = {from(1e-9, "smaller than any mode needs", "try 1e-3"), {}},
+             .range = {from(1e-9, "no mode needs so short a step", "try 1e-3"), {}},
              .words = {"auto"}}),
       entry("area-stiffness", [](auto& run) -> auto& { return run.dp.area_stiffness; },
             {.column = "area_stiffness",
              .symbol = "K_a",
              .unit = "g rho/sigma",
-             .meaning = "K_a; auto: keeps the area within 0.2 % of its rest value, but is at most 1e4, the "
-                        "published value",
+             .meaning = "K_a, stiffness of the area; auto: the value that keeps the area within 0.2 % of its "
+                        "rest value, at most the published 1e4",
              .role = numerics,
              .scope = &polygons,
              .automatic_in = &polygons,
@@ -576,14 +587,17 @@ std::vector<Parameter> interface_entries() {
              .words = {"auto"}}),
       entry("perimeter-spring", [](auto& run) -> auto& { return run.dp.perimeter_spring; },
             {.column = "perimeter_spring",
-             .meaning = "springs of the edges pull to l0 (rest, as published), to the mean edge length "
-                        "(mean), or only along the interface (along)",
+             .meaning =
+                 "springs of the polygon's edges; rest: pull edges to their rest length l0, as published; "
+                 "mean: pull edges to the mean edge length; along: pull each vertex only along the interface",
              .scope = &polygons}),
       entry("perimeter-stiffness", [](auto& run) -> auto& { return run.dp.perimeter_stiffness; },
             {.column = "perimeter_stiffness",
              .symbol = "K_l",
              .unit = "g rho sigma",
-             .meaning = "K_l; auto: ratio times Gamma for rest, 1 for mean, 0.003/V_t for along",
+             .meaning =
+                 "K_l, stiffness of the springs of perimeter-spring; auto: perimeter-stiffness-ratio*Gamma "
+                 "with perimeter-spring=rest, 1 with mean, 0.003/V_t with along",
              .scope = &polygons,
              .automatic_in = &polygons,
              .range = {not_negative, {}},
@@ -591,7 +605,7 @@ std::vector<Parameter> interface_entries() {
       entry("perimeter-stiffness-ratio", [](auto& run) -> auto& { return run.dp.perimeter_stiffness_ratio; },
             {.column = "perimeter_stiffness",
              .symbol = R"(K_l/\Gamma)",
-             .meaning = "K_l/Gamma of rest springs, where perimeter-stiffness=auto",
+             .meaning = "K_l/Gamma with perimeter-spring=rest and perimeter-stiffness=auto",
              .scope = &polygons,
              .range = {not_negative, {}},
              .has_own_column = false}),
@@ -616,44 +630,40 @@ std::vector<Parameter> wall_entries() {
                "as published",
            .scope = &polygons,
            .range = {not_negative,
-                     to(0.1, "walls would act at a distance, and gaps would be narrower by twice as much",
-                        "use 0, the surface, to 0.1")},
+                     to(0.1, "walls would act at a distance, and gaps would be narrower by twice this range",
+                        "use 0 (contact at the surface) to 0.1")},
            .words = {"half-vertex"}}),
-      entry(
-          "wall-tension", [](auto& run) -> auto& { return run.dp.wall_tension; },
-          {.column = "wall_tension",
-           .symbol = R"(\Gamma_\mathrm{w}/\Gamma)",
-           .meaning = "tension of the interface on walls divided by Gamma: minus the cosine of Young's "
-                      "contact angle; auto: minus the mean cosine of receding-angle and advancing-angle if "
-                      "both are given, else 1",
-           .scope = &polygons,
-           .range =
-               {from(0.1,
-                     "minus the cosine of the contact angle; with less the interface on a wall would buckle",
-                     "use 0.1..1"),
-                to(1, "minus the cosine of the contact angle", "use 0.1..1")},
-           .words = {"auto"}}),
+      entry("wall-tension", [](auto& run) -> auto& { return run.dp.wall_tension; },
+            {.column = "wall_tension",
+             .symbol = R"(\Gamma_\mathrm{w}/\Gamma)",
+             .meaning = "tension of the interface on walls divided by Gamma: minus the cosine of Young's "
+                        "contact angle; auto: minus the mean cosine of receding-angle and advancing-angle if "
+                        "both are given, otherwise 1",
+             .scope = &polygons,
+             .range = {from(0.1, "below 0.1 the interface on a wall would buckle", "use 0.1..1"),
+                       to(1, "it is minus the cosine of the contact angle", "use 0.1..1")},
+             .words = {"auto"}}),
       entry("receding-angle", [](auto& run) -> auto& { return run.dp.receding_angle; },
             {.column = "receding_angle",
              .symbol = R"(\theta_\mathrm{R})",
              .unit = "degrees",
              .meaning = "contact angle of the droplet below which the end of a wetted arc recedes; young: "
-                        "that of wall-tension; only with perimeter-spring=along",
+                        "the contact angle of wall-tension; only with perimeter-spring=along",
              .scope = &polygons,
              .automatic_in = &polygons,
-             .range = {from(0, "an angle between wall and interface", "use 0..180, or young"),
-                       to(180, "an angle between wall and interface", "use 0..180, or young")},
+             .range = {from(0, "it is the angle between wall and interface", "use 0..180, or young"),
+                       to(180, "it is the angle between wall and interface", "use 0..180, or young")},
              .words = {"young"}}),
       entry("advancing-angle", [](auto& run) -> auto& { return run.dp.advancing_angle; },
             {.column = "advancing_angle",
              .symbol = R"(\theta_\mathrm{A})",
              .unit = "degrees",
              .meaning = "contact angle of the droplet above which the end of a wetted arc advances; young: "
-                        "that of wall-tension; only with perimeter-spring=along",
+                        "the contact angle of wall-tension; only with perimeter-spring=along",
              .scope = &polygons,
              .automatic_in = &polygons,
-             .range = {from(0, "an angle between wall and interface", "use 0..180, or young"),
-                       to(180, "an angle between wall and interface", "use 0..180, or young")},
+             .range = {from(0, "it is the angle between wall and interface", "use 0..180, or young"),
+                       to(180, "it is the angle between wall and interface", "use 0..180, or young")},
              .words = {"young"}}),
       entry("friction", [](auto& run) -> auto& { return run.dp.friction; },
             {.column = "friction",
@@ -661,13 +671,13 @@ std::vector<Parameter> wall_entries() {
              .meaning = "mu, coefficient of dry friction of walls: largest tangential force divided by "
                         "normal force; not with perimeter-spring=along",
              .scope = &polygons,
-             .range = {not_negative, to(10, "more than any wall has", "try 0.3")},
+             .range = {not_negative, to(10, "no wall has so much friction", "try 0.3")},
              .elsewhere = 0.0}),
       entry("yield-traction", [](auto& run) -> auto& { return run.dp.yield_traction; },
             {.column = "yield_traction",
              .symbol = R"(\tau_\mathrm{y})",
              .unit = "g rho sigma",
-             .meaning = "tau_y, yield traction of walls: tangential force per wetted length that they bear "
+             .meaning = "tau_y, yield traction of walls: tangential force per wetted length that walls bear "
                         "in addition to friction; not with perimeter-spring=along",
              .scope = &polygons,
              .range = {not_negative, to(1000, "no droplet would ever move", "try 0.1")},
@@ -683,19 +693,19 @@ std::vector<Parameter> self_contact_entries() {
              .meaning = "whether the interface repels itself",
              .role = numerics,
              .scope = &polygons}),
-      entry(
-          "self-contact-range", [](auto& run) -> auto& { return run.dp.self_contact_range; },
-          {.column = "self_contact_range",
-           .symbol = R"(d_\mathrm{s})",
-           .unit = "sigma",
-           .meaning = "distance below which the interface repels itself",
-           .scope = &polygons,
-           .range = {positive, to(0.1, "thin parts of the droplet could be no thinner, and it could not fold",
-                                  "use at most 0.1")}}),
+      entry("self-contact-range", [](auto& run) -> auto& { return run.dp.self_contact_range; },
+            {.column = "self_contact_range",
+             .symbol = R"(d_\mathrm{s})",
+             .unit = "sigma",
+             .meaning = "distance below which the interface repels itself",
+             .scope = &polygons,
+             .range = {positive,
+                       to(0.1, "this is the smallest thickness of the droplet, which could then not fold",
+                          "use at most 0.1")}}),
       entry("film-friction", [](auto& run) -> auto& { return run.dp.film_friction; },
             {.column = "film_friction",
-             .meaning = "whether wall friction also acts through a closed film on the interface above it; "
-                        "auto: on with friction and self-contact",
+             .meaning = "whether wall friction also acts, through a closed film, on the interface above this "
+                        "film; auto: on with friction and self-contact",
              .scope = &polygons,
              .automatic_in = &polygons,
              .before = name(FilmFriction::off)}),
@@ -713,14 +723,11 @@ std::vector<Parameter> verdict_entries() {
       entry("clog-energy", [](auto& run) -> auto& { return run.clog_energy; },
             {.column = "clog_energy",
              .symbol = "E_k/E_t",
-             .meaning = "a droplet is clogged when its kinetic energy stays below this fraction of that at "
-                        "terminal speed",
+             .meaning = "a droplet is clogged when its kinetic energy stays below this fraction of the "
+                        "kinetic energy at terminal speed",
              .role = numerics,
-             .range = {above(0, "no droplet comes to rest altogether", "try 1e-17"),
-                       below(1e-3,
-                             "a fraction of the kinetic energy at terminal speed: droplets that only pause "
-                             "would count as clogged",
-                             "try 1e-17")}}),
+             .range = {above(0, "the kinetic energy never becomes exactly 0", "try 1e-17"),
+                       below(1e-3, "droplets that only pause would count as clogged", "try 1e-17")}}),
       entry("clog-detection", [](auto& run) -> auto& { return run.clog_detection; },
             {.column = "clog_detection",
              .meaning = "certified: a droplet that slows down is clogged once a stable equilibrium is proved "
@@ -730,18 +737,18 @@ std::vector<Parameter> verdict_entries() {
             {.column = "dwell_length",
              .symbol = R"(\delta_\mathrm{d})",
              .unit = "sigma",
-             .meaning = "a droplet that advances by at most this length rests (a dwell); the dwell columns "
-                        "record for how long",
+             .meaning = "a droplet that advances by at most this length rests (this is called a dwell); the "
+                        "dwell columns record for how long it rests",
              .role = numerics,
-             .range = {positive, to(0.5, "a droplet that hangs moves less", "try 0.05")}}),
+             .range = {positive, to(0.5, "a droplet that hangs on an obstacle moves less", "try 0.05")}}),
       entry("break-up-neck", [](auto& run) -> auto& { return run.dp.break_up_neck; },
             {.column = "break_up_neck",
              .symbol = R"(w_\mathrm{b})",
              .unit = "sigma",
-             .meaning = "width of a neck between two lobes below which a droplet has broken up, which ends "
-                        "the run; 0: never",
+             .meaning = "a droplet has broken up, and its run ends, when a neck between two lobes is "
+                        "narrower than this width; 0: droplets never break up",
              .scope = &polygons,
-             .range = {not_negative, to(0.5, "a droplet in a gap is no wider", "try 0.05")}}),
+             .range = {not_negative, to(0.5, "an unbroken droplet in a gap is as narrow", "try 0.05")}}),
   };
 }
 
@@ -749,8 +756,8 @@ std::vector<Parameter> verdict_entries() {
 std::vector<Parameter> laboratory_entries() {
   return {entry("laboratory", [](auto& run) -> auto& { return run.laboratory; },
                 {.column = "laboratory",
-                 .meaning = "description of the laboratory, set by --lab FILE; the result file stores it, "
-                            "each row its checksum",
+                 .meaning = "description of the laboratory, set by --lab FILE; the result file stores this "
+                            "description, and each row stores its checksum",
                  .before = "none"})};
 }
 
