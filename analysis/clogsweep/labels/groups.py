@@ -135,6 +135,10 @@ class Groups:
         from_array = (name == "obstacle_density" and of_filling) or (name in ("box", "length") and self.are_lattices)
         return from_array or all(name in group["automatic"] for group in self.members)
 
+    def _is_of_preset(self, name: str) -> bool:
+        """Whether it follows from line tension and preset, automatic for some presets and a number for others."""
+        return any(name in group["automatic"] for group in self.members) and self.follows(name, [self.abscissa, "preset"])
+
     def _share_of_saturated(self) -> str:
         """The filling of all random arrays, such as `12%`; empty if they differ."""
         share = self.settings.get("obstacle-density", "")
@@ -153,7 +157,7 @@ class Groups:
             told = droplet + [name for name in told if not self.follows(name, fits.DROPLETS)]
         else:
             told += [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
-                     and not self._is_automatic(name) and not (told and self.follows(name, told))]
+                     and not self._is_automatic(name) and not self._is_of_preset(name) and not (told and self.follows(name, told))]
         # Words and automatic values that follow from labelled parameters add nothing. A preset includes its parts.
         rest = [name for name in self.columns if name not in told and name != self.abscissa]
         for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):

@@ -183,7 +183,7 @@ bool DropletRun::is_in_range() const {
 void DropletRun::check() {
   const double energy_ratio = kinetic_energy_ratio();
   const PolygonShape shape = droplet_->shape();
-  const bool is_whole = energy_ratio < diverged_energy_ratio && shape.perimeter < burst_perimeter &&
+  const bool is_whole = energy_ratio < diverged_energy_ratio && shape.perimeter < tangled_perimeter &&
                         std::abs(shape.area / units::rest_area - 1) < diverged_area_error;
   if (!is_whole) {  // also if any of them is not a number
     message_ = fmt::format(

@@ -319,6 +319,15 @@ TEST(DropletRun, ABurstPolygonIsAResultToo) {
   expect_diverged(result_of(parameters, 10));
 }
 
+TEST(DropletRun, ATangledInterfaceIsAResultToo) {
+  // Far below the tested line tensions the interface grows and crosses itself, while area and speed stay normal.
+  RunParameters parameters = small_run(0.001);
+  parameters.max_time = 1000;
+  const RunResult result = result_of(parameters, 1000);
+  expect_diverged(result);
+  EXPECT_LT(result.time, 1000);
+}
+
 TEST(DropletRun, ADropletThatHasNotFallenYetIsNotClogged) {
   RunParameters parameters = small_run();
   parameters.obstacles.gap = 1.2;
