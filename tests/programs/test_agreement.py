@@ -142,7 +142,7 @@ class Table(Analysis):
                 self.assertRegex(row["reason"], "; tried: |^tried: ", row["statement"])
 
         text = self.agreement()
-        self.assertTrue(text.startswith(f"Of {len(rows)} statements "))
+        self.assertTrue(text.startswith(f"The verdicts on the article's {len(rows)} statements are "))
         for row in rows:
             self.assertIn(f"| {row['here']} | **{row['verdict']}**", text)
 
