@@ -181,7 +181,7 @@ def similar_at_other_densities(groups: list[Group]) -> Finding:
         members = [group for group in groups if dilute.density_key(group) == (is_saturated, density)]
         of_gaps = [shape(curve) for curve in curves(members, "obstacle_gap").values()]
         verdicts.append(overall(of_gaps))
-        words.append(f"{of_gaps.count(AGREES)} of {len(of_gaps)} gaps {'in saturated arrays' if is_saturated else f'at {density:g} obstacles per σ²'}")
+        words.append(f"{of_gaps.count(AGREES)} of {len(of_gaps)} gaps " + ("in saturated arrays" if is_saturated else f"at {density:g} obstacles per σ²"))
     return Finding(overall(verdicts), "peak in " + ", ".join(words))
 
 
