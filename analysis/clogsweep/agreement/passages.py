@@ -153,5 +153,5 @@ for _where, _text in [("4.1, figures 2, 3", "calibrated line tensions are 0.16 Â
                       ("4.1, figures 2, 3", "simulations deviate from experiments by 0.06 to 0.09 in speed, 0.004 to 0.01 in shape"),
                       ("appendix B, figure B2", "the deviation from the experiment reaches a plateau for K_l/Î“ below 0.01"),
                       ("4.2, figure 5", "droplets wrap around obstacles and squeeze into gaps in experiments as in simulations")]:
-    statement(_where, _text, not_known="measured profiles and images are not published as numbers; tried: clogfit calibrate on simulated profiles")(
+    statement(_where, _text, not_known="measurements are not published as numbers; tried: clogfit calibrate on simulated profiles")(
         lambda shop: Finding(NOT_KNOWN, "-"))

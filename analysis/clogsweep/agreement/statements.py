@@ -78,7 +78,7 @@ def with_variants(found: Mapping[Family, Finding]) -> Finding:
         verdict = FORCED if any(family.friction > 0 for family in helps) else BY_MESH if helps else verdict
     families = {one: ", ".join(family.in_words for family, finding in others if finding.verdict == one) for one in dict.fromkeys(finding.verdict for _, finding in others)}
     return Finding(verdict, nearest.value, "; ".join(f"{family.in_words}: {finding.verdict}" + (f", {finding.value}" if finding.value else "")
-                                                     for family, finding in others), "; ".join(f"{one}: {names}" for one, names in families.items()))
+                                                     for family, finding in others), "; ".join(f"{one}: {names}" for one, names in families.items()) if len(families) > 1 or len(others) < 2 else f"{others[0][1].verdict}: all")
 
 
 def statement_of_families(where: str, text: str, figure: str = "6c", families: Sequence[Family] = FAMILIES, **reasons: str) -> Callable[[Judge], Judge]:
