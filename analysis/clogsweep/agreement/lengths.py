@@ -20,14 +20,14 @@ CONFIDENCE = 0.95
 
 
 def peak(curve: Sequence[Group]) -> Group | None:
-    """The highest of the points that are clearly above one on their left and one on their right."""
+    """The highest of the points that are clearly above a point on their left and a point on their right."""
     found = [point for i, point in enumerate(curve)
              if any(shorter(other, point) for other in curve[:i]) and any(shorter(other, point) for other in curve[i + 1:])]
     return max(found, key=dilute.known_length) if found else None
 
 
 def shape(curve: Sequence[Group]) -> str:
-    """Is a curve non-monotonic? Not if it falls where the softest droplets do not clog."""
+    """Is a curve non-monotonic? It is monotonic if it only falls and the softest droplets do not clog."""
     return AGREES if peak(curve) else DOES_NOT if falls(curve, shorter) and curve[0]["clogs"] == 0 else NOT_KNOWN
 
 
@@ -53,7 +53,7 @@ def peak_draws(curve: Sequence[Group], seed: int) -> tuple[features.Peak, Number
 @statement_of_walls("4.2, figure 6c", "the peak moves to larger Γ as gaps widen",
                     does_not_agree="there is no peak, or it moves the other way", not_known="fewer than two curves have a peak, or the sign of the slope is uncertain")
 def peak_moves(groups: list[Group]) -> Finding:
-    """By the fraction of posterior draws in which the regression of log Gamma_peak on the gap has a slope of zero or
+    """Judges by the fraction of posterior draws in which the regression of log Gamma_peak on the gap has a slope of zero or
     less."""
     by_gap = curves([group for group in groups if group["total_distance"]], "obstacle_gap")
     found = {gap: peak_draws(curve, seed) for seed, (gap, curve) in enumerate(by_gap.items(), 1)
@@ -69,7 +69,7 @@ def peak_moves(groups: list[Group]) -> Finding:
 
 
 def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
-    """The crossover of the branches: the largest line tension at which wrapped clogs prevail, the next at which squeezed ones do."""
+    """The crossover of the branches: the largest line tension at which most clogs are wrapped, and the next at which most are squeezed."""
     wrapped = max((point["line_tension"] for point in curve if point["wrapped"] > point["squeezed"]), default=math.inf)
     squeezed = [point["line_tension"] for point in curve if point["squeezed"] > point["wrapped"] and point["line_tension"] > wrapped]
     return (wrapped, min(squeezed)) if squeezed else None
@@ -111,7 +111,7 @@ def neighbours_support(shop: Workshop, family: Family) -> Finding:
 
 
 def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) -> Finding:
-    """Whether lambda is longer in the widest gap than in the narrowest at every abscissa beyond one. Points without
+    """Whether lambda is longer in the widest gap than in the narrowest at every abscissa larger than `beyond`. Points without
     clogs do not count."""
     verdicts, words = {}, []
     for place, members in curves(groups, abscissa).items():
@@ -136,7 +136,7 @@ def longer_in_wide_gaps(groups: list[Group]) -> Finding:
 
 @statement_of_walls("4, text", "at intermediate Γ droplets flow continuously", in_kind="not in every gap, or also at small Γ", does_not_agree="some clog at every Γ")
 def flows_between(groups: list[Group]) -> Finding:
-    """Whether no droplet clogs at a line tension between others at which some do."""
+    """Whether no droplet clogs at a line tension between two at which some droplets clog."""
     verdicts, words = [], []
     for gap, curve in curves(groups, "obstacle_gap").items():
         free = [i for i, point in enumerate(curve) if point["clogs"] == 0]
@@ -211,7 +211,7 @@ def is_exponential(shop: Workshop) -> Finding:
 
 @statement("appendix C, figure C1", "E_k of a droplet that clogs decays exponentially to the threshold", "C1")
 def energy_decays(shop: Workshop) -> Finding:
-    """Over the last ten decades."""
+    """Fits a straight line to ln E_k over the last ten decades."""
     run = arrays.energies(shop)[0.3]
     if run.word("status") != "clogged":
         return Finding(DOES_NOT, f"the droplet is {run.word('status')}")

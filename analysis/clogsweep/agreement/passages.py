@@ -50,7 +50,7 @@ def top_behind(way: Any) -> Any:
 
 
 def tops_of_speeds(shop: Workshop, orifice: float) -> tuple[list[float], str]:
-    """The largest speeds of the droplets of figure 4 that pass, and all in words."""
+    """The largest speeds of the droplets of figure 4 that pass, and a text about all droplets."""
     tops = {tension: top_behind(run.table) for tension, run in channels.overshooting(shop, orifice).items()}
     words = [f"{tension:g} does not pass" if top is None else f"{top['speed_ratio']:.2f} at {tension:g}" for tension, top in tops.items()]
     return [top["speed_ratio"] for top in tops.values() if top is not None], f"w = {orifice:g}, b_0/b_∞ = {channels.OVERSHOOTS[orifice]:g}: {', '.join(words)}"
@@ -98,7 +98,7 @@ def drag_exponent(shop: Workshop) -> Finding:
 @statement("appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on", "B1",
            in_kind="smooth only from a finer mesh on", does_not_agree="ripples shrink up to the finest mesh")
 def profiles_are_smooth(shop: Workshop) -> Finding:
-    """A mesh is smooth if its ripples, and those of all finer ones, are within a tenth of the finest one's."""
+    """A mesh is smooth if its ripples, and those of all finer meshes, exceed the ripples of the finest mesh by at most a tenth."""
     noise = {count: roughness(run.table) for count, run in channels.meshes(shop).items()}
     counts = sorted(noise)
     rough = [count for count in counts if noise[count] > 1.1 * noise[counts[-1]]]
@@ -141,7 +141,7 @@ statement("4.1", "V_t = 0.08, 0.028, 0.032 for the three terminal speeds")(
 
 @statement("4.1", "Γ** = 1.7 ± 0.1 and 1.08 ± 0.09 follow from Γ* = 0.16 ± 0.01 by tilt and diameter")
 def tensions_scale(shop: Workshop) -> Finding:
-    """Within twice the errors of both sides; that of Gamma* is 6 %."""
+    """Values agree within twice their combined errors; the error of Gamma* is 6 %."""
     weights = [math.sin(math.radians(tilt)) * diameter**2 for tilt, diameter, _ in EXPERIMENTS]
     found = [0.16 * weights[0] / weight for weight in weights[1:]]
     is_within = [abs(value - published) <= 2 * math.hypot(error, value / 16) for value, published, error in zip(found, (1.7, 1.08), (0.1, 0.09))]
