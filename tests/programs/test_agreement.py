@@ -107,7 +107,7 @@ class Evidence(unittest.TestCase):
             found = {family: statements.Finding(one, "1") for family, one in zip((slides, rubbed, pinned), (nearest, friction, corners))}
             self.assertEqual(statements.with_variants(found), statements.Finding(
                 verdict, "1", f"wall friction (0.05): {friction}, 1; no friction, corner pinning: {corners}, 1",
-                f"{friction}: wall friction (0.05), no friction, corner pinning" if friction == corners else
+                f"{friction}: all" if friction == corners else
                 f"{friction}: wall friction (0.05); {corners}: no friction, corner pinning"))
 
     def test_what_curves_say_together(self):
@@ -142,7 +142,7 @@ class Table(Analysis):
                 self.assertRegex(row["reason"], "; tried: |^tried: ", row["statement"])
 
         text = self.agreement()
-        self.assertTrue(text.startswith(f"Of {len(rows)} statements "))
+        self.assertTrue(text.startswith(f"The verdicts on the article's {len(rows)} statements are "))
         for row in rows:
             self.assertIn(f"| {row['here']} | **{row['verdict']}**", text)
 

@@ -1,4 +1,4 @@
-"""What counts as a clear difference, and numbers as the table prints them.
+"""Decides which differences are clear, and formats numbers for the table.
 
 Lengths differ *clearly* if their confidence intervals do not overlap, speeds if they differ by more than two standard
 errors of the difference. A curve with R^2 of LEAST_LINEARITY or more is a straight line.
@@ -72,7 +72,7 @@ def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callabl
 
 
 def overall(verdicts: Sequence[str]) -> str:
-    """One verdict for several curves: theirs if all are equal, `qualitatively` if only some of those known agree."""
+    """One verdict for several curves: their common verdict, or `qualitatively` if their known verdicts differ."""
     known = set(verdicts) - {NOT_KNOWN}
     if not known:
         return NOT_KNOWN

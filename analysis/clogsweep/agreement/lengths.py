@@ -15,19 +15,19 @@ from ..tools.hints import Group, Numbers
 from .evidence import LEAST_LINEARITY, bounds, curves, fall_with_stiffness, falls, length_of, overall, shorter, trend
 from .statements import AGREES, DOES_NOT, FITTED, IN_KIND, NOT_KNOWN, Finding, statement, statement_of_families, statement_of_walls
 
-SLIDES = "nothing holds a soft droplet that hangs over an obstacle; it slides off"
+SLIDES = "nothing holds a soft droplet that hangs over an obstacle, so the droplet slides off"
 CONFIDENCE = 0.95
 
 
 def peak(curve: Sequence[Group]) -> Group | None:
-    """The highest of the points that are clearly above one on their left and one on their right."""
+    """The highest of the points that are clearly above a point on their left and a point on their right."""
     found = [point for i, point in enumerate(curve)
              if any(shorter(other, point) for other in curve[:i]) and any(shorter(other, point) for other in curve[i + 1:])]
     return max(found, key=dilute.known_length) if found else None
 
 
 def shape(curve: Sequence[Group]) -> str:
-    """Is a curve non-monotonic? Not if it falls where the softest droplets do not clog."""
+    """Is a curve non-monotonic? It is monotonic if it only falls and the softest droplets do not clog."""
     return AGREES if peak(curve) else DOES_NOT if falls(curve, shorter) and curve[0]["clogs"] == 0 else NOT_KNOWN
 
 
@@ -53,7 +53,7 @@ def peak_draws(curve: Sequence[Group], seed: int) -> tuple[features.Peak, Number
 @statement_of_walls("4.2, figure 6c", "the peak moves to larger Γ as gaps widen",
                     does_not_agree="there is no peak, or it moves the other way", not_known="fewer than two curves have a peak, or the sign of the slope is uncertain")
 def peak_moves(groups: list[Group]) -> Finding:
-    """By the fraction of posterior draws in which the regression of log Gamma_peak on the gap has a slope of zero or
+    """Judges by the fraction of posterior draws in which the regression of log Gamma_peak on the gap has a slope of zero or
     less."""
     by_gap = curves([group for group in groups if group["total_distance"]], "obstacle_gap")
     found = {gap: peak_draws(curve, seed) for seed, (gap, curve) in enumerate(by_gap.items(), 1)
@@ -69,7 +69,7 @@ def peak_moves(groups: list[Group]) -> Finding:
 
 
 def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
-    """The crossover of the branches: the largest line tension at which wrapped clogs prevail, the next at which squeezed ones do."""
+    """The crossover of the branches: the largest line tension at which most clogs are wrapped, and the next at which most are squeezed."""
     wrapped = max((point["line_tension"] for point in curve if point["wrapped"] > point["squeezed"]), default=math.inf)
     squeezed = [point["line_tension"] for point in curve if point["squeezed"] > point["wrapped"] and point["line_tension"] > wrapped]
     return (wrapped, min(squeezed)) if squeezed else None
@@ -100,7 +100,7 @@ def two_mechanisms(groups: list[Group]) -> Finding:
 
 
 @statement_of_families("4.2, figure 6a", "wrapped clogs carry additional forces from neighbouring obstacles",
-                       in_kind="most hang on the obstacles around which they wrap alone", does_not_agree="all hang on these alone", not_known=SLIDES)
+                       in_kind="only the obstacles that they wrap hold most of them", does_not_agree="only the obstacles that they wrap hold them", not_known=SLIDES)
 def neighbours_support(shop: Workshop, family: Family) -> Finding:
     shop.sweep(family.config)
     rows = shop.rows(family.config)
@@ -111,7 +111,7 @@ def neighbours_support(shop: Workshop, family: Family) -> Finding:
 
 
 def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) -> Finding:
-    """Whether lambda is longer in the widest gap than in the narrowest at every abscissa beyond one. Points without
+    """Whether lambda is longer in the widest gap than in the narrowest at every abscissa larger than `beyond`. Points without
     clogs do not count."""
     verdicts, words = {}, []
     for place, members in curves(groups, abscissa).items():
@@ -128,7 +128,7 @@ def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) 
 
 
 @statement_of_walls("4.2, figure 6c", "λ grows with the gap, right of the peak",
-                    in_kind="not for stiff droplets at equal density; at equal filling also for them (figure 6c-filling)", not_known="too few clogs")
+                    in_kind="not for stiff droplets at equal density; for all droplets at equal filling (figure 6c-filling)", not_known="too few clogs")
 def longer_in_wide_gaps(groups: list[Group]) -> Finding:
     tops = [top["line_tension"] for curve in curves(groups, "obstacle_gap").values() if (top := peak(curve))]
     return grows_with_gap(groups, "line_tension", max(tops, default=0.0))
@@ -136,7 +136,7 @@ def longer_in_wide_gaps(groups: list[Group]) -> Finding:
 
 @statement_of_walls("4, text", "at intermediate Γ droplets flow continuously", in_kind="not in every gap, or also at small Γ", does_not_agree="some clog at every Γ")
 def flows_between(groups: list[Group]) -> Finding:
-    """Whether no droplet clogs at a line tension between others at which some do."""
+    """Whether no droplet clogs at a line tension between two at which some droplets clog."""
     verdicts, words = [], []
     for gap, curve in curves(groups, "obstacle_gap").items():
         free = [i for i, point in enumerate(curve) if point["clogs"] == 0]
@@ -152,12 +152,12 @@ def flows_between(groups: list[Group]) -> Finding:
 def hybrids_between(groups: list[Group]) -> Finding:
     ranges = {gap: range_ for gap, curve in curves(groups, "obstacle_gap").items() if (range_ := transition(curve))}
     known = [group for group in groups if group["obstacle_gap"] in ranges]
-    return more_hybrids(known, lambda group: ranges[group["obstacle_gap"]][0] <= group["line_tension"] <= ranges[group["obstacle_gap"]][1], "where they meet")
+    return more_hybrids(known, lambda group: ranges[group["obstacle_gap"]][0] <= group["line_tension"] <= ranges[group["obstacle_gap"]][1], "where the branches meet")
 
 
 def more_hybrids(groups: Sequence[Group], is_inside: Callable[[Group], bool], where: str) -> Finding:
     inside, outside = (np.array([[group["hybrid"], group["clogs"]] for group in groups if is_inside(group) == side] or [[0, 0]]).sum(axis=0).tolist() for side in (True, False))
-    words = f"{inside[0]} of {inside[1]} {where}, {outside[0]} of {outside[1]} elsewhere"
+    words = f"hybrid clogs: {inside[0]} of {inside[1]} {where}, {outside[0]} of {outside[1]} elsewhere"
     if inside[1] == 0 or outside[1] == 0 or inside[0] + outside[0] == 0:
         return Finding(NOT_KNOWN, words)
     p = stats.fisher_exact([[hits, number - hits] for hits, number in (inside, outside)], alternative="greater")[1]
@@ -181,7 +181,7 @@ def similar_at_other_densities(groups: list[Group]) -> Finding:
         members = [group for group in groups if dilute.density_key(group) == (is_saturated, density)]
         of_gaps = [shape(curve) for curve in curves(members, "obstacle_gap").values()]
         verdicts.append(overall(of_gaps))
-        words.append(f"{of_gaps.count(AGREES)} of {len(of_gaps)} gaps at {'saturation' if is_saturated else format(density, 'g')}")
+        words.append(f"{of_gaps.count(AGREES)} of {len(of_gaps)} gaps " + ("in saturated arrays" if is_saturated else f"at {density:g} obstacles per σ²"))
     return Finding(overall(verdicts), "peak in " + ", ".join(words))
 
 
@@ -206,12 +206,12 @@ def is_exponential(shop: Workshop) -> Finding:
     if group["clogs"] < dilute.ENOUGH_CLOGS or group["weibull_p_value"] is None:
         return Finding(NOT_KNOWN, f"{group['clogs']} clogs")
     return Finding(AGREES if group["weibull_p_value"] >= 0.05 else DOES_NOT,
-                   f"Weibull's shape {group['weibull_shape']:.2f} of {group['clogs']} clogs, p = {group['weibull_p_value']:.2g}")
+                   f"Weibull's shape is {group['weibull_shape']:.2f} for {group['clogs']} clogs, p = {group['weibull_p_value']:.2g}")
 
 
 @statement("appendix C, figure C1", "E_k of a droplet that clogs decays exponentially to the threshold", "C1")
 def energy_decays(shop: Workshop) -> Finding:
-    """Over the last ten decades."""
+    """Fits a straight line to ln E_k over the last ten decades."""
     run = arrays.energies(shop)[0.3]
     if run.word("status") != "clogged":
         return Finding(DOES_NOT, f"the droplet is {run.word('status')}")
@@ -225,7 +225,7 @@ def energy_decays(shop: Workshop) -> Finding:
 
 statement("4.2, figure 7a", "λ of soft disks falls monotonically with E_w", "7a", not_known="too few clogs")(
     lambda shop: fall_with_stiffness(curves(shop.sweep("clogging-sp"), "obstacle_gap"), shorter, length_of))
-statement("4.2, figure 7a", "λ of soft disks grows with the gap", "7a", in_kind="at equal density not for stiff disks", not_known="too few clogs")(
+statement("4.2, figure 7a", "λ of soft disks grows with the gap", "7a", in_kind="not for stiff disks at equal density", not_known="too few clogs")(
     lambda shop: grows_with_gap(shop.sweep("clogging-sp"), "wall_stiffness"))
 
 APART = 0.25  # the published sag beyond which the models differ
@@ -258,7 +258,7 @@ def compared(shop: Workshop, family: Family, is_beyond: bool) -> Finding:
     return Finding(verdict, f"polygon/disk ratio at each sag: {', '.join(words)}" if words else "no polygon of such a sag")
 
 
-statement_of_families("4.2, figure 7c", "λ against the sag is the same for disks and polygons below 0.25 σ", "7c", in_kind="they separate at a smaller sag")(
+statement_of_families("4.2, figure 7c", "λ against the sag is the same for disks and polygons below 0.25 σ", "7c", in_kind="the lengths of disks and polygons separate at a smaller sag")(
     lambda shop, family: compared(shop, family, is_beyond=False))
 statement_of_families("4.2, figure 7c", "λ against the sag differs between disks and polygons beyond 0.25 σ", "7c", not_known="the softest polygon does not sink that far")(
     lambda shop, family: compared(shop, family, is_beyond=True))

@@ -50,14 +50,14 @@ def top_behind(way: Any) -> Any:
 
 
 def tops_of_speeds(shop: Workshop, orifice: float) -> tuple[list[float], str]:
-    """The largest speeds of the droplets of figure 4 that pass, and all in words."""
+    """The largest speeds of the droplets of figure 4 that pass, and a text about all droplets."""
     tops = {tension: top_behind(run.table) for tension, run in channels.overshooting(shop, orifice).items()}
     words = [f"{tension:g} does not pass" if top is None else f"{top['speed_ratio']:.2f} at {tension:g}" for tension, top in tops.items()]
     return [top["speed_ratio"] for top in tops.values() if top is not None], f"w = {orifice:g}, b_0/b_∞ = {channels.OVERSHOOTS[orifice]:g}: {', '.join(words)}"
 
 
 @statement("4.1, figure 3", "w = 0.7: the speed overshoots v_t near h = 0.3", "3", "4", in_kind="at another place",
-           does_not_agree="at the published near-wall drag it peaks below v_t; with less drag it overshoots")
+           does_not_agree="at the published near-wall drag the speed peaks below v_t; with less drag it overshoots")
 def overshoots(shop: Workshop) -> Finding:
     top = top_behind(channels.passage(shop, 0.7).table)
     if top is None:
@@ -66,7 +66,7 @@ def overshoots(shop: Workshop) -> Finding:
     return Finding(verdict, f"{top['speed_ratio']:.2f} at h = {top['h']:.2f}", tops_of_speeds(shop, 0.7)[1])
 
 
-@statement("4.1, figure 3", "w = 0.7: a second minimum of the speed is near h = 0.5", "3", in_kind="nearer to the orifice")
+@statement("4.1, figure 3", "w = 0.7: a second minimum of the speed is near h = 0.5", "3", in_kind="the minimum is nearer to the orifice")
 def second_minimum(shop: Workshop) -> Finding:
     way = channels.passage(shop, 0.7).table
     top = top_behind(way)
@@ -78,13 +78,13 @@ def second_minimum(shop: Workshop) -> Finding:
 
 
 @statement("4.1, figure 4", "w = 0.7: the overshoot shrinks as the tilt grows (Γ = 1.85, 1.11, 0.83)", "4",
-           does_not_agree="the stiffest droplet does not pass, as statics says; the softest stays below v_t")
+           does_not_agree="the stiffest droplet does not pass, as the balance of forces predicts; the softest stays below v_t")
 def overshoot_shrinks(shop: Workshop) -> Finding:
     tops, words = tops_of_speeds(shop, 0.7)
     return Finding(AGREES if len(tops) == 3 and tops[0] > tops[1] > max(tops[2], 1) else DOES_NOT, words, tops_of_speeds(shop, 0.8)[1])
 
 
-EXPONENT = "4/3 is the exponent for a vertex; only the nearest vertices feel the wall, so that of the droplet is smaller"
+EXPONENT = "4/3 is the exponent for a vertex; a droplet has a smaller one, because the wall slows only the nearest vertices"
 
 
 @statement("appendix A, figure A1", "v_g/(v_t - v_g) grows as d^(4/3) of the distance from the wall", "A1",
@@ -96,9 +96,9 @@ def drag_exponent(shop: Workshop) -> Finding:
 
 
 @statement("appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on", "B1",
-           in_kind="smooth only from a finer mesh on", does_not_agree="ripples do not stop to shrink")
+           in_kind="smooth only from a finer mesh on", does_not_agree="ripples shrink up to the finest mesh")
 def profiles_are_smooth(shop: Workshop) -> Finding:
-    """A mesh is smooth if its ripples, and those of all finer ones, are within a tenth of the finest one's."""
+    """A mesh is smooth if its ripples, and those of all finer meshes, exceed the ripples of the finest mesh by at most a tenth."""
     noise = {count: roughness(run.table) for count, run in channels.meshes(shop).items()}
     counts = sorted(noise)
     rough = [count for count in counts if noise[count] > 1.1 * noise[counts[-1]]]
@@ -141,7 +141,7 @@ statement("4.1", "V_t = 0.08, 0.028, 0.032 for the three terminal speeds")(
 
 @statement("4.1", "Γ** = 1.7 ± 0.1 and 1.08 ± 0.09 follow from Γ* = 0.16 ± 0.01 by tilt and diameter")
 def tensions_scale(shop: Workshop) -> Finding:
-    """Within twice the errors of both sides; that of Gamma* is 6 %."""
+    """Values agree within twice their combined errors; the error of Gamma* is 6 %."""
     weights = [math.sin(math.radians(tilt)) * diameter**2 for tilt, diameter, _ in EXPERIMENTS]
     found = [0.16 * weights[0] / weight for weight in weights[1:]]
     is_within = [abs(value - published) <= 2 * math.hypot(error, value / 16) for value, published, error in zip(found, (1.7, 1.08), (0.1, 0.09))]
@@ -153,5 +153,5 @@ for _where, _text in [("4.1, figures 2, 3", "calibrated line tensions are 0.16 �
                       ("4.1, figures 2, 3", "simulations deviate from experiments by 0.06 to 0.09 in speed, 0.004 to 0.01 in shape"),
                       ("appendix B, figure B2", "the deviation from the experiment reaches a plateau for K_l/Γ below 0.01"),
                       ("4.2, figure 5", "droplets wrap around obstacles and squeeze into gaps in experiments as in simulations")]:
-    statement(_where, _text, not_known="measured profiles and images are not published as numbers; tried: clogfit calibrate on made-up profiles")(
+    statement(_where, _text, not_known="measurements are not published as numbers; tried: clogfit calibrate on simulated profiles")(
         lambda shop: Finding(NOT_KNOWN, "-"))

@@ -27,7 +27,7 @@ def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Findi
     return Finding(overall(verdicts), "; ".join(words))
 
 
-statement("4.3, figure 8a", "the mean speed rises with Γ in gaps of 1 and wider", "8a", in_kind="it has a maximum, then falls to the plateau",
+statement("4.3, figure 8a", "the mean speed rises with Γ in gaps of 1 and wider", "8a", in_kind="the speed has a maximum, then falls to the plateau",
           does_not_agree="walls do not slow soft droplets down")(lambda shop: speeds_rise(shop, "speed", "obstacle_gap", "gap"))
 
 
@@ -46,18 +46,18 @@ def plateau_by_gap(shop: Workshop) -> Finding:
 def plateau_by_diameter(shop: Workshop) -> Finding:
     stiff = plateau(shop, "speed-diameter", "obstacle_diameter")
     differ = rises(stiff, slower) or falls(stiff, slower)
-    return Finding(DOES_NOT if differ else AGREES, ", ".join(f"{speed_of(group)} of {group['obstacle_diameter']:g}" for group in stiff))
+    return Finding(DOES_NOT if differ else AGREES, ", ".join(f"{speed_of(group)} for a diameter of {group['obstacle_diameter']:g}" for group in stiff))
 
 
 @statement("4.3, figure 8b", "at small Γ droplets pass larger obstacles faster", "8b",
            not_known="the errors are as large as the difference")
 def soft_by_diameter(shop: Workshop) -> Finding:
     soft = [curve[0] for curve in speed_curves(shop, "speed-diameter", "obstacle_diameter", "line_tension").values()]
-    return Finding(trend(slower(soft[0], soft[-1]), slower(soft[-1], soft[0])), ", ".join(f"{speed_of(group)} of {group['obstacle_diameter']:g}" for group in soft))
+    return Finding(trend(slower(soft[0], soft[-1]), slower(soft[-1], soft[0])), ", ".join(f"{speed_of(group)} for a diameter of {group['obstacle_diameter']:g}" for group in soft))
 
 
 @statement("4.3, text on figure 8a", "the speed is nearly constant at small Ca and falls at large Ca", "8ca",
-           in_kind="at small Ca it is not constant")
+           in_kind="the speed is not constant at small Ca")
 def speed_by_capillary_number(shop: Workshop) -> Finding:
     verdicts, words = [], []
     for gap, curve in speed_curves(shop, "speed", "obstacle_gap", "capillary_number").items():
@@ -100,7 +100,7 @@ def soft_models_differ(shop: Workshop) -> Finding:
     return Finding(AGREES if slower(polygon, disk) else DOES_NOT, f"polygon {speed_of(polygon)} at a sag of {sag:.2f}, disk {speed_of(disk)} at {disk_sag:.2f}")
 
 
-@statement("4.3, appendix D", "no droplet clogs in gaps wider than 1", "8a", in_kind="few do",
+@statement("4.3, appendix D", "no droplet clogs in gaps wider than 1", "8a", in_kind="few droplets do",
            does_not_agree="soft droplets hang over obstacles, held by corner pinning (`m`)")
 def nothing_clogs_in_wide_gaps(shop: Workshop) -> Finding:
     groups = [group for group in shop.sweep("speed") if group["obstacle_gap"] > 1.0]
@@ -124,5 +124,5 @@ def drag_slows_down(shop: Workshop) -> Finding:
                    "; ".join(f"{speed_of(first)} and {speed_of(last)} at {first['line_tension']:g}" for first, last in pairs))
 
 
-statement("appendix E, figure E", "the speed rises monotonically with Γ for every near-wall drag", "E", in_kind="it has a maximum")(
-    lambda shop: speeds_rise(shop, "near-wall-drag", "near_wall_drag", "b_0"))
+statement("appendix E, figure E", "the speed rises monotonically with Γ for every near-wall drag", "E", in_kind="the speed has a maximum")(
+    lambda shop: speeds_rise(shop, "near-wall-drag", "near_wall_drag", "b_0/b_∞"))

@@ -15,12 +15,13 @@ from ..tools.errors import NotThere, UserError
 AGREES, IN_KIND, FITTED = "agrees", "qualitatively", "by construction"
 FORCED, BY_MESH = "agrees with an added force", "artefact of the mesh"
 DOES_NOT, NOT_KNOWN, NOT_RUN = "does not agree", "not known", "not run"
+VERDICTS = [AGREES, IN_KIND, FORCED, BY_MESH, FITTED, DOES_NOT, NOT_KNOWN, NOT_RUN]  # in the order of the table's summary
 
 
 @dataclasses.dataclass(frozen=True)
 class Finding:
-    """The result of this program. @param value  in words, with numbers and their intervals; @param variants  the same for
-    other models; @param brief  their verdicts alone"""
+    """The result of this program. @param value  text with numbers and their intervals; @param variants  verdicts and values
+    of other models; @param brief  verdicts of other models"""
 
     verdict: str
     value: str
@@ -43,14 +44,14 @@ class Statement:
 STATEMENTS: list[Statement] = []
 NAMES = {"in_kind": IN_KIND, "fitted": FITTED, "does_not_agree": DOES_NOT, "not_known": NOT_KNOWN}
 ALWAYS = {FORCED: "without it nothing holds a soft droplet that hangs over an obstacle",
-          BY_MESH: "only corners of the polygon hold a soft droplet, the less the more vertices it has"}
+          BY_MESH: "only corners of the polygon hold a soft droplet, and finer meshes hold fewer droplets"}
 
 
 def statement(where: str, text: str, *figures: str, **reasons: str) -> Callable[[Judge], Judge]:
     """Registers a function that judges a statement.
 
-    @param figures  whose sweeps it needs
-    @param reasons  for a verdict, by NAMES
+    @param figures  figures whose sweeps the function needs
+    @param reasons  the reason for each verdict, by NAMES
     """
 
     def register(judge: Judge) -> Judge:
@@ -68,8 +69,8 @@ def tried(judge: Judge, *arguments: Any) -> Finding:
 
 
 def with_variants(found: Mapping[Family, Finding]) -> Finding:
-    """The finding of the first family, which is nearest to the published model. If it does not agree, the verdict names
-    what makes another agree."""
+    """The finding of the first family, which is nearest to the published model. If the first family does not agree, the
+    verdict names what makes another family agree."""
     (_, nearest), *others = found.items()
     verdict = nearest.verdict
     if verdict in (DOES_NOT, NOT_KNOWN):
@@ -77,11 +78,11 @@ def with_variants(found: Mapping[Family, Finding]) -> Finding:
         verdict = FORCED if any(family.friction > 0 for family in helps) else BY_MESH if helps else verdict
     families = {one: ", ".join(family.in_words for family, finding in others if finding.verdict == one) for one in dict.fromkeys(finding.verdict for _, finding in others)}
     return Finding(verdict, nearest.value, "; ".join(f"{family.in_words}: {finding.verdict}" + (f", {finding.value}" if finding.value else "")
-                                                     for family, finding in others), "; ".join(f"{one}: {names}" for one, names in families.items()))
+                                                     for family, finding in others), "; ".join(f"{one}: {names}" for one, names in families.items()) if len(families) > 1 or len(others) < 2 else f"{others[0][1].verdict}: all")
 
 
 def statement_of_families(where: str, text: str, figure: str = "6c", families: Sequence[Family] = FAMILIES, **reasons: str) -> Callable[[Judge], Judge]:
-    """Registers a judge of the sweeps and one family of walls. @param families  the nearest to the published model first"""
+    """Registers a judge of the sweeps and one family of walls. @param families  first the one nearest to the published model"""
     def register(judge: Judge) -> Judge:
         statement(where, text, figure, **reasons)(lambda shop: with_variants({family: tried(judge, shop, family) for family in families}))
         return judge
@@ -90,7 +91,7 @@ def statement_of_families(where: str, text: str, figure: str = "6c", families: S
 
 
 def statement_of_walls(where: str, text: str, figure: str = "6c", families: Sequence[Family] = FAMILIES, **reasons: str) -> Callable[[Judge], Judge]:
-    """The family's groups, sorted by gap, then line tension."""
+    """Registers a judge of a family's groups, sorted by gap, then line tension."""
     def register(judge: Judge) -> Judge:
         def of_family(shop: Workshop, family: Family) -> Finding:
             return judge(sorted(family.of(shop.sweep(family.config)), key=lambda group: (group["obstacle_gap"], group["line_tension"])))
@@ -108,9 +109,9 @@ class Judged:
 
     @property
     def reason(self) -> str:
-        """The reason and the attempts, if the verdict is not known or no agreement."""
+        """The reason of the verdict. If the verdict is not known or no agreement, also the attempts."""
         figures = ", ".join(self.statement.figures) if self.finding.verdict in (DOES_NOT, NOT_KNOWN) else ""
-        return "; ".join(filter(None, [self.statement.reasons.get(self.finding.verdict), figures and f"tried: runs of figure {figures}"]))
+        return "; ".join(filter(None, [self.statement.reasons.get(self.finding.verdict), figures and f"tried: runs of figure{'s' * (',' in figures)} {figures}"]))
 
 
 def judge(shop: Workshop, one: Statement) -> Judged:
@@ -119,7 +120,8 @@ def judge(shop: Workshop, one: Statement) -> Judged:
 
 
 def judge_all(shop: Workshop) -> tuple[list[Judged], int]:
-    """@param shop  that runs nothing. @return also the model version. @throws UserError  if its sweeps have several"""
+    """@param shop  a workshop that runs nothing. @return also the model version. @throws UserError  if the sweeps have several
+    model versions"""
     return [judge(shop, one) for one in STATEMENTS], the_version(shop.model_versions())
 
 

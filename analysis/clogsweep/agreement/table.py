@@ -6,7 +6,7 @@ import io
 import textwrap
 from collections.abc import Callable, Sequence
 
-from .statements import AGREES, BY_MESH, DOES_NOT, FITTED, FORCED, IN_KIND, NOT_KNOWN, NOT_RUN, Judged
+from .statements import VERDICTS, Judged
 
 COLUMNS = ["where", "statement", "here", "verdict", "reason", "variants"]
 
@@ -16,11 +16,10 @@ def cells(one: Judged) -> list[str]:
 
 
 def counts(judged: Sequence[Judged]) -> str:
-    """The verdicts counted, such as 31 agree, 12 agree qualitatively."""
+    """The verdicts and their numbers, such as *agrees* for 31 and *qualitatively* for 12."""
     number = collections.Counter(one.finding.verdict for one in judged)
-    words = {AGREES: "agree", IN_KIND: "agree qualitatively", FORCED: "agree with an added force", BY_MESH: "are artefacts of the mesh",
-             FITTED: "agree by construction", DOES_NOT: "do not agree", NOT_KNOWN: "are not known", NOT_RUN: "have not been run"}
-    return ", ".join(f"{number[verdict]} {word}" for verdict, word in words.items() if number[verdict])
+    *others, last = [f"*{verdict}* for {number[verdict]}" for verdict in VERDICTS if number[verdict]]
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def shortened(value: str) -> str:
@@ -30,8 +29,8 @@ def shortened(value: str) -> str:
 
 
 def markdown(judged: Sequence[Judged], version: int) -> str:
-    """A table for each section of the article: the first and last of several results, and the verdicts on variants without theirs."""
-    lines = [textwrap.fill(f"Of {len(judged)} statements {counts(judged)}. All rows have model version {version}.", 118)]
+    """A table for each section of the article, with the first and last of several results. Variants have their verdicts, but no results."""
+    lines = [textwrap.fill(f"The verdicts on the article's {len(judged)} statements are {counts(judged)}. All rows have model version {version}.", 118)]
     place_of = {id(one): one.statement.where.partition(", ") for one in judged}
     for section in dict.fromkeys(place[0] for place in place_of.values()):
         members = [one for one in judged if place_of[id(one)][0] == section]

@@ -7,7 +7,7 @@ import numpy as np
 from ..tools.hints import Numbers
 from .profiles import Profile, at
 
-# Relative deviation of a frame that the simulated droplet never reached, and the largest of any other.
+# Relative deviation of a frame that the simulated droplet never reached, and the largest deviation of any other frame.
 NEVER_REACHED = 10
 # Fewer successive residuals do not determine their correlation.
 FEWEST_CORRELATED = 8
@@ -23,7 +23,7 @@ def speed_residuals(measured: Profile, simulated: Profile) -> tuple[Numbers, int
     never = np.isnan(speed)
     with np.errstate(all="ignore"):
         found = np.clip(measured.speed / speed - 1, -NEVER_REACHED, NEVER_REACHED)
-    found[~(speed > 0)] = NEVER_REACHED  # it rests, or is pushed back
+    found[~(speed > 0)] = NEVER_REACHED  # the droplet rests, or is pushed back
     found[never] += NEVER_REACHED * np.maximum(0, measured.h - max(simulated.h))[never]
     return found, int(never.sum())
 

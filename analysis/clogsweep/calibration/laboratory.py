@@ -28,6 +28,6 @@ def quantities(given: Mapping[str, str | None], folder: pathlib.Path) -> tuple[d
 
 
 def print_json(answer: Mapping[str, Any], document: Mapping[str, Any]) -> None:
-    """Adds the version of the programs in front. NaN and infinity become null."""
+    """Prints the document after the version of the programs. NaN and infinity become null."""
     text = json.dumps({"version": answer["version"], "git_describe": answer["git_describe"], **document})
     print(json.dumps(json.loads(text, parse_constant=lambda _: None), indent=2))

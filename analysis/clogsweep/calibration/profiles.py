@@ -15,7 +15,7 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
 FEWEST_FRAMES = 3
-# A simulated passage that is calibrated is cut like a camera's, at this distance from the orifice [sigma].
+# A simulated passage that is calibrated begins and ends, like a measured one, at this distance from the orifice [sigma].
 FARTHEST_FRAME = 1.5
 FRAMES_PER_DIAMETER = 20
 METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "\u00b5m": 1e-6, "\u03bcm": 1e-6}  # as clogfit units; Unicode has two signs for micro

@@ -126,7 +126,7 @@ class Search:
         return Linearised(-np.linalg.lstsq(slopes, here.residuals, rcond=None)[0], np.sqrt(variance * np.diag(np.linalg.inv(information))))
 
     def linearise(self, place: Place) -> Linearised | None:
-        """First with steps so short that the droplet passes on both sides, then with steps as long as the errors."""
+        """Takes differences first over steps so short that the droplet passes on both sides, then over steps as long as the errors."""
         step = LONGEST_STEP
         while (found := self.linearise_over(np.array(place), step)) is None and np.all(step > 2 * SHORTEST_STEP):
             step = step / 2
@@ -149,7 +149,7 @@ class Search:
         return best, False
 
     def bracket_clog(self, grid: Sequence[Attempt], drag: float) -> tuple[float, float] | None:
-        """log Gamma of two droplets, of which the softer passes all frames and the stiffer does not, if there are any."""
+        """log Gamma of the stiffest droplet that passes all frames and of the next stiffer droplet that does not, if they exist."""
         brackets = [(softer.place[0], stiffer.place[0]) for softer, stiffer in zip(grid, grid[len(GRID_DRAGS):])
                     if softer.num_never_reached == 0 < stiffer.num_never_reached]
         if not brackets:
@@ -173,7 +173,7 @@ class Search:
 
 
 def in_parallel(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
-    """One waiting thread for each; simulations have a core each."""
+    """Each item has a thread that waits; each simulation has one core."""
     with ThreadPoolExecutor(max_workers=len(items)) as threads:
         return list(threads.map(function, items))
 
@@ -193,7 +193,7 @@ def starts(attempts: Sequence[Attempt]) -> list[tuple[float, float]]:
 def warnings(best: Attempt, found: Calibration) -> list[str]:
     """What spoils a result."""
     num_frames, log_tension, drag = len(best.residuals), *best.place
-    # Independent noise exceeds it once in seven hundred trials. If residuals are systematic, something other than
+    # The correlation of independent noise exceeds this limit once in seven hundred trials. If residuals are systematic, something other than
     # Gamma and b_0 differs.
     largest = 3 / math.sqrt(num_frames)
     shapes = [(name, measure) for name, measure, delta in (("speeds", found.speed_correlation, found.delta_v), ("shapes", found.shape_correlation, found.delta_a))

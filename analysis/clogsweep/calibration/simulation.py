@@ -24,7 +24,7 @@ APPROACH = 0.5
 USUAL_START = -2.0
 # A droplet that moves at 1/30 of its terminal speed on average still passes.
 SLOWEST = 30
-# Below 64 steps: clogrun has no more samples than one for so many.
+# Shorter than 64 steps; clogrun stores at most one sample for 64 steps.
 SAMPLE_INTERVAL = 1e-9
 
 
@@ -46,11 +46,11 @@ class Clogrun:
         with self.cores:
             if self.stopping.is_set():
                 raise Stopped
-            # In a session of its own the terminal does not send it SIGINT.
+            # The process has its own session, so the terminal does not send it SIGINT.
             with subprocess.Popen([self.program, "channel", *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                   encoding="utf-8", errors="backslashreplace", start_new_session=True) as process:
                 self.running.add(process)
-                if self.stopping.is_set():  # since it was asked above
+                if self.stopping.is_set():  # a signal may have come since the check above
                     process.terminate()
                 out, error = process.communicate()
                 self.running.discard(process)
@@ -62,7 +62,7 @@ class Clogrun:
 
     @contextlib.contextmanager
     def stoppable(self) -> Iterator[None]:
-        """In this block signals that stop end all runs, which raise Stopped."""
+        """In this block a signal that stops the program ends all runs, and these raise Stopped."""
         def stop(_number: int, _frame: FrameType | None) -> None:
             self.stopping.set()
             for process in list(self.running):

@@ -18,7 +18,7 @@ Threshold = tuple[float | None, float | None]  # the largest line tension of a d
 
 
 def symmetry(offset: float) -> float:
-    """The symmetry of a collision: the smaller part's area divided by the larger one's, for a droplet of radius 1/2."""
+    """The symmetry of a collision: the area of the smaller part divided by that of the larger part, for a droplet of radius 1/2."""
     small = (math.acos(2 * offset) - 2 * offset * math.sqrt(1 - 4 * offset**2)) / math.pi
     return small / (1 - small)
 

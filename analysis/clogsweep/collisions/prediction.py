@@ -1,4 +1,4 @@
-"""Clogging lengths from droplets that fall onto one or two obstacles: which of these hold it, and how many of them an array has.
+"""Clogging lengths from droplets that fall onto one or two obstacles: which obstacles hold a droplet, and how many of these an array has.
 
 docs/explanation/predicted.md has the law and its limits.
 """
@@ -25,7 +25,7 @@ OFFSET_PRECISION, OFFSET_STEPS = 0.0001, 6  # of the half-width within which one
 SPEED = 0.03  # terminal speed by default [sqrt(sigma g)]
 SMALLEST_LENGTH = 4  # [sigma]: shorter ones were too long by a third and more
 SOFTEST = 1  # line tension: at 0.5 up to 42 % of all clogs hang on three obstacles, at 0.3 85 % (docs/explanation/predicted.md)
-ARRAYS, ARRAY_BOX = 4, 60  # of random arrays, pairs of so many are counted
+ARRAYS, ARRAY_BOX = 4, 60  # number of random arrays in which pairs are counted, and their width [sigma]
 
 # The keys of the array. All other keys belong to the droplet; `obstacle-diameter` belongs to both.
 OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacles", "lattice", "pitch", "lattice-angle", "box",
@@ -38,7 +38,7 @@ Circles = Sequence[tuple[float, float, float]]  # x along the flow, y across it,
 
 @dataclasses.dataclass(frozen=True)
 class Array:
-    """Obstacles of an array, and its neighbours: pairs of obstacles that a free droplet does not fit through."""
+    """The obstacles of an array, and its pairs of obstacles between which a free droplet does not fit."""
 
     area: float  # [sigma^2]
     obstacles: int
@@ -50,10 +50,10 @@ class Array:
 
 
 def pairs_of(circles: Numbers, width: float, length: float) -> Iterator[Numbers]:
-    """Pairs of each obstacle and those behind it in the list that a droplet does not fit through freely, in an array that repeats.
+    """Pairs of obstacles between which a free droplet does not fit, in a periodic array, for each obstacle and those behind it in the list.
 
     @param circles  n x 3, x, y and diameter [sigma]; @param width  period across the flow, y; @param length  along it, x
-    @return arrays of m x 3: way from the first to the second, mean diameter
+    @return arrays of m x 3: vector from the first to the second obstacle, mean diameter
     """
     period = np.array([length, width])
     for index, circle in enumerate(circles):
@@ -99,7 +99,7 @@ class Droplets:
         return found
 
     def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
-        """Which pairs stop one that falls onto their middle, not one of them alone. @param angles  of the pairs [degrees]"""
+        """Which pairs stop a droplet that falls onto their middle, if not one of their obstacles alone does. @param angles  of the pairs [degrees]"""
         halves = [[(gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos)] for angle in angles]
         ends = self.ends([[(0, -y, diameter), (2 * x, y, diameter)] for x, y in halves])
         return {tension: [end in (b"squeezed", b"hybrid") for end in words] for tension, words in ends.items()}
@@ -126,8 +126,8 @@ def mean_cosine(held: Sequence[bool]) -> float:
 
 
 def largest_angle(gap: float, diameter: float) -> float:
-    """Largest angle at which a rigid disc rests on two obstacles [degrees]: its centre is above the line between
-    theirs."""
+    """Largest angle at which a rigid disc rests on two obstacles [degrees]: the disc's centre is above the line
+    between the obstacles' centres."""
     return math.degrees(math.asin(min(1.0, (gap + diameter) / (1 + diameter))))
 
 
@@ -167,7 +167,7 @@ def predict(droplets: Droplets, array: Array) -> Iterator[Prediction]:
 
 
 def doubts_of(tension: float, length: float) -> list[str]:
-    """Reasons why a predicted length may be wrong by more than a tenth; words of docs/explanation/predicted.md."""
+    """Reasons why a predicted length may be wrong by more than a tenth, as in docs/explanation/predicted.md."""
     return [word for word, holds in (("soft", tension < SOFTEST), ("crowded", length < SMALLEST_LENGTH)) if holds]
 
 

@@ -163,7 +163,7 @@ def save(picture: Picture, arguments: argparse.Namespace) -> int:
 
 
 def lab_options(arguments: argparse.Namespace) -> list[object]:
-    """--lab for clogfit, if it was given."""
+    """--lab for clogfit, if the user gave it."""
     return ["--lab", arguments.lab] if arguments.lab else []
 
 

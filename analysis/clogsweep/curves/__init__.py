@@ -4,5 +4,5 @@
 - features: band, peak and crossings of a fitted curve
 - points: which groups of clogfit's table belong to a curve, and why others do not
 - answer: the curves of a sweep, as `clogfit curve --format json` prints them
-- table: the same as text and CSV
+- table: these curves as text and CSV
 """

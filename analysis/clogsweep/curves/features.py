@@ -55,7 +55,7 @@ def band(curve: Curve, confidence: float) -> Numbers:
 
 
 def drawn_curves(curve: Curve, number: int = NUM_DRAWS, seed: int = 1) -> Numbers:
-    """Curves of log lambda drawn from the distribution, the same ones in every call: one in every row. Those of another seed are independent."""
+    """Curves of log lambda drawn from the distribution, the same ones in every call: one in every row. Curves drawn with another seed are independent."""
     variance = max(float(np.max(np.diagonal(curve.covariance))), float(np.finfo(float).tiny))
     jitter = FIRST_JITTER
     while True:
@@ -96,7 +96,7 @@ def tops(heights: Numbers, places: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def find_peak(curve: Curve, places: Numbers, confidence: float) -> Peak:
-    """Place and height of the mean; the intervals are those of drawn curves. @param places  see tops()"""
+    """Place and height of the mean curve's peak; the intervals come from drawn curves. @param places  see tops()"""
     draws = drawn_curves(curve)
     draw_places, draw_heights = tops(draws, places)
     (place,), (height,) = tops(curve.mean[None], places)

@@ -38,7 +38,7 @@ class Scales:
 
 @dataclasses.dataclass(frozen=True)
 class Points:
-    """Data: sums over all runs at each place. Points without a clog are bounds, and inform the curve as such.
+    """Data: sums over all runs at each place. Points without a clog are lower bounds, which the fit uses, too.
 
     `places` has a row for each point and a column for each key, its logarithm; `distances` [sigma].
     @throws ValueError  unless there is a point, and each has a finite place, clogs >= 0 and a positive, finite distance

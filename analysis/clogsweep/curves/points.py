@@ -48,12 +48,12 @@ def place_of(group: Group, keys: Iterable[Column]) -> list[float]:
 
 
 def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
-    """Whether its value follows from others. Not if the sweep lists it."""
+    """Whether the parameter's value follows from others. It does not if the sweep lists the parameter."""
     return column.get("automatic_in") in ("all", group["model"]) and column["name"] not in fit["lists"]
 
 
 def may_be_key(fit: Fit, column: Column) -> bool:
-    """A number that a user chooses, and that affects the physics: not one that follows from others."""
+    """Whether it is a number that a user chooses and that affects the physics, not a number that follows from others."""
     return column.get("parameter_role") == "physics" and column["kind"] != "word" and all(
         group[column["name"]] is not None and not is_automatic(fit, column, group) for group in fit["groups"])
 
@@ -152,7 +152,7 @@ def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Exclude
         if not (group["total_distance"] or 0) > 0:
             excluded.append(Excluded(index, "no run of it has covered any distance"))
         elif group["exit"]:
-            # Few places hold its droplets, so nothing is known between the values.
+            # The few places of a short device that hold droplets tell nothing about values of the key between those of the sweep.
             excluded.append(Excluded(index, "the array ends at an exit, so its clogs are not at random places"))
         else:
             useful.append(index)

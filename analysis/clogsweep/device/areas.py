@@ -55,7 +55,7 @@ def add(drawing: Drawing, area: Any) -> None:
 
 
 def fill(drawing: Drawing, boundaries: list[Numbers], is_even_odd: bool) -> None:
-    """Adds the filled area of a hatch. @param is_even_odd  a boundary in another is that of a hole"""
+    """Adds the filled area of a hatch. @param is_even_odd  a boundary inside another is the edge of a hole"""
     boundaries = [corners for corners in boundaries if len(corners) > 2]
     if len(boundaries) == 1:
         drawing.outlines += boundaries
@@ -74,7 +74,7 @@ def drop_duplicates(drawing: Drawing) -> None:
 
 
 def unite(drawing: Drawing) -> None:
-    """Outlines that touch are one: writers of GDSII cut circles into slices. Outlines within others, the edge of the
+    """Unites outlines that touch: writers of GDSII cut circles into slices. Outlines within others, the edge of the
     device and walls are not united."""
     outlines = drawing.outlines
     pairs = meeting(outlines)

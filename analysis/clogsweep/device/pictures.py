@@ -60,7 +60,7 @@ def are_bright(is_dark: Any) -> bool:
 
 
 def tags_of(path: pathlib.Path) -> dict[int, Any]:
-    """Those of TIFF and EXIF."""
+    """The picture's tags of TIFF and EXIF."""
     with library("PIL.Image", "python3-pil").open(path) as file:
         return {**file.getexif(), **getattr(file, "tag_v2", {})}
 
@@ -86,7 +86,7 @@ def grey(path: pathlib.Path, tags: dict[int, Any]) -> Numbers:
 
 
 def pixels(path: pathlib.Path, tags: dict[int, Any]) -> tuple[Any, bool]:
-    """Those of a picture, and whether 0 is white. Pillow reads what scikit-image needs another library for: TIFF with
+    """The pixels of a picture, and whether 0 is white. Pillow reads what scikit-image needs another library for: TIFF with
     LZW or fax compression; it turns 0 to black itself. @throws UserError"""
     try:
         return np.asarray(library("skimage.io", "python3-skimage").imread(path)), tags.get(PHOTOMETRIC) == 0

@@ -87,8 +87,8 @@ def deepest(polygon: Any) -> tuple[Any, float]:
 
 
 def cores(polygon: Any, corner: float) -> list[tuple[Any, float]]:
-    """Possible centres of circles of this radius that are within the polygon and touch its outline. A thin polygon gets
-    smaller ones."""
+    """Possible centres of circles of this radius that are within the polygon and touch its outline. For a thin
+    polygon the radius is smaller."""
     _, half_width = deepest(polygon)
     radius = min(corner, 0.9 * half_width)
     return [(core, radius) for core in parts(polygon.buffer(-radius))]
@@ -110,7 +110,7 @@ def of_part(core: Any, polygon: Any, radius: float) -> Numbers:
 
 
 def places(ring: Any, spacing: float) -> Numbers:
-    """Corners, and evenly between them."""
+    """The corners, and points evenly spaced between them."""
     corners = np.asarray(ring.coords)
     return np.vstack([begin + np.linspace(0, 1, max(1, int(np.ceil(np.hypot(*(end - begin)) / spacing))), endpoint=False)[:, None] * (end - begin)
                       for begin, end in zip(corners, corners[1:])])
@@ -120,7 +120,7 @@ def distance_left(polygon: Any, circles: Numbers) -> float:
     """The largest distance of the outline from the circles."""
     corners = places(polygon.exterior, polygon.exterior.length / 2000)
     nearest = np.full(len(corners), np.inf)
-    for some in np.array_split(circles, 1 + len(circles) // 1000):  # all at once need gigabytes
+    for some in np.array_split(circles, 1 + len(circles) // 1000):  # all distances at once need gigabytes
         gaps = np.hypot(corners[:, None, 0] - some[None, :, 0], corners[:, None, 1] - some[None, :, 1]) - some[None, :, 2] / 2
         nearest = np.minimum(nearest, gaps.min(axis=1))
     return float(nearest.max())

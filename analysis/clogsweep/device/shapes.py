@@ -236,7 +236,7 @@ def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float
 
 
 def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tuple[float, ...] | None, scale: float, droplet: float, turns: int) -> Device:
-    """Turned, moved to (0, 0), and in droplet diameters."""
+    """Points turned, moved to (0, 0), and in droplet diameters."""
     turn = scale * np.linalg.matrix_power(np.array([[0, -1], [1, 0]]), turns % 4)
     circles = np.column_stack([circles[:, :2] @ turn.T, scale * circles[:, 2]])
     others = [outline @ turn.T for outline in others]
@@ -272,7 +272,7 @@ def surroundings(circles: Numbers, others: list[Numbers]) -> Numbers:
 
 
 def as_circles(device: Device) -> Device:
-    """With a circle of the same area in place of each outline that is not round."""
+    """The device with a circle of the same area in place of each outline that is not round."""
     made = [(*centroid(outline), 2 * np.sqrt(abs(area(outline)) / np.pi)) for outline in device.others]
     return dataclasses.replace(device, circles=np.vstack([device.circles, np.array(made or np.empty((0, 3)))]), others=[])
 

@@ -116,7 +116,7 @@ def group_of(use: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> Any:
 
 
 class Clips:
-    """The part of a shape inside its clip-path, or that of a group around it. The library ignores clips, so each is
+    """The part of a shape inside its own clip-path or the clip-path of a group around it. The library ignores clips, so each is
     drawn as shapes of the clipped group, where they get its transform; attributes that the library keeps mark these
     shapes and what they clip."""
 
@@ -204,7 +204,7 @@ def applied(matrix: Any) -> Any:
 
 
 def add(found: Drawing, corners: Numbers) -> None:
-    """As an outline, if its ends meet; otherwise as a line."""
+    """Adds a path as an outline if its ends meet, otherwise as a line."""
     size = float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0
     if size == 0:
         if len(corners) > 1:

@@ -28,7 +28,7 @@ def is_one_of(outline: Numbers, others: list[Numbers]) -> bool:
 
 
 def is_wall(outline: Numbers, length: float) -> bool:
-    """A flat rectangle along the flow. A wall with teeth is not one."""
+    """Whether an outline is a flat rectangle along the flow. A wall with teeth is no such rectangle."""
     low, high = outline.min(axis=0), outline.max(axis=0)
     along, across = high - low
     if along < SHARE * length or along < SLENDER * across:
@@ -38,7 +38,7 @@ def is_wall(outline: Numbers, length: float) -> bool:
 
 
 def area(outline: Numbers) -> float:
-    """Within a closed outline, positive if it is counter-clockwise."""
+    """The area within a closed outline, positive if the outline is counter-clockwise."""
     x, y = outline.T
     return float(0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
 

@@ -123,7 +123,7 @@ def chosen(rows: Records, number: int) -> list[np.void]:
 
 
 def evenly(members: list[T], number: int) -> list[T]:
-    """At most `number` of them, evenly spaced, including the first and the last."""
+    """At most `number` of the members, evenly spaced, including the first and the last."""
     if number == 0 or not members:
         return []
     return [members[i] for i in np.unique(np.linspace(0, len(members) - 1, min(number, len(members))).round().astype(int))]
@@ -142,7 +142,7 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
 
 
 def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> tuple[list[Part], int]:
-    """Those parameter sets that have a panel, with their ways, and the number of all. @param num_lines, num_mapped  runs of each panel drawn
+    """Those parameter sets that have a panel, with their paths, and the number of all parameter sets. @param num_lines, num_mapped  runs of each panel drawn
     as lines, and behind its map. Prints a line if some are left out. @throws UserError  if no run has ended"""
     every = place.parts(groups)
     if not every:
@@ -217,7 +217,7 @@ def passages(place: Place, ways: Sequence[Numbers]) -> Numbers:
         points = place.wrapped(along(way))
         cells = np.unique((points / (place.length, place.width) * (columns, rows)).astype(int), axis=0)[:, ::-1]
         covered = (cells[:, None, :] + disk[None, :, :]).reshape(-1, 2)
-        # Beyond a wall or an exit there is nothing; elsewhere the device repeats.
+        # No droplet moves beyond a wall or an exit; in other directions the device repeats.
         inside = ((not place.has_walls) | (covered[:, 0] >= 0) & (covered[:, 0] < rows)) & ((place.exit == 0) | (covered[:, 1] >= 0) & (covered[:, 1] < columns))
         covered = covered[inside] % (rows, columns)
         over = np.zeros_like(counts, dtype=bool)

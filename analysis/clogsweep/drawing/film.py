@@ -57,7 +57,7 @@ def smoothed(values: Numbers, width: int) -> Numbers:
 
 
 class Camera:
-    """Follows the droplet smoothly, and zooms out for a long one."""
+    """Follows the droplet smoothly, and zooms out for a long droplet."""
 
     HALF_HEIGHT = 2.0  # at least [sigma]
     LEAD = 0.12  # of the width: more is seen ahead of the droplet than behind it
@@ -169,7 +169,7 @@ class Film:
         self._speeds = None
         if colour == "speed":
             self._speeds = trajectory.interface_speeds(self._run) / self._run.row["terminal_speed"]
-            # Otherwise a few fast moments would leave the rest dark.
+            # Without a limit the colours of a few fast moments would leave all other moments dark.
             self._outline.set_norm(matplotlib.colors.Normalize(0, max(1e-3, np.percentile(self._speeds, 98))))
             self.figure.colorbar(self._outline, cax=self.figure.add_axes((0.92, 0.2, 0.012, 0.6)),
                                  label="speed of the interface $/v_t$")

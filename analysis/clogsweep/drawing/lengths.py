@@ -31,7 +31,7 @@ def reasons_for_hollow_marker(group: Group) -> list[str]:
 
 SPEED_NOTES = ["bars: standard errors"]
 NOTE_WIDTH = 100  # characters of a line below a picture
-OF_ALL_RUNS = "relative_speed_all"  # of clogfit: way over time, whatever way a run came
+OF_ALL_RUNS = "relative_speed_all"  # of clogfit: distance divided by time, for runs of any distance
 THROUGH_BOUNDS = "_through bounds"  # label of a line, in no legend
 FITTED = "_fitted"  # likewise
 FITTED_TO_COMMON_OBSTACLES = "_fitted, common obstacles"  # likewise, where points share seeds
@@ -120,7 +120,7 @@ def have_speeds(groups: Collection[Group]) -> bool:
 
 
 def speed_notes(groups: Collection[Group]) -> list[str]:
-    """Explains the points of draw_speeds_on()."""
+    """Notes that explain the points of draw_speeds_on()."""
     if speed_column(groups) == OF_ALL_RUNS:
         return ["way over time of all runs; bars: standard errors"]
     fewer = any(group["relative_speed_runs"] < group["runs"] for group in groups)

@@ -30,8 +30,8 @@ def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None,
 
 
 def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: str) -> None:
-    """A star with its interval for each group that has a value of the abscissa; a band over its whole range for each
-    other one. An arrow points up from a lower bound, because no droplet clogged."""
+    """A star with its interval for each group that has a value of the abscissa; for each other group a band over the
+    whole range of the abscissa. An arrow points up from a lower bound, because no droplet clogged."""
     drawn = False
     for group in measured:
         place = next((value for name, value in group.items() if name.replace("-", "_") == groups.abscissa_key()), None)

@@ -14,7 +14,7 @@ from . import lengths
 
 
 def draw_rows(axes: Axes, groups: Groups) -> bool:
-    """Lines for a droplet that follows the rows, and for one that goes straight on. @return whether the first is
+    """Draws lines for a droplet that follows the rows and for a droplet that moves straight on. @return whether the first is
     drawn"""
     angles = [group["lattice_angle"] for group in groups.members]
     axes.axhline(0, color="0.6", linewidth=0.8, linestyle=":", zorder=1)

@@ -1,4 +1,4 @@
-"""Predicted clogging lengths against line tension: of pairs of obstacles, of single ones, and of both; measured ones beside them."""
+"""Predicted clogging lengths against line tension: from pairs of obstacles, from single obstacles, and from both, beside measured lengths."""
 
 from collections.abc import Sequence
 

@@ -75,8 +75,8 @@ class Groups:
         return self._ask_for_curves()
 
     def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
-        """The fitted curve through these groups, if there is one. One through the groups of several curves of a picture
-        belongs to that with its first point."""
+        """The fitted curve through these groups, if there is one. A fitted curve through groups of several drawn
+        curves belongs to the curve with its first point."""
         for curve in self._fitted["curves"]:
             if any(self._told[curve["points"][0]["group"]] is group for group in members):
                 return curve
@@ -125,7 +125,7 @@ class Groups:
         return self.columns[name]["kind"] != "word"
 
     def _is_automatic(self, name: str) -> bool:
-        """Whether its values can follow from other parameters. Not if the sweep gives a number or a list for it."""
+        """Whether the parameter's values can follow from others. They cannot if the sweep gives a number or a list for it."""
         fillings = self.values("obstacle_filling")
         if name in ("obstacle_gap", "obstacle_density") and fillings == {"file"}:
             return True  # it follows from the circles and the length of their array
@@ -174,7 +174,7 @@ class Groups:
         return said(self.columns[name], self.named(name, value))
 
     def named(self, name: str, value: Any) -> Any:
-        """A parameter's value; for the checksum of circles the name of their file, if it is known."""
+        """A parameter's value. User-supplied circles are stored as a checksum, which becomes the name of their file if that is known."""
         return self._circle_files.get(value, value) if name == "obstacles" else value
 
     def laboratory_label(self, check_sum: str) -> str:

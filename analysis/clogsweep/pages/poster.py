@@ -87,7 +87,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
     curves = shown_curves(groups)
     survivals = [partial(report.draw_survival, groups=groups, label=label, members=members) for label, members in curves if any(group["survival"] for group in members)]
     ends = [partial(report.draw_causes, groups=groups, label=label, members=counted) for label, members in curves if (counted := report.with_runs(members))]
-    # With a single curve, both are side by side.
+    # With a single curve, P(r) and the causes are side by side.
     below: list[Row] = [(1.35, survivals + ends)] if len(curves) == 1 else [(1.35, survivals), (1.0, ends)]
     rows: list[Row] = [(1.6, first), *((height, drawings) for height, drawings in below if drawings)]
     clogged = clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep)
@@ -111,7 +111,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
 
 
 def of_laboratory(groups: Groups) -> str:
-    """A line with the model's units there; nothing without a laboratory."""
+    """A line with the model's units in the laboratory; empty without a laboratory."""
     lab = groups.laboratory
     if not lab:
         return ""

@@ -238,7 +238,7 @@ def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.Data
 def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     """Clogs to show: the typical one of every mechanism, the others spread from the least to the most deformed.
 
-    Those that went a diameter come first: clogs at the release represent its void, not the array.
+    Clogs of droplets that travelled a diameter or more come first: clogs at the release represent its void, not the array.
 
     @param clogs_of_sweep  rows as clogs.of_polygons() gives them
     """
@@ -251,7 +251,7 @@ def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     for row in ordered:
         kinds.setdefault(row["mechanism"], []).append(row)
     typical = [kind[len(kind) // 2] for kind in kinds.values()]
-    # The extremes themselves are often the least sound runs.
+    # The most and the least deformed clogs are often the least sound runs.
     spread = [ordered[int(place)] for place in np.linspace(0.05, 0.95, count) * (len(ordered) - 1)]
     return list({row["task"]: row for row in typical + spread + ordered}.values())[:count]
 

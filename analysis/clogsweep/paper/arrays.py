@@ -97,7 +97,7 @@ enter("E", "mean speed against line tension for three near-wall drags", "near-wa
       abscissa="line_tension", parameter="near_wall_drag", quantity="speed")
 
 
-# Both models over the sag
+# Both models against the sag
 
 def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
     """delta_s for each group, from one sweep of walls with all its line tensions or stiffnesses."""
@@ -179,8 +179,9 @@ CLOGS = "clogging-friction"  # walls with friction hold droplets that wrap, on a
 
 
 def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pandas.Series]:
-    """A clog of the sweep, replayed with its outline. Squeezed: the stiffest that went at least half a diameter, if any
-    did. Wrapped: the one of median shape, of those that only hang over obstacles, if there are any."""
+    """A clog of the sweep, replayed with its outline. Of squeezed clogs it is the stiffest that travelled at least
+    half a diameter, if any did; of wrapped clogs the one of median shape, preferably one that only hangs over
+    obstacles."""
     shop.sweep(CLOGS)
     rows = shop.rows(CLOGS)
     if "mechanism" not in rows or not rows.mechanism.any():

@@ -230,7 +230,7 @@ def near_wall_drag(shop: Workshop) -> Plate:
     alpha, strength = fit["near_wall_exponent"], fit["near_wall_drag"]
     axes.plot(d, d**alpha / strength, color=style.COLOURS[0], linewidth=1,
               label=rf"fit to these: exponent ${alpha:.2f}\pm{fit['near_wall_exponent_error'] or math.nan:.2f}$")
-    # A circle whose vertices feel the drag each: b_0/b_inf times the mean of d_i^-alpha over them.
+    # The speed of a circle, on each of whose vertices the drag acts: b_0/b_inf times the mean of d_i^-alpha over them.
     exponent, height = row["near_wall_exponent"], 0.5 * (1 - np.abs(np.sin(np.linspace(0, 2 * np.pi, row["vertices"], endpoint=False))))
     circle = 1 / (row["near_wall_drag"] * np.mean((d[:, None] + height) ** -exponent, axis=1))
     axes.plot(d, circle, ":", color="black", linewidth=1, label="sum over the vertices of a circle (no fit)")

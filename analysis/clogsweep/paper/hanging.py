@@ -17,7 +17,7 @@ from .arrays import HOLDS, by, numbers, of_each
 from .plate import Plate, figure
 from .workshop import Workshop
 
-# x, y, diameter [sigma]: a droplet falls on it from 7 sigma above, beside its centre by 0.08.
+# x, y, diameter [sigma]: a droplet falls onto the post from 7 sigma above, 0.08 sigma beside the post's centre.
 POST = (47.0, 5.08, 0.3)
 # Touching the post or the interface on it [sigma].
 NEAR = 0.12
@@ -79,7 +79,7 @@ def tensions_over_a_post(shop: Workshop) -> Plate:
     held, slides = over_a_post(shop, "on"), over_a_post(shop, "off")
     drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 3.8), width_ratios=[1.3, 1])
     last = held.polygons[-1][:, ::2]  # without the middles of edges
-    # The other one passes here on its way.
+    # The other interface passes here, too.
     passing = slides.polygons[int(np.argmin(np.abs(slides.polygons[:, 0].mean(axis=1) - held.polygons[-1][0].mean())))][:, ::2]
     edges = np.stack([last.T, np.roll(last, -1, axis=1).T], axis=1) - POST[:2]
     line = left.add_collection(LineCollection(edges, array=tensions(last, held.row) / held.row["line_tension"], cmap="viridis", linewidth=1.8))

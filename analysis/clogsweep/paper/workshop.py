@@ -105,7 +105,7 @@ class Workshop:
         in_file = config_keys(self.config(name))
         keys = self.keys(name) | own_keys
         if own_keys.get("obstacle-layout") in ("channel", "wall"):
-            # Nothing is random or periodic in these scenes, so such a --set is for the others.
+            # Nothing is random or periodic in a channel or on a wall, so a --set of such a key is meant for other sweeps.
             keys = {key: value for key, value in keys.items() if key not in ("seeds", "box")}
         return ["--config", str(self.config(name)), *(f"{key}={value}" for key, value in keys.items() if in_file.get(key) != value)]
 
@@ -143,7 +143,7 @@ class Workshop:
 
         @param config  whose keys apply where these do not, or None for the defaults @param keys  a value or a list of
         them for each, e.g. {"line-tension": [0.3, 1]} @return the rows, in the order of the lists, the last of which
-        goes fastest
+        varies fastest
         """
         lists = {key: [as_text(value) for value in (values if isinstance(values, list) else [values])] for key, values in keys.items()}
         words = {key: ",".join(values) for key, values in lists.items()}

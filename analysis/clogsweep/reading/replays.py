@@ -30,7 +30,7 @@ def is_of(known: Trajectory, row: np.void, options: list[str]) -> bool:
 
 
 def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, folder: AnyPath, options: list[str]) -> Trajectory:
-    """The trajectory of a row, in a file of the folder, which is reused if it contains the same already.
+    """The trajectory of a row, in a file of the folder, which is reused if it already has this trajectory.
 
     @param clogrun  the program; None: run nothing
     """

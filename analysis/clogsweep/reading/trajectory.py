@@ -32,7 +32,7 @@ class Trajectory:
         return stored.text(self.row[column])
 
     def frame_at(self, column: str, value: float) -> int:
-        """Index of the frame at which a column of the trajectory first comes nearest to a value."""
+        """Index of the first frame at which a column of the trajectory is nearest to a value."""
         at_frames = np.interp(self.times, self.table["time"], self.table[column])
         return int(np.argmin(np.abs(at_frames - value)))
 
@@ -52,7 +52,7 @@ def refined(polygons: Numbers, row: np.void) -> Numbers:
 
 
 def with_middles(polygons: Numbers) -> Numbers:
-    """A point between every two, by the four-point rule (docs/explanation/model.md); repeated, it gives a smooth curve. @param polygons  (..., 2, N)"""
+    """Polygons with a point added between every two, by the four-point rule (docs/explanation/model.md); repeated, it gives a smooth curve. @param polygons  (..., 2, N)"""
     before, after = np.roll(polygons, 1, axis=-1), np.roll(polygons, -1, axis=-1)
     middles = (9 * (polygons + after) - before - np.roll(polygons, -2, axis=-1)) / 16
     return np.stack([polygons, middles], axis=-1).reshape(*polygons.shape[:-1], -1)

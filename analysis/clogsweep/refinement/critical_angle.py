@@ -1,4 +1,4 @@
-"""The critical angle of a lattice: up to it droplets follow its rows, beyond it they leave them."""
+"""The critical angle of a lattice: up to this angle droplets follow the rows, beyond it droplets leave the rows."""
 
 import functools
 import itertools
@@ -36,8 +36,8 @@ def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
 
 
 def bracket(angles: pandas.DataFrame) -> tuple[float, float]:
-    """The largest angle below all that leave the rows at which droplets follow them, and the smallest at which some
-    leave them; NaN where there is none."""
+    """The bracket. Its upper end is the smallest angle at which some droplets leave the rows, its lower end the largest
+    angle below this at which droplets follow the rows; NaN where there is none."""
     upper = angles.index[angles["leaves"]].min()
     below = angles if math.isnan(upper) else angles[angles.index < upper]
     return below.index[below["follows"]].max(), upper
@@ -82,7 +82,7 @@ def nearest_lattice(spacing: float, angle: float, box: float, kind: str = "squar
 
 
 class AngleSearch:
-    """Rounds of up to three angles, between the last one that droplets follow and the first that they leave."""
+    """Rounds of up to three angles, between the last angle whose rows droplets follow and the first whose rows they leave."""
 
     keys: Sequence[str] = (KEY,)
 

@@ -143,7 +143,7 @@ class CurveSearch:
         if goal.kind in ("peak", "crossing"):
             words.append(f"how much {goal} takes is known when its place is, after the first round")
         if goal.kind == "curve":
-            # An error e of log lambda takes 1/e^2 clogs at each of this number of independent places.
+            # An error e of log lambda takes 1/e^2 clogs at each independent place of the curve: two, or one for each value.
             error = math.asinh(goal.precision) / features.normal_deviate(goals.CONFIDENCE)
             smooth, rough = 2 / error**2, len(self._first) / error**2
             words.append(f"{goal} takes about {smooth:.0f} clogs of a curve as smooth as a straight line, {rough:.0f} of one "
@@ -153,7 +153,7 @@ class CurveSearch:
 
 
 def _informing(runs: pandas.DataFrame) -> tuple[pandas.DataFrame, Numbers]:
-    """The values whose runs moved, and their places on the curve."""
+    """The values at which runs have moved, and the places of these on the curve."""
     runs = runs[(runs["distance"] > 0) & (runs["time"] > 0)]
     return runs, np.log(np.array(list(runs.index)))
 

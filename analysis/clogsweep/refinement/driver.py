@@ -98,8 +98,8 @@ class Launcher:
 
 def refine(search: Search, members: Membership, launcher: Launcher, options: Sequence[object], points: pathlib.Path,
            output: pathlib.Path, max_hours: float) -> int:
-    """Runs rounds until the search ends. The points of all rounds are in one file, which grows before a round starts; so an
-    unfinished round is completed before the next is planned. @param options  of clogsweep. @return one of its exit codes"""
+    """Runs rounds until the search ends. The points of all rounds are in one file, to which a round's points are
+    added before it starts. So an unfinished round is completed before the next is planned. @param options  of clogsweep. @return one of its exit codes"""
     end = time.monotonic() + max_hours * HOUR
     if not (points.exists() and output.exists()):
         store(points, points_text(search.keys, search.first_round()))

@@ -2,7 +2,7 @@
 
 A row stores resolved parameters, not the given ones: the density of a saturated array follows from the gap, the box of
 a lattice from its angle. So clogsweep itself resolves the values (`--points ... --dry-run` prints the columns in which
-its tasks differ), and a row belongs to a value if it has exactly the parameters that clogsweep gives that value. So no
+its tasks differ), and a row belongs to a value if it has exactly the parameters that clogsweep gives that value. No
 single column decides.
 """
 

@@ -82,7 +82,7 @@ class Fit:
         return pandas.DataFrame(steps)
 
     def curve(self) -> Picture:
-        """Clogging lengths over what the sweep varies; of lattices, how far droplets migrate sideways. @throws UserError  if there are none"""
+        """Clogging lengths over what the sweep varies; for lattices the lateral displacement per distance. @throws UserError  if there are none"""
         from .. import style  # slow to load, as all that draws
         from ..drawing import curve
 

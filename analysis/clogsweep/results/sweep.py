@@ -61,8 +61,8 @@ class Sweep:
             row_angle: float | None = None, lab: str | os.PathLike[str] | None = None) -> Fit:
         """Clogging lengths and mean speeds, from clogfit.
 
-        @param dwell  a droplet that has not moved for so long counts as clogged [t0]
-        @param from_distance  ways are counted from here on [sigma]
+        @param dwell  a droplet that has not moved for this time counts as clogged [t0]
+        @param from_distance  distances are counted from here on [sigma]
         @param confidence  of the intervals, between 0 and 1
         @param row_angle  tilt of the rows of user-supplied circles, for the share displaced along them [degrees]
         @param lab  file that describes the laboratory, for its units, too

@@ -118,14 +118,14 @@ def main_mechanism(group: Group) -> str:
 
 
 def mechanism_entries(groups: Collection[Group], other: str = "other clogs") -> list[tuple[Artist, str]]:
-    """Legend entries of the markers that draw_lengths() gave these groups. @param other  what clogs are called that are of no mechanism"""
+    """Legend entries of the markers that draw_lengths() gave these groups. @param other  the name for clogs of no mechanism"""
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
     return [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else other)
             for name, marker in MECHANISM_MARKERS.items() if name in names]
 
 
 def legend_off_curves(axes: Axes, entries: Sequence[tuple[Artist, str]], title: str) -> Legend:
-    """Where nothing is drawn; if there is no such place, the ordinate gets longer."""
+    """Finds a place for the legend where nothing is drawn; if there is none, the ordinate gets longer."""
     # matplotlib looks for lines only: these are what lies under error bars and bands.
     rising: Any = np.geomspace if axes.get_yscale() == "log" else np.linspace
     bars = [bar for drawn in axes.containers if isinstance(drawn, ErrorbarContainer) for part in drawn.lines[2] for bar in part.get_segments() if len(bar)]
@@ -201,7 +201,7 @@ def far_apart(values: Collection[float], span: float) -> list[float]:
 
 
 def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
-    """Plain numbers, at the values themselves where they are few or within a decade; those without room for their label have it one line lower."""
+    """Plain numbers, at the values themselves where they are few or within a decade; a label without room is one line lower."""
     axes.set_xscale("log")
     axis = axes.xaxis
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))

@@ -43,9 +43,9 @@ def is_of_kind(path: pathlib.Path, kind: str) -> bool:
 
 @contextlib.contextmanager
 def replaced(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
-    """Where to write a file that replaces the path when the block ends. If the block fails, what was there stays.
+    """Where to write a file that replaces the path when the block ends. If the block fails, an earlier file is kept.
     @throws UserError  if it cannot be written"""
-    target = pathlib.Path(path).resolve()  # a link stays, and leads to the new file
+    target = pathlib.Path(path).resolve()  # a link is kept, and leads to the new file
     try:
         with tempfile.TemporaryDirectory(prefix=".clogsweep-", dir=target.parent) as folder:
             fresh = pathlib.Path(folder) / target.name

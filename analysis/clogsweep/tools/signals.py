@@ -6,6 +6,6 @@ WARNINGS = (signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU)  # of batch systems
 
 
 def stop_signals() -> list[signal.Signals]:
-    """Those of clogsweep. Without SIGHUP under nohup, which ignores it."""
+    """Those of clogsweep. Without SIGHUP under nohup, which makes programs ignore it."""
     ends = [signal.SIGINT, signal.SIGTERM]
     return [*WARNINGS, *ends] if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN else [*WARNINGS, *ends, signal.SIGHUP]

@@ -365,7 +365,7 @@ TEST(DropletRun, FollowsASoftDiskToo) {
   EXPECT_EQ(result.hold.mechanism, ClogMechanism::squeezed);
 }
 
-/// Released 3 sigma upstream of a circle of 0.3 sigma, `offset` beside its centre's line.
+/// A droplet starts 3 sigma upstream of a circle of diameter 0.3, whose centre is `offset` beside its path.
 RunParameters falls_onto_a_circle(double line_tension, double offset, int vertices = 128) {
   RunParameters run;
   run.dp.line_tension = line_tension;

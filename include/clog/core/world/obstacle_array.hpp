@@ -56,7 +56,7 @@ class ObstacleArray {
     double gap;
   };
   /// The post of each obstacle: circles of which one has its centre within the other form one post, which has
-  /// the outline of their union. A copy of a circle forms a post of its own.
+  /// the outline of their union. Circles with exactly the same centre form separate posts.
   std::vector<std::uint32_t> posts() const;
   /// The two posts with the smallest gap, including their images, but not those beyond side walls. The gap is
   /// infinite if no pair is nearer than a box.

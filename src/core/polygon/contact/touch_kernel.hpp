@@ -17,10 +17,10 @@ struct Circle {
 /// depends on the edge and its two neighbours (see refined()), so a force on it acts on four vertices.
 struct GroupTouches {
   static constexpr int edges = WallContacts::edges_per_group;
-  /// Forces on the vertex before the edge, on its own two, and on the one after it [g rho sigma^2].
+  /// Forces on the vertex before the edge, on the edge's two, and on the vertex after it [g rho sigma^2].
   alignas(64) double push_x[4][edges];
   alignas(64) double push_y[4][edges];
-  /// Wetted length of the edge that belongs to its first, its second vertex [sigma].
+  /// Parts of the edge's wetted length that belong to its first and to its second vertex [sigma].
   alignas(64) double wetted[2][edges];
   unsigned touching;  ///< edges in contact, as bits; other entries are undefined
 };
