@@ -197,7 +197,7 @@ class Units(ProgramTest):
             del file["laboratories"]
         done = self.run_program("clogfit", first)
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("is not in the file (another program changed it); give it by --lab", done.stderr)
+        self.assertIn("of some of its rows (another program changed the file); give this laboratory by --lab", done.stderr)
         self.assertIn("lambda/mm", self.succeed("clogfit", first, "--lab", "0.8.cfg").stdout)
 
     def test_a_report_has_bounds_in_laboratory_units(self):

@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"box=2 (the droplet would meet", {{"box", 2.0}}}, Refusal{"box=1e6", {{"box", 1e6}}},
         Refusal{"box=5 (holds no two obstacles", {{"box", 5.0}, {"obstacle-diameter", 10.0}}},
         Refusal{"max-time=1e30 (more than 1e15 steps", {{"max-time", 1e30}}},
-        Refusal{"time-step=1e-300 (smaller", {{"time-step", 1e-300}}},
+        Refusal{"time-step=1e-300 (no mode needs", {{"time-step", 1e-300}}},
         Refusal{"line-tension=1e300 (would compress the droplet", {{"line-tension", 1e300}}},
         Refusal{"line-tension=197 (would compress the droplet by more than 5 %, with the stiffest automatic "
                 "area-stiffness) use at most 190",
