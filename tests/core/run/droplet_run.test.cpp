@@ -320,7 +320,8 @@ TEST(DropletRun, ABurstPolygonIsAResultToo) {
 }
 
 TEST(DropletRun, ATangledInterfaceIsAResultToo) {
-  // Far below the tested line tensions the interface grows and crosses itself, while area and speed stay normal.
+  // Far below the tested line tensions the interface grows and crosses itself, while area and speed stay
+  // normal.
   RunParameters parameters = small_run(0.001);
   parameters.max_time = 1000;
   const RunResult result = result_of(parameters, 1000);
