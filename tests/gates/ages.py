@@ -31,7 +31,7 @@ def faults():
         yield from (f"{name} has rows of model version {version}, and no note found the same with {VERSION}; draw it anew, or recompute a part" for name in sorted(aged))
     shown = {name for page in GALLERY.glob("*.md") for name in re.findall(r"pictures/(?:figure-)?([\w-]+)\.png", page.read_text())} | {"density"}
     yield from (f"{name} is missing in the table of model versions, or in the gallery" for name in sorted(shown ^ listed))
-    if f"All rows have model version {VERSION}." not in " ".join((GALLERY / "tables/agreement.md").read_text().split()):
+    if f"All rows have model version {VERSION}." not in " ".join((GALLERY / "agreement.md").read_text().split()):
         yield f"the table of agreement is of another model version than {VERSION}; make it anew"
 
 
