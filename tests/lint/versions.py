@@ -11,6 +11,7 @@ import sys
 
 NUMBER = r"(\d+\.\d+\.\d+)"
 DATE = r"(\d{4}-\d\d-\d\d)"
+EXAMPLE = r"find_package\(clogsweep (\d+\.\d+) "
 WRITTEN = {
     "version": {
         "CMakeLists.txt": rf"^project\(clogsweep VERSION {NUMBER} ",
@@ -33,6 +34,9 @@ def first(root, file, pattern):
 
 
 def faults(root):
+    example = "docs/examples/own-program/CMakeLists.txt"
+    if not first(root, "CMakeLists.txt", WRITTEN["version"]["CMakeLists.txt"]).startswith(f"{first(root, example, EXAMPLE)}."):
+        yield f"{example}: asks for another version than that of CMakeLists.txt"
     for what, places in WRITTEN.items():
         values = {file: first(root, file, pattern) for file, pattern in places.items()}
         for file, value in values.items():
