@@ -146,6 +146,13 @@ class Looks(Analysis):
         low, high = axes.get_xlim()
         self.assertTrue(low < 0.5 and high > 3, (low, high))
 
+    def test_two_presets_in_one_picture_have_a_curve_each(self):
+        # K_l is a number in robust and follows from the line tension in elastic.
+        self.succeed("clogsweep", *SMALL, "line-tension=0.3,1", "seeds=1..2", "--output", "robust.h5")
+        self.succeed("clogsweep", *SMALL, "line-tension=0.3,1", "seeds=1..2", "preset=elastic", "friction=0.05", "--output", "elastic.h5")
+        groups = Groups(json.loads(self.succeed("clogfit", "robust.h5", "elastic.h5", "--format", "json").stdout))
+        self.assertEqual(groups.curve_parameters(), ["friction"])
+
     def test_lengths_over_the_time_that_counts_as_clogged_are_those_of_clogfit(self):
         self.succeed("clogsweep", *SMALL, "line-tension=0.05,0.3", "max-time=400", "seeds=1..8", "--output", "s.h5")
         times = dwell.times_of(self.fit_at())
