@@ -33,8 +33,8 @@ double num_places(const ObstacleParameters& parameters) {
   return parameters.boxes * per_side * per_side;
 }
 
-/// Names the array to processes of this executable. Other programs, which may build or arrange arrays
-/// differently, do not find it.
+/// Name under which processes of this executable share the array. Other programs, which may build or arrange
+/// arrays differently, do not find it.
 std::optional<std::string> shared_name(const RunParameters& run) {
   struct stat executable;
   if (stat("/proc/self/exe", &executable) != 0) return std::nullopt;

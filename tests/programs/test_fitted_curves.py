@@ -16,8 +16,9 @@ sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.curves import answer, features, model, points, table  # noqa: E402
 from clogsweep.tools.errors import UserError  # noqa: E402
 
-# Made by `clogfit curve` of 0b3b912ecf24 from sweeps with fabricated distances: each record has the command and its
-# output, with every fourth place (every thirteenth of a surface) and the clogs of each point by mechanism.
+# RECORDS are outputs of `clogfit curve` (git 0b3b912ecf24) for sweeps with fabricated distances. Each record has the
+# command, its output at every fourth grid point of a curve (every thirteenth of a surface), and the clogs of each point
+# by mechanism.
 RECORDS = json.loads((pathlib.Path(__file__).parent / "data" / "curves.json").read_text())["records"]
 LENGTH = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 

@@ -28,7 +28,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"), help="folder of the results (results/figures)")
     parser.add_argument("--draw-only", action="store_true", help="draw from existing results and run nothing")
     parser.add_argument("--profile", type=pathlib.Path, action="append", default=[], metavar="FILE.csv",
-                        help="measured passage (h [sigma], v [v_t], A) to draw in figures 2, 3 (two profiles: w = 0.9, then 0.7) and 4, and to compare with in B2")
+                        help="measured passage (columns h [sigma], v [v_t], A), drawn in figures 2, 3 (two profiles: orifices of 0.9, then 0.7 sigma) and 4, and compared with the simulation in figure B2")
     parser.add_argument("--set", action="append", default=[], metavar="[CONFIG:]KEY=VALUE",
                         help="replace a value of the config, e.g. clogging-sp:seeds=1..50; keys that a figure itself sets cannot be replaced")
     programs.add_option(parser)

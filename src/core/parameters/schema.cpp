@@ -730,8 +730,9 @@ std::vector<Parameter> verdict_entries() {
                        below(1e-3, "droplets that only pause would count as clogged", "try 1e-17")}}),
       entry("clog-detection", [](auto& run) -> auto& { return run.clog_detection; },
             {.column = "clog_detection",
-             .meaning = "certified: a droplet that slows down is clogged once a stable equilibrium is proved "
-                        "to be near, or by clog-energy; threshold: by clog-energy only",
+             .meaning = "certified: a droplet that slows down counts as clogged if a stable equilibrium is "
+                        "proved to be near, or if its energy is below clog-energy; threshold: only if its "
+                        "energy is below clog-energy",
              .role = numerics}),
       entry("dwell-length", [](auto& run) -> auto& { return run.dwell_length; },
             {.column = "dwell_length",

@@ -183,13 +183,21 @@ bool DropletRun::is_in_range() const {
 void DropletRun::check() {
   const double energy_ratio = kinetic_energy_ratio();
   const PolygonShape shape = droplet_->shape();
-  const bool is_whole = energy_ratio < diverged_energy_ratio && shape.perimeter < tangled_perimeter &&
-                        std::abs(shape.area / units::rest_area - 1) < diverged_area_error;
-  if (!is_whole) {  // also if any of them is not a number
+  const bool has_diverged = !(energy_ratio < diverged_energy_ratio && shape.perimeter < burst_perimeter &&
+                              std::abs(shape.area / units::rest_area - 1) < diverged_area_error);
+  if (has_diverged) {  // also if any of them is not a number
     message_ = fmt::format(
         "diverged at t={:.6g}: E_k/E_t={:.6g}, area={:.6g}, perimeter={:.6g}; try a smaller time-step or "
         "terminal-speed",
         time(), energy_ratio, shape.area, shape.perimeter);
+    status_ = RunStatus::failed;
+    return;
+  }
+  if (shape.perimeter > tangled_perimeter) {
+    message_ = fmt::format(
+        "the interface crossed itself and tangled by t={:.6g}: its perimeter is {:.4g} sigma; try a larger "
+        "line-tension",
+        time(), shape.perimeter);
     status_ = RunStatus::failed;
     return;
   }

@@ -40,8 +40,8 @@ inline constexpr double max_area_omega_dt2 = 1.0;
 /// Fraction of every bound that the modes of a circle use with the automatic step.
 inline constexpr double auto_step_margin = 0.8;
 
-/// Modes of a resolved parameter set (see resolve()) at the given perimeter and shortest edge [sigma].
-/// Vertices nearer than a hundredth of the mean edge count as that far apart.
+/// Stiff modes of a polygon with resolved parameters (see resolve()), for the given perimeter and shortest
+/// edge [sigma]. Vertices nearer than a hundredth of the mean edge count as that far apart.
 StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double perimeter, double shortest_edge);
 
 /// Largest time step [t0] that keeps every bound above.
