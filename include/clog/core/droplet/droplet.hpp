@@ -8,10 +8,6 @@
 
 namespace clog {
 
-/// A polygon with a longer perimeter has tangled [sigma], and the run ends as failed: sound droplets stay
-/// below half of it (docs/notes/2026-11-26-soundness.md).
-inline constexpr double tangled_perimeter = 40;
-
 /// A polygon with a longer perimeter has burst [sigma]: it is not integrated any further.
 inline constexpr double burst_perimeter = 1000;
 
