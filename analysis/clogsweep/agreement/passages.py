@@ -25,7 +25,7 @@ def largest_shape(shop: Workshop, orifice: float, published: float, tolerance: f
 
 
 statement("4.1, figure 2", "w = 0.4: A = 1.07 at h = 0.5", "2", in_kind="the droplet is stretched more")(lambda shop: shape_at(shop, 0.5, 1.07))
-statement("4.1, figure 2", "w = 0.4: A = 1.00 at h = -0.5: the shape is not symmetric about the orifice", "2")(lambda shop: shape_at(shop, -0.5, 1.0))
+statement("4.1, figure 2", "w = 0.4: A = 1.00 at h = -0.5, so the shape is not symmetric about the orifice", "2")(lambda shop: shape_at(shop, -0.5, 1.0))
 statement("4.1, figure 3", "w = 0.9: largest A = 1.014", "3", in_kind="the droplet is stretched less")(lambda shop: largest_shape(shop, 0.9, 1.014, 0.002))
 statement("4.1, figure 3", "w = 0.7: largest A = 1.093", "3")(lambda shop: largest_shape(shop, 0.7, 1.093, 0.01))
 
@@ -52,7 +52,7 @@ def top_behind(way: Any) -> Any:
 def tops_of_speeds(shop: Workshop, orifice: float) -> tuple[list[float], str]:
     """The largest speeds of the droplets of figure 4 that pass, and a text about all droplets."""
     tops = {tension: top_behind(run.table) for tension, run in channels.overshooting(shop, orifice).items()}
-    words = [f"{tension:g} does not pass" if top is None else f"{top['speed_ratio']:.2f} at {tension:g}" for tension, top in tops.items()]
+    words = [f"the droplet of {tension:g} does not pass" if top is None else f"{top['speed_ratio']:.2f} at {tension:g}" for tension, top in tops.items()]
     return [top["speed_ratio"] for top in tops.values() if top is not None], f"w = {orifice:g}, b_0/b_∞ = {channels.OVERSHOOTS[orifice]:g}: {', '.join(words)}"
 
 
@@ -96,7 +96,7 @@ def drag_exponent(shop: Workshop) -> Finding:
 
 
 @statement("appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on", "B1",
-           in_kind="smooth only from a finer mesh on", does_not_agree="ripples shrink up to the finest mesh")
+           in_kind="smooth only on finer meshes", does_not_agree="ripples shrink up to the finest mesh")
 def profiles_are_smooth(shop: Workshop) -> Finding:
     """A mesh is smooth if its ripples, and those of all finer meshes, exceed the ripples of the finest mesh by at most a tenth."""
     noise = {count: roughness(run.table) for count, run in channels.meshes(shop).items()}
