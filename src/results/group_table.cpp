@@ -108,7 +108,8 @@ double shorter_dwell(double rest) {
   return digit < 1 ? 0.9 * unit : digit * unit;
 }
 
-/// Counts resting droplets that count as moving, and names the option that counts them as clogged.
+/// Prints the number of resting droplets that are treated as moving, and names the option that treats them as
+/// clogged.
 std::string note_of_rest(const std::vector<Group>& groups) {
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity(), known_from = 0;

@@ -64,8 +64,9 @@ std::string untested_angle(const DpParameters& dp) {
                      shortest(smallest_receding_angle));
 }
 
-/// Needles slip through the interface, and the droplet encloses them, at its release or later. This was
-/// observed with obstacles up to as thick as an edge is long; it is more frequent among more obstacles.
+/// Very thin obstacles slip through the interface, and the droplet encloses them, at its release or later.
+/// This was observed with obstacles up to as thick as an edge is long; it is more frequent among more
+/// obstacles.
 std::string untested_diameter(const RunParameters& run) {
   constexpr double thinnest = 2;  // in units of the edge length, with a margin
   if (scene_of(run).walls_from == WallsFrom::droplet) return "";  // there are no obstacles

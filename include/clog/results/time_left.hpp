@@ -20,7 +20,7 @@ struct SetTimes {
   std::int64_t num_finished = 0;
   std::int64_t num_running = 0;
   std::int64_t num_waiting = 0;
-  double seconds = 0;  ///< that finished ones took and running ones have taken, together
+  double seconds = 0;  ///< total time that the finished runs took and the running ones have taken
 };
 /// Short runs end first, so the mean over finished runs alone is too small: running runs count as censored,
 /// as for the clogging length. Each parameter set has its own mean; a set without a finished run gets the

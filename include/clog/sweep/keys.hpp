@@ -25,7 +25,7 @@ struct Key {
   void apply(RunParameters& run, const std::string& value) const;
 };
 
-/// Every key, in the order in which they are shown. The only such list.
+/// All keys, in the order in which they are shown.
 const std::vector<Key>& keys();
 /// Suggestions for a word that is no key: the key of a paper's symbol (Gamma, w_ob), up to three names that
 /// contain it, or the nearest name. Empty if there is none.

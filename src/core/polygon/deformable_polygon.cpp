@@ -24,7 +24,7 @@ void choose_vertices(RunParameters& run, double obstacle_diameter) {
 
 int num_vertices(const RunParameters& run) { return *run.dp.vertices; }
 
-/// The narrowest passage has the width of an edge at rest.
+/// A passage must be at least as wide as an edge at rest is long.
 double edge_length(const RunParameters& run) { return units::regular_edge_length(*run.dp.vertices); }
 
 /// The regular polygon in which pressure balances line tension and springs, a little smaller than a_0.
@@ -104,8 +104,8 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   // exceeded exerts its largest force, whatever the droplet does; the search continues until every wall bears
   // its force.
   constexpr int most_yields = 20;
-  // If all walls can bear their forces, the excess is below the first excess by then
-  // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above even after all yields.
+  // If all walls can bear their forces, the excess after this many yields is below the first excess
+  // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above, even after most_yields.
   constexpr int yields_until_excess_has_fallen = 12;
   const double bearable = 1e-6 * units::droplet_mass * units::gravity / *run.dp.vertices;
   WallTouches touches(run, obstacles);

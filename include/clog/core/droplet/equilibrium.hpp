@@ -23,7 +23,7 @@ struct Axes {
   /// interface; empty if this motion is tested like any other. A slide by one edge maps the polygon onto
   /// itself with its vertices renumbered, and does not move the droplet. The energy along it has only
   /// ripples, because corners between edges touch obstacles. So the search tests neither force nor stiffness
-  /// along it. This motion is the last to decay, and may be at the top of a ripple now.
+  /// along it. This motion is the last to decay, so the droplet may now be at the top of a ripple.
   Eigen::VectorXd slide;
 };
 

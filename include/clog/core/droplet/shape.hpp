@@ -6,8 +6,9 @@ namespace clog {
 
 /// The interface that walls meet is the polygon refined once by the four-point rule (Dubuc 1986; Dyn, Gregory
 /// and Levin 1987): the middle of an edge becomes the middle of the cubic through its two vertices and their
-/// two neighbours. A chord deviates from the curve through its ends by l^2/8 times the curvature, half of a
-/// refined edge by a quarter of that. The middle is near (q_i + q_(i+1)) + far (q_(i-1) + q_(i+2)).
+/// two neighbours. A chord deviates from the curve through its ends by l^2/8 times the curvature; a refined
+/// edge, half as long, deviates by a quarter of that. The middle is w (q_i + q_(i+1)) + w' (q_(i-1) +
+/// q_(i+2)), with w = refined_near and w' = refined_far.
 inline constexpr double refined_near = 9.0 / 16;
 inline constexpr double refined_far = -1.0 / 16;
 

@@ -47,8 +47,8 @@ class DwellRecord {
   /// Call this once per check of a run. @param displacement  along the flow since release [sigma]
   void add(double time, double displacement);
 
-  /// @param time  of the last check. An unfinished dwell counts with its length so far; that of a clog does
-  /// not count.
+  /// @param time  of the last check. An unfinished dwell counts with its length so far, except in a clogged
+  /// run, where it does not count.
   Dwells found(double time, bool has_clogged) const;
 
   void save(ByteWriter& bytes) const { bytes.put(found_); }

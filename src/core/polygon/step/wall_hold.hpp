@@ -36,7 +36,7 @@ class WallHold {
   /// Discards the anchors: the next make() adopts those of its droplet.
   void forget() { has_anchors_ = false; }
   double film_reach() const { return film_reach_; }  ///< [sigma]
-  /// Valid until the next make(), and to be changed by a step.
+  /// Valid until the next make(). A step changes the anchors in it.
   const kernel::HoldingCircles& circles() const { return circles_; }
 
  private:

@@ -21,8 +21,8 @@ double cosine(double degrees) { return portable::cos(degrees * pi / 180); }
 
 /// The angle from one direction to another, by their cross and dot products.
 double turn_between(double cross, double dot) {
-  // Adjacent vertices see a wall under small angles: terms of the arc tangent's series up to 0.3^29/29 =
-  // 2e-17, in a tenth of the time.
+  // For the small angles between adjacent vertices, the series of the arc tangent, with terms up to 0.3^29/29
+  // = 2e-17, takes a tenth of the time.
   constexpr double small = 0.3;
   constexpr int last_power = 27;
   if (!(std::abs(cross) < small * dot)) return portable::atan2(cross, dot);

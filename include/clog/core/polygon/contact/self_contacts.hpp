@@ -20,7 +20,7 @@ struct VertexPair {
 ///
 /// Contact is between vertices and edges, so it holds when edges are longer than the vertex diameter. Every
 /// edge within reach pushes by itself, with its own nearest point: then energy and force are continuous
-/// wherever the vertex goes, also in a concave corner, where it is as near to two edges. Edges close along
+/// wherever the vertex goes, also in a concave corner, where two edges are equally near. Edges close along
 /// the contour do not count as contact, or every vertex would touch its neighbours. Close means both: less
 /// than three ranges away along the present contour, and fewer vertices away than make up three ranges at
 /// rest. In a compressed contour the number of vertices decides; it is fixed, so that contacts there do not
@@ -40,7 +40,7 @@ class SelfContacts {
   /// Renews the length of an edge at rest, for a droplet that grows.
   void set_rest_edge(double length);
 
-  /// Renews the pairs when the shape may change too much on the way to the next update.
+  /// Renews the pairs if the shape may change too much before the next update.
   void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
   /// Whether the pairs stay valid until the next update. Does not change them. @param moved  bound on the

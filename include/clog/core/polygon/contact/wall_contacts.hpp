@@ -40,8 +40,9 @@ class WallContacts {
   bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
   double largest_radius() const { return largest_radius_; }
 
-  /// The lists by obstacle: circles in the list of an edge (vertex) of a group of `edges_per_group`.
-  /// Those of edges are sorted by circle, then group; those of vertices by group.
+  /// The lists, sorted by obstacle. Each item is a circle and a group of `edges_per_group` edges (vertices),
+  /// at least one of which lists the circle. Those of edges are sorted by circle, then group; those of
+  /// vertices by group.
   struct Item {
     double x, y;   ///< centre, relative to the state's frame [sigma]
     double reach;  ///< radius + range [sigma]
