@@ -36,7 +36,7 @@ std::vector<std::string> parts_of(const std::optional<LaboratoryText>& laborator
   return parts;
 }
 
-/// The entries in which each group's laboratory differs from the others; all entries of a single one.
+/// The entries of a group's laboratory that not all groups have; all entries if every group has the same.
 std::string laboratory_label(const Group& group, const std::vector<Group>& groups) {
   std::vector<std::string> own = parts_of(group.first_row.parameters.laboratory);
   const auto is_everywhere = [&](const std::string& part) {

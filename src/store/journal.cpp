@@ -242,7 +242,7 @@ void Journal::prepare(std::span<const Entry* const> entries, std::uint64_t begin
   next_->write(bytes_of(FileHeader()));
   for (const Entry* entry : entries) next_->write(record_of(entry->row, entry->snapshot));
   num_copied_ = begin;
-  constexpr std::size_t little = 4'000'000;  // replace() copies and synchronises it in no time
+  constexpr std::size_t little = 4'000'000;  // replace() copies and synchronises it in negligible time
   do check(sync(next_->descriptor()), FileAction::write, place_.path());
   while (copy_additions() > little);
 }

@@ -17,7 +17,7 @@ struct ColumnHead {
   std::string name;  ///< in lower case
   std::string unit;  ///< empty if the head has none
 };
-/// "x [um]", "x (um)", "x/um" and "x_um" are the name x and the unit um.
+/// "x [um]", "x (um)", "x/um" and "x_um" all have the name x and the unit um.
 ColumnHead column_head(const std::string& cell);
 /// Metres in a unit of length that a table may have; nothing for any other word.
 std::optional<double> metres_of(const std::string& unit);

@@ -47,9 +47,9 @@ SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int6
 
 /// Remaining cost of a sweep, from all its runs that have begun. They are not a random sample, because long
 /// runs start first. So each parameter set is estimated separately, as above: the remaining time of its
-/// unfinished runs from its own runs if one of them has ended, otherwise from all runs. A set without a
-/// started run is assumed to cost the same fraction of its bound as the others, with an error as large as
-/// that estimate.
+/// unfinished runs from its own runs if one of them has ended, otherwise from all runs. For a set without a
+/// started run, the estimate is the same fraction of its bound as for the other sets, and the error is as
+/// large as the estimate.
 /// @param begun  at least one that has done some work, in some time
 SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting);
 

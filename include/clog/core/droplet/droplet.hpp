@@ -8,11 +8,11 @@
 
 namespace clog {
 
-/// A polygon with a longer perimeter has tangled [sigma], and the run ends as failed: sound droplets stay
-/// below half of it (docs/notes/2026-11-26-soundness.md).
+/// Perimeter above which a polygon has tangled and its run ends as failed [sigma]. Sound droplets stay below
+/// half of it (docs/notes/2026-11-26-soundness.md).
 inline constexpr double tangled_perimeter = 40;
 
-/// A polygon with a longer perimeter has burst [sigma]: it is not integrated any further.
+/// Perimeter above which a polygon has burst and is not integrated any further [sigma].
 inline constexpr double burst_perimeter = 1000;
 
 /// A moving droplet: the interface of both models for a run.

@@ -32,7 +32,7 @@ struct DropletModel {
   void (*choose_points)(RunParameters& run, double obstacle_diameter);
   /// Width below which the droplet's points do not resolve a passage [sigma].
   double (*narrowest)(const RunParameters& run);
-  /// Replaces automatic values by the resulting ones, and refuses values that are then impossible. @param
+  /// Computes the automatic values, and refuses given values that are impossible together with them. @param
   /// sharpest_bend see Scene @throws Error
   void (*resolve)(RunParameters& run, double sharpest_bend);
 

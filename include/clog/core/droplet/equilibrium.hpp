@@ -50,11 +50,11 @@ struct EquilibriumForces {
 /// The stable static equilibrium that a nearly stopped droplet approaches; nothing if there is none, or if it
 /// is not certain that the droplet would reach it.
 ///
-/// Newton's method on the forces, down to round-off. The potential energy must be convex at the beginning,
-/// wherever else the search computes the stiffness, and at the end, and all these places must be within
-/// `farthest_rest` of the present one: then both are assumed to be in one basin. A droplet that balances on
-/// an obstacle, that could drift aside freely, or that creeps past a place where there is no equilibrium is
-/// refused.
+/// Newton's method on the forces, down to round-off. The potential energy must be convex at the beginning, at
+/// the end, and wherever the search computes the stiffness in between, and all these places must be within
+/// `farthest_rest` of the initial one. Then the droplet and the equilibrium are assumed to be in the same
+/// basin. A droplet that balances on an obstacle, that could drift aside freely, or that creeps past a place
+/// where there is no equilibrium is refused.
 ///
 /// @param initial  the droplet; its velocities do not count
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial);

@@ -10,7 +10,7 @@
 
 namespace clog {
 
-/// Steps of both methods below on all coordinates, compiled for several instruction sets.
+/// Steps of the two methods below, on all coordinates, compiled for several instruction sets.
 namespace kernel {
 struct ForceSums {
   double largest;                ///< |f_i|

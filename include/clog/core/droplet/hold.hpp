@@ -22,7 +22,8 @@ struct ClogGeometry {
   /// Fraction of the obstacles' upstream support that comes from wrapped obstacles; NaN without support.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
   int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
-  /// Gaps: pairs of obstacles, at least one of them supporting, between which the interface faces downstream.
+  /// Gaps: pairs of obstacles between which the interface faces downstream; at least one of them supports the
+  /// droplet.
   int num_gaps = 0;
   int num_arcs = 0;  ///< runs of successive edges in contact with one obstacle, a post or a wall
   /// Largest part of the weight that the corners of the polygon can hold. Each wrapped obstacle contributes

@@ -31,9 +31,9 @@ int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 /// Largest component of the force, excluding weight and springs, with which a droplet may be released. It is
 /// divided by the weight of one vertex (DP) or of the disk (SP).
 inline constexpr double release_force_tolerance = 1e-4;
-/// The same tolerance for an interface with springs along it. These have no energy and keep the interface
-/// sliding for ever in a cycle of 1e-3 sigma; no observed force exceeded 0.01. The droplet as a whole stays
-/// in place.
+/// The same tolerance for an interface with springs along it. The force of these springs derives from no
+/// energy and keeps the interface sliding for ever in a cycle of 1e-3 sigma; no observed force exceeded 0.01.
+/// The droplet as a whole stays in place.
 inline constexpr double release_sliding_tolerance = 0.02;
 
 }  // namespace clog

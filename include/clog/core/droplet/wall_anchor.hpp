@@ -42,14 +42,15 @@ struct WallAnchor {
   WallPlace wall;       ///< to which it is tied
   double x, y;          ///< position from the wall's centre; at an arc's end, x is along the wall [sigma]
   double slip = 0;      ///< distance along the wall from the anchor to its holder at the last update [sigma]
-  /// 1: the wall yields, and `slip` gives the spring's force wherever the holder moves. Used only while the
-  /// program searches for an equilibrium; a moving droplet updates its anchors at every step.
+  /// 1: the wall yields, so `slip` determines the spring's force, wherever the holder moves. Used only while
+  /// the program searches for an equilibrium; a moving droplet updates its anchors at every step.
   Eigen::Index yields = 0;
 
   double slip_of_force(double slip_now) const { return yields != 0 ? slip : slip_now; }
 };
 
-/// Anchors by the vertices or ends that they hold. It keeps its memory, so that a step allocates none.
+/// Finds anchors by the vertices or ends that they hold. An object keeps its memory, so that a step allocates
+/// none.
 class KnownAnchors {
  public:
   /// Takes the anchors out of `anchors`. @param num_holders  find() never finds anchors of other holders

@@ -19,7 +19,7 @@ struct Words<Model> {
   static constexpr Worded<Model> all[] = {{Model::dp, "dp"}, {Model::sp, "sp"}};
 };
 /// Springs of the edges: to the rest length l0 (the paper), to the current mean edge length, or only `along`
-/// the interface: these space the vertices evenly, but carry no tension.
+/// the interface; the last space the vertices evenly, but carry no tension.
 enum class PerimeterSpring { rest, mean, along };
 template <>
 struct Words<PerimeterSpring> {
@@ -165,7 +165,8 @@ struct Period {
 /// Density of a random array.
 struct ObstacleDensity {
   std::optional<double> per_area;  ///< obstacles per sigma^2
-  std::optional<double> share;     ///< of the mean density of saturated arrays; resolve() makes it per_area
+  std::optional<double>
+      share;  ///< of the mean density of saturated arrays; resolve() converts it to per_area
 
   /// Saturated: obstacles are added until no further one fits.
   ObstacleDensity() = default;

@@ -31,7 +31,8 @@ struct Scene {
   /// Refuses impossible combinations before automatic values are known; check_each() has checked each
   /// parameter alone. @throws Error
   void (*check)(const RunParameters& run);
-  /// Replaces values that follow from the others, and refuses those that are then impossible. @throws Error
+  /// Computes the values that follow from others, and refuses values that are impossible together with them.
+  /// @throws Error
   void (*resolve)(RunParameters& run);
   /// Diameter of the sharpest expected bend of the interface [sigma].
   double (*sharpest_bend)(const RunParameters& run);

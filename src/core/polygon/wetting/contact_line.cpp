@@ -42,8 +42,8 @@ double way(const WallPlace& wall, double from, double to) {
 /// @param k  from -size to 2 size - 1
 Index around(Index k, Index size) { return k < 0 ? k + size : k < size ? k : k - size; }
 
-/// Distance beyond the contact, in vertex diameters, up to which a vertex counts as on the wall, so that a
-/// held end is not lost when its vertex hovers or bounces.
+/// Distance beyond the range of contact, in vertex diameters, up to which a vertex counts as on the wall, so
+/// that a held end is not lost when its vertex hovers or bounces.
 constexpr double hovering = 0.25;
 
 }  // namespace
@@ -172,7 +172,7 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
       double sum = zone.wall.wedge >= 0 ? here.on_wedge
                                         : zone.wall.radius * portable::atan2(here.normal[1], here.normal[0]);
       double way_before = 0;
-      Eigen::Array2d carried = here.forward;  // weight so far of u of the present vertex
+      Eigen::Array2d carried = here.forward;  // weight that the present vertex's u has so far
       for (Index j = k;; j += step) {
         const bool is_last = j == last;
         const Index next = around(vertex(j).vertex + step, n);

@@ -18,14 +18,14 @@ struct VertexPair {
 
 /// Pairs of a vertex and an edge of the same droplet that may touch.
 ///
-/// Contact is between vertices and edges, so it holds when edges are longer than the vertex diameter. Every
-/// edge within reach pushes by itself, with its own nearest point: then energy and force are continuous
+/// Contact is between vertices and edges, so it also works if edges are longer than the vertex diameter.
+/// Every edge within reach pushes by itself, with its own nearest point: then energy and force are continuous
 /// wherever the vertex goes, also in a concave corner, where two edges are equally near. Edges close along
-/// the contour do not count as contact, or every vertex would touch its neighbours. Close means both: less
-/// than three ranges away along the present contour, and fewer vertices away than make up three ranges at
-/// rest. In a compressed contour the number of vertices decides; it is fixed, so that contacts there do not
-/// depend on when the pairs were made. In a stretched one the length decides, so that long edges cannot cross
-/// in a sharp fold.
+/// the contour do not count as contact, because otherwise every vertex would touch its neighbours. Close
+/// means both of the following: less than three ranges away along the present contour, and fewer vertices
+/// away than make up three ranges at rest. In a compressed contour the number of vertices decides; it is
+/// fixed, so that contacts there do not depend on when the pairs were made. In a stretched one the length
+/// decides, so that long edges cannot cross in a sharp fold.
 class SelfContacts {
  public:
   struct Pair {
@@ -59,7 +59,7 @@ class SelfContacts {
 
   /// The same pairs for vectors: a group of WallContacts::edges_per_group edges and as many consecutive
   /// vertices. Opposite strands run in opposite directions, so the last of these vertices is paired with the
-  /// first edge; in a strand compressed upon itself it is the first.
+  /// first edge. In a strand that is compressed until it touches itself, the first vertex is.
   struct Item {
     int edges;           ///< the first of a group
     int vertices;        ///< the first; those from N on are the contour's first
@@ -75,7 +75,8 @@ class SelfContacts {
   Eigen::ArrayXd reference_;  // positions relative to their mean when the pairs were made
   std::vector<Pair> pairs_;
   std::vector<Item> items_;
-  std::vector<double> along_;    // the contour, from vertex 0; behind the last its whole length
+  std::vector<double>
+      along_;  // distance along the contour from vertex 0; behind the last vertex, the whole length
   std::vector<double> contour_;  // x, y and along_, with the beginning repeated; see kernel::CloseSearch
   std::vector<double> groups_;   // memory of the search
   std::vector<kernel::VertexPair> close_;

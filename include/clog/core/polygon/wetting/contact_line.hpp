@@ -62,7 +62,7 @@ class ContactLine {
     WallPlace wall;
     Eigen::Index side;                          ///< 0: the arc's first, 1: its last along the contour
     double place;                               ///< q, counted outwards [sigma]
-    std::size_t first_gradient, num_gradients;  ///< of q by vertices, in Ends::gradients
+    std::size_t first_gradient, num_gradients;  ///< of q with respect to vertices, in Ends::gradients
   };
   struct Gradient {
     Eigen::Index vertex;
