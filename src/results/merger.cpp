@@ -184,7 +184,8 @@ std::string part_line(const std::string& path, const store::SweepFile& file, con
   return console::json_text(part, -1) + attribute(file.provenance, "parts");
 }
 
-/// Attributes of the program's call: a new file has its own, which summarise the attributes of its parts.
+/// Attributes that a new file does not take from `maker`: it has its own, which summarise the attributes of
+/// its parts.
 static constexpr std::string_view replaced_attributes[] = {"config", "sessions", "parts", "stopping_rule",
                                                            "num_wanted"};
 

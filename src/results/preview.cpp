@@ -159,8 +159,8 @@ std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
 
 constexpr double seconds_to_try = 10;
 
-/// Runs short pieces of these tasks. Another process may compute the jobs and answers between slices of its
-/// work; a job that takes too long, such as a release that does not come to rest, is dropped.
+/// Runs short pieces of these tasks. The jobs may be computed by another process, which answers between
+/// slices of its work; a job that takes too long, such as a release that does not come to rest, is dropped.
 Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
   constexpr double fewest_seconds = 0.1;  // for a run whose array took all of its share
   constexpr double grace = 0.5;           // for the last answer

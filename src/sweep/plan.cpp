@@ -59,7 +59,7 @@ std::vector<std::uint32_t> part_of(const std::vector<std::uint32_t>& seeds, std:
   return part;
 }
 
-/// Whether each parameter alone is possible; resolve() names the impossible one.
+/// Whether each parameter is possible by itself; if not, resolve() names the impossible one.
 bool is_each_possible(const RunParameters& run) try {
   check_each(run);
   return true;

@@ -129,10 +129,10 @@ struct Group {
   };
   std::vector<EndsBy> causes;
   fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
-  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, distance over time of all runs together
-  /// v_g/v_t, distance over time of all runs until they ended, clogged ones until their last dwell began,
-  /// however short the distance was. If droplets clog, only the faster runs go far enough to have a mean
-  /// speed of their own.
+  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, total distance divided by total time of the runs
+  /// v_g/v_t, total distance divided by total time of all runs, even of those with a short distance. A run
+  /// counts until its end, a clogged one until its last dwell began. If droplets clog, only the faster runs
+  /// go far enough to have a mean speed of their own.
   fit::MeanSpeed relative_speed_all;
   fit::Migration migration;
   /// Tilt of the rows of posts from the flow towards +y, given by a lattice or by --row-angle; NaN: unknown
@@ -141,7 +141,7 @@ struct Group {
   std::vector<std::uint32_t> seeds;  ///< of the runs that count for the clogging length
   int num_passed = 0;                ///< runs whose droplet reached the exit of the device
   int num_flowing = 0;               ///< runs that max-time ended
-  /// Of num_flowing: runs whose droplet had rested for longer than a free droplet takes to fall ten
+  /// Number of those flowing runs whose droplet had rested for longer than a free droplet takes to fall ten
   /// diameters; and the shortest such rest [t0].
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity();

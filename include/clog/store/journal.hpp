@@ -36,7 +36,7 @@ class Journal {
     std::vector<Entry> entries;       ///< oldest first
     std::int64_t num_unreadable = 0;  ///< damaged records between readable ones
     bool has_torn_end = false;        ///< its writer died while writing a record, or is still writing it
-    std::uint64_t num_bytes = 0;      ///< without a torn end
+    std::uint64_t num_bytes = 0;      ///< excluding a torn end
   };
 
   /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, another kind of
@@ -89,8 +89,8 @@ class Journal {
   Contents contents_;  ///< contents at opening; num_bytes is kept up to date
   std::uint64_t num_rewritten_bytes_ = 0;
   bool has_begun_ = false;
-  std::unique_ptr<Draft> next_;               ///< the file that is to replace this one
-  std::uint64_t num_copied_ = 0;              ///< bytes of this file that the next one has or does not need
+  std::unique_ptr<Draft> next_;   ///< the file that is to replace this one
+  std::uint64_t num_copied_ = 0;  ///< bytes of this file that the next one already has or does not need
   std::atomic<std::uint64_t> num_whole_ = 0;  ///< bytes of complete records, for the thread of prepare()
 
   std::uint64_t copy_additions();

@@ -111,7 +111,7 @@ class Stiffness {
   Eigen::PartialPivLU<MatrixXd> along_, shape_factor_;
 };
 
-/// Forces along the axes of a given state, for states nearby.
+/// Forces and stiffness of states near a given one, along the axes of the given state.
 class ForceField {
  public:
   ForceField(const EquilibriumForces& forces, DropletState state)

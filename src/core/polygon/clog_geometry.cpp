@@ -220,7 +220,8 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& a
     const Arc& to = arcs[(i + 1) % arcs.size()];
     if (from.obstacle == to.obstacle) continue;
     if (overlap(contacts.touched()[from.obstacle], contacts.touched()[to.obstacle])) continue;
-    // One side may push only across the flow, or a little downstream; it is a side of the gap even then.
+    // One of the two obstacles must support the droplet. The other one may push across the flow, or a little
+    // downstream, and is a side of the gap all the same.
     const std::vector<Touched>& touched = contacts.touched();
     if (std::max(touched[from.obstacle].support, touched[to.obstacle].support) <= 0) continue;
     // The outward normal of a counter-clockwise contour points downstream where y grows.

@@ -22,7 +22,8 @@ struct LocalFrame {
   Eigen::Array2d global(const Eigen::Array2d& local) const {
     return image.cast<double>() * period + origin + local;
   }
-  /// Displacement from a place in another frame of the same period, without forming large coordinates.
+  /// Displacement to a local place from a place in another frame of the same period, computed without large
+  /// coordinates.
   Eigen::Array2d displacement(const Eigen::Array2d& local, const LocalFrame& from,
                               const Eigen::Array2d& from_local) const {
     return (image - from.image).cast<double>() * period + (origin - from.origin) + (local - from_local);

@@ -53,7 +53,8 @@ struct WallAnchor {
 /// none.
 class KnownAnchors {
  public:
-  /// Takes the anchors out of `anchors`. @param num_holders  find() never finds anchors of other holders
+  /// Takes the anchors out of `anchors`. @param num_holders  find() ignores anchors of holders from this
+  /// number on
   void take(std::vector<WallAnchor>& anchors, Eigen::Index num_holders) {
     std::swap(anchors_, anchors);
     anchors.clear();

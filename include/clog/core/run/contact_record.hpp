@@ -25,7 +25,7 @@ struct Contacts {
 /// two checks is missed; in this time the droplet moves only by some thousandths of its diameter.
 class ContactRecord {
  public:
-  /// An obstacle farther away counts as left [sigma].
+  /// Distance beyond which an obstacle counts as left [sigma].
   static constexpr double parting = 0.1;
 
   /// @param reach  of the moving points, see DropletModel

@@ -35,7 +35,7 @@ inline constexpr double diverged_energy_ratio = 1e8;
 /// droplet far below it.
 inline constexpr double diverged_area_error = 0.5;
 
-/// How far a droplet on a flat wall has sunk since it touched it without weight [sigma]; NaN elsewhere.
+/// How far a droplet on a flat wall has sunk since it touched the wall without weight [sigma]; NaN elsewhere.
 struct Sag {
   double centre = std::numeric_limits<double>::quiet_NaN();  ///< delta_s, of the area's centroid
   double top = std::numeric_limits<double>::quiet_NaN();

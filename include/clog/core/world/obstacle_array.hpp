@@ -77,8 +77,8 @@ class ObstacleArray {
 };
 
 /// The post of each of a few circles, numbered from 0 in the order in which posts first appear: like
-/// ObstacleArray::posts(), but only through these circles. A post that is only connected farther away counts
-/// as several.
+/// ObstacleArray::posts(), but only through these circles. A post whose circles are connected only by circles
+/// that are not in the list counts as several posts.
 std::vector<int> posts_among(std::span<const Obstacle> circles);
 
 /// A Poisson-disk sample by random sequential addition. Discs arrive one by one, with a diameter uniform in

@@ -58,7 +58,7 @@ class EdgePushes {
   /// Pushes edges off their points by stiffness (reach - distance), where they touch. The closest point
   /// divides the force between the edge's two vertices.
   HWY_INLINE Pair add(const NearestPoints& nearest, M touch, V reach, V stiffness) {
-    // A point exactly on the edge gets no direction, but no NaN.
+    // For a point exactly on the edge, the direction is 0 and not NaN.
     const V inverse_distance = square_root(hn::Max(nearest.distance2, all(1e-300))).inverse;
     const V size = hn::IfThenElseZero(touch, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
     const Pair push{hn::Mul(size, nearest.dx), hn::Mul(size, nearest.dy)};

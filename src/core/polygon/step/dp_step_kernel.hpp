@@ -32,7 +32,7 @@ struct StepArrays {
   ContourPair tangent;         ///< of the edges
   ContourArray length;         ///< of the edges
   ContourPair push;            ///< kick of the vertices by contact
-  ContourPair wetting;         ///< the part of the kick by wetting that has no energy
+  ContourPair wetting;         ///< part of the kick by wetted walls that derives from no energy
   ContourPair grad_x, grad_y;  ///< 6 a times the gradient of the centroid's x, of its y
   ContourArray rate;           ///< drag rate of a vertex [1/t0], if the rates differ
   ContourArray damping, kept;  ///< s and s (1 - h2 r), with the rate; see KickCoefficients
@@ -83,7 +83,7 @@ struct KickTerms {
   bool elastic;                     ///< springs that carry tension; otherwise those along the interface
   bool on_area;                     ///< weight and mean drag act on the area; they are then coupled
   bool varying_rate;                ///< drag rates are those of the array; otherwise `rate`
-  bool coupled;                     ///< whether any force depends on all velocities
+  bool coupled;                     ///< whether the force on a vertex depends on the velocities of all
   bool implicit_pressure;           ///< see Coupling
   double rate;                      ///< [1/t0]
   double relative_rate, area_rate;  ///< rates of the drag by the mean velocities of vertices and area [1/t0]
@@ -100,7 +100,7 @@ struct Coupling {
   double mean_x = 0, mean_y = 0;  ///< of the vertices
   double area_x = 0, area_y = 0;  ///< of the area's centroid
   double c_x = 0, c_y = 0;
-  double a_x = 0, a_y = 0;   ///< with the force on the area, over 6 a
+  double a_x = 0, a_y = 0;   ///< includes the force on the area; divided by 6 a
   double half_pressure = 0;  ///< pressure that the implicit pressure adds, as a kick
 };
 /// Powers, each for M/N_v = 1.
@@ -177,7 +177,7 @@ struct Contact {
 struct NearWalls {
   const WallContacts::Item* items;  ///< circles, by group
   std::size_t num_items;
-  double range;   ///< of the items' reach [sigma]
+  double range;   ///< range that the items' reach includes [sigma]
   bool alike;     ///< whether all circles have this radius
   double radius;  ///< [sigma]
   const WedgePlace* wedges;
@@ -234,7 +234,8 @@ struct StepKernel {
   /// First pass: forces and velocities.
   Coupling (*kick)(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays);
-  /// Between the passes, if requested: powers at the end of a time step, from the w that the kick kept.
+  /// Powers at the end of a time step, from the w that the kick kept. Called between the passes, if
+  /// requested.
   Power (*power)(int n, const KickTerms& terms, const InterfaceKick& interface,
                  const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays);
   /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges there. Sums include the perimeter

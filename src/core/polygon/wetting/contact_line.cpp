@@ -165,7 +165,7 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
       while (last - k < num && k - last < num && goes_on() && vertex(last + step).share < 1) last += step;
       if (goes_on() && vertex(last + step).share >= 1) continue;
 
-      // u decreases along the contour, so outwards is -u at the last end.
+      // u decreases along the contour, so at an arc's last end -u grows outwards.
       const double outwards = side == 1 ? -1 : 1;
       End end{zone.wall, side, 0, ends.gradients_.size(), 0};
       Beside here = beside(zone.wall, vertices, vertex(k).vertex);

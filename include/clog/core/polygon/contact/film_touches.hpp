@@ -11,8 +11,8 @@ namespace clog {
 
 /// Largest number of films through which a wall holds interfaces.
 inline constexpr double most_films = 3;
-/// How far from the surface of a wall friction through films reaches [sigma].
-/// @param wall_range  at which a wall's contact begins  @param self_range  see SelfContacts
+/// How far from the surface of a wall friction through films reaches [sigma]. @param wall_range  distance at
+/// which a wall's contact begins @param self_range  see SelfContacts
 inline double film_reach(double wall_range, double self_range) {
   return wall_range + most_films * self_range;
 }

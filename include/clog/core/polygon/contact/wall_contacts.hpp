@@ -47,7 +47,7 @@ class WallContacts {
     double x, y;   ///< centre, relative to the state's frame [sigma]
     double reach;  ///< radius + range [sigma]
     int group;
-    std::uint8_t edges;  ///< those that list it, as bits
+    std::uint8_t edges;  ///< edges (vertices) of the group that list the circle, as bits
   };
   static constexpr int edges_per_group = 8;
   const std::vector<Item>& items() const { return items_; }

@@ -16,7 +16,7 @@ struct StiffModes {
   double spring = 0;   ///< longitudinal zigzag, 4 K_l N_v^2/M
   double wetting =
       0;  ///< a wall's pull or push where the tension changes, 6 |Gamma_wall - Gamma| l N_v/(w^2 M)
-  double pinning = 0;   ///< of the end of a wetted arc
+  double pinning = 0;   ///< spring that holds the end of a wetted arc
   double friction = 0;  ///< springs by which walls hold a vertex along them, k_t N_v/M
 
   /// The sum for a droplet that does not touch itself.
