@@ -83,7 +83,7 @@ std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
 struct Ending {
   double distance;  ///< [sigma]
   bool is_clog;
-  std::optional<Cause> cause;  ///< of a clog, if it is known; of a break-up
+  std::optional<Cause> cause;  ///< cause of a clog, if it is known, or of a break-up
 };
 
 std::optional<Cause> cause_of(const sweep::RunRow& run) {

@@ -48,7 +48,7 @@ Draft::Draft(OutputPath place, std::string_view mark) : place_(std::move(place))
     file_ = draft_.create(mode);
     if (!file_.is_open()) continue;
     // Another process may have removed the draft as stale before it was locked. On a file system without
-    // locks none does.
+    // locks no process does so.
     const bool is_taken = flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     if (!is_taken && draft_.holds(file_)) return;
   }

@@ -141,7 +141,7 @@ struct DpParameters {
   double break_up_neck = 0;
 };
 
-/// In a narrower box the droplet would touch its own periodic image [sigma].
+/// Width below which a box is so narrow that the droplet would touch its own periodic image [sigma].
 inline constexpr double narrowest_period = 5;
 
 /// The rectangle after which an array repeats: square boxes in a row along the flow, or one box with a

@@ -33,8 +33,9 @@ struct Dwells {
   void keep(const Dwell& dwell);
 };
 
-/// Follows a droplet's distance, and finds its dwells. One begins at the release, another whenever the
-/// droplet is farther than dwell-length from where the last began, which ends that one.
+/// Follows a droplet's distance, and finds its dwells. The first dwell begins at the release. When the
+/// droplet is farther than dwell-length from where the present dwell began, this dwell ends and the next one
+/// begins.
 class DwellRecord {
  public:
   /// Dwells of up to this many times dwell_length/terminal_speed, the time of a free droplet, are not

@@ -118,7 +118,7 @@ void WallHold::Memory::make_room(std::size_t needed, std::size_t num_zeroed) {
   }
 }
 
-/// Zeroes what windows stored for their circles.
+/// Zeroes the forces that windows stored for their circles.
 void WallHold::clear_pushes() {
   for (const kernel::HoldingCircle& circle : all_)
     for (int k = circle.first_window; k < circle.end_window; ++k)

@@ -61,8 +61,8 @@ class SelfContacts {
   /// vertices. Opposite strands run in opposite directions, so the last of these vertices is paired with the
   /// first edge. In a strand that is compressed until it touches itself, the first vertex is.
   struct Item {
-    int edges;           ///< the first of a group
-    int vertices;        ///< the first; those from N on are the contour's first
+    int edges;           ///< first edge of a group
+    int vertices;        ///< first vertex; numbers from N on stand for the contour's first vertices
     std::uint8_t pairs;  ///< bit b: edge `edges` + b and the b-th vertex
     bool backwards;      ///< are vertices counted from the last?
   };

@@ -65,8 +65,8 @@ class WallContacts {
     Eigen::Array2d least, most;
   };
   std::vector<Bounds> bounds_;        // of the groups of edges
-  Eigen::ArrayXXd distances_;         // of the vertices from the circles nearby, a column for each
-  Eigen::ArrayXd nearest_;            // of the vertices from the nearest
+  Eigen::ArrayXXd distances_;         // of the vertices from the circles nearby, a column for each circle
+  Eigen::ArrayXd nearest_;            // distance of each vertex from its nearest circle
   std::vector<std::size_t> item_of_;  // the latest item of each circle
   std::vector<Item> items_;
   double smallest_radius_ = 0, largest_radius_ = 0;
