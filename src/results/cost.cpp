@@ -153,7 +153,7 @@ SweepCost cost_with_interval(const Pace& pace, double bound, const Expectation& 
   return cost;
 }
 
-/// A sample at each outlook.
+/// The share of a sample for each outlook.
 class Shares {
  public:
   Shares(std::span<const RunCost> runs, const Pace& pace, const Outlook& outlook)

@@ -188,7 +188,7 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
   }
 }
 
-/// The runs that met an obstacle, counted from the first one on.
+/// The runs that met an obstacle, each counted from its first obstacle on.
 struct Meetings {
   std::vector<fit::Observation> from_first;  ///< of the runs that met an obstacle
   std::int64_t num_contacts = 0;

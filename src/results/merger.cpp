@@ -193,7 +193,7 @@ store::Provenance joint_provenance(const store::Provenance& maker, const std::st
                                    const std::vector<const store::SweepFile*>& files,
                                    const std::string& parts) {
   store::Provenance all = maker;
-  std::set<std::string> sessions;  // each begins with its time
+  std::set<std::string> sessions;  // each begins with its time, so they are in order of time
   if (attribute(maker, "sessions").empty())
     sessions.insert(fmt::format("{} {} {} 1 {}", attribute(maker, "start_time"), attribute(maker, "version"),
                                 attribute(maker, "git_describe"), attribute(maker, "command_line")));

@@ -41,7 +41,7 @@ enum Kind : std::int64_t {
   drop,               // rank -> process: work no more on this (empty)
 };
 
-/// Timeout for answers that a process should give at once: a stopped process never does.
+/// Timeout for answers that a process gives at once, unless it has been stopped.
 constexpr std::chrono::milliseconds patience{2000};
 /// Timeout for the start of a process, which takes long when memory is scarce.
 constexpr std::chrono::milliseconds patience_for_start{20'000};

@@ -19,7 +19,7 @@ OutputPath draft_place(const OutputPath& place, int number) {
   return place.beside(".clogsweep-draft" + std::to_string(number));
 }
 
-/// Whether it begins with the mark, possibly incomplete.
+/// Whether the file begins with the mark, or is shorter and has only the beginning of the mark.
 bool begins_with(int descriptor, std::string_view mark) {
   std::array<char, 64> bytes;
   const ssize_t size = pread(descriptor, bytes.data(), std::min(mark.size(), bytes.size()), 0);

@@ -247,7 +247,7 @@ void Journal::prepare(std::span<const Entry* const> entries, std::uint64_t begin
   while (copy_additions() > little);
 }
 
-/// Returns the number of copied bytes. Leaves out a record that is being written: if the disk is full, the
+/// Returns the number of copied bytes. Excludes a record that is being written: if the disk is full, the
 /// writer undoes it.
 std::uint64_t Journal::copy_additions() {
   constexpr std::uint64_t block = 1'000'000;

@@ -140,7 +140,7 @@ class Plan::Builder {
                       where, joined(angles, ","), largest_angle_error, box));
   }
 
-  /// The number of groups, without the seeds, which only count for the limit.
+  /// The number of groups. It excludes the seeds, which only count for the largest number of runs.
   std::int64_t size_of_product(const Settings& branch) {
     auto num_places = std::int64_t{1};
     const std::int64_t num_seeds = std::ssize(*last_seeds_);

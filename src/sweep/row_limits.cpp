@@ -118,7 +118,7 @@ bool has_met_repetition(const RunRow& row) { return row.distance > repetition_le
 std::string possible_repetition(const Plan& plan) {
   std::int64_t num_groups = 0;
   double farthest = 0, shortest_length = 0, most_boxes = 0;  // of the set that needs most boxes
-  bool is_of_user = false;                                   // boxes do not multiply its circles
+  bool is_of_user = false;  // whether its circles are user-supplied, so that boxes do not multiply them
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunRow row = describe(plan.group(group));
     const RunParameters& run = row.parameters;

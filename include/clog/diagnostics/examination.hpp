@@ -17,7 +17,7 @@ struct Finding {
 std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::string& output);
 
 /// Under srun without PMIx, or under the mpirun of another MPI, every process would take itself for the only
-/// rank. @throws Error if this program is one of them
+/// rank. @throws Error if this seems to be the case
 void refuse_to_be_alone(int num_ranks);
 
 /// The setting that lets ranks use every core of their host. @param mpi  name and version, as

@@ -26,7 +26,7 @@ struct SetTimes {
 /// as for the clogging length. Each parameter set has its own mean; a set without a finished run gets the
 /// mean of all sets, with an equally large error. The time left is then each rank's share of the waiting
 /// runs, plus a tail in which ranks run out of tasks one by one (the largest of W exponential times is 1 +
-/// 1/2 + ... + 1/W means). The range is 80 % of the means.
+/// 1/2 + ... + 1/W means). The range is the 80 % interval that results from the errors of the means.
 TimeLeft time_left(std::span<const SetTimes> sets, std::size_t num_ranks);
 
 }  // namespace clog::results

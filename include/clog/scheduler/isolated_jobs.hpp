@@ -14,7 +14,7 @@ namespace clog::scheduler {
 /// the signal or exit code as its message, and the next one gets a new process.
 ///
 /// A process serves one task after the other, and keeps its obstacle array, until it crashes. It is forked
-/// not by the rank but by a helper that was forked before MPI started: so no computing process has MPI, its
+/// not by the rank but by a helper that was forked before MPI started, so no computing process has MPI, its
 /// threads, its registered memory, or an open file of the sweep. All of them die with the rank.
 ///
 /// A rank waits for none of them: a process that hangs blocks only its own task, and delays a stop by two

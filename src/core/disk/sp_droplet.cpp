@@ -130,7 +130,7 @@ void SpDroplet::integrate(int num_steps) {
   const double d = 0.5 * dt * units::gravity / run_.drag.terminal_speed;
   const double keep = (1 - d) / (1 + d);
   const double gain = dt * h * (keep + 1);
-  const auto half_loss = [&](const Eigen::Array2d& velocity) {  // of the drag in half a step
+  const auto half_loss = [&](const Eigen::Array2d& velocity) {  // energy lost to drag in half a step
     return d * units::droplet_mass * velocity.square().sum();
   };
 

@@ -96,7 +96,7 @@ class Stiffness {
     const VectorXd excess = share * (found - step);
     corrections_.push_back({step, excess / step.dot(step + excess)});
   }
-  /// Updates a solution for the last correction.
+  /// Updates a displacement that solve() gave before the last correction.
   void correct(VectorXd& move) const { corrections_.back().apply_to(move); }
 
  private:
@@ -212,7 +212,7 @@ class Search {
   // At the present position:
   Axes axes_;
   VectorXd force_;
-  VectorXd move_;  // displacement to the rest, according to the stiffness
+  VectorXd move_;  // displacement to the equilibrium, according to the stiffness
 
   DropletState state() {
     field_.move_to(position_);

@@ -119,7 +119,7 @@ class Contacts {
           std::min({distance(begin), distance(end), distance(nearest_on_segment(wall.centre(), begin, end))},
                    [](const WedgeDistance& a, const WedgeDistance& b) { return a.distance < b.distance; });
       const double overlap = range_ - nearest.distance;
-      constexpr double round_off = 1e-12;  // of a wall along the flow, which supports nothing
+      constexpr double round_off = 1e-12;  // of the normal of a wall along the flow, which supports nothing
       const double upstream = std::abs(nearest.normal[0]) < round_off ? 0 : nearest.normal[0];
       is_touched |= take(i, overlap, overlap * upstream, touched);
     }

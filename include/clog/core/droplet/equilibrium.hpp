@@ -34,7 +34,7 @@ struct EquilibriumForces {
   /// Forces on all points, all x then all y [g rho sigma^2].
   std::function<void(const DropletState& state, Eigen::ArrayXd& force)> evaluate;
   std::function<Axes(const DropletState& state)> axes;
-  bool have_energy;  ///< if so, the stiffness is symmetric
+  bool have_energy;  ///< whether the forces derive from an energy, so that the stiffness is symmetric
 
   /// @param forces  has update_contacts(state, travel) and evaluate(state, force); must outlive this
   template <class Forces>

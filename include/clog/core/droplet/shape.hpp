@@ -38,11 +38,11 @@ bool encloses(const Eigen::ArrayXd& position, double x, double y);
 
 /// Number of pairs of edges without a common vertex that cross each other.
 ///
-/// Edges cross if each has its ends strictly on both sides of the other; edges that only touch do not.
-/// Edges with a common vertex meet only there, unless they lie exactly on top of each other, which rounding
-/// prevents; a contour that folds back farther has other crossings. Without a crossing and with a positive
-/// area the contour winds once around every point inside it: no pocket of it encloses negative area. (The
-/// converse does not hold, a contour may cross itself and wind twice around a part of its area.)
+/// Edges cross if each has its ends strictly on both sides of the other; edges that only touch do not. Edges
+/// with a common vertex meet only there, unless they lie exactly on top of each other, which rounding
+/// prevents. If more than two edges fold back, other edges cross. Without a crossing and with a positive area
+/// the contour winds once around every point inside it: no pocket of it encloses negative area. (The converse
+/// does not hold, a contour may cross itself and wind twice around a part of its area.)
 int num_self_crossings(const Eigen::ArrayXd& position);
 
 /// Point of the segment from `begin` to `end` that is nearest to a point [sigma].

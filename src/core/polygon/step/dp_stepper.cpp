@@ -273,7 +273,8 @@ void DpStepper::add_wetting(DropletState& state, double impulse, Droplet::Work* 
   }
 }
 
-/// Walls slip where their limits are exceeded, and hold the vertices by the limiting force.
+/// The interface slips along walls where their limits are exceeded; there the limiting force acts on the
+/// vertices.
 void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
   const std::vector<WallTouch>& touches =

@@ -59,7 +59,7 @@ class SelfContacts {
 
   /// The same pairs for vectors: a group of WallContacts::edges_per_group edges and as many consecutive
   /// vertices. Opposite strands run in opposite directions, so the last of these vertices is paired with the
-  /// first edge. In a strand that is compressed until it touches itself, the first vertex is.
+  /// first edge. In a strand that is compressed until it touches itself, the first vertex is paired with it.
   struct Item {
     int edges;           ///< first edge of a group
     int vertices;        ///< first vertex; numbers from N on stand for the contour's first vertices

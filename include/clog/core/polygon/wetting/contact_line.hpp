@@ -31,7 +31,8 @@ inline WettedShare wetted_share(double distance, double contact_range, double wi
 /// slips by half a vertex diameter times the difference of the angles' cosines before its spring reaches the
 /// limit.
 inline constexpr double pinning_stiffness = 2;
-/// Bound on the squared norm of an end's gradient: fractions of the last vertices, and their distances.
+/// Bound on the squared norm of the gradient of q, which results from the wetted fractions of the last
+/// vertices and from the change of these fractions with the distances of the vertices from the wall.
 inline constexpr double pinning_gradient2 = 1.5;
 
 /// The vertices of a droplet.
