@@ -8,10 +8,6 @@
 
 namespace clog {
 
-/// Perimeter above which a polygon has tangled and its run ends as failed [sigma]. Sound droplets stay below
-/// half of it (docs/notes/2026-11-26-soundness.md).
-inline constexpr double tangled_perimeter = 40;
-
 /// Perimeter above which a polygon has burst and is not integrated any further [sigma].
 inline constexpr double burst_perimeter = 1000;
 

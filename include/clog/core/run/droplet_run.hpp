@@ -78,8 +78,9 @@ struct RunResult {
 /// clog-energy at two consecutive checks, after at least ten relaxation times V_t/g. With
 /// clog-detection=certified it also counts as soon as find_equilibrium() finds where it will rest. A droplet
 /// with a neck thinner than break-up-neck has broken up, however close to rest it is; an equilibrium with
-/// such a neck does not count. The course of a run depends on its parameters alone, not on how advance() is
-/// called or how clogs are found.
+/// such a neck does not count. If the interface crosses itself although self-contact is on, the run fails.
+/// The course of a run depends on its parameters alone, not on how advance() is called or how clogs are
+/// found.
 class DropletRun {
  public:
   /// Clogs and the end of the run are checked, and r(t) is recorded, once in this number of steps.
@@ -156,6 +157,7 @@ class DropletRun {
   Sag sag(const Droplet& droplet) const;
   void start_afresh_and_take_snapshot();
   bool has_broken();
+  bool has_crossed_itself() const;
   bool is_quiet(double energy_ratio);
   bool finds_rest(double energy_ratio);
 };
