@@ -51,7 +51,7 @@ def peak_draws(curve: Sequence[Group], seed: int) -> tuple[features.Peak, Number
 
 
 @statement_of_walls("4.2, figure 6c", "the peak moves to larger Γ as gaps widen",
-                    does_not_agree="there is no peak, or it moves the other way", not_known="fewer than two curves have a peak, or the sign of the slope is uncertain")
+                    does_not_agree="no peak moves to larger Γ", not_known="fewer than two curves have a peak, or the sign of the slope is uncertain")
 def peak_moves(groups: list[Group]) -> Finding:
     """Judges by the fraction of posterior draws in which the regression of log Gamma_peak on the gap has a slope of zero or
     less."""
