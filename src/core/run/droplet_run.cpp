@@ -219,8 +219,8 @@ void DropletRun::check() {
     status_ = RunStatus::flowing;
   if ((status_ != RunStatus::running || steps_done_ % steps_per_crossing_check == 0) &&
       has_crossed_itself()) {
-    message_ = fmt::format("the interface crossed itself by t={:.6g}; try {}a larger line-tension", time(),
-                           run_.dp.inertia > 1 ? "inertia=1 or " : "");
+    message_ = fmt::format(
+        "the interface crossed itself by t={:.6g}; try a larger line-tension or a smaller inertia", time());
     status_ = RunStatus::failed;
   }
 }
