@@ -96,8 +96,8 @@ std::string column_notes(const std::vector<Group>& groups) {
         "exceed the device's length\n";
   if (std::ranges::all_of(groups, [](const Group& group) { return is_device(group.first_row.parameters); }))
     text +=
-        "lambda_met: from the first obstacle that a droplet met; those that met none are in no other "
-        "column\n";
+        "lambda_met: from the first obstacle that a droplet met; droplets that met none count only in the "
+        "speeds\n";
   return text;
 }
 
