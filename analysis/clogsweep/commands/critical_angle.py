@@ -1,4 +1,4 @@
-"""Draws the critical angle of lattices, up to which droplets follow the rows, vs line tension or another parameter.
+"""Draws the critical angle of lattices vs line tension or another parameter. Up to this angle droplets follow the rows.
 
     python3 -m clogsweep critical-angle lattice.h5                           # lattice-critical-angle.png, .pdf
     python3 -m clogsweep critical-angle lattice.h5 --format csv > angles.csv # a table

@@ -12,7 +12,7 @@ from ..tools import rounded
 from .answer import ALL, CAUSES
 from .points import told
 
-EVERY_ON_LINE = 8  # of 97 places
+EVERY_ON_LINE = 8  # every eighth of the 97 places on a curve of one key is printed
 ON_SIDE = 25
 EVERY_ON_SIDE = 6
 
