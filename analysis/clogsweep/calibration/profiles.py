@@ -15,8 +15,8 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
 FEWEST_FRAMES = 3
-# Of a simulated passage to be calibrated, only the part up to this distance from the orifice is used, on both sides, as
-# in an experiment [sigma].
+# If a simulated passage is calibrated, only its part within this distance from the orifice is used, as in an experiment
+# [sigma].
 FARTHEST_FRAME = 1.5
 FRAMES_PER_DIAMETER = 20
 METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "\u00b5m": 1e-6, "\u03bcm": 1e-6}  # the units that clogfit units knows; Unicode has two signs for micro

@@ -34,7 +34,7 @@ class DensityFit:
     chi_squared: float
     degrees_of_freedom: int
     density: float  # [1/sigma^2]
-    lower: float  # of its 95 % interval, which holds the fit's error and the published one
+    lower: float  # lower end of the 95 % interval, which includes the error of the fit and the published error
     upper: float
 
     def length(self, density: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Film:
-    """A film that is written; plays in a notebook. `path` is its file."""
+    """A film in the file `path`. It plays in a notebook."""
 
     def __init__(self, path: pathlib.Path) -> None:
         self.path = path
@@ -39,7 +39,8 @@ class Run:
 
     - `samples`: table of the path; time [t0], distance [sigma], speed [sqrt(sigma g)], energies, shape parameter
     - `polygons`: refined outlines, frames x 2 x points [sigma], at the `times` (frames) [t0]
-    - `obstacles`: circles x 3 (x, y, diameter) [sigma]; `wedges` likewise, docs/reference/files.md
+    - `obstacles`: circles x 3 (x, y, diameter) [sigma]; `wedges`: walls, in the form that docs/reference/files.md
+    describes
     - `row`: parameters and results, by the names of the columns of a sweep; `attributes`: the origin of the file
     """
 
@@ -57,7 +58,7 @@ class Run:
 
     def picture(self, outlines: int = 12) -> Picture:
         """Draws so many moments of the run in one picture. @throws UserError  if there are no outlines"""
-        from ..drawing import way  # slow to load, as all that draws
+        from ..drawing import way  # slow to load, like all modules that draw
         from ..style import Picture
 
         checked.whole("outlines", outlines, 1)

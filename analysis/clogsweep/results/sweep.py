@@ -48,7 +48,7 @@ class Sweep:
         self.path = pathlib.Path(path)
         self._programs = programs
         self._name = ""
-        self._folder: tempfile.TemporaryDirectory[str] | None = None  # of a file that is removed with this object
+        self._folder: tempfile.TemporaryDirectory[str] | None = None  # holds a file that is removed with this object
         with stored.opened(self.path, stored.SWEEP, programs) as file:
             self._records = file["runs"][:]
             self.rows = stored.table_of(file)
