@@ -15,7 +15,7 @@ namespace {
 using namespace clog;
 
 constexpr double small_box = 60;
-constexpr int copies = 9;  // odd, so that both boxes have the same surroundings at their centres
+constexpr int copies = 9;  // odd, so that the centres of both boxes have the same surroundings
 
 std::shared_ptr<const ObstacleArray> tiled(const ObstacleArray& array) {
   std::vector<Obstacle> all;

@@ -62,7 +62,7 @@ TEST(SpDroplet, FollowsTheDampedOscillatorToSecondOrder) {
 }
 
 TEST(SpDroplet, MeetsAnObstacleAtAnyAllowedStepAndSpeed) {
-  // A head-on collision at speed 1 ends at the same resting place for every step.
+  // A head-on collision at speed 1 ends at the same place of rest for every time step.
   for (const double dt : {0.01, 0.05, 0.2}) {
     const ObstacleArray obstacle(20, {{8, 0, 0.15}});
     RunParameters run = free_disk(1, dt);

@@ -37,7 +37,7 @@ double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
 }
 
 TEST(StiffModes, BoundTheStiffestModeOfTheDroplet) {
-  // A circle, and two lobes with a waist; vertices evenly spread, as the springs keep them.
+  // A circle, and two lobes with a waist; vertices are evenly spread, because springs keep them so.
   for (const Eigen::ArrayXd& position : {regular_polygon(128, units::rest_area), dumbbell(128, 0.2)})
     for (const double line_tension : {0.05, 1.0, 10.0}) {
       RunParameters run = bare_parameters(128);
@@ -92,9 +92,9 @@ Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
 }
 
 TEST(StiffModes, LeaveRoomForAContactThatTurnsWithItsEdges) {
-  // On a round obstacle, half edges that turn dig into it, the more the deeper they are. So the stiffest mode
-  // exceeds the bound of a flat contact, by less than the bounds of all modes together leave below 4. The
-  // overlap is the one that the automatic step allows.
+  // On a round obstacle, half edges that turn dig into the obstacle, and more so the deeper they already are.
+  // So the stiffest mode exceeds the bound for a flat contact, but by less than the margin that the bounds of
+  // all modes together leave below 4. The overlap is the one that the automatic step allows.
   const double radius = 0.15;
   for (const int n : {64, 128, 256, 512}) {
     RunParameters run = bare_parameters(n);
@@ -128,7 +128,7 @@ TEST(StableSteps, AreAsManyAsTheModesNeed) {
   EXPECT_EQ(num(1, largest), 1);
   EXPECT_EQ(num(1, 1.01 * largest), 2);
   EXPECT_EQ(num(1, 5.5 * largest), 6);
-  // There are no more steps than needed.
+  // The number of sub-steps is the smallest that is stable.
   EXPECT_EQ(num(8, largest), 8);
   EXPECT_EQ(num(8, 1.01 * largest), 9);
   EXPECT_EQ(num(8, 1.99 * largest), 16);

@@ -47,7 +47,7 @@ TEST(ImplicitPressure, LetsACircleBreatheAtTheFrequencyOfNewmarksMethod) {
     }
 }
 
-/// A film that falls and contracts, its area mode so stiff that steps of 0.002 need an implicit pressure.
+/// A film that falls and contracts. Its area mode is so stiff that steps of 0.002 need an implicit pressure.
 RunParameters film_parameters(Gravity gravity) {
   RunParameters run = bare_parameters(128);
   run.dp.line_tension = 0.1;
