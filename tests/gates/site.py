@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Tests the handbook's site in a browser: `site.py build/docs/html`. No page prints on the console or asks another host;
-pages follow the browser's choice of light or dark; nothing is wider than a phone; search results hold no TeX."""
+"""Tests the handbook's site in a browser: `site.py build/docs/html`. No page writes to the console or sends requests to
+another host; pages follow the browser's choice of light or dark; nothing is wider than a phone; search results contain
+no TeX."""
 
 import contextlib
 import functools

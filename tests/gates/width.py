@@ -15,7 +15,8 @@ def prose(text):
     for number, line in enumerate(text.splitlines(), 1):
         if line.lstrip().startswith("```"):
             fenced = not fenced
-        # A block of code is indented by four and follows an empty line; without one the line continues a list.
+        # A block of code is indented by four spaces and follows an empty line. Without the empty line, an indented line
+        # continues a list.
         indented = line.startswith("    ") and (indented or not before.strip()) or (indented and not line.strip())
         before = line
         if not fenced and not indented and not line.lstrip().startswith("|"):

@@ -111,7 +111,7 @@ TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
   }
 }
 
-/// An oval of Cassini: on its contour the distances from two points at +-a have the product b^2. For a < b <
+/// On the contour of this oval, the distances from two points at +-a have the product b^2. For a < b <
 /// sqrt(2) a it is 2 sqrt(b^2 - a^2) wide in the middle. There an edge of length l is a chord, whose distance
 /// from the contour is l^2/8 times the contour's curvature.
 TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {

@@ -331,7 +331,7 @@ TEST(RopeOverADisc, ThatOnlySticksSlidesAtPiRTau) {
   });
 }
 
-/// An elastic droplet that sinks onto a small disc, a little beside the disc's middle.
+/// An elastic droplet that sinks on a small disc, a little beside the disc's middle.
 DropletRun falls_on_disc(double friction, ClogDetection detection, double clog_energy) {
   RunParameters run;
   run.dp.vertices = 128;
