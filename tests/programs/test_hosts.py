@@ -18,7 +18,7 @@ class TwoHosts(SweepTest):
         return process
 
     def members(self, process, *name):
-        """Processes that the launcher has started on both hosts. @param name  options of pgrep that select a name;
+        """Processes that the launcher has started on both hosts. @param name  options of `pgrep` that select a name;
         none: all"""
         found = subprocess.run(["pgrep", "--session", str(process.pid), *name], capture_output=True, text=True)
         states = {pid: subprocess.run(["ps", "-o", "state=", pid], capture_output=True, text=True).stdout.strip()

@@ -15,7 +15,7 @@ from ..tools.errors import NotThere, UserError
 AGREES, IN_KIND, FITTED = "agrees", "qualitatively", "by construction"
 FORCED, BY_MESH = "agrees with an added force", "artefact of the mesh"
 DOES_NOT, NOT_KNOWN, NOT_RUN = "does not agree", "not known", "not run"
-VERDICTS = [AGREES, IN_KIND, FORCED, BY_MESH, FITTED, DOES_NOT, NOT_KNOWN, NOT_RUN]  # in the order of the table's summary
+VERDICTS = [AGREES, IN_KIND, FORCED, BY_MESH, FITTED, DOES_NOT, NOT_KNOWN, NOT_RUN]  # the summary of the table has this order
 
 
 @dataclasses.dataclass(frozen=True)

@@ -58,10 +58,10 @@ class Attempt(NamedTuple):
 
 
 class Calibration(NamedTuple):
-    """Line tension and near-wall drag of one profile. Errors are NaN if the frames do not determine both."""
+    """Line tension and near-wall drag of one profile. Errors are NaN if the frames do not determine both of these."""
 
     line_tension: float  # [g rho sigma^2]
-    line_tension_error: float  # from the scatter of the frames about the best run
+    line_tension_error: float  # follows from the scatter of the frames about the best run
     near_wall_drag: float  # b_0/b_inf
     near_wall_drag_error: float
     delta_v: float
@@ -127,7 +127,8 @@ class Search:
         return Linearised(-np.linalg.lstsq(slopes, here.residuals, rcond=None)[0], np.sqrt(variance * np.diag(np.linalg.inv(information))))
 
     def linearise(self, place: Place) -> Linearised | None:
-        """Takes differences first over steps so short that the droplet passes on both sides, then over steps as long as the errors."""
+        """Computes finite differences twice: first over steps so short that droplets on both sides of the place pass,
+        then over steps as long as the errors."""
         step = LONGEST_STEP
         while (found := self.linearise_over(np.array(place), step)) is None and np.all(step > 2 * SHORTEST_STEP):
             step = step / 2

@@ -16,7 +16,7 @@ from ..tools.errors import ProgramFailed
 from ..tools.signals import stop_signals
 from .profiles import Channel, Profile, read_run
 
-Simulation = Callable[[float, float], Profile]  # of line tension and near-wall drag
+Simulation = Callable[[float, float], Profile]  # its arguments are line tension and near-wall drag
 
 # The run starts half a diameter before the first frame. Motion is overdamped, so at the first frame it no longer
 # depends on the start.
@@ -63,7 +63,7 @@ class Clogrun:
 
     @contextlib.contextmanager
     def stoppable(self) -> Iterator[None]:
-        """In this block a signal that stops the program ends all runs, and these raise Stopped."""
+        """A block in which a stop signal ends all runs, whose calls then raise Stopped."""
         def stop(_number: int, _frame: FrameType | None) -> None:
             self.stopping.set()
             for process in list(self.running):

@@ -95,7 +95,8 @@ def refuse_other_channel(file: str, stored: Channel | None, simulated: Channel, 
 
 
 def means(found: Sequence[Calibration]) -> dict[str, float]:
-    """Mean and standard deviation over independent trials, as published (Cheng et al., Fig. 2); the latter is NaN for one trial."""
+    """Mean and standard deviation over independent trials, as published (Cheng et al., Fig. 2). The standard deviation
+    of a single trial is NaN."""
     values = {"line_tension": [one.line_tension for one in found], "near_wall_drag": [one.near_wall_drag for one in found]}
     every: dict[str, float] = {}
     for name, numbers in values.items():

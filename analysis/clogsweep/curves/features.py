@@ -49,7 +49,7 @@ def normal_deviate(confidence: float) -> float:
 
 
 def band(curve: Curve, confidence: float) -> Numbers:
-    """lambda and both ends of its pointwise interval at every place [sigma]. @return three rows"""
+    """lambda and the lower and upper end of its pointwise interval at every place [sigma]. @return three rows"""
     half = normal_deviate(confidence) * curve.deviation
     return np.exp([curve.mean, curve.mean - half, curve.mean + half])
 

@@ -84,7 +84,7 @@ def unite(drawing: Drawing) -> None:
     geometry = library("shapely.geometry", "python3-shapely")
     shapes = {i: geometry.Polygon(outlines[i]) for i in {one for pair in pairs for one in pair}}
     tolerance = NEAR * float(np.ptp(np.vstack(outlines), axis=0).max())
-    root = list(range(len(outlines)))  # of each outline: another one that it touches
+    root = list(range(len(outlines)))  # for each outline, another one that it touches, or itself
 
     def group_of(i: int) -> int:
         while root[i] != i:

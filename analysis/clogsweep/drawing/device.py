@@ -158,7 +158,7 @@ def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: path
 
 
 def unbroken(points: Numbers, place: Place) -> Numbers:
-    """A path in the device, with a gap wherever it leaves at one side and enters at the other."""
+    """A path in the device, with a gap wherever it leaves the device at one side and enters it at the opposite side."""
     inside = place.wrapped(points)
     jumps = np.flatnonzero((np.abs(np.diff(inside, axis=0)) > [place.length / 2, place.width / 2]).any(axis=1)) + 1
     return np.insert(inside, jumps, np.nan, axis=0)

@@ -1,5 +1,5 @@
-"""Clogging lengths in dilute arrays, the published ones: mechanisms with different walls, both models vs the sag, and
-the map."""
+"""Clogging lengths in dilute arrays, as in the article: mechanisms with different walls, polygons and disks vs the sag,
+and the map."""
 
 import dataclasses
 import math
