@@ -44,7 +44,7 @@ def __getattr__(name: str) -> Any:
 
 
 def _loaded(module: str) -> Any:
-    """A module of this package. @throws ImportError  that names in one line what the machine lacks"""
+    """A module of this package. @throws ImportError  whose single line names what is missing on this machine"""
     try:
         return importlib.import_module(f".{module}", __name__)
     except ImportError as error:

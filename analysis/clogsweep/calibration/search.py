@@ -151,7 +151,8 @@ class Search:
         return best, False
 
     def bracket_clog(self, grid: Sequence[Attempt], drag: float) -> tuple[float, float] | None:
-        """log Gamma of the stiffest droplet that passes all frames and of the next stiffer droplet that does not, if they exist."""
+        """log Gamma of a droplet that reaches all frames, and of a slightly stiffer one that does not; None if there is
+        no such pair."""
         brackets = [(softer.place[0], stiffer.place[0]) for softer, stiffer in zip(grid, grid[len(GRID_DRAGS):])
                     if softer.num_never_reached == 0 < stiffer.num_never_reached]
         if not brackets:
@@ -163,7 +164,8 @@ class Search:
         return passing, clogging
 
     def run(self) -> tuple[Attempt, bool, float]:
-        """@return the best, whether the search converged, and the Gamma from which on droplets clog, or NaN"""
+        """@return the best simulation, whether the search converged, and the Gamma from which on droplets clog, or
+        NaN"""
         grid = self.attempts(list(itertools.product(GRID_TENSIONS, GRID_DRAGS)))
         minima = in_parallel(lambda start: self.descend(start, (0.4, max(0.3 * start[1], 0.03)), (0.01, 0.002), 40)[0], starts(grid))
         drag = nearest(minima).place[1]

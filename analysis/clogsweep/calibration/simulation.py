@@ -83,8 +83,8 @@ class Clogrun:
         return Channel(*(float(config[name.replace("_", "-")]) for name in Channel._fields))
 
     def past(self, measured: Profile, words: Sequence[str]) -> Simulation:
-        """A function that simulates a passage which begins before and ends after the frames of a measured one. @param
-        words  keys of clogrun channel"""
+        """A function that simulates a passage which begins before and ends after the frames of a measured one.
+        @param words  keys of clogrun channel"""
         words = [word for word in words if word.partition("=")[0].lstrip("-") not in ("start", "end", "max-time")]
         start, end = min(float(min(measured.h)) - APPROACH, USUAL_START), float(max(measured.h)) + 0.1
         try:

@@ -1,4 +1,5 @@
-"""Clogging lengths from droplets that fall onto one or two obstacles: which obstacles hold a droplet, and how many of these an array has.
+"""Predicts clogging lengths from droplets that fall onto one or two obstacles. They show which obstacles hold a
+droplet; then such obstacles are counted in an array.
 
 docs/explanation/predicted.md has the law and its limits.
 """
@@ -108,7 +109,8 @@ class Droplets:
         return {tension: [end in (b"squeezed", b"hybrid") for end in words] for tension, words in ends.items()}
 
     def half_width(self, diameter: float, tension: float) -> float:
-        """Largest offset from the centre of one obstacle at which it holds the droplet [sigma], 0 if below OFFSET_PRECISION."""
+        """Largest offset from an obstacle's centre at which the obstacle holds the droplet [sigma], or 0 if this is
+        below OFFSET_PRECISION."""
         low, high = 0.0, (1 + diameter) / 2
         while high - low > max(OFFSET_PRECISION, low / OFFSET_STEPS**2):
             offsets = [low + (high - low) * step / OFFSET_STEPS for step in range(OFFSET_STEPS + 1)]
@@ -177,7 +179,8 @@ def doubts_of(tension: float, length: float) -> list[str]:
 
 
 def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> Array:
-    """Has clogrun make the array, or several of a random one. @param keys  that describe it. @throws UserError"""
+    """Has clogrun make the array, or several arrays if it is random. @param keys  that describe the array.
+    @throws UserError"""
     run, circle_file = folder / "array.h5", folder / "array.csv"
     is_own = keys.get("obstacle-layout", "random") != "random" or "obstacles" in keys
     keys = keys if is_own else {"box": str(ARRAY_BOX)} | keys

@@ -179,7 +179,7 @@ def quieten_libraries() -> None:
 
 @contextlib.contextmanager
 def needs_modules() -> Iterator[None]:
-    """Guards a block that loads modules which may be missing."""
+    """A block that loads modules. If one of them is missing, the error says which package to install."""
     quieten_libraries()
     try:
         yield
@@ -203,7 +203,7 @@ def _give_up(stream: TextIO) -> None:
 def _refuse(reason: object) -> int:
     try:
         print(printable(f"{name()}: {' '.join(str(reason).split())}"), file=sys.stderr, flush=True)
-    except OSError:  # its reader may have closed it
+    except OSError:  # the reader of the stream may have closed it
         if sys.stderr is not None:
             _give_up(sys.stderr)
     return USER_FAULT
@@ -222,7 +222,7 @@ def _whole_output() -> Iterator[None]:
         if sys.stdout is not None:
             try:
                 sys.stdout.flush()
-            except BrokenPipeError:  # its reader closed it
+            except BrokenPipeError:  # the reader of the stream closed it
                 _give_up(sys.stdout)
                 raise
             except OSError as error:

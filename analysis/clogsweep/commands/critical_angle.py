@@ -51,7 +51,7 @@ def body() -> int:
     else:
         with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs) as file:
             source = stored.source(stored.attributes(file))
-        # Sizes come first, and values that may follow from others last.
+        # Droplet sizes come first; parameters that may follow from others come last.
         parameters = sorted((name for name, column in columns.items() if column.get("role") == "parameter" and column.get("parameter_role") != "ensemble"),
                             key=lambda name: (name != "obstacle_diameter", "key" not in columns[name], "automatic_in" in columns[name]))
         rows = stored.read_table(arguments.sweep, arguments.programs)

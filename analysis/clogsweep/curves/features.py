@@ -97,7 +97,8 @@ def tops(heights: Numbers, places: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def find_peak(curve: Curve, places: Numbers, confidence: float) -> Peak:
-    """Place and height of the mean curve's peak; the intervals come from drawn curves. @param places  see tops()"""
+    """Place and height of the mean curve's peak, with intervals from curves drawn from the distribution. @param places
+    see tops()"""
     draws = drawn_curves(curve)
     draw_places, draw_heights = tops(draws, places)
     (place,), (height,) = tops(curve.mean[None], places)
@@ -115,8 +116,8 @@ def peak_probabilities(curve: Curve) -> Numbers:
 
 
 def find_crossings(curve: Curve, x: Numbers, length: float, confidence: float) -> list[Crossing]:
-    """Where a curve of one key has a length. Between two places the curve is a straight line. @param x  logarithms of
-    the key, in increasing order; @param length  [sigma]"""
+    """The places where a curve over one key crosses a length. Between two places the curve is taken as a straight line.
+    @param x  logarithms of the key, in increasing order; @param length  [sigma]"""
     above = curve.mean - np.log(length)
     half = normal_deviate(confidence) * curve.deviation
 

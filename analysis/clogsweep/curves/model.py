@@ -57,7 +57,7 @@ class Points:
 
     @property
     def level(self) -> float:
-        """Logarithm of the common clogging length; half a clog if there is none."""
+        """Logarithm of the common clogging length of all points. If there is no clog, half a clog is assumed."""
         return float(np.log(self.distances.sum() / max(self.clogs.sum(), 0.5)))
 
 
@@ -110,7 +110,7 @@ def find_mode(points: Points, scales: Scales) -> Mode:
     exposures = points.distances * np.exp(-points.level)  # in units in which log lambda is about zero
 
     def height(slopes: Numbers, f: Numbers) -> float:
-        with np.errstate(over="ignore"):  # -inf for a step that is far too long
+        with np.errstate(over="ignore"):  # a step that is far too long gives -inf
             return float(np.sum(-points.clogs * f - exposures * np.exp(-f)) - slopes @ f / 2)
 
     def curvature(f: Numbers) -> tuple[Numbers, Numbers]:
@@ -149,7 +149,8 @@ def curve_of_scales(points: Points, scales: Scales, places: Numbers) -> Curve:
 
 
 def all_scales(places: Numbers) -> list[Scales]:
-    """Amplitudes and lengths, evenly on a logarithmic scale. A key with one value has no length."""
+    """All combinations of amplitudes and correlation lengths, which are spread evenly on a logarithmic scale. A key
+    with one value has no correlation length."""
     ranges = np.ptp(places, axis=0)
     lengths = [[fraction * extent for fraction in RANGE_FRACTIONS] if extent > 0 else [1.0] for extent in ranges]
     return [Scales(amplitude, chosen) for amplitude in AMPLITUDES for chosen in itertools.product(*lengths)]

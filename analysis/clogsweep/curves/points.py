@@ -115,7 +115,8 @@ def _key(values: dict[str, Any]) -> tuple[tuple[str, Any], ...]:
 
 
 def crossed_numerics(fit: Fit, groups: Iterable[int], keys: Collection[Column]) -> set[str]:
-    """Names of the numerics that vary between groups of the same physics and the same keys."""
+    """Names of the numerical parameters that vary between groups with the same physics and the same values of the
+    keys."""
     seen: dict[tuple[Any, ...], dict[str, set[Any]]] = {}
     for index in groups:
         group = fit["groups"][index]
@@ -180,7 +181,8 @@ def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Exclude
 
 
 def grid_over(places: Numbers) -> Numbers:
-    """Evenly on a logarithmic scale between the outermost values: 97 for one key (over two decades, a step is 5 %), 25 x 25 for two."""
+    """Places between the outermost values, evenly spaced on a logarithmic scale: 97 for one key (over two decades, a
+    step is 5 %), 25 x 25 for two keys."""
     low, high = places.min(axis=0), places.max(axis=0)
     share = np.linspace(0, 1, 97 if len(low) == 1 else 25)
     axes = [(1 - share) * first + share * last for first, last in zip(low, high)]
@@ -188,7 +190,7 @@ def grid_over(places: Numbers) -> Numbers:
 
 
 def seeds_of_groups(fit: Fit, rows: Records) -> list[set[int]]:
-    """The seeds of each group's runs, from the rows of the sweep. @param rows  of all its files"""
+    """The seeds of each group's runs. @param rows  from all files of the sweep"""
     names = [column["name"] for column in fit["columns"] if len({str(group[column["name"]]) for group in fit["groups"]}) > 1]
     failed = rows["status"] == b"failed"
 

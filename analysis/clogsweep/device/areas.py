@@ -75,8 +75,8 @@ def drop_duplicates(drawing: Drawing) -> None:
 
 
 def unite(drawing: Drawing) -> None:
-    """Unites outlines that touch: writers of GDSII cut circles into slices. Outlines within others, the edge of the
-    device and walls are not united."""
+    """Unites outlines that touch, because programs that write GDSII cut circles into slices. Outlines within others,
+    the edge of the device and walls are not united."""
     outlines = drawing.outlines
     pairs = meeting(outlines)
     if not pairs:

@@ -1,4 +1,4 @@
-"""Lines that are drawn separately but close into outlines, such as the three of a triangle."""
+"""Lines that are drawn separately but form closed outlines, such as the three sides of a triangle."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ class Device:
     width: float
     has_frame: bool
     droplet_metres: float
-    post_of: Numbers | None = None  # number of the post of each circle; None: each is one
+    post_of: Numbers | None = None  # number of the post to which each circle belongs; None: each circle is a post
     replaced: list[Numbers] = dataclasses.field(default_factory=list)  # outlines that circles have replaced
     walls: list[Numbers] = dataclasses.field(default_factory=list)  # outlines or lines beside the device, replaced by side-walls=on
     lines: list[Line] = dataclasses.field(default_factory=list)  # lines that form no closed outline and are no walls
@@ -132,7 +132,7 @@ def length_in_metres(text: str, option: str) -> float:
 
 
 def unit_name(metres: float) -> str:
-    """A unit's name, such as um, or its length if it has none."""
+    """A unit's name, such as um, or the unit's length if it has no name."""
     return next((name for name, size in METRES.items() if np.isclose(size, metres, rtol=1e-6, atol=0)), f"{metres:.4g} m")
 
 
@@ -156,7 +156,7 @@ def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_pi
 
 
 def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
-    """Evenly spaced points along the edges, because a square's corners alone would be on a circle."""
+    """Evenly spaced points along the edges. The corners of a square alone would lie on a circle."""
     ends = np.vstack([outline, outline[:1]]) if is_closed else outline
     ways = np.hypot(*np.diff(ends, axis=0).T)
     places = np.concatenate([[0], np.cumsum(ways)])

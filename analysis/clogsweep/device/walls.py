@@ -28,7 +28,7 @@ def is_one_of(outline: Numbers, others: list[Numbers]) -> bool:
 
 
 def is_wall(outline: Numbers, length: float) -> bool:
-    """Whether an outline is a flat rectangle along the flow. A wall with teeth is no such rectangle."""
+    """Whether an outline is a flat rectangle along the flow, which a wall with teeth is not."""
     low, high = outline.min(axis=0), outline.max(axis=0)
     along, across = high - low
     if along < SHARE * length or along < SLENDER * across:

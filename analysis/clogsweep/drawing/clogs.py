@@ -35,7 +35,7 @@ def of_polygons(rows: Records, path: object) -> list[np.void]:
 
 
 def mechanism_of(row: np.void) -> str:
-    """The mechanism by clogfit's name: `other` if it is none of the three."""
+    """The mechanism, by the name that clogfit uses: `other` if it is not wrapped, squeezed or hybrid."""
     name = stored.text(row["mechanism"])
     return name if name in MECHANISMS else "other"
 

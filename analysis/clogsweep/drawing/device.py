@@ -265,8 +265,9 @@ def draw_part(axes: Axes, part: Part, legend_columns: int) -> None:
 
 
 def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None) -> Figure:
-    """A panel for each part, and a strip that compares them. @param parts  of one device; @param num_parts  of all its parameter sets;
-    @param droplet_mm  its diameter, if it is known [mm]"""
+    """Draws a panel for each part, and a strip that compares the parts. @param parts  of one device; @param num_parts
+    number of all parameter sets of the device;
+    @param droplet_mm  diameter of the droplet, if it is known [mm]"""
     place = parts[0].place
     beside = BESIDE + OF_LETTER * max(len(part.label) for part in parts) if len(parts) > 1 else BESIDE if parts[0].mapped else 0
     figure, (*panels, below) = device_plan.axes_for(place.length, place.width, len(parts), strip=1.5, beside=beside)

@@ -24,8 +24,8 @@ RED = "#D00000"
 
 
 def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0, beside: float = 0.0) -> tuple[Figure, list[Axes]]:
-    """A figure and its axes, with equal scales along and across a device of this shape: in one column, or in as many as keep the
-    figure from growing too tall.
+    """A figure and its axes, with equal scales along and across a device of this shape. Panels are in one column, or in
+    several if one column would be too tall.
     @param strip  height of an additional panel below the devices [inches]; @param beside  width for what is drawn
     beside the devices [inches]"""
     figure_width = min(WIDEST, max(NARROWEST, 0.45 * length))
@@ -81,7 +81,8 @@ def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[N
 
 
 def draw_flow(axes: Axes, points_below: float) -> None:
-    """An arrow along the flow, `points_below` points below the right end of the axes, clear of all posts."""
+    """Draws an arrow along the flow, `points_below` points below the right end of the axes, where there are no
+    posts."""
     place = axes.transAxes + ScaledTranslation(0, -points_below / 72, axes.figure.dpi_scale_trans)
     start = axes.transAxes + ScaledTranslation(-0.6, -points_below / 72, axes.figure.dpi_scale_trans)
     axes.annotate("flow", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9, annotation_clip=False,
@@ -89,7 +90,8 @@ def draw_flow(axes: Axes, points_below: float) -> None:
 
 
 def understood(device: Device, source: str) -> Figure:
-    """Posts grey, other shapes red, the edge dashed. @param source  name of the drawing"""
+    """Draws how a drawing was interpreted: posts grey, other shapes red, the edge dashed. @param source  name of the
+    drawing"""
     figure, (axes,) = axes_for(device.length, device.width)
     draw_posts(axes, device.circles)
     for outline in device.others:

@@ -41,7 +41,7 @@ SHADES = 96  # number of colours in a palette for the first frame, and for the c
 
 
 def chosen_frames(run: trajectory.Trajectory, most: int) -> npt.NDArray[np.int64]:
-    """Every n-th frame, at most `most` of them. If the droplet moves too far in n frames, n is smaller and the film
+    """Every n-th frame, at most `most` frames. If the droplet moved too far in n frames, n is reduced, and the film
     shows only the end of the run."""
     count = len(run.times)
     way = np.abs(np.diff(trajectory.centroids(run.polygons), axis=0)).sum()
@@ -339,7 +339,7 @@ def write_pictures(film: Film, output: str) -> pathlib.Path:
     for index, pixels in enumerate(film.play()):
         with outputs.replaced(folder / f"{index:05d}.png") as fresh:
             Image.fromarray(pixels[..., :3]).save(fresh)
-    # Frames of an earlier, longer run do not belong to this one.
+    # Frames that an earlier, longer film left behind do not belong to this one.
     for earlier in folder.glob("[0-9]" * 5 + ".png"):
         if int(earlier.stem) >= len(film):
             earlier.unlink()

@@ -101,7 +101,7 @@ def followed(rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path
     """Replays each row's droplet. @param folder  for their files"""
     if not rows:
         return []
-    # Frames a fiftieth of a diameter apart at terminal speed.
+    # At terminal speed a droplet moves by a fiftieth of its diameter between two frames.
     frame = min(0.02 / row["terminal_speed"] for row in rows)
     return replays.follow_all(clogrun, sweep, rows, folder, 2, frame, frame)
 

@@ -75,8 +75,8 @@ class Groups:
         return self._ask_for_curves()
 
     def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
-        """The fitted curve through these groups, if there is one. A fitted curve through groups of several drawn
-        curves belongs to the curve with its first point."""
+        """The fitted curve through these groups, if there is one. If a fitted curve goes through groups of several
+        drawn curves, it belongs to the drawn curve that has its first point."""
         for curve in self._fitted["curves"]:
             if any(self._told[curve["points"][0]["group"]] is group for group in members):
                 return curve
@@ -223,7 +223,7 @@ class Groups:
                  [group for group in self.members if tuple(group[name] for name in names) == key]) for key in keys]
 
     def legend_title(self) -> str:
-        """What the numbers in the labels of curves() are called."""
+        """The names of the parameters whose values are in the labels of curves()."""
         return ", ".join(name.replace("_", " ") for name in self.curve_parameters() if self._is_number(name) and name not in fits.DROPLETS)
 
     def is_logarithmic(self) -> bool:

@@ -34,8 +34,8 @@ def framed(content: str, caption: str, kind: str = "") -> str:
 
 
 def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """P(r) of one curve's members to their longest distances, each with the exponential of its length if it is
-    known."""
+    """Draws P(r) of the members of one curve up to their longest distances, each with the exponential law of its
+    clogging length, if this is known."""
     begin = min(0.01 * (group["clogging_length"] or survival_curve.longest_way(group)) for group in members)
     for group, colour in zip(members, style.shades(len(members))):
         if group["survival"]:
@@ -94,7 +94,7 @@ def with_runs(members: Sequence[Group]) -> list[Group]:
 
 
 def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """How the runs of one curve ended, as fractions. @param members  see with_runs()"""
+    """Draws the fractions of the runs of one curve that ended in each way. @param members  see with_runs()"""
     ranks, base = np.arange(len(members)), np.zeros(len(members))
     shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
               for name, colour in style.CAUSE_COLOURS.items()}
@@ -292,7 +292,7 @@ MAPPED = 4  # number of runs whose paths make the map in each panel of a device
 
 
 def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
-    """User-supplied circles, with releases and clogs.
+    """Draws user-supplied circles, with releases and clogs.
     @param count  number of paths in each panel; with 0 nothing is replayed"""
     if groups.values("obstacle_filling") != {"file"}:
         return {}

@@ -24,7 +24,7 @@ CONFIGS = {"density-robust": "constant tension", "density-elastic": "tension gro
 
 @dataclasses.dataclass(frozen=True)
 class DensityFit:
-    """A parabola through log lambda as a function of log density, and where it has the published length.
+    """A parabola through log lambda as a function of log density, and the density at which it has the published length.
 
     A length from n clogs has a relative error of 1/sqrt(n), which is the error of its logarithm.
     """

@@ -52,8 +52,8 @@ def expected_runs(sums: pandas.DataFrame, known: Numbers, places: Numbers, log_l
 
 def choose_blocks(curve: Curve, clogs: Numbers, work: Numbers, weights: Numbers, most_blocks: Numbers,
                   work_of_round: float, most_work: float) -> Numbers:
-    """Number of blocks of seeds for each place: repeatedly adds the block that most reduces the weighted variance per
-    work, until the round has its work.
+    """Number of blocks of seeds for each place. Repeatedly adds the block that reduces the weighted variance most for
+    its work, until the work of the round is used up.
 
     Each added block reduces the variances as if its expected clogs had been observed (a rank-one update); the means do
     not change.

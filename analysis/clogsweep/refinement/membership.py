@@ -66,8 +66,8 @@ class Membership:
             for i, column in enumerate(self._key_columns))
 
     def of_curve(self, rows: pandas.DataFrame, deciding: Callable[[str], bool] = lambda _: True) -> pandas.DataFrame:
-        """The rows that agree with the first run in all parameters in which the candidates do not differ. @param
-        deciding whether a column decides. @throws UserError  if the file lacks the first run"""
+        """The rows that agree with the first run in all parameters that are the same for all candidates.
+        @param deciding  tells whether a column has to agree. @throws UserError  if the file lacks the first run"""
         fixed = [name for name in self._names if name not in self._varying and deciding(name)]
         first = rows.loc[rows["task"] == 0, fixed]  # the first point's run has number 0
         if first.empty:

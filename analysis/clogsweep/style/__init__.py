@@ -1,4 +1,4 @@
-"""Style of all figures: colours, axes, markers, text beside a picture; and how one is shown and saved."""
+"""Style of all figures: colours, axes, markers, text beside a picture. Also shows and saves pictures."""
 
 from __future__ import annotations
 

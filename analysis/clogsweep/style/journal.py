@@ -44,7 +44,7 @@ def fitting(figure: FigureBase, size: float, pixels: float) -> Callable[[str], b
 
 
 def legend_entries(axes: Axes) -> list[tuple[Artist, str]]:
-    """Artists with a label; those without data, which explain a mark, come last."""
+    """Artists with a label. Artists without data come last, because they only explain a mark."""
     entries = [(artist, label) for artist, label in zip(*axes.get_legend_handles_labels()) if label]
     return sorted(entries, key=lambda entry: isinstance(entry[0], Line2D) and not len(entry[0].get_xdata()))
 
