@@ -31,7 +31,7 @@ def slurm(*command):
 
 
 def described(kind, name):
-    """Slurm's answer about a job or a node."""
+    """Slurm's description of a job or a node."""
     return dict(re.findall(r"(\w+)=(\S*)", slurm("scontrol", "--oneliner", "show", kind, name)))
 
 

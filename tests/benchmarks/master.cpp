@@ -78,7 +78,7 @@ class SleepingJob final : public sweep::Job {
   sweep::RunRow row_;
 };
 
-/// Without workers, runs begin and end one after the other.
+/// A sweep without workers, in which runs begin and end one after the other.
 int measure_rows(std::int64_t num_rows) {
   const auto kilobytes = [num_rows, before = peak_kilobytes()] {
     return (peak_kilobytes() - before) / static_cast<double>(num_rows);

@@ -60,7 +60,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// A random sweep: lengths of every group are drawn from the recorded ones.
+/// A random sweep, for which the lengths of every group are drawn from the group's recorded lengths.
 std::vector<double> resample(const std::vector<double>& recorded, std::int64_t num_seeds,
                              std::mt19937_64& engine) {
   const boost::random::uniform_int_distribution<std::int64_t> pick(

@@ -119,7 +119,7 @@ def samples(folder):
 
 
 def check_readers(case, sample):
-    """Every reader of the case's file reports the undamaged numbers, or that the file is damaged."""
+    """Checks that every reader of the case's file reports the undamaged numbers, or that the file is damaged."""
     path = case.folder / FILE
     before = path.read_bytes()
     for report, told in zip(REPORTS, sample.reports):
@@ -136,7 +136,7 @@ def check_readers(case, sample):
 
 
 def check_salvaged(case, sample):
-    """Rows that salvage keeps of a damaged file have not changed."""
+    """Checks that rows which salvage keeps from a damaged file have not changed."""
     outcome = run(case, "clogsweep", "salvage", FILE, "--output", SALVAGED)
     if outcome.code != 0:
         return
@@ -162,7 +162,7 @@ def check_called_whole(case, sample, path):
 
 
 def check_resumed(case, sweep, rows):
-    """The command that made the file repairs it, or refuses and leaves it unchanged.
+    """Checks that the command that made the file repairs the file, or refuses it and leaves it unchanged.
 
     @param rows  of the undisturbed sweep
     """

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""clang.py warnings|tidy [--changed] [--most N] [FILE...]: what clang++ or clang-tidy finds in these sources, or in all.
+"""clang.py warnings|tidy [--changed] [--most N] [FILE...]: prints what clang++ or clang-tidy finds in these sources, or
+in all sources.
 
 --changed takes sources that changed (known.py says since when), and for each changed header a source that includes it.
 If there are more than N sources, it takes N of them, and others at the next commit. Exit code 1: there is a finding.
@@ -24,7 +25,7 @@ FINDING = re.compile(r"^(?=[^\s:]+:\d+:\d+: (?:warning|error):)", re.MULTILINE)
 
 
 def configure():
-    """Writes how clang++ would compile each source to build/gates. CMake's own warnings are faults."""
+    """Writes to build/gates how clang++ would compile each source. CMake's own warnings are faults."""
     done = subprocess.run(["cmake", "--preset", "gates"], cwd=known.ROOT, capture_output=True, text=True)
     if done.returncode != 0 or "Warning" in done.stderr:
         sys.exit(done.stdout + done.stderr + "CMake fails or warns")

@@ -1,4 +1,4 @@
-"""The files that git knows here, and those of them that changed."""
+"""Lists the files of the repository, and those that changed."""
 
 import os
 import pathlib
@@ -11,7 +11,7 @@ LAST_COMMITS = 10
 
 
 def git(*arguments):
-    """git's answer, or None if it refuses."""
+    """The output of git, or None if git fails."""
     done = subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True)
     return done.stdout if done.returncode == 0 else None
 

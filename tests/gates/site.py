@@ -51,7 +51,7 @@ def browser(scheme):
 
 
 def wait_for(driver, condition):
-    """Waits until a script returns true, at most half a minute; the checks below fail if it never does."""
+    """Waits until a script returns true, but at most half a minute. If it never does, the checks that follow fail."""
     end = time.monotonic() + 30
     while not driver.execute_script(f"return !!({condition})") and time.monotonic() < end:
         time.sleep(0.1)

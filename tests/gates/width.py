@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Prose in *.md has lines of at most 120 characters. Tables, code, and words that cannot be broken may be longer."""
+"""Checks that lines of prose in *.md have at most 120 characters. Tables, code, and words that cannot be broken may be
+longer."""
 
 import sys
 

@@ -40,7 +40,7 @@ def layer_of(parts, layers):
 
 
 def includes(root, layers):
-    """File, line, layer and included layer of every include."""
+    """The file, line, layer and included layer of every include."""
     for base in (root / "include" / "clog", root / "src"):
         for path in sorted(base.rglob("*.?pp")):
             for number, line in enumerate(path.read_text().splitlines(), 1):

@@ -24,7 +24,7 @@ OF_THEIR_DAY = ("docs/notes/", "CHANGELOG.md")
 
 
 def sources(root):
-    """The files that git knows or would add; in an archive of the sources, all files except build outputs."""
+    """The files that git tracks or would add; in an archive of the sources, all files except build outputs."""
     if (root / ".git").exists():
         asked = subprocess.run(["git", "-C", root, "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
                                capture_output=True, text=True)

@@ -28,7 +28,8 @@ def blocks(path):
 
 
 def code(text):
-    """@return the lines of a page that are indented or in a block of bash; others are empty"""
+    """@return the lines of a page that are indented or in a block of bash; all other lines are replaced by empty
+    ones"""
     fence = None
     for line in text.splitlines():
         if line.startswith("```"):

@@ -18,7 +18,7 @@ class Figures(test_figures.Drawn):
         self.assert_curves(names, "6c", "6c-filling", "7c", "7c-saturated", "9b")
         self.assert_sags("7c")
 
-        # Figure 6c: all families, both meshes, every point.
+        # Figure 6c shows every point of all families on both meshes.
         drawn = {(row["curve"].split(",")[0], row["vertices"], row["friction"], row["obstacle_gap"], row["line_tension"], row["clogging_length_lower"]) for row in self.drawn("6c")}
         told = {(config, *(str(group[name]) for name in ("vertices", "friction", "obstacle_gap", "line_tension", "clogging_length_lower")))
                 for config in ("clogging-robust", "clogging-friction", "clogging-elastic")

@@ -29,7 +29,7 @@ PROGRAMS = ("clogsweep", "clogrun", "clogfit")
 LAUNCHERS = {"mpirun": 3, "srun": 1}  # number of words before the program in a call of each launcher
 # Commands that name one of our programs, but need something that may be missing on this machine
 NOT_RUN = {"docker", "spack", "sbatch", "qsub", "git", "sudo", "pydoc"}
-# Options and keys that make a run short, by the first words of a command
+# Options and keys that make the runs of a command short, by its first words
 SHORT = {"clogrun array": ["max-time=20", "seeds=1"], "clogrun replay": [], "clogrun channel": ["vertices=64", "start=-1.2", "end=-1"]}
 # Commands of python3 -m clogsweep that take too long
 LONG = {"agreement": agreement, "collision": collision, "predict": predict}
@@ -126,7 +126,7 @@ class Commands(Analysis):
         elif command in LONG:
             sys.argv[1:] = rest
             LONG[command].parse()
-        elif command == "refine":  # the launcher may be a cluster's
+        elif command == "refine":  # the launcher on the page may be that of a cluster
             done = self.analyse(command, *rest[:rest.index("--")], "--dry-run")
             self.assertEqual(done.returncode, 0, done.stderr)
         else:

@@ -23,7 +23,8 @@ STEPS_PER_SNAPSHOT = 2**18  # stopped runs resume from a snapshot
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MPIRUN = ROOT / "tests" / "mpirun.sh"
 
-# After this number of seconds a program counts as hanging. With sanitizers, on a busy machine, some take minutes.
+# After this number of seconds a program counts as hanging. With sanitizers, on a busy machine, some programs take
+# minutes.
 LONGEST = 1500
 
 # Small droplets in a small box, whose runs take some hundredths of a second.
@@ -95,7 +96,7 @@ class ProgramTest(unittest.TestCase):
         return done
 
     def refuse(self, name, *arguments, words, **options):
-        """The program must exit with 2, print each of the words in one line, and write nothing."""
+        """Checks that the program exits with 2, prints one line that contains each of the words, and writes no file."""
         before = self.snapshot()
         done = self.run_program(name, *arguments, **options)
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)

@@ -247,7 +247,7 @@ class Run(ProgramTest):
                     self.assertRegex(page, rf"(?m)^\|[^|]*`{name}`[^|]*\| {re.escape(unit)} \|")
 
     def test_a_droplet_is_released_whose_springs_would_keep_it_sliding(self):
-        """The release was once refused, although a droplet of half the line tension was released."""
+        """This release was once refused, although a droplet with half the line tension was released."""
         done = self.succeed("clogrun", "array", "preset=robust", "vertices=64", "box=40", "line-tension=0.1", "obstacle-gap=0.4",
                             "seeds=1", "max-time=1", "--output", "r.h5")
         self.assertTrue(done.stdout.startswith("flowing after "), done.stdout)

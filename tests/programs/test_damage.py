@@ -177,7 +177,7 @@ class Damage(ProgramTest):
         return copy
 
     def test_verify_tells_when_only_other_readers_refuse_a_copy(self):
-        """HDF5's checksum of a chunk includes its padding; our checksums cover rows and attributes."""
+        """HDF5's checksum of a chunk includes the padding, whereas our checksums cover only rows and attributes."""
         copy = self.copied()
         whole = copy.read_bytes()
         with h5py.File(copy) as file:
@@ -200,7 +200,8 @@ class Damage(ProgramTest):
                 (self.folder / "whole.h5").unlink()
 
     def test_python_does_not_read_a_copy_whose_description_is_damaged(self):
-        """Checksums cover bytes only: other names, types or positions would change the numbers."""
+        """Our checksums cover the bytes of rows only. With other names, types or positions of columns these bytes would
+        mean other numbers."""
         copy = self.copied()
         whole = copy.read_bytes()
         self.assertEqual(len(clogsweep.open(copy).rows), 6)

@@ -737,7 +737,7 @@ class OtherTools(Analysis):
 
     def test_dxf_polylines_with_a_width(self):
         drawing, space = self.dxf()
-        donut = [(475, 600, 50, 50, 1), (525, 600, 50, 50, 1)]  # a disc of 100, as DONUT draws it
+        donut = [(475, 600, 50, 50, 1), (525, 600, 50, 50, 1)]  # a disc of diameter 100, in the form in which DONUT draws it
         space.add_lwpolyline(donut, format="xyseb", close=True)
         space.add_lwpolyline([(950, 600, 1), (1050, 600, 1)], format="xyb", close=True, dxfattribs={"const_width": 20})
         np.testing.assert_allclose(self.saved(drawing), [(500, 600, 100), (1000, 600, 120)], atol=0.02)

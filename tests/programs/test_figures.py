@@ -530,7 +530,7 @@ class Pictures(Analysis):
             self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, "--frames", film, "--output", "r.h5", words=["own4.", "it exists"])
         after = self.snapshot()
         self.assertEqual({name: after[name] for name in before}, before)
-        # The command replaces an earlier page or picture of ours.
+        # The command replaces an earlier page or picture that it has made.
         self.write("report.html", "<!DOCTYPE html>\n<title>an earlier one</title>\n")
         self.draw("report", "s.h5", "--output", "report.html", "--programs", BIN, "--examples", 0)
         for _ in range(2):

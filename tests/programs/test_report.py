@@ -65,7 +65,7 @@ class Browser(ProgramTest):
 
     def read_page(self):
         self.browser.get(self.page.as_uri())
-        self.point_at(self.find("h1"))  # moves the mouse away from where another test left it
+        self.point_at(self.find("h1"))  # another test may have left the mouse elsewhere
 
     def point_at(self, element):
         ActionChains(self.browser).move_to_element(element).perform()

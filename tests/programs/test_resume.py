@@ -17,7 +17,7 @@ from support import (BIN, BLOCKED, ENDLESS, FEW_LONG, LONGEST, MPI, QUICK, ROOT,
 
 class Resumed(SweepTest):
     def journal(self):
-        """Number of the journal's records, and of records with snapshots."""
+        """The number of records in the journal, and how many of them have snapshots."""
         words = self.run_program("clogsweep", "verify", "s.h5").stdout
         found = re.search(r"s.h5.journal: (\d+) records?, (\d+) of them with snapshots", words)
         return (int(found[1]), int(found[2])) if found else (0, 0)

@@ -36,7 +36,7 @@ class Commands(Analysis):
                         self.draw(*line.split())
 
     def test_those_of_the_tutorial(self):
-        """The tutorial tells the reader to stay in one folder."""
+        """All pages are run in one folder, as the tutorial tells its readers."""
         for page in pages.tutorial():
             self.follow(page)
 

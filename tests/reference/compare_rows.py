@@ -78,7 +78,7 @@ CASES = {
 
 
 def uncovered(programs):
-    """@return the keys that have only their default value in all cases, and the words of keys that occur in no case"""
+    """@return the keys that have their default in all cases, and the words of keys that no case uses"""
     given = collections.defaultdict(set)
     for word in shlex.split("\n".join(CASES.values())):
         key, _, values = word.partition("=")

@@ -36,7 +36,8 @@ TEST(SpDroplet, RestsOnAnObstacleAtTheAnalyticSag) {
 }
 
 TEST(SpDroplet, FollowsTheDampedOscillatorToSecondOrder) {
-  // Head-on contact is linear: M x'' = M g - b x' - k x from x = 0 at rest, under-damped here.
+  // Head-on contact is linear: M x'' = M g - b x' - k x, with the disk at rest at x = 0 in the beginning.
+  // Here it is under-damped.
   const double stiffness = 30;
   const double k = 4 * stiffness;
   const double mass = units::droplet_mass;

@@ -173,8 +173,8 @@ TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
   EXPECT_NEAR(found->position[1], 10, 1e-8);
 }
 
-/// Points that springs tie to their places and to their neighbours; each coordinate has a much stiffer
-/// contact on its upper side. All quantities are in units of a point's weight.
+/// Points tied by springs to their places and to their neighbours. Each coordinate also has an upper bound, a
+/// contact that is much stiffer than the springs. All quantities are in units of a point's weight.
 class PointsWithContacts {
  public:
   static constexpr Eigen::Index num_points = 16;

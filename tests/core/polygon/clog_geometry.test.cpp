@@ -23,8 +23,8 @@ struct Scene {
   ClogGeometry geometry() const { return clog_geometry(position, {obstacles, walls}, range); }
 };
 
-/// An obstacle that touches a disc of diameter 1 around the origin, at this angle seen from the origin
-/// [degrees].
+/// An obstacle that touches a disc of diameter 1 around the origin. The angle is the obstacle's direction
+/// from the origin [degrees].
 Obstacle against_the_disc(double angle) {
   const double distance = 0.5 + radius + 0.5 * range;
   const double t = angle * std::numbers::pi / 180;
@@ -124,7 +124,7 @@ TEST(ClogGeometry, ThereIsNoGapWithinAPost) {
   expect_counts(disc_on({-20, -10, 0, 10, 20, 100}).geometry(), 0, 1, 2);
 }
 
-/// A wall along the flow, on either side; the droplet overlaps it by half the range.
+/// A wall along the flow, on one side of the droplet, which overlaps the wall by half the range.
 Wedge side_wall(double side) { return {.tip = {0, side * (0.5 + 0.5 * range)}, .axis = {0, side}}; }
 
 TEST(ClogGeometry, ADiscBetweenAnObstacleAndASideWallIsSqueezed) {

@@ -56,7 +56,7 @@ DropletState above_the_obstacle(const RunParameters& run, double phase, double a
   return state;
 }
 
-/// Replaces a state by the mean of it and its mirror image, in which vertices `i` and `first - i` are
+/// Replaces a state by the mean of the state and its mirror image, in which vertices `i` and `first - i` are
 /// exchanged.
 void make_symmetric(DropletState& state, int first) {
   const auto n = static_cast<int>(state.size());

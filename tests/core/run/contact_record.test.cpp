@@ -14,7 +14,7 @@
 namespace clog {
 namespace {
 
-/// A round droplet that the test moves along the flow among given circles; it is released at x = 2, y =
+/// A round droplet that the test moves along the flow among given circles. It is released at x = 2 and y =
 /// `across`.
 class Passage {
  public:

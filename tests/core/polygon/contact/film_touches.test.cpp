@@ -222,8 +222,8 @@ class Band {
 };
 
 TEST(BandOverADisc, WithoutWeightSlidesAtExpMuTheta) {
-  // In each rope dT/dtheta = mu T, with its own tension as normal force: T_2 = exp(mu theta) T_1, independent
-  // of the other rope. Friction holds both together like a single rope.
+  // The normal force on each rope comes from the rope's own tension. So dT/dtheta = mu T and T_2 = exp(mu
+  // theta) T_1, independent of the other rope: friction holds each rope as if it were alone.
   constexpr double mu = 0.3;
   const double exact = std::exp(mu * pi);
   const double less = 0.97 * exact, more = 1.03 * exact;
@@ -260,9 +260,9 @@ TEST(BandOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
 }
 
 TEST(BandOverADisc, IsHeldByCornersAloneIfNothingHoldsItsUpperRope) {
-  // Both ropes bear the weights of the lobes, one of which is heavier. Without friction through the film the
-  // upper rope yields at once, whatever holds the lower rope; the force of its corners falls with the square
-  // of their edge length.
+  // The two ropes together bear the weights of two lobes, one of which is heavier. Without friction through
+  // the film the upper rope yields at once, however the lower rope is held: only its corners hold it, by a
+  // force that falls with the square of the edge length.
   const auto upper_slides = [](Band::Law law, int edges, double imbalance) {
     return Band(law, edges, 0).slides({1, 1 + imbalance, 1, 1 + imbalance}).upper;
   };

@@ -90,7 +90,7 @@ TEST(WallTouches, PushesAddUpToTheContactsForce) {
 /// How well the sum of the energy of a held droplet and the dissipated energy is conserved.
 struct Balance {
   double worst = 0;  ///< largest difference between the sum and its first value
-  double rise = 0;   ///< largest rise of the energy alone between two times
+  double rise = 0;   ///< largest rise of the energy, without the dissipated energy, between two times
   double anchors = 0, dissipated = 0;
 };
 Balance balance(RunParameters run, const ObstacleArray& wall, const Eigen::ArrayXd& initial,
@@ -253,7 +253,7 @@ class Rope {
       if (r >= radius) continue;
       const double push = contact_ * (radius - r);
       force[i] += push * x[i] / r, force[n_ + i] += push * y[i] / r;
-      // An edge lies on the disc if both its ends do.
+      // An edge lies on the disc if its two ends do.
       double wetted = 0;
       if (!touches.empty() && touches.back().vertex == i - 1) {
         touches.back().wetted += edge_ / 2;

@@ -24,7 +24,8 @@ RunParameters only(void (*switch_on)(RunParameters&), int vertices = 64) {
   return run;
 }
 
-/// Rounding of energies of order one over the step h = 1e-6 leaves 1e-9; curvature h^2 U''' stays below it.
+/// The central difference of an energy of order one with the step h = 1e-6 has a rounding error of about
+/// 1e-9. The truncation error h^2 U''' is smaller.
 constexpr double difference_tolerance = 2e-7;
 
 double free_force_error(const RunParameters& run, double weight = 0) {
@@ -261,7 +262,7 @@ TEST(DpForces, VertexContactIsTheGradientOfItsEnergy) {
   EXPECT_LT(force_error(forces, state), 1e-5);
 }
 
-/// A wedge whose tip, and one whose flank, presses into the droplet.
+/// Two wedges: one presses into the droplet with its tip, the other with its flank.
 ObstacleArray two_wedges(double radius) {
   return ObstacleArray(20, {},
                        {{.tip = {0.02, 0.47}, .axis = {0, 1}, .half_angle = 0.6, .radius = radius},

@@ -11,8 +11,8 @@ namespace {
 
 using namespace test;
 
-/// Largest omega^2 of small motions about a shape: power iteration on the finite-difference Hessian over the
-/// mass.
+/// Largest omega^2 of small motions about a shape, by power iteration on the Hessian (from finite
+/// differences) divided by the mass.
 double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
                        const ObstacleArray& obstacles = no_obstacles()) {
   const int n = *run.dp.vertices;
@@ -64,8 +64,8 @@ TEST(StiffModes, BoundTwoFilmsThatTouch) {
   EXPECT_GT(stiffest, 0.5 * modes.self_contact) << "the film touches itself";
 }
 
-/// A droplet that hangs over a circle around the origin as a horseshoe 0.4 thick: vertices evenly spread,
-/// those inside at a distance `inner` from the centre.
+/// A droplet that hangs over a circle around the origin as a horseshoe of thickness 0.4. Vertices are evenly
+/// spread; those on its inner side are at the distance `inner` from the origin.
 Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
   constexpr double open = 2, thick = 0.4;  // half the angle [rad]; [sigma]
   const double outer = inner + thick;

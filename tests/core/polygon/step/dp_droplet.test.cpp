@@ -224,9 +224,9 @@ TEST(DpDroplet, ConservesEnergyWithoutDragToSecondOrder) {
 }
 
 TEST(DpDroplet, SwingsAtTheFrequencyOfACapillaryMode) {
-  // A small wave r = R + e cos 2 phi on a circle of line density mu = M/P that keeps its area costs the
-  // energy (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R) and moves the mass pi mu R: omega^2 = 3
-  // gamma/(mu R^2).
+  // Let a circle with the line density mu = M/P have a small wave r = R + e cos 2 phi that keeps the area.
+  // The wave costs the energy (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R) and moves the mass pi mu
+  // R, so omega^2 = 3 gamma/(mu R^2).
   RunParameters run = bare_parameters(128);
   run.drag.terminal_speed = no_drag;
   run.dp.perimeter_stiffness = 0;
@@ -288,7 +288,7 @@ TEST(DpDroplet, FeelsBitIdenticalForcesAnyNumberOfBoxesDownstream) {
 }
 
 TEST(DpDroplet, SplitsTheStepWhenStretchedTooFarForItWithoutDrag) {
-  // Perimeter 6 times the circle's: the area mode has omega dt = 2.1 at this step.
+  // The perimeter is 6 times the circle's, so the area mode has omega dt = 2.1 at this step.
   RunParameters run = bare_parameters(256);
   run.drag.terminal_speed = no_drag;
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));

@@ -171,7 +171,7 @@ TEST_P(Step, JoinsStepsOfDifferentLengths) {
 TEST_P(Step, IsThatOfTheReadableFormWithAnImplicitPressure) {
   for (const int vertices : {64, 101}) {
     auto [run, initial, walls] = touching_droplet(vertices);
-    run.drag.near_wall = 0;  // with it the pressure is never implicit
+    run.drag.near_wall = 0;  // with near-wall drag the pressure is never implicit
     constexpr int num_steps = 3;
     for (const std::string& set : instruction_sets()) {
       use_instruction_set(set);

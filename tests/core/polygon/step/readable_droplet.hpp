@@ -36,7 +36,7 @@ class ReadableDroplet {
     // The drag of the second half kick depends on the velocity at the end of the kick, which is found by
     // iteration.
     const Eigen::ArrayXd kicked = state_.velocity + h_over_m * force_;
-    // Averaging keeps the iteration stable next to a wall.
+    // Under-relaxation keeps the iteration stable next to a wall.
     for (int i = 0; i < 300; ++i)
       state_.velocity +=
           0.4 * (kicked + h * drag(state_.velocity) + h * pressed(state_.velocity) - state_.velocity);
