@@ -64,8 +64,8 @@ run_sweep() {
   return "$code"
 }
 
-# requeue COUNT COMMAND...: queues the job again by COMMAND, unless COUNT, the number of its requeues so far, has
-# reached MAX_REQUEUES.
+# requeue COUNT COMMAND...: queues the job again by COMMAND, unless it has been requeued MAX_REQUEUES times. COUNT is the
+# number of times so far.
 requeue() {
   if (($1 >= MAX_REQUEUES)); then
     echo "not complete after $1 requeues, as many as MAX_REQUEUES allows; submit the job again to resume the sweep"
