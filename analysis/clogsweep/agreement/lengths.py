@@ -27,7 +27,8 @@ def peak(curve: Sequence[Group]) -> Group | None:
 
 
 def shape(curve: Sequence[Group]) -> str:
-    """Is a curve non-monotonic? It is monotonic if it only falls and the softest droplets do not clog."""
+    """The verdict on whether a curve is non-monotonic. A curve without a peak that falls is monotonic if the softest
+    droplets do not clog."""
     return AGREES if peak(curve) else DOES_NOT if falls(curve, shorter) and curve[0]["clogs"] == 0 else NOT_KNOWN
 
 
@@ -43,7 +44,8 @@ def is_not_monotonic(groups: list[Group]) -> Finding:
 
 
 def peak_draws(curve: Sequence[Group], seed: int) -> tuple[features.Peak, Numbers]:
-    """The fitted peak, and the logarithms of its place in curves drawn from the posterior. @param seed  so that curves are independent"""
+    """The fitted peak, and log Gamma_peak of each curve drawn from the posterior. @param seed  another one for each
+    gap, so that draws of different gaps are independent"""
     known = model.Points(np.log([[group["line_tension"]] for group in curve]), *(np.array([group[name] for group in curve], float) for name in ("clogs", "total_distance")))
     places = points.grid_over(known.places)
     fitted = model.fit_curve(known, places)
@@ -78,7 +80,7 @@ def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
 @statement_of_walls("4.2, figure 6c", "wrapping gives way to squeezing at larger Γ as gaps widen", in_kind="the ranges of the narrowest and the widest gap overlap",
                     does_not_agree="at no Γ are most clogs wrapped", not_known="the branches meet in fewer than two gaps, or their ranges overlap")
 def transition_moves(groups: list[Group]) -> Finding:
-    """Compares the crossovers of the narrowest gap and the widest."""
+    """Compares the crossover in the narrowest gap with the crossover in the widest gap."""
     found = {gap: range_ for gap, curve in curves(groups, "obstacle_gap").items() if (range_ := transition(curve))}
     wrapped, clogs = (sum(group[name] for group in groups) for name in ("wrapped", "clogs"))
     if len(found) < 2:
@@ -138,7 +140,8 @@ def longer_in_wide_gaps(groups: list[Group]) -> Finding:
 
 @statement_of_walls("4, text", "at intermediate Γ droplets flow continuously", in_kind="not in every gap, or not only at intermediate Γ", does_not_agree="some clog at every Γ")
 def flows_between(groups: list[Group]) -> Finding:
-    """Whether no droplet clogs at a line tension between two at which some droplets clog."""
+    """Whether there is a line tension at which no droplet clogs, while some clog at a smaller and some at a larger
+    one."""
     verdicts, words = [], []
     for gap, curve in curves(groups, "obstacle_gap").items():
         free = [i for i, point in enumerate(curve) if point["clogs"] == 0]
@@ -230,8 +233,8 @@ statement("4.2, figure 7a", "λ of soft disks falls monotonically with E_w", "7a
 statement("4.2, figure 7a", "λ of soft disks grows with the gap", "7a", in_kind="at equal density λ of stiff disks does not grow", not_known="too few clogs")(
     lambda shop: grows_with_gap(shop.sweep("clogging-sp"), "wall_stiffness"))
 
-APART = 0.25  # the published sag beyond which the models differ
-ALIKE = 2.0  # factor within which lengths are alike
+APART = 0.25  # published: the models differ where the sag is larger
+ALIKE = 2.0  # lengths are alike if their ratio is at most this
 
 
 def over_the_sag(shop: Workshop, config: str, groups: Sequence[Group]) -> list[tuple[float, Group]]:
@@ -240,8 +243,8 @@ def over_the_sag(shop: Workshop, config: str, groups: Sequence[Group]) -> list[t
 
 
 def compared(shop: Workshop, family: Family, is_beyond: bool) -> Finding:
-    """Polygons and disks of the same sag on one side of APART agree if their intervals overlap, or if they differ by
-    less than ALIKE. Lower bounds count as lengths."""
+    """Compares polygons with disks of the same sag, where the sag is larger (`is_beyond`) or smaller than APART. Their
+    lengths agree if the intervals overlap, or if the ratio is at most ALIKE. Lower bounds count as lengths."""
     disks = over_the_sag(shop, "clogging-sp", shop.sweep("clogging-sp"))
     logs = [math.log(sag) for sag, _ in disks]
 

@@ -1,5 +1,5 @@
-"""Section 4.1, appendices A and B: channels, where nothing is random and runs have no intervals; and measured
-quantities."""
+"""Section 4.1, appendices A and B: measured quantities, and passages through channels, which have no confidence
+intervals because nothing in them is random."""
 
 import math
 from typing import Any
@@ -37,20 +37,21 @@ def first_minimum(shop: Workshop) -> Finding:
 
 
 def slowest_before(way: Any) -> float:
-    """The place of a droplet's least speed on the last diameter before the orifice; farther away it starts from rest."""
+    """Where the droplet is slowest, within the last diameter before the orifice: farther upstream it still accelerates
+    from rest."""
     before = way[(way["h"] > -1) & (way["h"] < 0)]
     return float(before["h"][np.argmin(before["speed_ratio"])])
 
 
 def top_behind(way: Any) -> Any:
-    """The fastest moment behind the orifice, where the published droplets overshoot, or None if the droplet does not
-    pass."""
+    """The moment of largest speed close behind the orifice, where the published droplets overshoot; None if the droplet
+    does not pass."""
     behind = way[(way["h"] > 0) & (way["h"] < 0.6)]
     return behind[np.argmax(behind["speed_ratio"])] if way["h"][-1] > 0.6 else None
 
 
 def tops_of_speeds(shop: Workshop, orifice: float) -> tuple[list[float], str]:
-    """The largest speeds of the droplets of figure 4 that pass, and a text about all droplets."""
+    """The largest speed of each droplet of figure 4 that passes, and a text about all droplets of this figure."""
     tops = {tension: top_behind(run.table) for tension, run in channels.overshooting(shop, orifice).items()}
     words = [f"the droplet of {tension:g} does not pass" if top is None else f"{top['speed_ratio']:.2f} at {tension:g}" for tension, top in tops.items()]
     return [top["speed_ratio"] for top in tops.values() if top is not None], f"w = {orifice:g}, b_0/b_∞ = {channels.OVERSHOOTS[orifice]:g}: {', '.join(words)}"
@@ -98,7 +99,8 @@ def drag_exponent(shop: Workshop) -> Finding:
 @statement("appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on", "B1",
            in_kind="smooth only on finer meshes", does_not_agree="ripples shrink up to the finest mesh")
 def profiles_are_smooth(shop: Workshop) -> Finding:
-    """A mesh is smooth if its ripples, and those of all finer meshes, exceed the ripples of the finest mesh by at most a tenth."""
+    """A mesh counts as smooth if the ripples on it and on every finer mesh are at most a tenth larger than on the
+    finest mesh."""
     noise = {count: roughness(run.table) for count, run in channels.meshes(shop).items()}
     counts = sorted(noise)
     rough = [count for count in counts if noise[count] > 1.1 * noise[counts[-1]]]

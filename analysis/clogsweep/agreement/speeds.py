@@ -80,7 +80,8 @@ def soft_disks_are_free(shop: Workshop) -> Finding:
 
 
 def speed_pairs(shop: Workshop) -> list[tuple[float, Group, float, Group]]:
-    """Stiffest and softest polygon and disk in gaps of 1.1, with their sags."""
+    """Two pairs in gaps of 1.1: the stiffest polygon with the stiffest disk, and the softest polygon with the softest
+    disk, each with its sag."""
     found = []
     for config in ("speed", "speed-sp"):
         groups = [group for group in shop.sweep(config) if math.isclose(group["obstacle_gap"], 1.1) and group["relative_speed"] is not None]

@@ -9,7 +9,7 @@ from ..collisions.collision import DIAMETER, Threshold, capillary_number, symmet
 
 
 def draw(found: dict[float, Threshold]) -> Figure:
-    """@param found  thresholds by offset"""
+    """@param found  brackets of the largest line tension that breaks a droplet, by offset"""
     figure, (left, right) = style.subplots(1, 2, figsize=(9.6, 4.4))
     known = {offset: math.sqrt(low * high) for offset, (low, high) in found.items() if low and high}
     places = {offset: (symmetry(offset), capillary_number(tension)) for offset, tension in known.items()}
