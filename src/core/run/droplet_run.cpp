@@ -220,9 +220,9 @@ void DropletRun::check() {
   if ((status_ != RunStatus::running || steps_done_ % steps_per_crossing_check == 0) &&
       has_crossed_itself()) {
     message_ = fmt::format(
-        "the interface crossed itself by t={:.6g}; try twice the wall-stiffness, {:.3g}, or a larger "
-        "line-tension",
-        time(), 2 * run_.wall_stiffness.value());
+        "the interface crossed itself by t={:.6g}; try a larger line-tension, a larger wall-stiffness or a "
+        "smaller inertia",
+        time());
     status_ = RunStatus::failed;
   }
 }
