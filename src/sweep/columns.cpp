@@ -268,7 +268,7 @@ std::vector<Column> make_columns() {
       member("distance", &RunRow::distance, result, "sigma",
              "displacement of the centre of mass along the flow since release"),
       member("lateral_displacement", &RunRow::lateral_displacement, result, "sigma",
-             "displacement of the centre of mass across the flow since release"),
+             "displacement across the flow"),
       member("time", &RunRow::time, result, "t0", "time since release"),
       member("mean_speed", &RunRow::mean_speed, result, "sqrt(sigma g)",
              "distance divided by time between transient and arrest; NaN if the droplet moved less than half "
