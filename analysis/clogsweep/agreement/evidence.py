@@ -59,8 +59,8 @@ def falls(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bo
 
 
 def trend(is_as_published: bool, is_opposite: bool) -> str:
-    """The verdict on a curve, or on two points. Clear differences may be as published, opposite to these, both, or
-    absent."""
+    """The verdict on a curve, or on two points. Clear differences may be as published, opposite to the published ones,
+    of both kinds at different points, or absent."""
     return (IN_KIND if is_opposite else AGREES) if is_as_published else DOES_NOT if is_opposite else NOT_KNOWN
 
 
