@@ -297,7 +297,7 @@ class OwnCircles(ProgramTest):
         first, second = read_rows(self.folder / "s.h5")
         self.assertNotEqual(first.obstacles, second.obstacles)
         names = {key: name for key, (name, _) in self.circles("s.h5").items()}
-        self.assertEqual(names, {first.obstacles: "posts.csv", second.obstacles: ""})  # the last command's file has its name
+        self.assertEqual(names, {first.obstacles: "posts.csv", second.obstacles: ""})  # only the last file's name is known
         self.succeed("clogsweep", "replay", "s.h5", 1)
         self.succeed("clogsweep", "verify", "s.h5")
 
