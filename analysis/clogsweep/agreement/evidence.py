@@ -1,7 +1,7 @@
 """Decides which differences are clear, and formats numbers for the table.
 
 Lengths differ *clearly* if their confidence intervals do not overlap, speeds if they differ by more than two standard
-errors of the difference. A curve with R^2 of LEAST_LINEARITY or more is a straight line.
+errors of the difference. A curve counts as a straight line if a linear fit has an R^2 of LEAST_LINEARITY or more.
 """
 
 import math

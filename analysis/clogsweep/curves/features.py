@@ -18,7 +18,8 @@ FIRST_JITTER = 1e-10  # times the largest variance: added to the diagonal, so th
 class Peak:
     """The peak of a curve. `place` and its interval hold the logarithm of each key; lengths [sigma].
 
-    `probability_inside` is the fraction of curves drawn from the posterior whose peak is not at a border of the places.
+    `probability_inside` is the fraction of curves drawn from the posterior whose peak is not at an end of the range of
+    places.
     """
 
     place: Numbers
