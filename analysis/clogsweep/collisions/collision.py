@@ -9,7 +9,7 @@ from ..reading import programs, stored
 DIAMETER = 0.3  # of the obstacle [sigma]
 FALL = 3  # from the release to the obstacle's centre [sigma]: far enough that the droplet starts where it is told to
 BOX = 20
-KEYS = {"vertices": "128", "terminal-speed": "0.03", "break-up-neck": "0.02"}
+KEYS = {"preset": "robust", "vertices": "128", "terminal-speed": "0.03", "break-up-neck": "0.02"}
 TENSIONS = (0.01, 0.6)  # from droplets softer than the tested range to some that never break
 PRECISION = 0.02
 STEPS = 6  # of a sweep

@@ -7,8 +7,8 @@ centre.
 For each offset droplets fall onto a circle of 0.3 sigma, in sweeps over the line tension that bracket the largest at
 which they break up. KEY=VALUE are keys of clogsweep for all of them. The symmetry S of a collision is the droplet's
 area on one side of the vertical line through the obstacle divided by that on the other, at most 1; the capillary number
-Ca is weight divided by tension, pi/(4 Gamma). On the right: the fraction of droplets that break up if all offsets with
-contact are equally likely.
+Ca is weight divided by tension, pi/(4 Gamma). The upper axis of the picture is the fraction of collisions that break up a
+droplet of the curve's line tension, if all offsets with contact are equally likely.
 """
 
 import argparse
@@ -59,5 +59,5 @@ def body() -> int:
             print(offset, f"{collision.symmetry(offset):.4f}", *(f"{end:.4g}" if end else "" for end in (low, high)), middle, sep=",", flush=True)
     if not any(low and high for low, high in found.values()):
         raise UserError(f"nothing to draw (no offset has a threshold between line tensions of {collision.TENSIONS[0]} and {collision.TENSIONS[1]}); try smaller --offsets")
-    Picture(break_up.draw(found)).save(arguments.output)
+    Picture(break_up.draw(found, ", ".join(f"{key}={value}" for key, value in collisions.keys.items()))).save(arguments.output)
     return 0
