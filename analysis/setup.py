@@ -1,4 +1,5 @@
-"""Adds ../jobs to the package: the configs of the figures and the settings of mpirun, of which git has one copy."""
+"""Adds files of ../jobs to the package: the configs of the figures and the settings of mpirun. Git has only one copy of
+them."""
 
 import pathlib
 import shutil
@@ -19,6 +20,7 @@ class BuildWithJobs(build_py):
             shutil.copy(source, copy)
 
 
-# Builds elsewhere, so that nothing remains in the source tree, and no file of an earlier build gets into the package.
+# The build folder is elsewhere, so that nothing remains in the source tree, and no file of an earlier build gets into
+# the package.
 with tempfile.TemporaryDirectory(prefix="clogsweep_build_") as scratch:
     setup(cmdclass={"build_py": BuildWithJobs}, options={"build": {"build_base": scratch}, "egg_info": {"egg_base": scratch}})

@@ -115,6 +115,12 @@ def in_fields(app, what, name, thing, options, lines):
     lines[:] = text.split("\n")
 
 
+def with_links_to_pictures(app, doctree):
+    """A picture of a page links to its own file, since phones shrink it. Sphinx does this for pictures that have a width."""
+    for picture in doctree.findall(nodes.image):
+        picture.setdefault("width", "auto")
+
+
 def with_plain_search(app, page, template, context, doctree):
     """The page of search results gets a script of its own, behind Sphinx's."""
     if page == "search":
@@ -126,3 +132,4 @@ def setup(app):
     if "sphinx.ext.autodoc" in extensions:
         app.connect("autodoc-process-docstring", in_fields)
         app.connect("html-page-context", with_plain_search)
+        app.connect("doctree-read", with_links_to_pictures)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# dependency-archive.sh ARCHIVE.tar.gz: makes the archive of dependencies that jobs/install-user.sh takes where they are
+# dependency-archive.sh ARCHIVE.tar.gz: makes an archive of dependencies, which jobs/install-user.sh builds if they are
 # not installed. Run it on a Debian or Ubuntu machine with a network and dpkg-dev; root is not needed. The archive
 # contains Debian's sources of Eigen, Boost (the headers that we need, Program_options), fmt, Highway, nlohmann-json and
 # zlib, with their licences.
@@ -15,7 +15,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 
-# The sources of the distribution that this machine has, in lists of our own.
+# Package lists of our own name the sources of this machine's distribution.
 mkdir -p state/lists/partial cache/archives/partial
 # shellcheck disable=SC2016 # apt-get expands the names
 apt-get indextargets --format '$(ORIGIN) $(SITE) $(RELEASE) $(COMPONENT)' "Identifier: Packages" |
@@ -33,7 +33,7 @@ out=clogsweep-dependencies
 mkdir "$out"
 for source in boost*:boost eigen3:eigen fmtlib:fmt highway:highway nlohmann-json3:nlohmann-json zlib:zlib; do
   pattern=${source%:*} name=${source#*:}
-  # The unpacked folder has a version in its name.
+  # The name of the unpacked folder contains a version.
   folder=$(find unpacked -mindepth 1 -maxdepth 1 -type d -name "${pattern}-*")
   mv "$folder" "$name"
   mkdir "$out/$name"
@@ -46,7 +46,7 @@ cp -r highway/{CMakeLists.txt,cmake,hwy,LICENSE*} highway/*.in "$out/highway"
 cp -r nlohmann-json/{CMakeLists.txt,cmake,include,LICENSE*} nlohmann-json/*.natvis "$out/nlohmann-json"
 cp zlib/*.[ch] zlib/README "$out/zlib"
 
-# Boost: the libraries that we include, and those that they include.
+# Copies the Boost libraries that we include, and those that these include.
 cp -r boost/libs/program_options/src boost/LICENSE_1_0.txt "$out/boost"
 (cd boost/libs && find . -path '*/include/boost/*' -type f -printf '%P\n' | sed 's,\(.*\)/include/,\1 ,' | sort -k 2) >headers
 printf '%s\n' crc math program_options random | sort >wanted

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# install-dependencies.sh [GROUP...]: installs the missing Debian packages that the programs, the sweep of laptop.sh and
-# its picture need, and those of each group named:
+# install-dependencies.sh [GROUP...]: installs the missing Debian packages that are needed for the programs and for
+# laptop.sh with its picture, and for each GROUP:
 #   tests      tests/run.sh (includes drawings)
 #   gates      tests/gates (includes tests and docs)
 #   docs       the handbook: man pages, the site, the interface of the library
@@ -9,18 +9,18 @@
 #   paper      docs/paper
 #   mpich      MPICH, beside Open MPI
 set -euo pipefail
-# What the programs are built with: names from the third on of every line there.
+# Packages for building the programs: the names from the third column on in cmake/dependencies.txt.
 mapfile -t packages < <(awk '/^[A-Za-z]/ { for (i = 3; i <= NF; ++i) if ($i != "-") print $i }' \
   "$(dirname "$0")/../cmake/dependencies.txt")
 packages+=(
-  git                                                # the version of a build
+  git                                                # tells a build its version
   python3-h5py python3-pandas python3-scipy python3-tables python3-matplotlib   # the Python module
 )
 drawings=(python3-ezdxf python3-gdspy python3-svgelements python3-skimage python3-shapely)
 tests=(
   "${drawings[@]}"
   libgtest-dev libbenchmark-dev                      # tests and benchmarks
-  procps iproute2                                    # tests that kill ranks, and join two hosts
+  procps iproute2                                    # tests that kill ranks, and that connect two hosts
   chromium-driver python3-selenium hdf5-tools        # a browser that reads a report; h5repack
   python3-nbclient python3-ipykernel                 # a test that runs the notebook of the gallery
   python3-setuptools python3-wheel python3-venv      # a test that installs the Python module by pip

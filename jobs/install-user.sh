@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # install-user.sh --prefix DIR [--archive FILE] [CMAKE_OPTION...]: builds clogsweep without root in build/user, and
-# installs it below DIR. Takes the compiler, CMake, MPI and HDF5 of the PATH, such as those of environment modules.
-# Other libraries, if they are missing, come from FILE, which jobs/dependency-archive.sh makes where there is a network.
+# installs it below DIR. Uses the compiler, CMake, MPI and HDF5 in the PATH, for instance from environment modules.
+# Other libraries, if they are missing, are built from FILE, which jobs/dependency-archive.sh makes on a machine with a
+# network.
 set -euo pipefail
 here=$(realpath "$(dirname "$0")/..")
 usage="usage: install-user.sh --prefix DIR [--archive FILE] [CMAKE_OPTION...]"
@@ -29,7 +30,8 @@ generator="Unix Makefiles"
 if command -v ninja >/dev/null; then generator=Ninja; fi
 parallel=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
 
-# Writes the names of missing libraries, and builds them if it is told where their sources are.
+# Writes the names of missing libraries to missing.txt, and configures their build if the folder of their SOURCES is
+# given.
 dependencies=$prefix/lib/clogsweep/dependencies
 configure_dependencies() {
   cmake -S "$here/cmake/dependencies" -B "$build/dependencies" -G "$generator" -DCMAKE_BUILD_TYPE=Release \
@@ -49,7 +51,7 @@ if [ -n "$missing" ]; then
     fail "cannot build $missing; see $build/dependencies.log"
 fi
 
-# The installed programs find MPI and HDF5 where they were, without LD_LIBRARY_PATH.
+# The installed programs find MPI and HDF5 in their present folders, without LD_LIBRARY_PATH.
 cmake --preset release -S "$here" -B "$build/clogsweep" -G "$generator" -DCLOG_TESTS=OFF -DCLOG_HANDBOOK=OFF \
   -DCMAKE_PREFIX_PATH="$dependencies" -DCMAKE_INSTALL_PREFIX="$prefix" -DCMAKE_INSTALL_RPATH_USE_LINK_PATH=ON \
   -DCLOG_PYTHON_COMMAND=python3 "${options[@]}"

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 ./jobs/install-dependencies.sh
-# In the folder that tests/run.sh completes: what it has configured with tests stays so.
+# tests/run.sh uses the same build folder. If it has configured the folder with tests, the tests stay enabled.
 [ -f build/release/build.ninja ] || cmake --preset release -DCLOG_TESTS=OFF >/dev/null
 cmake --build --preset release --target clogsweep clogrun clogfit
 . jobs/mpi-settings.sh
@@ -14,10 +14,10 @@ mkdir -p "$results"
 bin=build/release/bin
 sweep=(mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$results/sweep.h5")
 "${sweep[@]}"
-# Stiff droplets among walls without friction; softer ones would not clog in this time.
+# Without friction only stiff droplets are run: softer ones would not clog in this time.
 "${sweep[@]}" friction=0 line-tension=0.35,0.4,0.5,0.6
 "$bin/clogfit" "$results/sweep.h5" --format json >"$results/fit.json"
-# Debian's own Python has the packages; another one may come first in the path.
+# Debian's own Python has the packages, but another Python may come first in the path.
 PYTHONPATH=analysis /usr/bin/python3 -m clogsweep clogging-length "$results/fit.json" --output "$results/clogging-length"
 echo
 "$bin/clogfit" "$results/sweep.h5" | tee "$results/fit.txt"

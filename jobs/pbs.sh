@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
-# The same with PBS. The sweep's options are lines of a file, since qsub cannot pass commas in variables:
+# A sweep on a cluster with PBS; see slurm.sh. The sweep's options are lines of a file, because qsub cannot pass commas
+# in variables:
 #   printf '%s\n' --config sweep.cfg --output sweep.h5 > sweep.options
 #   qsub -v SWEEP=sweep.options jobs/pbs.sh
-# If the first two lines are `refine` and KEY, python3 -m clogsweep refine chooses the values.
-# HOURS, a little less than the walltime below, stops the sweep cleanly; then the job queues itself again with the
-# resources below: edit them here rather than on the command line. JOB_SCRIPT names a copy that you edited.
+# If the first two lines of the file are `refine` and KEY, python3 -m clogsweep refine chooses the values. HOURS, a
+# little less than the walltime below, stops the sweep cleanly; then the job queues itself again with the resources
+# below. So change resources in a copy of this script, whose name is given by JOB_SCRIPT, not on the command line.
 #PBS -N clogsweep
 #PBS -l select=1:ncpus=32:mpiprocs=32
 #PBS -l walltime=24:00:00
 set -euo pipefail
 cd "${PBS_O_WORKDIR:-.}"
-# What belongs to the programs lies beside them; the batch system runs a copy of this script from somewhere else.
+# Other scripts are found beside the programs, because the batch system runs a copy of this script in another folder.
 bin=${CLOG_BIN:-build/release/bin}
 if [ ! -x "$bin/clogsweep" ]; then
   type -P clogsweep >/dev/null || { echo "no clogsweep in $bin or the PATH; set CLOG_BIN to its folder" >&2; exit 2; }

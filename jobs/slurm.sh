@@ -4,8 +4,8 @@
 #   sbatch jobs/slurm.sh --config sweep.cfg --output sweep.h5
 #   sbatch --nodes=8 --ntasks-per-node=64 --time=48:00:00 jobs/slurm.sh --config sweep.cfg --output sweep.h5
 #   sbatch jobs/slurm.sh refine line-tension --config sweep.cfg --output sweep.h5 --until curve=20%
-# One job for the whole sweep, on one node or many; no job arrays. Two minutes before the time is up the sweep writes what it has,
-# and the job queues itself again until the sweep is complete. See docs/how-to/cluster.md.
+# One job, on one node or many, runs the whole sweep; job arrays are not needed. Two minutes before the time is up, the
+# sweep writes what it has. The job queues itself again until the sweep is complete. See docs/how-to/cluster.md.
 #SBATCH --job-name=clogsweep
 #SBATCH --nodes=1
 #SBATCH --ntasks-per-node=32
@@ -15,15 +15,16 @@
 #SBATCH --requeue
 #SBATCH --open-mode=append
 set -euo pipefail
-# What belongs to the programs lies beside them; the batch system runs a copy of this script from somewhere else.
+# Other scripts are found beside the programs, because the batch system runs a copy of this script in another folder.
 bin=${CLOG_BIN:-build/release/bin}
-[ -n "${CLOG_BIN-}" ] || [ -x "$bin/clogsweep" ] || bin=$(dirname "$0")/../build/release/bin  # of a script that wraps this one
+[ -n "${CLOG_BIN-}" ] || [ -x "$bin/clogsweep" ] || bin=$(dirname "$0")/../build/release/bin  # if another script runs this one
 if [ ! -x "$bin/clogsweep" ]; then
   type -P clogsweep >/dev/null || { echo "no clogsweep in ${CLOG_BIN:-build/release/bin} or the PATH; set CLOG_BIN to its folder" >&2; exit 2; }
   bin=$(dirname "$(type -P clogsweep)")
 fi
 bin=$(realpath "$bin")
-# A script that wraps this one may have left the folder of the job, in which relative paths are: that of sbatch, or of its --chdir.
+# Relative paths refer to the job's folder: that of the sbatch command, or of its --chdir. A script that runs this one
+# may have changed the folder.
 if [ -n "${SLURM_JOB_ID-}" ]; then
   folder=$(scontrol show job "$SLURM_JOB_ID" | sed -n "s/^ *WorkDir=//p") && cd "${folder:-.}"
 fi

@@ -1,6 +1,7 @@
-"""Sweeps as jobs of a real Slurm: warned, queued again, cancelled, without their node. They end with undisturbed rows.
+"""Tests sweeps as jobs of a real Slurm that are warned, queued again or cancelled, or lose a node. Their rows must be
+those of an undisturbed sweep.
 
-    tests/slurm.sh [slurm.Slurm.test_...]    # starts the Slurm that these tests need
+    tests/slurm.sh [slurm.Slurm.test_...]    # also starts the Slurm that these tests need
 """
 
 import os
@@ -16,9 +17,10 @@ sys.path.insert(0, str(ROOT / "tests" / "programs"))
 
 from support import BIN, MPIRUN, STEPS_PER_SNAPSHOT, SWEEP, SweepTest, table  # noqa: E402
 
-KEYS = SWEEP[:-2]
+# Long enough that a job still runs when Slurm acts on it.
+KEYS = [word.replace("max-time=4000", "max-time=2e4") for word in SWEEP[:-2]]
 # Runs that together take a minute or more on two ranks.
-LONG = [word.replace("max-time=4000", "max-time=1e5") for word in KEYS]
+LONG = [word.replace("max-time=2e4", "max-time=1e5") for word in KEYS]
 NODES = {"node1", "node2"}
 
 
@@ -30,7 +32,7 @@ def slurm(*command):
 
 
 def described(kind, name):
-    """Slurm's answer about a job or a node."""
+    """Slurm's description of a job or a node."""
     return dict(re.findall(r"(\w+)=(\S*)", slurm("scontrol", "--oneliner", "show", kind, name)))
 
 
@@ -51,7 +53,7 @@ class Slurm(SweepTest):
         self.wait_for(lambda: all(described("node", node)["State"] == "IDLE" for node in NODES))
 
     def submit(self, *options, script=ROOT / "jobs" / "slurm.sh", keys=KEYS):
-        """A job of two ranks that sweeps to s.h5. @return its number"""
+        """Submits a job of two ranks that runs a sweep to s.h5. @return the job's number"""
         words = slurm("sbatch", "--parsable", f"--chdir={self.folder}", "--output=job.log", "--ntasks=2", *options,
                       script, *keys, "--output", "s.h5")
         job = words.strip()
@@ -85,7 +87,7 @@ class Slurm(SweepTest):
         self.check_equal("s.h5", self.whole)
 
     def check_went_on(self):
-        """The last session resumed, and did not restart."""
+        """Checks that the last session resumed the sweep, and did not restart it."""
         self.assertRegex(self.log(), r"s\.h5 has [1-9]\d* of 24 runs\n")
 
     def resume(self, node):
@@ -98,7 +100,8 @@ class Slurm(SweepTest):
         self.assertEqual(set(zip(rows["rank"], rows.host)), {(0, "node1"), (1, "node2")})
 
     def test_a_job_is_warned_before_its_time_is_up_and_queues_itself_again(self):
-        # Slurm checks twice a minute, and warns half a minute early: after 20 to 50 s.
+        # Slurm checks the time limit twice a minute, and warns half a minute early. So the warning comes after 20 to 50
+        # s.
         job = self.submit("--nodes=2", "--ntasks-per-node=1", "--time=1", "--signal=B:USR1@10", keys=LONG)
         self.wait_for(lambda: described("job", job)["Restarts"] != "0" or self.ended_otherwise(job, "RUNNING"))
         slurm("scontrol", "update", f"jobid={job}", "timelimit=60")
@@ -159,7 +162,7 @@ class Slurm(SweepTest):
         self.assertIn("not complete after 1 requeues, as many as MAX_REQUEUES allows", self.log())
 
     def preempt(self, partition):
-        """@return the number of a job that an urgent job has preempted"""
+        """@return the number of the job that an urgent job has preempted"""
         job = self.submit("--nodes=2", "--ntasks-per-node=1", f"--partition={partition}")
         self.wait_for_runs_with_snapshots()
         urgent = slurm("sbatch", "--parsable", "--partition=urgent", "--nodes=2", "--exclusive", "--output=/dev/null", "--wrap=sleep 5").strip()

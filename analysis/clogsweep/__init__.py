@@ -44,7 +44,7 @@ def __getattr__(name: str) -> Any:
 
 
 def _loaded(module: str) -> Any:
-    """A module of this package. @throws ImportError  that names in one line what the machine lacks"""
+    """A module of this package. @throws ImportError  whose single line names what is missing on this machine"""
     try:
         return importlib.import_module(f".{module}", __name__)
     except ImportError as error:
@@ -58,10 +58,11 @@ def __dir__() -> list[str]:
 
 
 def open(path: str | os.PathLike[str] | list[str | os.PathLike[str]], programs: str | os.PathLike[str] | None = None) -> Sweep | Run:
-    """A file of clogsweep, or of clogrun; a list of several files of clogsweep is read as one sweep, that of `clogsweep merge`.
+    """A file of clogsweep, or of clogrun; a list of several files of clogsweep is read as one sweep, as `clogsweep
+    merge` would join them.
 
     @param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module
-    @throws UserError  if it is another file; Damaged if it is not as it was written
+    @throws UserError  for any other file; Damaged if the content has changed since the program wrote it
     @throws ImportError  if this python3 lacks a module
     """
     run, stored, sweep = (_loaded(module) for module in ("results.run", "reading.stored", "results.sweep"))

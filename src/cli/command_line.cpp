@@ -60,9 +60,10 @@ CommandLine::CommandLine(std::string program, std::string usage, SweepKeys sweep
   flag("help,h", "print this and leave").flag("version", "print versions and leave");
   if (sweep_keys == SweepKeys::none) return;
   option("config", "file with lines `key = value`")
-      .option("instruction-set",
-              "of the processor, for the polygon: avx512, avx2, baseline (the widest there is). Results "
-              "differ by round-off");
+      .option(
+          "instruction-set",
+          "of the processor, for the polygon: avx512, avx2 or baseline (the widest that the processor has). "
+          "Results of different sets differ by round-off");
   const auto add = [](po::options_description& group, const sweep::Key& key) {
     group.add_options()(key.name.c_str(), po::value<std::string>(),
                         (key.help + " (" + key.default_text + ")").c_str());
@@ -196,8 +197,8 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
                              : fmt::format("; did you mean {}?", joined(meant, " or "))));
 }
 
-/// Boost would report such lines, too, but its message replaces %names%, which never ends if the line has
-/// one of them (Boost 1.74).
+/// Boost would report such lines, too, but it replaces %names% in its message, and this never ends if the
+/// line itself contains such a name (Boost 1.74).
 static void refuse_lines_without_value(const std::string& path, const std::string& text) {
   std::istringstream lines(text);
   int number = 0;

@@ -51,7 +51,7 @@ std::string value_of(const sweep::Key& key, const std::string& cell, char separa
   return decimal_commas.with_point(cell);
 }
 
-/// @param num_columns  of the first line. @throws Error  if a value is invalid
+/// @param num_columns  number of columns of the first line. @throws Error  if a value is invalid
 std::vector<std::string> values_of(const console::TableLine& line, const std::vector<std::string>& keys,
                                    const std::vector<std::size_t>& columns, std::size_t num_columns,
                                    console::DecimalCommas& commas, Units units) {

@@ -17,7 +17,7 @@ namespace {
 
 const std::string python_path = "PYTHONPATH";
 
-/// The folder in which Python looks for modules first.
+/// Value of PYTHONPATH with which Python looks for modules in this folder first.
 std::string with_others(const std::filesystem::path& folder) {
   const char* others = std::getenv(python_path.c_str());
   return others && *others ? folder.string() + ":" + others : folder.string();

@@ -82,7 +82,7 @@ class Splitter {
   bool has_more_ = false;
 
   bool is_separator(char letter) const { return separator_ == ' ' ? is_blank(letter) : letter == separator_; }
-  /// Blanks before a cell, unless they separate cells.
+  /// Skips blanks before a cell, unless blanks separate the cells.
   void skip_blanks() {
     while (!rest_.empty() && is_blank(rest_[0]) && (separator_ == ' ' || rest_[0] != separator_))
       rest_.remove_prefix(1);
@@ -99,7 +99,7 @@ class Splitter {
     if (separator_ == ' ') has_more_ = rest_.find_first_not_of(blanks) != std::string_view::npos;
     return trimmed(cell);
   }
-  /// Takes a cell in quotes; two of them stand for one.
+  /// Takes a cell in quotes, in which two quotes stand for one.
   std::string quoted() {
     std::string cell;
     for (;;) {
@@ -114,7 +114,7 @@ class Splitter {
   }
 };
 
-/// @param number  of a line. @throws Error with the place of an Error from `call`
+/// Calls `call`, and adds file and line to an Error that it throws. @param number  of the line
 void name_place(const std::string& path, int number, const std::function<void()>& call) {
   try {
     call();

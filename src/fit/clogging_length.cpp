@@ -114,8 +114,8 @@ double least_squares_length(std::span<const Observation> runs) {
     }
     return sum;
   };
-  // No fitted length is larger than for a straight line to one clog in this number of runs, or much smaller
-  // than the distance of the first clog.
+  // Bounds of the fitted length: that of a straight line to a single clog in this number of runs, with a
+  // margin, and a length much smaller than the distance of the first clog.
   const double first = std::max(clogs.front(), 1e-6);
   const double low = std::log(first / (10 * std::log(static_cast<double>(runs.size()) + 2)));
   const double high = std::log(10 * static_cast<double>(runs.size()));

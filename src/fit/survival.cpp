@@ -16,8 +16,8 @@ namespace {
 /// Fraction of the mean distance to which the test raises shorter distances: Weibull's law excludes zero.
 constexpr double shortest_share = 1e-3;
 
-/// The interval that contains a falling function's root, [high/2, high] or lower; nothing if there is no
-/// root.
+/// An interval that contains the root of a falling function, found by doubling and halving; nothing if there
+/// is no root.
 template <class Function>
 std::optional<std::pair<double, double>> bracket(const Function& falling) {
   constexpr int most_doublings = 200;  // 2^200 exceeds any ratio of two different doubles' logarithms

@@ -33,8 +33,8 @@ constexpr const char* units_usage =
 sigma, the gravity g along the plates and the droplet's density rho are 1.
 
   clogfit units lab.cfg
-  clogfit units lab.cfg --length 24 --time 2000          of the model, in mm and s
-  clogfit units lab.cfg --line-tension 0.16,0.2          which interfacial tension, or which tilt, each of them is
+  clogfit units lab.cfg --length 24 --time 2000          converts from the model to mm and s
+  clogfit units lab.cfg --line-tension 0.16,0.2          interfacial tension, or tilt, for each Gamma
   clogsweep --lab lab.cfg ... ; clogfit sweep.h5         sweeps and fits in both
 
 lab.cfg has lines key = value:
@@ -43,10 +43,10 @@ lab.cfg has lines key = value:
   angle = 28 deg              of the plates against the horizontal; 90 deg: upright
   speed = 7 mm/s              terminal, far from walls
   tension = 9.6 mN/m          interfacial
-  density = 0.703 g/ml        of the droplet (this is the default)
-  outer-density = 0.997 g/ml  of the liquid around it (likewise)
+  density = 0.703 g/ml        of the droplet (default)
+  outer-density = 0.997 g/ml  of the liquid around it (default)
   thickness = 0.4 mm          of the cell
-  tension-ratio = 0.3         Gamma of the model over Gamma_exp (likewise)
+  tension-ratio = 0.3         Gamma of the model divided by Gamma_exp (default)
 
 diameter and angle are required, and may be lists, such as 0.8 mm, 1.2 mm. Then speed is a list with one value for each
 droplet, or a single value, measured at speed-diameter and speed-angle (by default the first value of each list). A single

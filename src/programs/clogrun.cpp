@@ -50,7 +50,8 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
     line.option("file", "replay: file of clogsweep")
         .option("task", "replay: the row's number, column `task`");
   line.flag("to-rest",
-            "replay: continue until the droplet rests, not only until its coming to rest is proved")
+            "replay: continue until the droplet rests; otherwise the run ends when it is proved to come to "
+            "rest")
       .option("output", "HDF5 file to create")
       .option("lab",
               "file that describes the laboratory, see clogfit units; determines terminal-speed and "

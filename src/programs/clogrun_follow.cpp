@@ -17,7 +17,7 @@ namespace clog::programs {
 namespace {
 
 /// Finds all errors before anything is computed or written. @param config  printed by --dry-run @param begin
-/// called unless there is nothing to run
+/// computes and writes; not called if there is nothing to run
 int follow_run(const cli::CommandLine& line, const RunParameters& parameters, const std::string& config,
                const std::function<void(const DropletRun&)>& begin) {
   const std::string output = line.get("output");

@@ -162,7 +162,8 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
               "has their values")
       .option("shard", "run one part of the sweep, e.g. 2/5 for the second of five parts")
       .option("until-precision",
-              "add seeds until half of lambda's 95 % interval is within this fraction of lambda, e.g. 10%")
+              "add seeds until the half-width of lambda's 95 % interval is at most this fraction of lambda, "
+              "e.g. 10%")
       .option("most-seeds",
               "largest number of seeds of a parameter set with --until-precision (20 times `seeds`)")
       .option("seeds-per-set",

@@ -130,7 +130,7 @@ void say_law_of_speed(const cli::CommandLine& line, const Droplets& droplets) {
     console::say(fmt::format("{}: {}: {}", line.program(), line.get("lab"), law));
 }
 
-/// A droplet's texts of keys, with units converted, and of circles.
+/// The texts of keys for one droplet: numbers in the model's units, and circles scaled to the droplet.
 laboratory::Texts converted(const laboratory::Texts& given, const laboratory::Laboratory& lab,
                             const laboratory::Scales& scales, const Droplets& droplets) {
   laboratory::Texts texts;

@@ -56,8 +56,8 @@ class Outlook {
 
  private:
   std::set<std::int64_t> sets_with_ends_;
-  fit::CloggingLength even_;     // of times: one run ends as likely as any other
-  fit::CloggingLength slowing_;  // of their logarithms: an older run lasts longer from now on
+  fit::CloggingLength even_;     // fit to the times: every run is equally likely to end next
+  fit::CloggingLength slowing_;  // fit to their logarithms: a run that has lasted longer takes longer to end
 
   /// Counts half an end more: without any end the mean is long, but finite.
   static double mean(const fit::CloggingLength& fit) { return fit.total_distance / (fit.num_clogs + 0.5); }
@@ -113,7 +113,7 @@ class Share {
   double left_ = 0;
 };
 
-/// Mean time before a run moves, and mean time per work after that.
+/// Mean time before a droplet moves, and mean time per unit of work after that.
 struct Pace {
   double begin_seconds = 0;
   double seconds_per_work = 0;
@@ -153,7 +153,7 @@ SweepCost cost_with_interval(const Pace& pace, double bound, const Expectation& 
   return cost;
 }
 
-/// A sample at each outlook.
+/// The share of a sample for each outlook.
 class Shares {
  public:
   Shares(std::span<const RunCost> runs, const Pace& pace, const Outlook& outlook)

@@ -116,7 +116,7 @@ std::string column_name(std::string label) {
 
 /// How the groups of two tables match.
 struct Match {
-  std::vector<std::string> columns;                         ///< labels here, then those only there
+  std::vector<std::string> columns;  ///< labels of the table here, then labels that only the other table has
   std::vector<std::pair<std::size_t, std::size_t>> common;  ///< places of a common label here and there
   std::vector<std::size_t> only_there;
 

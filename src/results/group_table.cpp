@@ -36,7 +36,7 @@ std::vector<std::string> parts_of(const std::optional<LaboratoryText>& laborator
   return parts;
 }
 
-/// The entries in which each group's laboratory differs from the others; all entries of a single one.
+/// The entries of a group's laboratory that not all groups have; all entries if every group has the same.
 std::string laboratory_label(const Group& group, const std::vector<Group>& groups) {
   std::vector<std::string> own = parts_of(group.first_row.parameters.laboratory);
   const auto is_everywhere = [&](const std::string& part) {
@@ -96,8 +96,8 @@ std::string column_notes(const std::vector<Group>& groups) {
         "exceed the device's length\n";
   if (std::ranges::all_of(groups, [](const Group& group) { return is_device(group.first_row.parameters); }))
     text +=
-        "lambda_met: from the first obstacle that a droplet met; those that met none are in no other "
-        "column\n";
+        "lambda_met: from the first obstacle that a droplet met; droplets that met none count only in the "
+        "speeds\n";
   return text;
 }
 
@@ -108,7 +108,8 @@ double shorter_dwell(double rest) {
   return digit < 1 ? 0.9 * unit : digit * unit;
 }
 
-/// Counts resting droplets that count as moving, and names the option that counts them as clogged.
+/// Prints the number of resting droplets that are treated as moving, and names the option that treats them as
+/// clogged.
 std::string note_of_rest(const std::vector<Group>& groups) {
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity(), known_from = 0;

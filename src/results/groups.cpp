@@ -83,7 +83,7 @@ std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
 struct Ending {
   double distance;  ///< [sigma]
   bool is_clog;
-  std::optional<Cause> cause;  ///< of a clog, if it is known; of a break-up
+  std::optional<Cause> cause;  ///< cause of a clog, if it is known, or of a break-up
 };
 
 std::optional<Cause> cause_of(const sweep::RunRow& run) {
@@ -188,7 +188,7 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
   }
 }
 
-/// The runs that met an obstacle, counted from the first one on.
+/// The runs that met an obstacle, each counted from its first obstacle on.
 struct Meetings {
   std::vector<fit::Observation> from_first;  ///< of the runs that met an obstacle
   std::int64_t num_contacts = 0;
@@ -237,7 +237,8 @@ fit::Travel travel_until_arrest(const sweep::RunRow& run) {
   return {way / run.parameters.drag.terminal_speed, is_clogged ? run.dwells.last_begin : run.time};
 }
 
-/// Groups that sank by less than half a diameter on average have no speed, just as single droplets.
+/// A group whose droplets sank by less than half a diameter on average has no speed, just as a single droplet
+/// with such a distance.
 fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double terminal_speed) {
   constexpr double shortest_way = 0.5;  // [sigma]
   double way = 0;

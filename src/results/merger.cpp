@@ -184,7 +184,8 @@ std::string part_line(const std::string& path, const store::SweepFile& file, con
   return console::json_text(part, -1) + attribute(file.provenance, "parts");
 }
 
-/// Attributes of the program's call: a new file has its own, which summarise the attributes of its parts.
+/// Attributes that a new file does not take from `maker`: it has its own, which summarise the attributes of
+/// its parts.
 static constexpr std::string_view replaced_attributes[] = {"config", "sessions", "parts", "stopping_rule",
                                                            "num_wanted"};
 
@@ -192,7 +193,7 @@ store::Provenance joint_provenance(const store::Provenance& maker, const std::st
                                    const std::vector<const store::SweepFile*>& files,
                                    const std::string& parts) {
   store::Provenance all = maker;
-  std::set<std::string> sessions;  // each begins with its time
+  std::set<std::string> sessions;  // each begins with its time, so they are in order of time
   if (attribute(maker, "sessions").empty())
     sessions.insert(fmt::format("{} {} {} 1 {}", attribute(maker, "start_time"), attribute(maker, "version"),
                                 attribute(maker, "git_describe"), attribute(maker, "command_line")));

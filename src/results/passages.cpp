@@ -8,7 +8,7 @@
 namespace clog::results {
 namespace {
 
-/// x of the rows of posts between entrance and exit: each x of centres.
+/// The x of the rows of posts between entrance and exit: every x at which a post has its centre.
 std::vector<double> rows_of_posts(const ObstacleParameters& obstacles) {
   constexpr double same_row = 1e-6;  // [sigma]
   std::vector<double> rows;

@@ -69,7 +69,7 @@ double longest_work(const RunParameters& run) { return run.max_time / *run.time_
 struct Sample {
   std::vector<RunCost> costs;
   std::string source;
-  std::string failure;  ///< reason of the first that could not begin; these are not among the costs
+  std::string failure;  ///< why the first run that could not begin failed; such runs are not among the costs
   std::int64_t num_clogged = 0;
   std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
   double spacing = 0;          ///< obstacle spacing of such a run [sigma]
@@ -138,7 +138,7 @@ Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
 /// adjacent.
 std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
   constexpr std::int64_t most_tasks = 24;
-  constexpr std::int64_t most_seeds = 4;  // few of many parameter sets, because arrays may take long to build
+  constexpr std::int64_t most_seeds = 4;  // with many parameter sets, because arrays may take long to build
   const std::int64_t num_tasks = std::min(plan.size(), most_tasks);
   const std::int64_t num_groups = plan.num_groups();
   std::vector<std::int64_t> tasks;
@@ -159,10 +159,10 @@ std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
 
 constexpr double seconds_to_try = 10;
 
-/// Runs short pieces of these tasks. Another process may compute the jobs and answers between slices of its
-/// work; a job that takes too long, such as a release that does not come to rest, is dropped.
+/// Runs short pieces of these tasks. The jobs may be computed by another process, which answers between
+/// slices of its work; a job that takes too long, such as a release that does not come to rest, is dropped.
 Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
-  constexpr double fewest_seconds = 0.1;  // for a run whose array took all of its share
+  constexpr double fewest_seconds = 0.1;  // of a run whose array took its whole share of the time
   constexpr double grace = 0.5;           // for the last answer
   const Clock::time_point begin = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };

@@ -209,7 +209,7 @@ void SweepState::withdraw_failure(std::int64_t task) {
 
 void SweepState::tick() {
   // Writing the whole table takes longer the more runs there are, and the journal must be rewritten now and
-  // then; both may take two percent of the time.
+  // then; together they may take two percent of the time.
   const Clock::time_point now = Clock::now();
   if (publication_.valid()) {
     if (publication_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;

@@ -65,7 +65,7 @@ enum class Others { all, independent };
 /// follow from it.
 bool is_automatic_with(Others others, const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
-  if (are_circles_missing(row.parameters)) return true;  // the row cannot tell
+  if (are_circles_missing(row.parameters)) return true;  // unknown without the circles
   RunParameters run = defaults_for(row);
   for (const Parameter& parameter : parameter_schema())
     if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column) &&

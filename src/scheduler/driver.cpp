@@ -94,7 +94,8 @@ class Driver {
 
   void end(sweep::Report report) {
     state_.rank_is_free();
-    // Stopped before its first report after a resume: its state is that of the stored snapshot and row.
+    // A resumed task that is stopped before its first report still has the state of the stored snapshot and
+    // row.
     if (report.row.status == RunStatus::interrupted && report.row.steps == 0 && !report.snapshot.empty()) {
       report.row = state_.row(report.row.task);
       report.row.status = RunStatus::interrupted;

@@ -41,7 +41,7 @@ enum Kind : std::int64_t {
   drop,               // rank -> process: work no more on this (empty)
 };
 
-/// Timeout for answers that a process should give at once: a stopped process never does.
+/// Timeout for answers that a process gives at once, unless it has been stopped.
 constexpr std::chrono::milliseconds patience{2000};
 /// Timeout for the start of a process, which takes long when memory is scarce.
 constexpr std::chrono::milliseconds patience_for_start{20'000};
@@ -73,7 +73,8 @@ std::string describe(const Ending& ending) {
                      signal == SIGKILL ? ", as the kernel does when memory runs out" : "");
 }
 
-/// Makes this process die with the one that forked it. The rank handles signals that stop a sweep.
+/// Makes this process die with the one that forked it, and ignore signals that stop a sweep, which the rank
+/// handles.
 void depend_on_parent(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);  // the parent died before the call

@@ -34,14 +34,15 @@ class Socket {
   void close() { descriptor_ = Descriptor(); }
   /// A message to a process that has died is lost.
   void send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const;
-  /// Waits for a message, without a timeout unless limited; nothing: the other process has died.
+  /// Waits for a message, without a timeout unless limit_halts() was called. Returns nothing if the other
+  /// process has died.
   std::optional<Message> receive() const;
   /// Whether there is something to receive, possibly the end.
   bool wait(std::chrono::milliseconds longest) const;
 
   /// Sends one end of another connection to the other process (SCM_RIGHTS).
   void send_socket(const Socket& socket) const;
-  /// Waits for a socket; not open: the other process has died.
+  /// Waits for a socket. The result is not open if the other process has died.
   Socket receive_socket() const;
 
  private:

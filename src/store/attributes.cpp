@@ -14,7 +14,8 @@
 namespace clog::store {
 namespace {
 
-/// The attribute that has a line, checksum and name, for every other attribute and for the table.
+/// Name of the attribute that lists the checksums: one line, with checksum and name, for the table and for
+/// every other attribute.
 constexpr const char* list_name = "checksums";
 
 std::string line_of(const NamedCheckSum& one) { return fmt::format("{:08x} {}\n", one.second, one.first); }

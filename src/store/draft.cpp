@@ -19,7 +19,7 @@ OutputPath draft_place(const OutputPath& place, int number) {
   return place.beside(".clogsweep-draft" + std::to_string(number));
 }
 
-/// Whether it begins with the mark, possibly incomplete.
+/// Whether the file begins with the mark, or is shorter and has only the beginning of the mark.
 bool begins_with(int descriptor, std::string_view mark) {
   std::array<char, 64> bytes;
   const ssize_t size = pread(descriptor, bytes.data(), std::min(mark.size(), bytes.size()), 0);
@@ -48,7 +48,7 @@ Draft::Draft(OutputPath place, std::string_view mark) : place_(std::move(place))
     file_ = draft_.create(mode);
     if (!file_.is_open()) continue;
     // Another process may have removed the draft as stale before it was locked. On a file system without
-    // locks none does.
+    // locks no process does so.
     const bool is_taken = flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     if (!is_taken && draft_.holds(file_)) return;
   }

@@ -17,8 +17,8 @@ namespace clog::store {
 /// of this kind
 void remove_stale_drafts(const OutputPath& place, std::string_view mark);
 
-/// An incomplete file beside its target, under an unused name. It is locked while it is open, or until
-/// unlock(). An unlocked draft of ours was left behind by a killed process; the next one that makes a draft
+/// An incomplete file beside its target, under an unused name. It is locked until it is closed or unlock() is
+/// called. An unlocked draft of ours was left behind by a killed process; the next one that makes a draft
 /// removes it. Other files with such a name stay.
 class Draft {
  public:

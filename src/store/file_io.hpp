@@ -33,9 +33,8 @@ inline void check(std::error_code reason, FileAction action, const std::string& 
 std::error_code sync(int descriptor);
 
 /// Locks an open file for this process alone, until it is closed. Returns false if another process holds the
-/// lock.
-/// @throws Error if the file system has no locks, unless HDF5_USE_FILE_LOCKING=FALSE, the variable of HDF5,
-/// allows files without
+/// lock. @throws Error if the file system has no locks, unless the user allows this by
+/// HDF5_USE_FILE_LOCKING=FALSE, a variable of HDF5
 bool try_lock(int descriptor, const std::string& path);
 
 /// Size of an open file [bytes]. @throws FileError naming the path, as do the functions below

@@ -242,12 +242,12 @@ void Journal::prepare(std::span<const Entry* const> entries, std::uint64_t begin
   next_->write(bytes_of(FileHeader()));
   for (const Entry* entry : entries) next_->write(record_of(entry->row, entry->snapshot));
   num_copied_ = begin;
-  constexpr std::size_t little = 4'000'000;  // replace() copies and synchronises it in no time
+  constexpr std::size_t little = 4'000'000;  // replace() copies and synchronises it in negligible time
   do check(sync(next_->descriptor()), FileAction::write, place_.path());
   while (copy_additions() > little);
 }
 
-/// Returns the number of copied bytes. Leaves out a record that is being written: if the disk is full, the
+/// Returns the number of copied bytes. Excludes a record that is being written: if the disk is full, the
 /// writer undoes it.
 std::uint64_t Journal::copy_additions() {
   constexpr std::uint64_t block = 1'000'000;

@@ -33,7 +33,7 @@ class RowLayout {
 
   static constexpr std::size_t absent = static_cast<std::size_t>(-1);
   std::vector<const sweep::Column*> columns_;  // of the file, in its order
-  std::vector<std::size_t> places_;            // of each of sweep::columns() in a packed row, or absent
+  std::vector<std::size_t> places_;            // place of each of sweep::columns() in a packed row, or absent
   std::size_t size_ = 0;
   Type type_;
 };

@@ -33,7 +33,7 @@ rlim_t time_limit(std::size_t num_bytes) {
   setrlimit(RLIMIT_CPU, &time);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL, SIGXCPU}) std::signal(signal, SIG_DFL);
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  dup2(nowhere, STDERR_FILENO);  // for the last message of a library that crashes
+  dup2(nowhere, STDERR_FILENO);  // discards the last message of a library that crashes
   try {
     read();
   } catch (const std::exception&) {

@@ -221,8 +221,8 @@ std::vector<Column> columns_of_dwells() {
   }
   all.push_back(number_in(
       "dwells_known_from", [](auto& row) -> auto& { return row.dwells.known_from; }, "t0",
-      "for every duration longer than this, the dwell columns contain the first dwell that exceeded that "
-      "duration"));
+      "the dwell columns contain, for each duration above this value, the first dwell that was longer than "
+      "the duration"));
   all.push_back(number_in(
       "last_dwell_at", [](auto& row) -> auto& { return row.dwells.last_distance; }, "sigma",
       "distance at which the last dwell of any duration began, which is the clog or the dwell at the end of "
@@ -295,16 +295,17 @@ std::vector<Column> make_columns() {
              "number of touched obstacles over which the clogged polygon hangs, 0 for other droplets; -1: "
              "unknown"),
       member("num_gaps", &RunRow::num_gaps, result, "",
-             "number of gaps in front of the clogged polygon with a side that supports this polygon; -1: "
-             "unknown"),
+             "number of gaps in front of the clogged polygon; at least one side of such a gap supports the "
+             "polygon; -1: unknown"),
       member("num_arcs", &RunRow::num_arcs, result, "", "number of arcs of contact; -1: unknown"),
       member("mesh_hold", &RunRow::mesh_hold, result, "",
              "largest fraction of the weight that corners of the mesh can hold where a clogged polygon hangs "
              "over obstacles; NaN for other droplets"),
       member("largest_shape_parameter", &RunRow::largest_shape_parameter, result, "",
              "largest A in a channel; this and the next five columns are NaN for other runs"),
-      member("largest_shape_parameter_at", &RunRow::largest_shape_parameter_at, result, "sigma",
-             "h at which A was largest, from the line through the wedges' tips, positive downstream"),
+      member(
+          "largest_shape_parameter_at", &RunRow::largest_shape_parameter_at, result, "sigma",
+          "h at which A was largest; h counts from the line through the wedges' tips, positive downstream"),
       member("largest_relative_speed", &RunRow::largest_relative_speed, result, "",
              "largest v_g/v_t in a channel"),
       member("largest_relative_speed_at", &RunRow::largest_relative_speed_at, result, "sigma",
@@ -329,7 +330,8 @@ std::vector<Column> make_columns() {
              "little outside the array; NaN elsewhere"),
       member("release_y", &RunRow::release_y, result, "sigma",
              "place of release across the flow, in the same coordinates; NaN elsewhere"),
-      member("steps", &RunRow::steps, result, "", "integrated steps; sub-steps count singly"),
+      member("steps", &RunRow::steps, result, "",
+             "number of integrated steps; each sub-step counts as one step"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",
              "wall-clock time of the run in all sessions"),
       member("processor_seconds", &RunRow::processor_seconds, circumstance, "s",

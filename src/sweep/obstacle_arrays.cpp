@@ -84,8 +84,8 @@ ObstacleArray ObstacleArrays::build(const RunParameters& run) {
 }
 
 std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParameters& parameters) {
-  // A place takes half a microsecond, times the number of places within reach of the largest obstacle, times
-  // up to two.
+  // The time for one place is half a microsecond times the number of places within reach of the largest
+  // obstacle, and up to twice as long.
   constexpr double ten_builds = 10 * 1e-6;
   const double reach =
       (parameters.largest_diameter() + parameters.gap) / (parameters.smallest_diameter() + parameters.gap);

@@ -59,7 +59,7 @@ std::vector<std::uint32_t> part_of(const std::vector<std::uint32_t>& seeds, std:
   return part;
 }
 
-/// Whether each parameter alone is possible; resolve() names the impossible one.
+/// Whether each parameter is possible by itself; if not, resolve() names the impossible one.
 bool is_each_possible(const RunParameters& run) try {
   check_each(run);
   return true;
@@ -140,7 +140,7 @@ class Plan::Builder {
                       where, joined(angles, ","), largest_angle_error, box));
   }
 
-  /// The number of groups, without the seeds, which only count for the limit.
+  /// The number of groups. It excludes the seeds, which only count for the largest number of runs.
   std::int64_t size_of_product(const Settings& branch) {
     auto num_places = std::int64_t{1};
     const std::int64_t num_seeds = std::ssize(*last_seeds_);

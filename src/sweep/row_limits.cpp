@@ -64,8 +64,9 @@ std::string untested_angle(const DpParameters& dp) {
                      shortest(smallest_receding_angle));
 }
 
-/// Needles slip through the interface, and the droplet encloses them, at its release or later. This was
-/// observed with obstacles up to as thick as an edge is long; it is more frequent among more obstacles.
+/// Very thin obstacles slip through the interface, and the droplet encloses them, at its release or later.
+/// This was observed with obstacles up to as thick as an edge is long; it is more frequent among more
+/// obstacles.
 std::string untested_diameter(const RunParameters& run) {
   constexpr double thinnest = 2;  // in units of the edge length, with a margin
   if (scene_of(run).walls_from == WallsFrom::droplet) return "";  // there are no obstacles
@@ -117,7 +118,7 @@ bool has_met_repetition(const RunRow& row) { return row.distance > repetition_le
 std::string possible_repetition(const Plan& plan) {
   std::int64_t num_groups = 0;
   double farthest = 0, shortest_length = 0, most_boxes = 0;  // of the set that needs most boxes
-  bool is_of_user = false;                                   // boxes do not multiply its circles
+  bool is_of_user = false;  // whether its circles are user-supplied, so that boxes do not multiply them
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunRow row = describe(plan.group(group));
     const RunParameters& run = row.parameters;

@@ -1,4 +1,4 @@
-/// Measures what a saturated obstacle array costs: time, the memory needed while it is built, and the memory
+/// Measures what a saturated obstacle array costs: the time and the memory for building it, and the memory
 /// that it keeps.
 /// bench_array [box [boxes]]
 

@@ -1,5 +1,5 @@
-// An unchanged file: tests/benchmarks/build.sh gives compile times as multiples of this file's, to compare
-// machines. It uses the libraries whose headers take longest.
+// This file never changes. tests/benchmarks/build.sh divides compile times by the time for this file, so that
+// machines can be compared. The file uses the libraries whose headers take longest.
 
 #include <Eigen/Dense>
 #include <boost/program_options.hpp>

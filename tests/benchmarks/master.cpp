@@ -1,11 +1,12 @@
-/// How busy is a master with a thousand workers whose tasks take a second? Its work depends on the messages
-/// alone: a thousand rows a second, each answered with a task. Here a few workers send as many, with tasks
-/// that sleep; everything else is clogsweep's own: the scheduler, MPI, the table of runs on the disk.
+/// Measures how busy a master is with a thousand workers whose tasks take a second. Its work depends on the
+/// messages alone: it gets a thousand rows a second, and answers each with a task. Here a few workers send as
+/// many rows, because their tasks sleep for less than a second. Everything else is as in clogsweep: the
+/// scheduler, MPI, the table of runs on the disk.
 ///   tests/mpirun.sh 5 bench_master [tasks per second] [seconds]
-/// With 0 tasks per second every worker sleeps in one long task: what does waiting cost?
+/// With 0 tasks per second every worker sleeps in one long task; this measures the cost of waiting.
 ///   bench_master rows 1000000
-/// How much memory does a row of soft disks take, how long is the master busy with the table and its journal
-/// and answers nobody, how long do the stop and a restart of the sweep take?
+/// Measures the memory of a row of soft disks, the longest time for which the master is busy with the table
+/// and its journal and does not answer, and the times for a stop and a restart of the sweep.
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -77,7 +78,7 @@ class SleepingJob final : public sweep::Job {
   sweep::RunRow row_;
 };
 
-/// Without workers, runs begin and end one after the other.
+/// A sweep without workers, in which runs begin and end one after the other.
 int measure_rows(std::int64_t num_rows) {
   const auto kilobytes = [num_rows, before = peak_kilobytes()] {
     return (peak_kilobytes() - before) / static_cast<double>(num_rows);
@@ -142,7 +143,7 @@ int main(int argc, char** argv) {
   const std::string path =
       (std::filesystem::temp_directory_path() / ("bench_master_" + std::to_string(getpid()) + ".h5"))
           .string();
-  sweep::Settings settings;  // as many tasks as requested, in a hundred parameter sets as in a large sweep
+  sweep::Settings settings;  // as many tasks as requested, in a hundred parameter sets, like a large sweep
   const std::int64_t num_groups = std::min<std::int64_t>(num_tasks, 100);
   settings.set("line-tension", "lin(0.1,10," + std::to_string(num_groups) + ")");
   settings.set("seeds", "1.." + std::to_string(num_tasks / num_groups));

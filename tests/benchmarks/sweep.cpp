@@ -1,6 +1,6 @@
 /// Measures the cost of runs of real sweeps: per vertex and step, and from release to verdict. For
-/// comparison, it measures a step's two passes on the same core without contacts, which no step can beat;
-/// slices of both alternate.
+/// comparison, it measures the two passes of a step without contacts on the same core. No real step can be
+/// faster. Slices of the run and of this bare step alternate.
 
 #include <algorithm>
 #include <cmath>
@@ -134,7 +134,7 @@ RunParameters parameters(const Task& task, std::uint32_t seed) {
 
 struct Measured {
   double per_vertex_step;  ///< [ns]
-  double seconds;          ///< of a run, with its array and release
+  double seconds;          ///< duration of a run, with its array and release
   double limit;            ///< cost per vertex and step of the two passes alone [ns]
 };
 
@@ -183,7 +183,7 @@ void print(const char* name, const std::vector<Measured>& rounds) {
 
 }  // namespace
 
-/// bench_sweep [ROUNDS [WORD]]: with a word, only the tasks whose names contain it.
+/// bench_sweep [ROUNDS [WORD]]: WORD selects the tasks whose names contain it.
 int main(int argc, char** argv) {
   const int num_rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 3;
   const std::string_view word = argc > 2 ? argv[2] : "";

@@ -21,7 +21,7 @@ namespace {
 
 using clog::scheduler::order_of, clog::scheduler::TaskOrder;
 
-constexpr int num_groups = 20;  // parameter sets of both tables
+constexpr int num_groups = 20;  // number of parameter sets in each of the two tables
 
 /// Lengths of the tasks, by task.
 std::vector<double> read_lengths(const char* path) {
@@ -60,7 +60,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// A random sweep: lengths of every group are drawn from the recorded ones.
+/// A random sweep, for which the lengths of every group are drawn from the group's recorded lengths.
 std::vector<double> resample(const std::vector<double>& recorded, std::int64_t num_seeds,
                              std::mt19937_64& engine) {
   const boost::random::uniform_int_distribution<std::int64_t> pick(
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
   for (int sample = 0; sample < 101; ++sample) {
     std::vector<double> lengths = resample(recorded, num_seeds, engine);
     const auto num_tasks = static_cast<std::int64_t>(lengths.size());
-    // Workers cannot all be busy to the end, but no order can do better than this.
+    // No order can take less time than this, although workers are seldom all busy to the end.
     const double least = std::max(std::accumulate(lengths.begin(), lengths.end(), 0.0) / num_workers,
                                   *std::max_element(lengths.begin(), lengths.end()));
     planned.push_back(finish_time(lengths, num_workers, order_of(num_tasks)) / least);

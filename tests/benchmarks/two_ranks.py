@@ -1,9 +1,9 @@
-"""Compares two ranks with one: the same sweep of runs of equal length, alternately, several times.
+"""Compares two ranks with one rank. Both compute the same sweep of runs of equal length, in turn, several times.
 
     two_ranks.py FOLDER_OF_PROGRAMS
 
-Steps per second need two cores that nobody else uses. Steps per second of CPU time show the cost of the scheduler even
-on shared cores.
+Steps per second are meaningful only on two cores that nobody else uses. Steps per second of CPU time show the cost of
+the scheduler even on shared cores.
 """
 
 import pathlib

@@ -4,8 +4,8 @@
     compare.py threshold.h5 certified.h5
 
 Prints a row per group of runs, and a line for every run with another verdict, or a distance that differs by more than
-1e-3 sigma; exit code 1 if there is one. A run without a verdict by the threshold at max-time counts as
-flowing: repeat it with a larger max-time.
+1e-3 sigma; exit code 1 if there is one. A run that the threshold has not decided by max-time counts as flowing: repeat
+it with a larger max-time.
 """
 
 import sys

@@ -3,9 +3,10 @@
 
     compare.py --clogfit build/release/bin/clogfit sweep.h5 [sweep.h5 ...]
 
-Runs are the same if both clogged within 0.02 sigma of each other, or neither did. Prints a row per preset, gap and
-line tension, with a cell per number of vertices: same runs; median distance between the clogs of both [sigma]; lambda
-with its 95 % interval by clogfit [sigma]. The last rows have the sums, with the time that the runs took.
+Runs are the same if both clogged within 0.02 sigma of each other, or neither did. Prints a row per preset, gap and line
+tension, with a cell per number of vertices: the number of same runs, the median distance between the two clogs of a
+seed [sigma], and lambda with its 95 % interval by clogfit [sigma]. The last rows have the sums, and the time that the
+runs took.
 """
 
 import argparse

@@ -2,8 +2,9 @@
 /// build/release/tests/holds_finer sweep.h5 [PART PARTS]
 /// Repeats each run that clogged, puts a vertex into the middle of each edge of the droplet at rest, drops
 /// the anchors of its walls, and lets the droplet move. Prints a line of CSV for each run: the droplet's
-/// distance after 600 t0, or its certified rest; and the same without more vertices, because a droplet may
-/// need the anchors of its walls to stay at rest. PART of PARTS divides the runs among processes.
+/// distance after 600 t0, or its certified rest. For comparison, the line also has the results for the
+/// unchanged number of vertices without the anchors, because a droplet may need these to stay at rest. PART
+/// and PARTS divide the runs among processes.
 
 #include <fmt/core.h>
 
@@ -34,7 +35,7 @@ void finish(DropletRun& run) {
   }
 }
 
-/// Each edge's middle on the cubic through the edge's ends and their other neighbours.
+/// The middle of each edge, on the cubic through the edge's ends and their other neighbours.
 Eigen::ArrayXd with_middles(const Eigen::Ref<const Eigen::ArrayXd>& coarse) {
   const Eigen::Index n = coarse.size();
   Eigen::ArrayXd fine(2 * n);

@@ -15,7 +15,8 @@
 
 namespace clog::test {
 
-/// Parameters with every automatic value filled in, unchecked: tests may switch terms off.
+/// Parameters with a number for every automatic value. They are not checked by resolve(), so that tests can
+/// switch terms off.
 inline RunParameters bare_parameters(int vertices = 64) {
   RunParameters run;
   run.dp.vertices = vertices;
@@ -27,7 +28,7 @@ inline RunParameters bare_parameters(int vertices = 64) {
   run.dp.gravity = Gravity::vertex;
   const double l0 = units::regular_edge_length(vertices);
   run.wall_stiffness = wall_stiffness(1000, l0);
-  // The published ranges, so that tests cover both.
+  // The published ranges of contacts, so that tests cover these, too.
   run.dp.contact_range = l0 / 2;
   run.dp.self_contact_range = l0;
   run.obstacles.box = 20;
@@ -57,7 +58,7 @@ inline DropletState state_of(const Eigen::ArrayXd& position, double box = 20) {
   return state;
 }
 
-/// Every coordinate moved by up to `amount`.
+/// The polygon with every coordinate moved at random by up to `amount`.
 inline Eigen::ArrayXd shaken(Eigen::ArrayXd position, double amount, unsigned seed = 1) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> uniform(-amount, amount);
@@ -65,7 +66,7 @@ inline Eigen::ArrayXd shaken(Eigen::ArrayXd position, double amount, unsigned se
   return position;
 }
 
-inline constexpr double no_drag = 1e200;  // as a terminal speed
+inline constexpr double no_drag = 1e200;  // a terminal speed so large that there is no drag
 
 /// An ellipse of the droplet's area: it swings under line tension.
 inline Eigen::ArrayXd ellipse(int n, double stretch) {
@@ -99,7 +100,7 @@ inline Eigen::ArrayXd dumbbell(int num_vertices, double neck) {
   return position;
 }
 
-/// The same contour, numbered from another vertex.
+/// The same contour, whose numbering begins with another vertex.
 inline Eigen::ArrayXd renumbered(const Eigen::ArrayXd& position, int first) {
   const Eigen::Index n = position.size() / 2;
   Eigen::ArrayXd result(position.size());

@@ -12,7 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A host made of files, with 8 GB of available memory.
+/// A simulated host: a temporary folder with the files of /proc and /sys that the program reads. They state 8
+/// GB of available memory.
 class HostLimits : public testing::Test {
  protected:
   HostLimits() {
@@ -72,7 +73,8 @@ TEST_F(HostLimits, AreNoLessThanNothing) {
 }
 
 TEST_F(HostLimits, AreSeenFromWithinAContainer) {
-  // The process's group is mounted as the root, while the path is the host's, or outside it.
+  // In a container the process's control group is mounted as the root, but its path in /proc/self/cgroup is
+  // the path on the host, or a path outside the mounted group.
   write("sys/fs/cgroup/cpu.max", "50000 100000\n");
   for (const char* path : {"0::/\n", "0::/kubepods/pod1\n", "0::/../other\n"}) {
     write("proc/self/cgroup", path);

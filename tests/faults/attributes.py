@@ -34,7 +34,7 @@ class Faults:
 
     @staticmethod
     def check_salvaged(case, sample):
-        """All rows are intact, so salvage keeps all, and the sweep's command restores the rest of the file."""
+        """All rows are intact, so salvage keeps all of them, and the sweep's command restores the rest of the file."""
         salvaged = case.folder / SALVAGED
         salvaged.unlink(missing_ok=True)
         run(case, "clogsweep", "salvage", FILE, "--output", SALVAGED)

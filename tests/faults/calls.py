@@ -1,4 +1,4 @@
-"""Makes valid calls from the programs' own descriptions, adds mistakes to them or to files, and runs them."""
+"""Makes valid calls from the programs' own descriptions, adds mistakes to the calls or to files, and runs the calls."""
 
 import re
 import subprocess
@@ -15,7 +15,7 @@ LISTS = ["lin(0,1,3)", "lin(0,1,-3)", "lin(0,1,1e9)", "lin(0,1)", "lin(nan,1,3)"
 TEXTS = ["", " ", "auto", "saturated", "dp", "sp", "none", "yes", "=", "a=b", "--", "-", "#", "%", "%s%n", "x" * 300,
          "é", "\t", "a\nb", "\x1b[31mred", "\r", "\x7f", "\u202e", "nowhere.h5", ".", "/dev/null", "/", "~"]
 NOT_UTF_8 = [b"\xff\xfe", b"\xc3", b"1\x80", b"\xed\xa0\x80"]
-# Runs of a second: the call sets all values that could make a run long, and the mutations spare these.
+# Runs take a second: the call sets all values that could make a run long, and mistakes never change these values.
 SHORT = {"max-time": "0.5", "vertices": "32", "box": "13", "seeds": "1"}
 NAMES_OF_FILES = {"output", "frames", "obstacles", "write-obstacles"}
 OWN_OPTIONS = re.compile(r"^  --([a-z-]+)( arg)?", re.MULTILINE)
@@ -131,7 +131,7 @@ class Faults:
         return word[:place] + case.chance.choice("abz0.-=,( ") + word[place + case.chance.randrange(2):]
 
     def disorder(self, case, words):
-        """Leaves a word out, repeats or misspells one, or returns all unchanged."""
+        """The words, of which one may be left out, repeated or misspelt."""
         program, *words = map(as_bytes, words)
         deed = case.chance.randrange(8)
         if words and deed < 3:
@@ -161,5 +161,5 @@ def as_bytes(word):
 
 
 def is_limit(word):
-    """Whether the call would take long without this word."""
+    """Whether the call could take long without this word."""
     return word in (b"--dry-run", b"--print-config") or word.split(b"=")[0].decode("latin-1") in SHORT

@@ -18,7 +18,7 @@ LOADER_GAVE_UP = 127  # the loader found no memory for libraries, so the program
 def limit_files(size):
     """Limits the size of files: writes beyond it fail, as on a full disk."""
     def prepare():
-        os.environ["UCX_TLS"] = "self,tcp"  # MPICH's shared memory consists of files, too
+        os.environ["UCX_TLS"] = "self,tcp"  # the limit would also apply to the shared memory of MPICH, which consists of files
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
     return prepare
 
@@ -73,7 +73,7 @@ class Faults:
         self.sweep_and_go_on(case, prepare=limit_files(size))
 
     def sweep_on_a_small_disk(self, case):
-        size = (1 + self.size(case) // 4096) * 4096 * 2  # a draft exists beside the table
+        size = (1 + self.size(case) // 4096) * 4096 * 2  # a draft of the table may exist beside it
         case.note(f"sweep, disk of {size} bytes")
         with small_disk(case.folder, size):
             self.sweep_and_go_on(case, make_room=lambda: subprocess.run(
@@ -104,7 +104,7 @@ class Faults:
                     f"{outcome.name}: exit code {outcome.code}, and leaves {', '.join(files) or 'no file'}")
 
     def limited_output(self, case):
-        """Prints to a file that may not grow: exit code 0 must mean that everything was written."""
+        """Prints to a file of limited size. Exit code 0 must mean that everything was written."""
         words = case.chance.choice([["clogsweep", "--help"], ["clogsweep", *self.sample.sweep, "--dry-run"],
                                     ["clogsweep", "status", FILE], ["clogfit", FILE, "--format", "json"],
                                     ["clogrun", "--help"]])

@@ -3,7 +3,8 @@
 
     tests/faults/faults.py bits --count 200 --seed 1 --bin build/release/bin
 
-Exit code 0: the programs handled all faults. 1: some were handled wrongly; prints the command that repeats each.
+Exit code 0: the programs handled all faults. 1: some were handled wrongly; the command that repeats each of these is
+printed.
 """
 
 import argparse

@@ -10,7 +10,7 @@ from launch import run
 from metadata import JOURNAL, STOPPED, Stopped
 from samples import FILE, REPORTS, VERIFY, check_complete, in_child, results, stored_rows
 
-# Settings of sweeps that cannot become part of this one.
+# Settings of sweeps whose journals do not belong to this sweep.
 FOREIGN = ["max-time=9000", "vertices=48", "box=25"]
 FILE_HEADER = 24
 RECORD_HEADER = struct.Struct("<QII")  # size and CRC-32 of row and snapshot, a magic word
@@ -55,7 +55,7 @@ class Faults:
         case.chance.choice([self.foreign, self.hostile_row, self.hostile_snapshot, self.hostile_snapshot])(case)
 
     def foreign(self, case):
-        """A foreign journal is refused and changes nothing; the sweep resumes once the journal has been moved away."""
+        """A foreign journal is refused, and changes nothing. When it has been moved away, the sweep resumes."""
         origin = case.chance.choice([*self.others, "another version"])
         if origin in self.others:
             records = split(self.others[origin].files[JOURNAL], self.row.itemsize)
@@ -96,7 +96,7 @@ class Faults:
         self.check(case, number, (row, bytes(harmed)))
 
     def check(self, case, number, record):
-        """A forged record may affect its own run only: every other row stays the same."""
+        """A forged record may affect only its own run; every other row stays the same."""
         task = int(numpy.frombuffer(self.own[number][0], self.row)[0]["task"])
         self.put(case, [*self.own[:number], record, *self.own[number + 1:]], self.stopped.files[FILE])
         for report in (VERIFY, *REPORTS):
@@ -117,7 +117,8 @@ class Faults:
             (case.folder / FILE).write_bytes(table)
 
     def go_on(self, case):
-        """Runs the sweep's command, and again without the journal if the command refuses it. @return whether it did"""
+        """Runs the sweep's command. If the command refuses the journal, runs it again without the journal. @return
+        whether it refused"""
         before = {path.name: path.read_bytes() for path in case.folder.iterdir()}
         outcome = run(case, "clogsweep", *STOPPED, exit_codes={0, 2})
         if outcome.code != 2:

@@ -10,16 +10,16 @@ from processes import Hung, are_gone, descend, kill, send, wait_for
 from samples import FILE, check_complete, finished_rows, stored_rows
 from support import SMALL, TIMING
 
-# A task may be killed many times before it ends, which does not count as its failure.
+# A task may be killed many times before it ends. --attempts is so large that these kills do not make it fail.
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=2000", "seeds=1..2", "--attempts=1000",
          "--report-seconds=0.1", "--output", FILE]
 RANKS = 2
 GENERATIONS = ["mpirun", "a rank", "a helper", "a computing process"]
 SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGSTOP]
-# Exit codes of a sweep whose mpirun alone got this signal: docs/reference/exit-codes.md. On SIGINT mpirun chooses the
+# Exit codes of a sweep if only its mpirun got this signal: docs/reference/exit-codes.md. On SIGINT mpirun chooses the
 # code itself.
 CODES_OF_MPIRUN = {signal.SIGTERM: {0, 1, 75}, signal.SIGSTOP: {0}}
-PATIENCE = 5  # seconds for processes that have lost others, before the test kills them as a batch system would
+PATIENCE = 5  # seconds that processes have to end after others were lost; then the test kills them, as a batch system would
 
 
 class Faults:
@@ -48,7 +48,7 @@ class Faults:
         time.sleep(case.chance.uniform(0, self.duration))
         generations = descend(process.pid)
         sent = [self.send_one(case, generations) for _ in range(case.chance.randint(1, 2))]
-        generations += descend(process.pid)  # processes begun since then
+        generations += descend(process.pid)  # processes that have begun since then
         pids = {pid for generation in generations for pid in generation}
         self.wait(case, process, sent)
         kill(pid for generation in descend(process.pid) for pid in generation)

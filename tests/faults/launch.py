@@ -12,7 +12,7 @@ from support import BIN, MPIRUN
 EXIT_CODES = {0, 1, 2, 75}  # docs/reference/exit-codes.md
 SUBCOMMANDS = {"status", "verify", "replay", "salvage", "merge", "select", "doctor", "array", "channel", "sag", "calibrate", "compare", "deviation",
                "drag", "report"}
-# Words in the output of a program that failed
+# Words by which a failure of the program itself is recognised in its output
 SIGNS_OF_FAULTS = {
     b"Traceback (most recent call last)": "a traceback",
     b"internal fault": "an internal fault",
@@ -24,10 +24,10 @@ SIGNS_OF_FAULTS = {
 @dataclasses.dataclass
 class Outcome:
     name: str
-    code: int | None  # None: the program did not end
+    code: int | None  # None if the program did not end
     output: bytes
     error: bytes
-    hung: str | None = None  # why the test ended it
+    hung: str | None = None  # why the test ended the program
 
     @property
     def is_over(self):
@@ -66,7 +66,7 @@ def run(case, name, *arguments, prepare=None, ranks=None, exit_codes=EXIT_CODES,
 
 
 def title(name, arguments):
-    """Name by which findings are counted: the program with its subcommand, as in clogsweep status."""
+    """The name by which findings are counted: the program with its subcommand, such as clogsweep status."""
     first = os.fsdecode(arguments[0]) if arguments else ""
     return f"{name} {first}" if first in SUBCOMMANDS else name
 

@@ -13,9 +13,9 @@ from samples import (FILE, REPORTS, SEAL, VERIFY, check_complete, check_readers,
 from support import SMALL
 
 JOURNAL = FILE + ".journal"
-# The first run has a snapshot every 2^18 steps, the first one after a sixth of its time.
+# The first run makes a snapshot every 2^18 steps. It makes its first snapshot after a sixth of its time.
 STOPPED = [*SMALL, "obstacle-gap=0.4", "line-tension=0.05,0.5", "max-time=1e4", "seeds=1", "--output", FILE]
-# Times after which the sweep is stopped: on a slow or busy machine the first snapshot comes later.
+# Times after which the sweep is stopped. They grow, because on a slow or busy machine the first snapshot comes later.
 HOURS = [1e-4 * 1.5**n for n in range(16)]
 
 
@@ -58,8 +58,8 @@ class Faults:
         case.chance.choice([self.harm_a_table, self.harm_a_table, self.harm_a_journal])(case)
 
     def harm_a_table(self, case):
-        """Damages a file as a sweep wrote it, or a copy by another program, in which no seal shows that something is
-        missing."""
+        """Damages a file that a sweep wrote, or a copy by another program. In such a copy no seal shows that something
+        is missing."""
         sample = case.chance.choice(self.samples)
         end = case.chance.choice([len(sample.content), sample.content.rindex(SEAL)])
         places = [place for place in self.places[sample.name] if place < end]
@@ -80,6 +80,6 @@ class Faults:
         outcome = run(case, "clogsweep", *STOPPED, exit_codes={0, 2})
         if outcome.code == 2:
             case.expect((case.folder / JOURNAL).read_bytes() == content, "clogsweep: refuses a journal, but changes it")
-            (case.folder / JOURNAL).unlink()  # as the message asks
+            (case.folder / JOURNAL).unlink()  # the message asks for this
             case.expect(run(case, "clogsweep", *STOPPED).code == 0, "clogsweep: does not resume without the journal")
         check_complete(case, case.folder / FILE, self.stopped.rows)

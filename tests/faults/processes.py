@@ -8,9 +8,9 @@ import time
 
 from support import children_of
 
-# The load of the machine changes neither of these limits.
-CPU_SECONDS = 100  # for all processes of a program together; a sweep under the sanitizers needs about 30
-IDLE_SECONDS = 100  # while all processes wait, but not for the machine
+# Neither limit depends on the load of the machine.
+CPU_SECONDS = 100  # limit for all processes of a program together; a sweep under the sanitizers needs about 30
+IDLE_SECONDS = 100  # limit on the time in which all processes wait, but not for a processor or a disk
 LOOK_SECONDS = 1
 BUSY = {"R", "D"}  # states of processes that run, or wait for a processor or a disk
 TICKS = os.sysconf("SC_CLK_TCK")
@@ -37,7 +37,7 @@ def kill(pids):
 
 
 def status(folder):
-    """State of a process or thread, and its processor time with that of ended children; Z and 0 if it has ended."""
+    """State of a process or thread, and its processor time including its ended children; Z and 0 if it has ended."""
     try:
         fields = (folder / "stat").read_text().rpartition(")")[2].split()
     except (FileNotFoundError, ProcessLookupError):
@@ -57,14 +57,14 @@ def is_alive(pid):
 
 
 class Limits:
-    """Distinguishes hanging processes from those that a busy machine slows down: of the latter one always has
-    work."""
+    """Distinguishes processes that hang from processes that a busy machine slows down: among these, at least one always
+    has work."""
 
     def __init__(self):
         self.idle_seconds = 0
 
     def exceeded_by(self, pids, seconds):
-        """Inspects processes `seconds` after the last call. @return what is wrong with them; None if nothing is"""
+        """Inspects processes. @param seconds  time since the last call. @return what is wrong with them, or None"""
         folders = [pathlib.Path(f"/proc/{pid}") for pid in pids]
         if not any(status(thread)[0] in BUSY for folder in folders for thread in threads(folder)):
             self.idle_seconds += seconds
@@ -80,7 +80,7 @@ class Hung(Exception):
 
 
 def wait_for(pid, wait):
-    """Waits until a program ends by itself, however long a busy machine needs for it.
+    """Waits until a program ends by itself, however long it takes on a busy machine.
 
     @param wait  waits for the end, or for a given time, as subprocess does
     @return the result of `wait`

@@ -1,4 +1,4 @@
-"""Small sweeps to damage, and the answers about them while they are intact."""
+"""Small sweeps that tests damage, and what the programs report about them while they are intact."""
 
 import multiprocessing
 import os
@@ -27,7 +27,7 @@ ENDINGS = (b"clogged", b"broken", b"flowing")
 
 
 def in_child(function, *arguments):
-    """Calls a function that may crash or spin. @return its value, or None and why there is none"""
+    """Calls a function that may crash or never end, in a child process. @return its value, or None and the reason"""
     def work(connection):
         resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # hides warnings
@@ -52,7 +52,7 @@ def in_child(function, *arguments):
 
 
 def stored_rows(path):
-    """The bytes of every task's columns, as h5py finds them."""
+    """The bytes of each column of every task, as read by h5py."""
     with h5py.File(path, "r") as file:
         rows = file["runs"][()]
     return {int(row["task"]): {name: row[name].tobytes() for name in rows.dtype.names} for row in rows}
@@ -119,7 +119,7 @@ def samples(folder):
 
 
 def check_readers(case, sample):
-    """Every reader of the case's file reports the undamaged numbers, or that the file is damaged."""
+    """Checks that every reader of the case's file reports the undamaged numbers, or that the file is damaged."""
     path = case.folder / FILE
     before = path.read_bytes()
     for report, told in zip(REPORTS, sample.reports):
@@ -129,14 +129,14 @@ def check_readers(case, sample):
     table, why = in_child(read_with_python, path)
     case.expect(table is None or table == sample.table, "read_table: other numbers than from the undamaged file")
     case.expect(table is not None or why.startswith("refused"), f"read_table: {str(why).split(':')[0]}")
-    if run(case, *VERIFY).code == 0 and SEAL in before:  # in a copy, verify checks only rows and settings
+    if run(case, *VERIFY).code == 0 and SEAL in before:  # in a copy without a seal, verify checks only rows and settings
         check_called_whole(case, sample, path)
     check_salvaged(case, sample)
     case.expect(path.read_bytes() == before, "a reader changed the file")
 
 
 def check_salvaged(case, sample):
-    """Rows that salvage keeps of a damaged file have not changed."""
+    """Checks that rows which salvage keeps from a damaged file have not changed."""
     outcome = run(case, "clogsweep", "salvage", FILE, "--output", SALVAGED)
     if outcome.code != 0:
         return
@@ -147,7 +147,7 @@ def check_salvaged(case, sample):
 
 
 def check_called_whole(case, sample, path):
-    """A file that verify accepts as undamaged has not changed, for every reader."""
+    """If verify accepts a file as undamaged, every reader must find it unchanged."""
     rows, why = in_child(stored_rows, path)
     texts, why_no_texts = in_child(stored_texts, path)
     if rows is None or texts is None:
@@ -162,7 +162,7 @@ def check_called_whole(case, sample, path):
 
 
 def check_resumed(case, sweep, rows):
-    """The command that made the file repairs it, or refuses and leaves it unchanged.
+    """Checks that the command that made the file repairs the file, or refuses it and leaves it unchanged.
 
     @param rows  of the undisturbed sweep
     """
@@ -189,7 +189,8 @@ def check_complete(case, path, rows, ignored=TIMING):
 
 
 def rows_place(path):
-    """First and last byte of the rows, the size of a row in bytes, place and size of each column in it."""
+    """The first and last byte of the rows, the size of a row in bytes, and the place and size of each column in a
+    row."""
     with h5py.File(path, "r") as file:
         table = file["runs"]
         begin = table.id.get_chunk_info(0).byte_offset if table.chunks else table.id.get_offset()

@@ -40,7 +40,7 @@ TEST(CloggingLength, OfRunsThatAllClogHasTheExactInterval) {
 }
 
 TEST(CloggingLength, OfOneClogByHand) {
-  // The interval is 2 S/chi2 with 2 degrees of freedom, whose quantiles are -2 log(1 - p).
+  // The interval follows from 2 S/chi2; with 2 degrees of freedom the quantiles of chi2 are -2 log(1 - p).
   const std::vector<Observation> runs{{8, true}};
   const CloggingLength fit = fit_clogging_length(runs, 0.9);
   EXPECT_DOUBLE_EQ(fit.length, 8);
@@ -49,7 +49,7 @@ TEST(CloggingLength, OfOneClogByHand) {
 }
 
 TEST(CloggingLength, HasAnIntervalForAnyConfidence) {
-  // For little confidence the interval is lambda exp(-+ z/sqrt(d)), with z = confidence sqrt(pi/2).
+  // At a low confidence the interval is lambda exp(-+ z/sqrt(d)), with z = confidence sqrt(pi/2).
   for (const double confidence : {1e-300, 1e-20, 1e-8, 1e-3}) {
     const CloggingLength fit = fit_clogging_length(leukaemia_treated, confidence);
     const double width = confidence * std::sqrt(std::numbers::pi / 2 / fit.num_clogs);
@@ -95,7 +95,8 @@ TEST(CloggingLength, OfADistanceThatIsNotANumberIsNotKnown) {
 }
 
 TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
-  // With censoring by the number of clogs the interval is exact. 4000 samples: standard error 0.0034.
+  // If runs are censored after a given number of clogs, the interval is exact. The coverage found in 4000
+  // samples has a standard error of 0.0034.
   std::mt19937_64 engine(1);
   std::exponential_distribution<double> distance(1.0 / 7.0);
   int num_covered = 0;
@@ -113,9 +114,9 @@ TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
 }
 
 TEST(CloggingLength, IntervalsCoverTheTruthWhereRunsAreCensoredAfterSomeDistance) {
-  // A quarter of the runs to nearly all of them have clogged. 20000 samples: standard error 0.0015; as d is a
-  // whole number, the coverage fluctuates, most where few clogs are expected
-  // (docs/explanation/statistics.md).
+  // From a quarter of the runs to nearly all of them have clogged. The coverage found in 20000 samples has a
+  // standard error of 0.0015. Because the number of clogs is whole, the true coverage fluctuates, most if few
+  // clogs are expected (docs/explanation/statistics.md).
   std::mt19937_64 engine(2);
   std::exponential_distribution<double> distance(1);
   for (const double share : {0.25, 0.5, 0.75, 0.95}) {
@@ -156,7 +157,7 @@ TEST(LeastSquaresLength, MatchesAnotherOptimiser) {
 }
 
 TEST(LeastSquaresLength, OfAbsurdDistancesIsALengthOrNotKnown) {
-  // A search for the minimum of a sum that is not a number would never end.
+  // The search for the minimum would never end if the sum of squares were not a number.
   for (const std::vector<Observation>& runs : absurd_runs())
     EXPECT_TRUE(is_length_or_unknown(least_squares_length(runs))) << runs.front().distance;
 }
@@ -169,8 +170,8 @@ TEST(LeastSquaresLength, HasNoUnit) {
 }
 
 TEST(LeastSquaresLength, IsBiasedWhereTheFitIsNot) {
-  // Runs of one speed begin one after the other, and the test looks at them in the middle: the censored runs
-  // have covered little distance, and least squares treats them as runs that never clog.
+  // Runs of the same speed begin one after the other and are observed halfway through the sweep. Some of the
+  // censored runs have covered little distance, but least squares treats them as runs that never clog.
   std::mt19937_64 engine(4);
   std::exponential_distribution<double> distance(1);
   double of_least_squares = 0, of_likelihood = 0;
@@ -193,15 +194,15 @@ TEST(CloggingLength, RefusesAnImpossibleConfidence) {
   EXPECT_THROW(fit_clogging_length({}, 0.0), std::invalid_argument);
 }
 
-/// A sweep of equal droplets on some workers, observed when a share of it is done: droplets clog at
-/// exponentially distributed distances and travel at one speed.
+/// A sweep on some workers, observed when a share of its runs is done. All droplets travel at the same speed
+/// and clog at exponentially distributed distances.
 struct LiveSweep {
   double of_finished = 0;  ///< lambda from finished runs alone, divided by the true value
-  double of_all = 0;       ///< the same with running ones as censored
+  double of_all = 0;       ///< the same from all runs, those in progress as censored
 };
 LiveSweep look_at(int num_workers, int num_runs, double share_done, std::mt19937& engine) {
   std::exponential_distribution<double> distance(1);
-  std::multimap<double, double> running;  // end of a run, its begin
+  std::multimap<double, double> running;  // end of a run, and its beginning
   int num_begun = 0;
   for (; num_begun < num_workers; ++num_begun) running.emplace(distance(engine), 0);
   std::vector<Observation> finished;

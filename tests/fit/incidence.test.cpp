@@ -16,14 +16,14 @@ namespace {
 CompetingEnd by(int cause, double distance) { return {distance, cause}; }
 CompetingEnd going(double distance) { return {distance, std::nullopt}; }
 
-/// Ties within and between causes, and with a censored run.
+/// Distances with ties within a cause, between causes, and with a censored run.
 const std::vector<CompetingEnd> twenty_runs = {by(1, 1),  by(1, 2),  by(2, 2),  going(3),  by(1, 4),
                                                by(2, 4),  going(4),  by(2, 5),  by(1, 6),  by(1, 7),
                                                going(7),  by(2, 8),  by(1, 9),  by(2, 10), by(2, 10),
                                                going(11), by(1, 12), going(13), by(2, 14), by(1, 15)};
 
-/// statsmodels 0.13.5, CumIncidenceRight(time, status); its errors at the last distance, where all end, are
-/// NaN.
+/// Expected values from statsmodels 0.13.5, CumIncidenceRight(time, status). Its errors at the last distance,
+/// where all runs end, are NaN.
 TEST(CumulativeIncidence, IsTheReferenceAnswer) {
   struct Expected {
     double distance, probability, error;

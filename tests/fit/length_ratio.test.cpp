@@ -13,8 +13,8 @@
 namespace clog::fit {
 namespace {
 
-/// Pairs of distances with exponential laws that have some clogs in common (Marshall and Olkin): both
-/// droplets stop at a place that holds both, and each stops at a place that holds it alone.
+/// Pairs of distances with exponential laws that have some clogs in common (Marshall and Olkin). Some places
+/// hold both droplets of a pair, others hold only one of them.
 std::vector<Pair> drawn_pairs(std::mt19937& engine, int number, double share, double ratio) {
   const double common_rate = share / std::max(1.0, ratio);
   const auto draw = [&](double rate) {
@@ -92,7 +92,8 @@ TEST(LengthRatio, IsNotKnownWithoutClogs) {
   EXPECT_FALSE(ratio.is_paired);
 }
 
-/// Fractions of the sweeps whose interval contains the true ratio, and whose runs were paired.
+/// The fraction of sweeps whose interval contains the true ratio, and the fraction of sweeps whose runs were
+/// paired.
 struct Coverage {
   double covered = 0, paired = 0;
 };
@@ -115,7 +116,7 @@ TEST(LengthRatio, CoversTheTruthAsOftenAsItClaims) {
     const Coverage found = coverage(40, share);
     RecordProperty("covered", std::to_string(found.covered));
     EXPECT_GT(found.covered, 0.92) << share;
-    EXPECT_LT(found.covered, 0.99) << share;  // the interval is too wide for pairs that are not used
+    EXPECT_LT(found.covered, 0.99) << share;  // an interval that does not use the pairs is too wide
     EXPECT_GE(found.paired, share == 0.8 ? 0.8 : 0) << share;
     EXPECT_LE(found.paired, share == 0 ? 0.06 : 1) << share;
   }

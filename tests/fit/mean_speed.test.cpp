@@ -32,7 +32,7 @@ TEST(SpeedRatio, WeighsRunsByTheirTime) {
   const MeanSpeed fit = fit_pooled_speed(std::vector<Travel>{{1, 1}, {9, 3}, {NAN, NAN}});
   EXPECT_EQ(fit.num_runs, 2);
   EXPECT_DOUBLE_EQ(fit.mean, 2.5);
-  EXPECT_DOUBLE_EQ(fit.standard_error, 1);  // 3 without one run, 1 without the other
+  EXPECT_DOUBLE_EQ(fit.standard_error, 1);  // the mean without one run is 3, without the other 1
 }
 
 TEST(SpeedRatio, OfEqualTimesIsTheMeanWithItsError) {
@@ -48,7 +48,7 @@ TEST(SpeedRatio, HasNoErrorForOneRunAndNoMeanForNone) {
   EXPECT_TRUE(std::isnan(fit_pooled_speed({}).mean));
 }
 
-/// Runs whose times differ tenfold and whose speeds scatter more the shorter they are.
+/// Runs whose times differ tenfold. The shorter a run is, the more its speed scatters.
 std::vector<Travel> scattered_runs(int number, std::mt19937& engine) {
   std::uniform_real_distribution<double> log_time(0, std::log(10));
   std::normal_distribution<double> normal;

@@ -17,9 +17,9 @@ TEST(Migration, IsTheRatioOfTheSums) {
 }
 
 TEST(Migration, HasTheErrorThatEnsemblesScatterBy) {
-  // In 2000 ensembles of 20 runs with distances from 5 to 50 and a scatter of 2 about slope -0.3, the mean
-  // squared error of the slope equals the mean of the squared standard errors, within the 5 % by which the
-  // linear approximation is off for 20 runs.
+  // 2000 ensembles have 20 runs each, with distances from 5 to 50 and a scatter of 2 about the slope -0.3.
+  // The mean squared error of the slope must equal the mean of the squared standard errors, within 5 %: by so
+  // much the linear approximation is wrong for 20 runs.
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> distance(5, 50);
   std::normal_distribution<double> noise(0, 2);
@@ -47,7 +47,7 @@ TEST(Migration, IsUndefinedWithoutDistance) {
 }
 
 TEST(Migration, LeavesOutRunsThatWentTooShortAWay) {
-  // Droplets that only sagged in their release void, by 0.04, with the void's lateral displacement.
+  // These droplets only sagged by 0.04 in their release void. Their lateral displacement comes from the void.
   EXPECT_TRUE(std::isnan(fit_migration(std::vector<Displacement>{{0.04, -0.007}, {0.04, -0.007}}).slope));
   const Migration fit = fit_migration(std::vector<Displacement>{{4, 1}, {0.04, -0.4}, {8, 5}, {-0.1, 0.3}});
   EXPECT_DOUBLE_EQ(fit.slope, 0.5);

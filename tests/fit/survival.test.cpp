@@ -148,7 +148,7 @@ TEST(Exponentiality, SurvivesDegenerateData) {
   }
   const std::vector<Observation> not_a_number{{std::nan(""), false}, {1, true}};
   EXPECT_EQ(survival_curve(not_a_number).size(), 1u);
-  // Distances of any size.
+  // Distances of all magnitudes.
   const std::vector<Observation> tiny{{1e-9, true}, {3e-9, true}, {2e-9, false}},
       huge{{1e9, true}, {3e9, true}, {2e9, false}};
   EXPECT_NEAR(test_exponentiality(tiny).shape, test_exponentiality(huge).shape, 1e-9);

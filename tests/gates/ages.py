@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""The table of docs/gallery/index.md has every picture of the gallery with the model version of its rows. Another version than
-the program's needs a later note whose CSV file shows that a part of each of these pictures is the same with the program's."""
+"""Checks that the table of docs/gallery/index.md lists every picture of the gallery with the model version of its rows.
+If this is not the program's version, a later note must show, in its CSV file, that a part of each picture is the same
+with the program's version."""
 
 import csv
 import re
@@ -15,7 +16,7 @@ NOTE = re.compile(r"\]\(\.\./notes/(([\d-]{10})-[\w-]+)\.md\)")
 
 
 def same_now(link, date):
-    """The pictures that a note after that date found unchanged."""
+    """The pictures that the linked note, if it is later than `date`, found unchanged."""
     if not link or link[2] <= date:
         return set()
     with open(known.ROOT / f"docs/notes/{link[1]}.csv", newline="") as file:

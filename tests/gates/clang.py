@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""clang.py warnings|tidy [--changed] [--most N] [FILE...]: what clang++ or clang-tidy finds in these sources, or in all.
+"""clang.py warnings|tidy [--changed] [--most N] [FILE...]: prints what clang++ or clang-tidy finds in these sources, or
+in all sources.
 
---changed takes sources that changed (known.py says since when), and for a changed header a source that includes it. Of
-more than N sources it takes N by a rule that picks others at the next commit. Exit code 1: there is a finding.
+--changed takes sources that changed (known.py says since when), and for each changed header a source that includes it.
+If there are more than N sources, it takes N of them, and others at the next commit. Exit code 1: there is a finding.
 """
 
 import argparse
@@ -19,12 +20,12 @@ import sys
 import known
 
 BUILD = known.ROOT / "build/gates"
-# Matches before the first line of a finding.
+# Matches the position before the first line of a finding.
 FINDING = re.compile(r"^(?=[^\s:]+:\d+:\d+: (?:warning|error):)", re.MULTILINE)
 
 
 def configure():
-    """Writes how clang++ would compile each source to build/gates. CMake's own warnings are faults."""
+    """Writes to build/gates how clang++ would compile each source. CMake's own warnings are faults."""
     done = subprocess.run(["cmake", "--preset", "gates"], cwd=known.ROOT, capture_output=True, text=True)
     if done.returncode != 0 or "Warning" in done.stderr:
         sys.exit(done.stdout + done.stderr + "CMake fails or warns")
@@ -46,7 +47,7 @@ def compile_commands():
 
 
 def source_of(header, sources):
-    """A source that includes this header: the one of its name, or else the first; None if there is none."""
+    """A source that includes this header: the one with the same name, or else the first; None if there is none."""
     path = pathlib.PurePath(header)
     line = f'"{path.relative_to("include")}"' if path.parts[0] == "include" else f'{path.name}"'
     including = [source for source in sources if line in (known.ROOT / source).read_text()]
@@ -55,7 +56,8 @@ def source_of(header, sources):
 
 
 def chosen(sources, most):
-    """The sources that changed, or that include a changed header, at most this number. Prints those it excludes."""
+    """At most this number of the sources that changed or include a changed header. Prints the sources that it leaves
+    out."""
     answer = known.changed()
     if answer is None:
         print(f"what changed is not known: all {len(sources)} sources are candidates")
@@ -73,7 +75,7 @@ def chosen(sources, most):
 
 
 def compiler_words(source, command):
-    """Warnings of a clang++ that only parses and checks: all but the optimiser's."""
+    """Options of a clang++ that only parses and checks. It warns of everything except what the optimiser would find."""
     arguments, folder = command
     words = [word for word in arguments if word != "-c"] + ["-Werror", "-fsyntax-only"]
     done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -83,7 +85,7 @@ def compiler_words(source, command):
 def tidy_words(source, command):
     words = ["clang-tidy", "--quiet", "--warnings-as-errors=*", "-p", BUILD, known.ROOT / source]
     done = subprocess.run(words, cwd=known.ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    # Standard error counts warnings that are not shown, so it matters only after a failure.
+    # Standard error also counts warnings that are not shown, so it is used only after a failure.
     return source, done.returncode, done.stdout or (done.stderr if done.returncode else "")
 
 

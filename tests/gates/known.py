@@ -1,4 +1,4 @@
-"""The files that git knows here, and those of them that changed."""
+"""Lists the files of the repository, and those that changed."""
 
 import os
 import pathlib
@@ -6,12 +6,12 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Number of last commits to look at where nothing else tells what changed: as many as a push may bring.
+# If nothing else tells what changed, this number of last commits is looked at: as many as a push may bring.
 LAST_COMMITS = 10
 
 
 def git(*arguments):
-    """git's answer, or None if it refuses."""
+    """The output of git, or None if git fails."""
     done = subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True)
     return done.stdout if done.returncode == 0 else None
 
@@ -25,7 +25,7 @@ def files(*patterns):
 
 
 def base():
-    """The commit against which files have changed, and why this one, in words; None if none is known."""
+    """The commit with which files are compared, and the reason for this commit, in words; None if there is none."""
     named = os.environ.get("GATES_SINCE")
     if named:
         commit = git("rev-parse", "--verify", "--quiet", f"{named}^{{commit}}")
@@ -36,10 +36,10 @@ def base():
     for branch in ["origin/HEAD", "origin/main", "origin/master"]:
         fork = (git("merge-base", branch, "HEAD") or "").strip()
         if fork == head:
-            break  # on the default branch itself
+            break  # this is the default branch itself
         if fork:
             return fork, f"the fork from {branch}"
-    # A shallow clone may hold fewer commits, or one.
+    # A shallow clone may contain fewer commits, or only one.
     for back in range(LAST_COMMITS, 0, -1):
         commit = git("rev-parse", "--verify", "--quiet", f"HEAD~{back}^{{commit}}")
         if commit:
@@ -48,7 +48,8 @@ def base():
 
 
 def changed():
-    """The files that differ from base(), also uncommitted and new ones, and since when, in words; None if unknown."""
+    """The files that differ from base(), including uncommitted and new ones, and the reason for this base, in words.
+    None if there is no base."""
     since = base()
     if since is None:
         return None

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Phrases that were retired from prose, and the words to use instead: phrases.txt lists them.
+"""Finds phrases that were retired from prose. phrases.txt lists them with the words to use instead.
 
 Phrases under `[everywhere]` are searched in *.md, comments, docstrings and messages, those under `[documentation]` in
-*.md only, those under `[beginnings]` only where comments, docstrings and messages begin, in the case given. Code,
-`quoted` text and the dated pages (docs/notes, CHANGELOG.md) are skipped. A phrase may span two lines.
+*.md only, those under `[beginnings]` only at the beginnings of comments, docstrings and messages, with the given upper
+or lower case. Code, `quoted` text and the dated pages (docs/notes, CHANGELOG.md) are skipped. A phrase may span two
+lines.
 """
 
 import re
@@ -53,7 +54,7 @@ def paragraphs(name):
 def main():
     phrases = list(listed())
     pages = [name for name in known.files("*.md") if not name.startswith(DATED)]
-    # The list and its reader quote what they forbid.
+    # phrases.txt and this script contain the phrases themselves.
     sources = [name for name in known.files(*SOURCES) if not name.startswith("tests/gates/")]
     faults = 0
     for name in pages + sources:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""sample.py SEED: prints 100 sentences of README, handbook, help texts and comments, for a reader who counts those
-that need a second reading. The same seed and sources give the same sentences.
+"""sample.py SEED: prints 100 sentences of README, handbook, help texts and comments, for a reader who counts the
+sentences that need a second reading. The same seed and sources give the same sentences.
 """
 
 import random
@@ -11,7 +11,7 @@ import known
 import spelling
 import width
 
-# Number of sentences of each kind, and the files that have them.
+# For each kind: the number of sentences to print, and the files from which they come.
 KINDS = {"README": (6, ["README.md"]), "tutorial": (10, ["docs/tutorial/*.md"]), "how-to": (12, ["docs/how-to/*.md", "docs/faq.md"]),
          "explanation": (16, ["docs/explanation/*.md"]), "reference": (14, ["docs/reference/*.md", "docs/glossary.md"]),
          "gallery": (8, ["docs/gallery/*.md"]), "notes": (6, ["docs/notes/*.md", "CHANGELOG.md", "docs/paper/*.md"]),
@@ -34,7 +34,7 @@ def lines(name, kind):
 
 
 def sentences(name, kind):
-    """Places and sentences. A blank line, a list or a gap between comments ends a sentence, too."""
+    """Sentences with their places. A blank line, a list item or a gap between comments also ends a sentence."""
     first, paragraph, before = 0, [], 0
     marks = PAGE_MARKS if name.endswith(".md") else CODE_MARKS
     for number, line in [*lines(name, kind), (None, "")]:

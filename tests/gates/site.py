@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Tests the handbook's site in a browser: `site.py build/docs/html`. No page prints on the console or asks another host;
-pages follow the browser's choice of light or dark; nothing is wider than a phone; search results hold no TeX."""
+"""Tests the handbook's site in a browser: `site.py build/docs/html`. No page writes to the console or sends requests to
+another host; pages follow the browser's choice of light or dark; nothing is wider than a phone; search results contain
+no TeX."""
 
 import contextlib
 import functools
@@ -50,7 +51,7 @@ def browser(scheme):
 
 
 def wait_for(driver, condition):
-    """Waits until a script returns true, at most half a minute; the checks below fail if it never does."""
+    """Waits until a script returns true, but at most half a minute. If it never does, the checks that follow fail."""
     end = time.monotonic() + 30
     while not driver.execute_script(f"return !!({condition})") and time.monotonic() < end:
         time.sleep(0.1)

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Checks the spelling of prose: *.md, comments, docstrings, and messages of programs. British, with -ise, by aspell.
+"""Checks the spelling of prose: *.md, comments, docstrings, and messages of programs. The spelling is British, with
+-ise; aspell checks it.
 
-Correct words that aspell does not know are in words.txt. What looks like code is left out: `quoted`,
-with digits, underscores, slashes or equals signs, in CamelCase or CAPITALS.
+Correct words that aspell does not know are in words.txt. Words that look like code are left out: `quoted` ones, with
+digits, underscores, slashes or equals signs, in CamelCase or CAPITALS.
 """
 
 import ast
@@ -60,7 +61,8 @@ def of_script(text):
 
 
 def prose(name):
-    """Lines of prose in a file, with their numbers. Tests quote mistakes of others, so their messages are left out."""
+    """Lines of prose in a file, with their numbers. The messages in tests are left out, because tests quote users'
+    mistakes."""
     text = (known.ROOT / name).read_text()
     with_messages = not name.startswith("tests/")
     if name.endswith(".md"):

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Prose in *.md has lines of at most 120 characters. Tables, code, and words that cannot be broken may be longer."""
+"""Checks that lines of prose in *.md have at most 120 characters. Tables, code, and words that cannot be broken may be
+longer."""
 
 import sys
 
@@ -15,7 +16,8 @@ def prose(text):
     for number, line in enumerate(text.splitlines(), 1):
         if line.lstrip().startswith("```"):
             fenced = not fenced
-        # A block of code is indented by four and follows an empty line; without one the line continues a list.
+        # A block of code is indented by four spaces and follows an empty line. Without the empty line, an indented line
+        # continues a list.
         indented = line.startswith("    ") and (indented or not before.strip()) or (indented and not line.strip())
         before = line
         if not fenced and not indented and not line.lstrip().startswith("|"):

@@ -1,8 +1,9 @@
-"""A layer includes the layers that its line in docs/developer/architecture.md names, and no others; some libraries belong
-to one layer, fmt to no header.
+"""Checks that a layer includes only the layers that its line in docs/developer/architecture.md names. Some libraries
+may be included by one layer only, and fmt by no header.
 
-The layers inside core have lines of their own: core/world, core/polygon/step and so on. Modules of the Python package are its folders, in a
-table of their own; an import inside a function counts, too. Neither layers nor Python files form a circle.
+The layers inside core have their own lines: core/world, core/polygon/step and so on. The folders of the Python package
+are its modules; they have another table, and an import inside a function counts, too. Neither layers nor Python files
+may include each other in a circle.
 
     tests/lint/layers.py ROOT
 """
@@ -23,7 +24,7 @@ PYTHON_LIBRARIES = {"h5py": {"reading"}, "matplotlib": DRAWING, "mpl_toolkits": 
 
 
 def table(text):
-    """The layers that each layer uses, from a part of the page."""
+    """The layers that each layer may use, from a part of the page."""
     layers = {}
     for line in text.splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
@@ -39,7 +40,7 @@ def layer_of(parts, layers):
 
 
 def includes(root, layers):
-    """File, line, layer and included layer of every include."""
+    """The file, line, layer and included layer of every include."""
     for base in (root / "include" / "clog", root / "src"):
         for path in sorted(base.rglob("*.?pp")):
             for number, line in enumerate(path.read_text().splitlines(), 1):
@@ -49,7 +50,8 @@ def includes(root, layers):
 
 
 def circle_of(uses):
-    """Names that lead back to the first, if any. @param uses  names by name"""
+    """A circle of names, each of which uses the next one; empty if there is none. @param uses  the names that each name
+    uses"""
     try:
         graphlib.TopologicalSorter(uses).prepare()
     except graphlib.CycleError as error:

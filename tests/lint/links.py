@@ -1,6 +1,6 @@
-"""Every link and every path in the documentation leads somewhere: links in `*.md` to a file of the sources and, with
-`#`, to one of its headings or targets; what is quoted `so` in `*.md` and in the configs of `jobs` and begins with
-a folder of the sources, such as `src/`, to a file or a folder there.
+"""Checks that every link and every path in the documentation leads somewhere. A link in `*.md` must lead to a file of
+the sources and, after `#`, to one of its headings or targets. A path that is quoted `so`, in `*.md` or in the configs
+of `jobs`, must name a file or a folder if it begins with a folder of the sources, such as `src/`.
 
     tests/lint/links.py ROOT
 """
@@ -19,12 +19,12 @@ QUOTED = re.compile(r"(?<!`)`((?:[^`\n]|\n(?!\s*\n))+)`(?!`)")
 PATH = re.compile(rf"(?:{'|'.join(FOLDERS)})/[^\s<*{{$]*")
 HEADING = re.compile(r"^#{1,6} +(.+?)(?: +#+)?$", re.MULTILINE)
 TARGET = re.compile(r"^\(([\w-]+)\)=$", re.MULTILINE)
-# Dated measurements and releases describe the sources of their day.
+# Dated measurements and releases describe the sources of their date.
 OF_THEIR_DAY = ("docs/notes/", "CHANGELOG.md")
 
 
 def sources(root):
-    """The files that git knows or would add; in an archive of the sources, all files except build outputs."""
+    """The files that git tracks or would add; in an archive of the sources, all files except build outputs."""
     if (root / ".git").exists():
         asked = subprocess.run(["git", "-C", root, "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
                                capture_output=True, text=True)
@@ -35,7 +35,7 @@ def sources(root):
 
 
 def without(pattern, text):
-    """The same text, with as many lines, without everything that matches the pattern."""
+    """The text without everything that matches the pattern, but with as many lines."""
     return pattern.sub(lambda found: "\n" * found[0].count("\n"), text)
 
 

@@ -1,5 +1,5 @@
-"""The Python package reads and writes every text in an encoding that it names: elsewhere the locale decides, and a page that
-says `charset=utf-8` would hold something else.
+"""Checks that the Python package names an encoding wherever it reads or writes text. Otherwise the locale would decide,
+and a page that says `charset=utf-8` would contain something else.
 
     tests/lint/named_encodings.py ROOT
 """

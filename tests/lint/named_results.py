@@ -1,4 +1,5 @@
-"""Every page that docs/named-results.csv lists for a result contains its text, and no other page of the handbook does.
+"""Checks that the text of each result in docs/named-results.csv is on the pages listed there, and on no other page of
+the handbook.
 
     tests/lint/named_results.py ROOT
 """

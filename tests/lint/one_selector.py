@@ -1,5 +1,5 @@
-"""No compiled file of ours has indirect functions, which the processor chooses when a program starts, and none queries
-the processor: only --instruction-set may decide the bits of a row.
+"""Checks that no compiled file of ours has indirect functions, whose version depends on the processor when a program
+starts, and that none queries the processor: only --instruction-set may determine the bits of a row.
 
     one_selector.py READELF OBJDUMP FILE...     (archives and programs)
 """

@@ -1,5 +1,5 @@
-"""Layers whose numbers end up in rows call no function of the C library that has versions for several kinds of
-processors; include/clog/core/tools/portable_math.hpp replaces them.
+"""Checks that layers whose numbers get into rows call no function of the C library that has several versions for
+different processors. include/clog/core/tools/portable_math.hpp replaces these functions.
 
     portable_math.py READELF ARCHIVE...
 """

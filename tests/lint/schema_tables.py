@@ -1,7 +1,7 @@
-"""Lists of keys and columns in the documentation are those of clogsweep --schema.
+"""Checks that the lists of keys and columns in the documentation agree with clogsweep --schema.
 
-    tests/lint/schema_tables.py build/release/bin/clogsweep .            # exit code 1 where one is stale
-    tests/lint/schema_tables.py build/release/bin/clogsweep . --write    # renews them
+    tests/lint/schema_tables.py build/release/bin/clogsweep .            # exit code 1: a list is stale
+    tests/lint/schema_tables.py build/release/bin/clogsweep . --write    # renews the lists
 """
 
 import json
@@ -41,7 +41,8 @@ def type_of(column):
 
 
 def columns(schema):
-    """Columns with the name and value of a key share a paragraph; columns whose meanings differ only in numbers an entry."""
+    """Columns with the name and value of a key share a paragraph; columns whose meanings differ only in numbers share
+    an entry."""
     key_of = {(key.get("column"), key.get("meaning")): key["key"] for key in schema["keys"]}
     named, rows = [], {}
     for column in schema["columns"]:

@@ -1,4 +1,5 @@
-"""jobs/mpi-settings.sh sets the variables of each version of Open MPI, and leaves those that the user has set."""
+"""Tests that jobs/mpi-settings.sh sets the variables of each version of Open MPI, but not those that the user has
+set."""
 
 import os
 import pathlib

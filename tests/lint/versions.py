@@ -1,6 +1,6 @@
-"""The version is the same wherever it is written: in `CMakeLists.txt`, in `CITATION.cff`, in the Python module, in the
-recipe for Spack and, as the newest release, in `CHANGELOG.md`, which has the date of `CITATION.cff`, too. The table of
-dependencies in the handbook has what `cmake/dependencies.txt` has.
+"""Checks that the version is the same in `CMakeLists.txt`, in `CITATION.cff`, in the Python module, in the recipe for
+Spack and, as the newest release, in `CHANGELOG.md`, and that the dates in `CITATION.cff` and `CHANGELOG.md` agree. Also
+checks that the handbook's table of dependencies agrees with `cmake/dependencies.txt`.
 
     tests/lint/versions.py ROOT
 """

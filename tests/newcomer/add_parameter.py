@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""A new parameter is a member of RunParameters, an entry in core/parameters/schema.cpp, and its physics: quiet_checks.patch.
+"""Tests that a new parameter needs only a member of RunParameters, an entry in core/parameters/schema.cpp, and its
+physics. The patch quiet_checks.patch adds such a parameter.
 
     tests/newcomer/add_parameter.py            # applies the patch to a copy, builds it, and looks for the parameter
-    tests/newcomer/add_parameter.py --check    # only checks that the patch still fits, in no time
+    tests/newcomer/add_parameter.py --check    # only checks that the patch still fits, which takes no time
 
 Building the copy without optimisation takes some minutes. Exit code 1: the parameter is missing somewhere.
 """
@@ -26,7 +27,7 @@ def output(*command, **options):
 
 
 def copy_of_tree(folder):
-    """Copies the files that git tracks, as they are now."""
+    """Copies the files that git tracks, with their uncommitted changes."""
     for name in output("git", "ls-files", "--cached", "--others", "--exclude-standard", cwd=ROOT).splitlines():
         if (ROOT / name).is_file():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)

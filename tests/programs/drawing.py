@@ -1,4 +1,4 @@
-"""Runs commands of the Python module as a person would."""
+"""Runs commands of the Python module as a user would."""
 
 import importlib
 import io
@@ -18,8 +18,8 @@ from clogsweep import style  # noqa: E402
 
 
 def warm_up():
-    """Loads all commands, and the fonts by drawing a small picture. Forked processes share both, whose CPU time
-    exceeds the picture's own."""
+    """Loads all commands, and loads the fonts by drawing a small picture. Forked processes share both, because loading
+    takes more CPU time than drawing a picture."""
     for command in clogsweep.__main__.COMMANDS:
         importlib.import_module(f"clogsweep.commands.{command.replace('-', '_')}")
     figure, axes = style.subplots(figsize=(2, 2))
@@ -41,7 +41,7 @@ def run_in(folder, out, error, call):
 
 class Analysis(ProgramTest):
     def fork(self, words, call):
-        """Calls a function in the test's folder, in a forked process, which shares what warm_up() has loaded.
+        """Calls a function in the test's folder, in a forked process. The process shares what warm_up() has loaded.
         @param words  the call, for messages; @param call  returns an exit code"""
         out, error = self.folder / "stdout.txt", self.folder / "stderr.txt"
         process = multiprocessing.get_context("fork").Process(target=run_in, args=(self.folder, out, error, call))
@@ -53,7 +53,7 @@ class Analysis(ProgramTest):
         return subprocess.CompletedProcess(words, process.exitcode, out.read_text(), error.read_text())
 
     def analyse(self, command, *arguments):
-        """python3 -m clogsweep"""
+        """Calls python3 -m clogsweep."""
         own_argv = ["clogsweep", command, *map(str, arguments)]
 
         def call():

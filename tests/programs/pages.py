@@ -11,7 +11,7 @@ from support import BIN, LONGEST, ROOT
 
 BLOCK = re.compile(r"^```(bash|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 TOCTREE = re.compile(r"^```{toctree}\n(?::.*\n)*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-# Settings from the page before the tutorials; `set` makes a block end at the first command that fails.
+# Settings from the page before the tutorials. `set` makes a block end at the first command that fails.
 BEFORE = f"set -euo pipefail; . {ROOT}/jobs/mpi-settings.sh\n"
 HOW_TO = ("other-arrays", "own-obstacles", "lattice", "lateral-displacement", "compare-sweeps", "python", "contact-angles", "sizes-and-tilts")
 PAGES = ["README.md", *(f"docs/how-to/{name}.md" for name in HOW_TO)]
@@ -28,7 +28,8 @@ def blocks(path):
 
 
 def code(text):
-    """@return the lines of a page that are indented or in a block of bash; others are empty"""
+    """@return the lines of a page that are indented or in a block of bash; all other lines are replaced by empty
+    ones"""
     fence = None
     for line in text.splitlines():
         if line.startswith("```"):
@@ -41,7 +42,8 @@ def code(text):
 
 
 def commands(path):
-    """@return the words of every command in the code of a page, in order, without what follows ">", and without synopses"""
+    """@return the words of every command in the code of a page, in order, without what follows ">"; synopses are left
+    out"""
     found = []
     for line in "\n".join(code((ROOT / path).read_text())).replace("\\\n", " ").splitlines():
         words = shlex.shlex(line, posix=True, punctuation_chars="|&;>")
@@ -58,7 +60,7 @@ def commands(path):
 
 
 def run(language, block, folder):
-    # Another python3 that comes first in the path may lack what Debian's has. mpirun stays the same.
+    # Another python3 that comes first in the path may lack packages that Debian's python3 has. mpirun stays the same.
     folders = [str(BIN), os.path.dirname(shutil.which("mpirun")), os.path.dirname(sys.executable), os.environ["PATH"]]
     environment = {**os.environ, "PATH": ":".join(folders), "PYTHONPATH": str(ROOT / "analysis")}
     command = ["bash", "-c", BEFORE + block] if language == "bash" else [sys.executable, "-c", block]

@@ -1,5 +1,5 @@
-"""Builds a program against an installation, which takes a compiler half a minute, and reads the installed handbook, which takes
-Sphinx a minute. tests/run.sh --all builds it (CLOG_HANDBOOK)."""
+"""Builds a program against an installation, which takes half a minute, and reads the installed handbook. Sphinx takes a
+minute for the handbook; tests/run.sh --all builds it (CLOG_HANDBOOK)."""
 
 import json
 import re
@@ -14,7 +14,7 @@ from test_install import KEYS, Installation
 COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": [],
             "clogfit": ["calibrate", "curve", "deviation", "drag", "report", "units"]}
 
-# Meanings of words without dashes
+# Meanings of the commands, which are words without dashes
 POSITIONAL = {"--file", "--system", "--task"}
 
 

@@ -1,6 +1,6 @@
-"""Runs the notebook of the gallery again: its cells must succeed and print the stored outputs.
+"""Runs the notebook of the gallery. Its cells must succeed and print the stored outputs.
 
-Numbers may differ as they do between compilers: docs/notes/2026-11-23-compilers.md.
+Numbers may differ, as they do between compilers: docs/notes/2026-11-23-compilers.md.
 """
 
 import os
@@ -15,7 +15,7 @@ import nbformat
 from support import BIN, LONGEST, ROOT, ProgramTest
 
 NOTEBOOK = ROOT / "docs" / "gallery" / "notebook.ipynb"
-NUMBER = re.compile(r"\d+\.\d+(?:e[+-]?\d+)?")  # a count has no point, and must be the same
+NUMBER = re.compile(r"\d+\.\d+(?:e[+-]?\d+)?")  # counts have no decimal point, and must be the same
 
 
 def said(notebook):

@@ -1,5 +1,6 @@
-"""Runs commands of the handbook. slow_tutorial runs tutorial, README and some how-to pages as they are. Here every
-command of the other pages runs in a folder with the files that it names; longer commands are shortened or only parsed.
+"""Runs commands of the handbook. slow_tutorial runs tutorial, README and some how-to pages as they are. This test runs
+each command of the other pages in a folder with the files that the command names; commands that take long are shortened
+or only parsed.
 """
 
 import pathlib
@@ -25,12 +26,12 @@ FOLLOWED = {*pages.PAGES, *pages.tutorial()}
 PAGES = sorted({str(path.relative_to(ROOT)) for part in ("how-to", "reference", "gallery", "explanation", "developer")
                 for path in (ROOT / "docs" / part).glob("*.md")} - FOLLOWED)
 PROGRAMS = ("clogsweep", "clogrun", "clogfit")
-LAUNCHERS = {"mpirun": 3, "srun": 1}  # number of words of each
-# Commands that name one of our programs, but need something that may be missing here
+LAUNCHERS = {"mpirun": 3, "srun": 1}  # number of words before the program in a call of each launcher
+# Commands that name one of our programs, but need something that may be missing on this machine
 NOT_RUN = {"docker", "spack", "sbatch", "qsub", "git", "sudo", "pydoc"}
-# Options and keys that make a run short, by the first words of a command
+# Options and keys that make the runs of a command short, by its first words
 SHORT = {"clogrun array": ["max-time=20", "seeds=1"], "clogrun replay": [], "clogrun channel": ["vertices=64", "start=-1.2", "end=-1"]}
-# Commands of python3 -m clogsweep that take longer
+# Commands of python3 -m clogsweep that take too long
 LONG = {"agreement": agreement, "collision": collision, "predict": predict}
 SWEEP = ["preset=elastic", "line-tension=0.5,1,2,4", "seeds=1..4", *SMALL, "max-time=60"]
 
@@ -101,9 +102,9 @@ class Commands(Analysis):
             self.check_python(rest[1:])
         elif program == "clogsweep" and ("=" in rest[0] or rest[0].startswith("--")):
             self.succeed(program, *rest, "--print-config")
-        elif program == "clogsweep" and rest[0] == "doctor":  # which may find problems
+        elif program == "clogsweep" and rest[0] == "doctor":  # it may find problems
             self.assertIn(self.run_program(program, *rest).returncode, (0, 1))
-        elif program == "clogfit" and rest[0] == "calibrate":  # takes minutes
+        elif program == "clogfit" and rest[0] == "calibrate":  # it takes minutes
             (self.folder / "trial.csv").unlink()
             self.refuse(program, *rest, words=["cannot read trial.csv"])
         else:
@@ -125,13 +126,13 @@ class Commands(Analysis):
         elif command in LONG:
             sys.argv[1:] = rest
             LONG[command].parse()
-        elif command == "refine":  # the launcher may be a cluster's
+        elif command == "refine":  # the launcher on the page may be that of a cluster
             done = self.analyse(command, *rest[:rest.index("--")], "--dry-run")
             self.assertEqual(done.returncode, 0, done.stderr)
         else:
             sweep = {"device": "device.h5", "clogs": "wrapped.h5"}.get(command, "sweep.h5")
             stand_ins = {"/dev/stdin": "fit.json", "sweep.h5": sweep}
-            if command == "export":  # which never replaces a file
+            if command == "export":  # it never replaces a file
                 (self.folder / rest[-1]).unlink(missing_ok=True)
             done = self.analyse(command, *(stand_ins.get(word, word) for word in rest))
             self.assertEqual(done.returncode, 0, done.stderr)

@@ -1,4 +1,4 @@
-"""The page of a sweep over any key."""
+"""Tests the page of a sweep over any key."""
 
 import unittest
 
@@ -11,7 +11,7 @@ class EveryKey(test_schema.Sweeps):
         for key in self.keys():
             with self.subTest(key=key["key"]):
                 self.sweep(key["key"])
-                # The page has curves and, replayed, a clog.
+                # The page has curves, and a clog that was replayed.
                 self.draw("report", "s.h5", "--programs", BIN, "--output", "r.html", "--examples", 1)
                 page = (self.folder / "r.html").read_text()
                 self.assertIn("touched obstacles blue", page)

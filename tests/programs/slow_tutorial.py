@@ -1,8 +1,8 @@
 """Runs the commands of pages of the handbook as they are, one block after the other, in an empty folder; tutorial pages
 share one folder and run one after the other.
 
-Blocks of `bash` and `python` are run. The first line of a block of `text` must be among their output, except for its
-numbers, and every file that a page names must exist at the end.
+Blocks of `bash` and `python` are run. The first line of a block of `text` must be in their output, apart from its
+numbers. Every file that a page names must exist at the end.
 """
 
 import re

@@ -7,7 +7,7 @@ import numpy as np
 
 
 def edited(path, edit):
-    """@param edit  called with the open file, whose checksums and seal are then made to agree with it"""
+    """@param edit  is called with the open file; then checksums and seal are made to agree with the file"""
     content = path.read_bytes()
     path.write_bytes(content[:content.rindex(b"\nclogsweep seal")])
     with h5py.File(path, "r+") as file:
@@ -25,7 +25,7 @@ def edited(path, edit):
 
 
 def change(path, edit):
-    """@param edit  called with the rows, which it changes in place"""
+    """@param edit  is called with the rows, and changes them in place"""
     def edit_rows(file):
         rows = file["runs"][:]
         edit(rows)

@@ -1,4 +1,4 @@
-"""Runs the built programs as a person would: in an empty folder, by their command line."""
+"""Runs the built programs as a user would: in an empty folder, by their command line."""
 
 import fcntl
 import hashlib
@@ -15,7 +15,7 @@ import unittest
 import pandas
 
 BIN = pathlib.Path(os.environ["CLOG_BIN"])
-# The behaviour of mpirun itself differs between Open MPI and MPICH.
+# The tests have to know which mpirun this is, because those of Open MPI and MPICH behave differently.
 _mpi = re.search(r"^MPI: (.*) v?(\d+)",
                  subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout, re.MULTILINE)
 MPI, MPI_MAJOR = _mpi[1], int(_mpi[2])
@@ -23,23 +23,24 @@ STEPS_PER_SNAPSHOT = 2**18  # stopped runs resume from a snapshot
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MPIRUN = ROOT / "tests" / "mpirun.sh"
 
-# After this number of seconds a program counts as hanging. With sanitizers, on a busy machine, some take minutes.
+# After this number of seconds a program counts as hanging. With sanitizers, on a busy machine, some programs take
+# minutes.
 LONGEST = 1500
 
-# Small droplets in a small box: a run takes some hundredths of a second.
+# Small droplets in a small box, whose runs take some hundredths of a second.
 SMALL = ["vertices=64", "box=20", "obstacle-density=saturated"]
 QUICK = [*SMALL, "max-time=60"]
-# A sweep that tests share, see shared_sweep(): two parameter sets of two droplets; some clog.
+# A sweep that tests share, see shared_sweep(). It has two parameter sets with two droplets each; some of them clog.
 FEW = [*QUICK, "line-tension=1,3", "seeds=1..2"]
-# Long runs, each of several snapshots (four a second).
+# Long runs with several snapshots each (four per second).
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
          "--report-seconds=0.1", "--output", "s.h5"]
 FEW_LONG = [word.replace("1..6", "1") for word in SWEEP]
 # Two runs of seconds each: both are in progress at the first snapshot.
 SLOW = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05", "max-time=2e4", "seeds=1",
         "--report-seconds=0.1", "--output", "s.h5"]
-# The same for hours: these runs are in progress until something ends them, however long the test has to wait for the
-# processor.
+# The same runs, but for hours: they are in progress until something ends them, however long the test has to wait for
+# the processor.
 ENDLESS = [word.replace("max-time=2e4", "max-time=1e9") for word in SLOW]
 # Obstacles so close to each other that some seeds (53 and 64 of 51..70) leave no void for the release of the droplet.
 BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3", "obstacle-gap=0.06", "self-contact-range=0.1"]
@@ -47,7 +48,7 @@ BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", 
 TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]
 
 
-# Sweeps that several suites read. CTest empties the folder before the first suite that uses it.
+# The folder of sweeps that several suites read. CTest empties it before the first suite that uses it.
 if "CLOG_SHARED_SWEEPS" in os.environ:
     SHARED = pathlib.Path(os.environ["CLOG_SHARED_SWEEPS"])
     SHARED.mkdir(parents=True, exist_ok=True)
@@ -58,7 +59,7 @@ else:
 
 def shared_sweep(*arguments, program="clogsweep"):
     """The file that the program writes for these arguments. It is computed once for all suites of a CTest run, and is
-    read-only: a test that changes a file copies it first."""
+    read-only: a test that needs to change it makes a copy first."""
     command = [program, *map(str, arguments)]
     path = SHARED / (hashlib.sha256("\0".join(command).encode()).hexdigest()[:16] + ".h5")
     with open(path.with_suffix(".lock"), "w") as lock:
@@ -73,7 +74,7 @@ def shared_sweep(*arguments, program="clogsweep"):
 
 
 def undisturbed(sweep):
-    """The file of an undisturbed sweep, whose last two arguments are its --output."""
+    """The file of an undisturbed sweep. The last two arguments are --output and its value."""
     return shared_sweep(*sweep[:-2])
 
 
@@ -95,7 +96,7 @@ class ProgramTest(unittest.TestCase):
         return done
 
     def refuse(self, name, *arguments, words, **options):
-        """The program must exit with 2, print each of the words in one line, and write nothing."""
+        """Checks that the program exits with 2, prints one line that contains each of the words, and writes no file."""
         before = self.snapshot()
         done = self.run_program(name, *arguments, **options)
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
@@ -125,7 +126,7 @@ class ProgramTest(unittest.TestCase):
         return name
 
     def copy_sweep(self, name, *arguments, program="clogsweep"):
-        """Copies a shared sweep to a file of the test's own, which may be changed; replaces an existing file."""
+        """Copies a shared sweep to the test's own file, which may be changed. An existing file is replaced."""
         return pathlib.Path(shutil.copyfile(shared_sweep(*arguments, program=program), self.folder / name))
 
 
@@ -139,7 +140,7 @@ def table(path):
 
 
 class SweepTest(ProgramTest):
-    """Tests that look on while a sweep runs."""
+    """Tests that watch a sweep while it runs."""
 
     def start(self, *arguments, ranks=2, launcher=MPIRUN):
         process = subprocess.Popen([str(launcher), str(ranks), str(BIN / "clogsweep"), *arguments], cwd=self.folder,
@@ -149,7 +150,8 @@ class SweepTest(ProgramTest):
         return process
 
     def kill_all(self, process, more=()):
-        """Kills mpirun and its ranks, which have own process groups; `more` are ranks that may have lost their mpirun."""
+        """Kills mpirun and its ranks, which have their own process groups. @param more  ranks that may have lost their
+        mpirun"""
         for pid in [*self.ranks_of(process), process.pid, *more]:
             try:
                 os.kill(pid, signal.SIGKILL)
@@ -160,13 +162,13 @@ class SweepTest(ProgramTest):
 
     def ranks_of(self, process):
         children = children_of(process.pid)
-        if MPI == "MPICH":  # its mpirun has a process of its own between itself and the ranks
+        if MPI == "MPICH":  # MPICH's mpirun has another process between itself and the ranks
             return [rank for proxy in children for rank in children_of(proxy)]
         return children
 
     def until_in_time(self, attempt):
-        """On a busy machine a sweep may end too early for the test. Then attempt() returns nothing, and is
-        repeated."""
+        """Repeats attempt() until it returns something. It returns nothing if the sweep ended too early for the test,
+        as may happen on a busy machine."""
         for _ in range(20):
             if outcome := attempt():
                 return outcome

@@ -19,7 +19,7 @@ HASH = "[0-9a-f]{12}"
 
 
 class Sources(unittest.TestCase):
-    """A repository for the test, which the user's settings of git do not affect."""
+    """A repository for the test. The user's settings of git do not affect it."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="clog_build_info_")
@@ -58,7 +58,7 @@ class Sources(unittest.TestCase):
         return folder
 
     def said(self, folder=None):
-        """The description that a build of the folder would have: by git describe, and as a hash."""
+        """The description that a build of the folder would have: the output of git describe, and the hash."""
         folder, output = folder or self.sources, self.folder / "build_info.cpp"
         subprocess.run(["cmake", f"-DSOURCE_DIR={folder}", f"-DOUTPUT={output}", f"-DTEMPLATE={folder}/cmake/build_info.cpp.in",
                         "-DVERSION=1.2.3", "-P", folder / "cmake/write_build_info.cmake"], check=True)
@@ -116,7 +116,7 @@ class Programs(ProgramTest):
             with h5py.File(self.folder / name) as file:
                 self.assertEqual(file.attrs["version"].decode(), version)
                 self.assertEqual(file.attrs["git_describe"].decode(), described)
-                # Without the mark of changes the description is a hash; or both are unknown.
+                # Apart from the mark of changes the description is a hash, or both are unknown.
                 commit = file.attrs["git_hash"].decode()
                 self.assertRegex(commit, f"^({HASH}(-dirty)?|unknown)$")
         with h5py.File(self.folder / "s.h5") as file:

@@ -1,4 +1,5 @@
-"""clogfit calibrate: profiles of a simulated droplet with noise, in both kinds of units, recover its parameters."""
+"""Tests that clogfit calibrate recovers the parameters of a simulated droplet from profiles with noise, in both kinds
+of units."""
 
 import json
 import math
@@ -41,7 +42,7 @@ class Calibrate(OnATerminal):
         noisy = [v * (1 + 0.02 * chance.standard_normal(len(v))) for _ in range(2)]
         lines = [f"{a:.5g},{b:.5g},{c:.5g}" for a, b, c in zip(h, noisy[0], shape)]
         self.write("reduced.csv", "\n".join(["h [sigma], v [v_t], A", *lines]))
-        # The other file has units by hand: a droplet of 2 mm at 3 mm/s.
+        # The other file has laboratory units, converted by hand: a droplet of 2 mm at 3 mm/s.
         lines = [f"{25 * frame}, {2 * a:.4f}, {3 * b:.4f}" for frame, (a, b) in enumerate(zip(h, noisy[1]))]
         self.write("by_hand.csv", "\n".join(["# trial 2, 21 May", "t [ms], h [mm], v [mm/s]", *lines]))
         found = json.loads(self.succeed(
@@ -78,7 +79,7 @@ class Calibrate(OnATerminal):
         self.write("trial.csv", "\n".join(["h [sigma], v [v_t]", *(f"{0.1 * i},{1 - 0.05 * (i % 3)}" for i in range(-10, 11))]))
         ours, theirs = pty.openpty()
         self.addCleanup(os.close, ours)
-        # The calibration would take minutes.
+        # The calibration itself would take minutes.
         with subprocess.Popen([BIN / "clogfit", "calibrate", "trial.csv", "--orifice=0.7", "vertices=256", "--format=json"], cwd=self.folder,
                               stdout=subprocess.PIPE, stderr=theirs) as process:
             os.close(theirs)
@@ -121,7 +122,7 @@ class Calibrate(OnATerminal):
         with h5py.File(self.folder / "clogged.h5") as file:
             self.assertEqual(file["runs"]["status"][0], b"clogged")
         with h5py.File(self.folder / "channel.h5", "a") as file:
-            file.attrs["note"] = "changed by hand"  # which removes the seal
+            file.attrs["note"] = "changed by hand"  # this removes the seal
         done = self.succeed("clogfit", "deviation", "channel.h5", "channel.h5")
         self.assertIn("may go unnoticed", done.stderr)
 

@@ -18,7 +18,7 @@ sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.tools import rounded  # noqa: E402
 from clogsweep.reading import stored  # noqa: E402
 
-# Such droplets might travel a hundred diameters: a test may give their rows any distance up to that.
+# Droplets of these runs might travel a hundred diameters, so a test may give their rows any distance up to that.
 FAR = ["max-time=1", "terminal-speed=100"]
 # Ten runs whose distances follow the exponential law exactly.
 EXPONENTIAL = -np.log(1 - (np.arange(10) + 0.5) / 10)
@@ -31,7 +31,7 @@ class Profiles(ProgramTest):
         distances = [0.05, 0.1, 0.3, 1.0]
         speeds = [1 / (1 + 0.07 * d ** -1.25) for d in distances]
         self.write("reduced.csv", "\n".join(["d [sigma], v [v_t]", *(f"{d},{v}" for d, v in zip(distances, speeds))]))
-        # The same in a laboratory: a droplet of 2 mm at 0.5 mm/s.
+        # The same in units of a laboratory, for a droplet of 2 mm at 0.5 mm/s.
         self.write("mm.csv", "\n".join(["# tilt 5 deg", "frame, d [mm], v [mm/s]", *(f"7,{2 * d},{v / 2}" for d, v in zip(distances, speeds))]))
         for arguments in (["reduced.csv"], ["mm.csv", "--diameter", "2mm", "--speed=0.5 mm/s"]):
             fit = json.loads(self.succeed("clogfit", "drag", *arguments, "--format", "json").stdout)
@@ -44,7 +44,7 @@ class Profiles(ProgramTest):
         self.write("measured.csv", "h [sigma], v [v_t], A\n-0.5,0.55,1.05\n0,0.6,1.1\n0.5,0.9,1.0\n")
         self.write("simulated.csv", "h [sigma], v [v_t], A\n-1,1,1\n0,0.5,1.1\n1,1,1\n")
         found, = json.loads(self.succeed("clogfit", "deviation", "measured.csv", "simulated.csv").stdout)["deviations"]
-        # Simulated 0.75, 0.5, 0.75 and 1.05, 1.1, 1.05.
+        # The simulated values are v = 0.75, 0.5, 0.75 and A = 1.05, 1.1, 1.05.
         self.assertAlmostEqual(found["delta_v"], math.sqrt(((0.2 / 0.75) ** 2 + 0.2 ** 2 + 0.2 ** 2) / 3), places=12)
         self.assertAlmostEqual(found["delta_a"], math.sqrt((0.05 / 1.05) ** 2 / 3), places=12)
 
@@ -70,7 +70,7 @@ class Fit(ProgramTest):
         return pandas.read_hdf(self.copy_sweep("sweep.h5", *SMALL, *settings), "runs")
 
     def change(self, **columns):
-        """Writes other results into the rows of the sweep file. Adjusts what depends on a status."""
+        """Writes other results into the rows of the sweep file, and adjusts results that depend on the status."""
         if "status" in columns:
             status = np.array(columns["status"])
             columns.setdefault("clogged_by", np.where(status == b"clogged", b"certified", b"none"))
@@ -92,14 +92,14 @@ class Fit(ProgramTest):
         told = self.succeed("clogfit", "sweep.h5", "--pool", "max-time").stdout
         self.assertIn("4 runs repeat droplets of longer runs and do not count (--pool)\n", told)
         self.assertIn("groups that differ only in max-time are joined (--pool)\n", told)
-        # Another number of boxes is another array.
+        # With another number of boxes the array is another one.
         self.succeed("clogsweep", "merge", "short.h5", "wide.h5", "--output", "boxes.h5")
         group, = json.loads(self.succeed("clogfit", "boxes.h5", "--format", "json", "--pool=boxes,max-time").stdout)["groups"]
         self.assertEqual((group["runs"], group["repeated"]), (8, 0))
         self.refuse("clogfit", "sweep.h5", "--pool=max-time,seeds", words=["invalid --pool=max-time,seeds", "runs that differ in seeds"])
 
     def test_it_gives_the_reference_answer(self):
-        # The classic leukaemia trial: 21 runs with 9 ends and a total distance of 359.
+        # The classic leukaemia trial has 21 runs with 9 ends and a total distance of 359.
         self.sweep("seeds=1..21", *FAR)
         times = [6, 6, 6, 6, 7, 9, 10, 10, 11, 13, 16, 17, 19, 20, 22, 23, 25, 32, 32, 34, 35]
         clogged = [1, 1, 1, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0]
@@ -125,11 +125,11 @@ class Fit(ProgramTest):
         self.assertAlmostEqual(narrow["clogging_length_profile_lower"], group["clogging_length"], places=9)
         self.assertAlmostEqual(narrow["clogging_length_profile_upper"], group["clogging_length"], places=9)
 
-    # Runs in which some droplets rest for 20 t0 or more; no droplet clogs by wrapping
+    # In these runs some droplets rest for 20 t0 or more, and none clogs by wrapping
     DWELLING = ["seeds=1..8", "line-tension=0.05,0.3", "max-time=400"]
 
     def longest_first(self, table):
-        """Every row's dwells, length and place, from the longest back."""
+        """The dwells of every row, each with its length and place, from the longest to the earliest."""
         names = ["longest_dwell", *(f"earlier_dwell_{i}" for i in range(1, 8))]
         return [[(row[name], row[name + "_at"]) for name in names if row[name] > 0] for _, row in table.iterrows()]
 
@@ -155,7 +155,7 @@ class Fit(ProgramTest):
                 self.assertEqual(group["clogging_length"] is None, clogs == 0)
                 if clogs:
                     self.assertAlmostEqual(group["clogging_length"], total / clogs, places=12)
-                # The mechanism of a droplet that moved on is unknown; speeds are of all runs.
+                # The mechanism of a droplet that moved on is unknown. Speeds come from all runs.
                 of_clogs = usual[group["line_tension"]]
                 self.assertEqual(group["flowing"], 8 - clogs)
                 self.assertLessEqual(group["squeezed"], of_clogs["squeezed"])
@@ -181,7 +181,7 @@ class Fit(ProgramTest):
         usual = self.fit()["groups"]
         for dwell in (400, 1e9):
             self.assertEqual(self.fit("--dwell", dwell)["groups"], usual)
-        # The fit that stops earlier loses at most one dwell length for each droplet that was still moving.
+        # Compared with the usual fit, this one loses at most one dwell length for each droplet that was still moving.
         for (way, clogs), group in zip(results[-3], usual):
             self.assertEqual(clogs, group["clogs"])
             self.assertLess(group["total_distance"] - way, 0.05 * (group["flowing"] + 1))
@@ -221,11 +221,11 @@ class Fit(ProgramTest):
         self.assertEqual(fit["units"]["relative_speed_pooled_error"], "v_t")
         self.assertEqual(fit["units"]["clogging_length_wrapped_upper"], "sigma")
         self.assertLessEqual(set(fit["units"]), set(group))
-        self.assertNotIn("mean_speed", group)  # a column of the table, in other units
+        self.assertNotIn("mean_speed", group)  # the table has such a column, in other units
 
     def test_it_says_what_spoils_a_length(self):
         self.sweep("seeds=1..24", *FAR)
-        self.change(distance=[5.0] * 12 + [5.1] * 12, status=[b"clogged"] * 24)  # far from exponential
+        self.change(distance=[5.0] * 12 + [5.1] * 12, status=[b"clogged"] * 24)  # these distances are far from exponential
         fit = self.fit()
         group, = fit["groups"]
         self.assertEqual(group["doubts"], "not_exponential")
@@ -289,7 +289,7 @@ class Fit(ProgramTest):
         self.assertEqual([step["distance"] for step in group["survival"]], [0, 1, 2, 3])
         text = self.succeed("clogfit", "sweep.h5", "--from-distance=0.5").stdout
         self.assertIn("3 runs ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all runs", text)
-        # Mechanisms are also shown if all remaining runs clogged by the same one.
+        # Mechanisms are also shown if all remaining runs clogged by the same mechanism.
         self.assertRegex(self.succeed("clogfit", "sweep.h5", "--from-distance=3").stdout, "w/s/h/o.*\n.* 1/0/0/0 ")
         group, = self.fit()["groups"]
         self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (8, 6, 0))
@@ -347,20 +347,20 @@ class Fit(ProgramTest):
         self.assertEqual([group[name] for name in ("runs", "clogs", "broken", "flowing", "squeezed", "other")], [10, 4, 4, 2, 4, 0])
         self.assertEqual([group[name] for name in ("total_distance", "clogging_length", "break_up_length")], [55, 55 / 4, 55 / 4])
         self.assertTrue(group["break_up_length_lower"] < 55 / 4 < group["break_up_length_upper"])
-        # By hand: each end adds P just before it, divided by the runs at risk: 1/10 until the first run is censored at
-        # 5, then 6/10 of 1/5.
+        # Computed by hand: each end adds P just before it, divided by the number of runs at risk. This is 1/10 until
+        # the first run is censored at 5, then 6/10 of 1/5.
         broken = [(step["distance"], round(step["probability"], 12)) for step in group["incidence"]["broken"]]
         self.assertEqual(broken, [(2, 0.1), (3, 0.2), (7, 0.32), (8, 0.44)])
         clogged = [round(step["probability"], 12) for step in group["incidence"]["squeezed"]]
         self.assertEqual(clogged, [0.1, 0.2, 0.32, 0.44])
         self.assertEqual(set(group["incidence"]), {"squeezed", "broken"})
-        self.assertEqual(group["censored_distances"], [2, 3, 5, 7, 8, 10])  # without clogged runs
+        self.assertEqual(group["censored_distances"], [2, 3, 5, 7, 8, 10])  # clogged runs are not listed
         text = self.succeed("clogfit", "sweep.h5").stdout
         self.assertRegex(text, r"95 % +broken +lambda_b/sigma.*\n.* 4 +13\.\d+ ")
         self.assertIn("lambda_b: mean distance before break-up", text)
         self.assertNotIn("w/s/h/o", text)
-        # A droplet that rested for long counts as ended there, even if it broke later; otherwise it ends where it
-        # broke.
+        # A droplet that rested for long counts as ended at its place of rest, even if it broke later. Otherwise it ends
+        # where it broke.
         dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5") if name.startswith(("longest_dwell", "earlier_dwell"))]
         self.change(**{name: np.nan for name in dwells})
         self.assertEqual(self.fit("--dwell", 0.9)["groups"][0]["broken"], 4)
@@ -492,7 +492,7 @@ class Fit(ProgramTest):
             mine = rows[rows.lattice_angle == group["lattice_angle"]]
             slope = mine.lateral_displacement.sum() / mine.distance.sum()
             self.assertAlmostEqual(group["lateral_slope"], slope, places=12)
-            # A disk that is too large for the lattice's gaps follows its rows.
+            # Below the critical angle (25.7 degrees for a rigid disk in this lattice) a disk follows the rows of posts.
             self.assertAlmostEqual(slope, math.tan(math.radians(group["lattice_angle"])), delta=0.03)
             self.assertLess(group["lateral_slope_error"], 0.03)
             tangent = math.tan(math.radians(group["lattice_angle"]))

@@ -112,7 +112,7 @@ class Run(ProgramTest):
         travelled = centroid_x(polygons[-1]) - centroid_x(polygons[0])
         self.assertAlmostEqual(travelled, samples["distance"][-1], places=10)
         self.assertGreater(len(obstacles), 5)
-        # Vertices enter the contact range of obstacles by some hundredths of an edge, which is 0.05 long.
+        # Vertices may be inside the contact range of obstacles by some hundredths of an edge, which is 0.05 long.
         for x, y in polygons.transpose(0, 2, 1).reshape(-1, 2):
             gaps = np.hypot(obstacles[:, 0] - x, obstacles[:, 1] - y) - obstacles[:, 2] / 2
             self.assertGreater(gaps.min(), -0.002)
@@ -163,7 +163,8 @@ class Run(ProgramTest):
         self.succeed("clogrun", "array", *QUICK, "obstacle-gap=0.4", "seeds=2", "--write-obstacles", "array.csv", "--output", "a.h5")
         header = (self.folder / "array.csv").read_text().splitlines()[0]
         self.assertEqual(header, "x,y,diameter")
-        # With --obstacles a config's density has no effect, even if no array with the file's gap could have it.
+        # With --obstacles a density in the config has no effect, even if no array with the file's gap could have this
+        # density.
         self.write("dense.cfg", "obstacle-density = 2.5\n")
         self.succeed("clogrun", "array", "vertices=64", "box=20", "max-time=60", "seeds=2", "--config", "dense.cfg", "obstacle-density=12.5%", "--obstacles", "array.csv", "--output", "b.h5")
         first = pandas.read_hdf(self.folder / "a.h5", "runs").iloc[0]
@@ -183,7 +184,7 @@ class Run(ProgramTest):
         self.assertLess(row.distance, 2)
 
     def test_walls_that_hold_take_energy_and_never_give_any(self):
-        """Laws of walls in a whole run among obstacles. Only springs along the interface add energy."""
+        """Tests each law of walls in a whole run among obstacles. Only springs along the interface may add energy."""
         laws = {
             "friction": ["preset=elastic", "friction=0.2"],
             "traction": ["preset=elastic", "yield-traction=0.05"],
@@ -201,8 +202,8 @@ class Run(ProgramTest):
                 self.assertLess((energy + samples.dissipated_energy).pipe(np.ptp), 1e-4 * samples.dissipated_energy.iloc[-1])
 
     def test_a_droplet_that_creeps_along_walls_with_friction_is_not_certified(self):
-        # The droplet creeps for 3000 t0, then continues for 15 sigma. A search as early as without friction would
-        # certify a clog.
+        # The droplet creeps for 3000 t0, then continues for 15 sigma. If the search for a rest began as early as
+        # without friction, it would certify a clog.
         self.succeed("clogrun", "array", "preset=elastic", "friction=0.1", "line-tension=0.3", "vertices=256", "obstacle-gap=0.3", "obstacle-density=65%",
                      "box=50", "boxes=4", "seeds=6", "max-time=300", "--sample-interval=60", "--output", "creep.h5")
         with h5py.File(self.folder / "creep.h5") as file:
@@ -212,8 +213,8 @@ class Run(ProgramTest):
         self.assertEqual(table(self.folder / "creep.h5").status[0], "flowing")
 
     def test_a_droplet_at_rest_is_certified_although_its_walls_yield_many_times(self):
-        # Friction acts on both interfaces of the droplet. Its energy falls by a factor of 10 in 330 t0, so 2400 t0 is
-        # soon after the search.
+        # Friction acts on both interfaces of the droplet. The kinetic energy falls by a factor of 10 in 330 t0, so the
+        # search is shortly before 2400 t0.
         done = self.succeed("clogrun", "array", "preset=elastic", "friction=0.2", "line-tension=0.1", "vertices=256", "obstacle-gap=0.3",
                             "obstacle-density=saturated", "box=40", "seeds=1", "max-time=2400", "--output", "rest.h5")
         self.assertIn("clogged after r = 1.328", done.stdout)
@@ -246,7 +247,7 @@ class Run(ProgramTest):
                     self.assertRegex(page, rf"(?m)^\|[^|]*`{name}`[^|]*\| {re.escape(unit)} \|")
 
     def test_a_droplet_is_released_whose_springs_would_keep_it_sliding(self):
-        """The release was once refused, although a droplet of half the line tension was released."""
+        """This release was once refused, although a droplet with half the line tension was released."""
         done = self.succeed("clogrun", "array", "preset=robust", "vertices=64", "box=40", "line-tension=0.1", "obstacle-gap=0.4",
                             "seeds=1", "max-time=1", "--output", "r.h5")
         self.assertTrue(done.stdout.startswith("flowing after "), done.stdout)
@@ -312,7 +313,7 @@ class Run(ProgramTest):
         self.assertNotIn(": 0 s on", self.succeed("clogrun", "array", *SMALL, "max-time=0.1", "--dry-run", "--output", "run.h5").stdout)
         self.assertIn("on this machine", told)
         samples, polygons = map(int, re.search(r"# at most (\d+) samples and (\d+) polygons", told).groups())
-        # The output is a config, and gives the same run.
+        # The output is a config that gives the same run.
         self.write("told.cfg", told)
         self.succeed("clogrun", "array", "--config", "told.cfg", "--polygon-interval", 5, "--output", "run.h5")
         with h5py.File(self.folder / "run.h5") as file:

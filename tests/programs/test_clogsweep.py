@@ -15,9 +15,9 @@ import pandas
 import stored_rows
 from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest, SweepTest
 
-# Columns about where and how fast a row was computed, which are not results.
+# Columns that are not results, but say where and how fast a row was computed.
 CIRCUMSTANCES = ["wall_seconds", "processor_seconds", "rank", "host"]
-# Records in the file FORK_LOG which process has forked, and which has started MPI.
+# This library writes to the file FORK_LOG which process has forked, and which has started MPI.
 FORK_LOGGER = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -156,7 +156,7 @@ class Sweep(ProgramTest):
         self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-3])
         self.assertRegex(lines[-2], "^# at most [0-9.e+-]+ core-hours on this machine")
         self.assertRegex(lines[-1], self.EXPECTED + r"tried for [0-9.e+-]+ s in total, \d+ of them ended$")
-        self.assertLess(float(re.search("tried for ([^ ]+) s", lines[-1])[1]), 1.05 * elapsed)  # two figures
+        self.assertLess(float(re.search("tried for ([^ ]+) s", lines[-1])[1]), 1.05 * elapsed)  # the text has two figures
         self.assertEqual(self.snapshot(), {})
 
     def test_a_dry_run_estimates_from_stored_runs(self):
@@ -212,7 +212,7 @@ class Sweep(ProgramTest):
         self.assertNotIn("obstacle spacing", self.succeed("clogsweep", *keys, "seeds=1..8", "--dry-run").stdout)
         saturated = [*keys, "obstacle-density=saturated"]
         self.assertRegex(self.succeed("clogsweep", *saturated, "seeds=1..8", "--dry-run").stdout, r"# \d of \d runs clogged within one obstacle spacing \(0.5 sigma\)")
-        # The count includes runs outside the lists, as in clogfit.
+        # The count includes runs that are not in the lists, as in clogfit.
         self.succeed("clogsweep", *saturated, "seeds=1..8", "--output", "s.h5")
         self.assertIn("clogged within one obstacle spacing", self.succeed("clogsweep", *saturated, "seeds=1..9", "--dry-run", "--output", "s.h5").stdout)
         self.assertIn("below_spacing", self.succeed("clogfit", "s.h5", "--format", "csv").stdout)
@@ -317,7 +317,7 @@ class Stopped(SweepTest):
 
 
 class Isolated(ProgramTest):
-    """Tasks run in processes of their own."""
+    """Tests tasks that run in their own processes."""
 
     LONG = [*SMALL, "obstacle-gap=1.2", "--output", "s.h5"]
 
@@ -373,10 +373,10 @@ class Isolated(ProgramTest):
         sweep = ["seeds=1", "max-time=2e4", "--report-seconds=0.1"]
         process = self.start(*sweep)
         computing = self.computing_process(process)
-        # Before its first snapshot the run would restart.
+        # Before its first snapshot the run would begin again.
         self.wait_for(lambda: table(self.folder / "s.h5").steps.gt(STEPS_PER_SNAPSHOT).any())
         os.kill(computing, signal.SIGSTOP)
-        time.sleep(0.5)  # in which time the rank requests reports
+        time.sleep(0.5)  # in this time the rank requests reports
         process.send_signal(signal.SIGTERM)
         self.ended(process, 75)
         rows = table(self.folder / "s.h5")
@@ -384,7 +384,7 @@ class Isolated(ProgramTest):
         self.assertGreater(rows.distance[0], 0, "the last report counts")
         self.wait_for_end_of([computing])
         hung_at = rows.distance[0]
-        # The process hangs again, before its first report: its state is that of the stored row.
+        # The process hangs again before its first report, so its state is that of the stored row.
         process = self.start(*sweep[:2], "--report-seconds=100")
         os.kill(self.computing_process(process), signal.SIGSTOP)
         process.send_signal(signal.SIGTERM)
@@ -498,7 +498,7 @@ class Refusals(ProgramTest):
 
     def test_a_density_that_not_every_seed_reaches_is_refused_with_the_largest(self):
         keys = ["vertices=64", "box=20", "max-time=60"]
-        # The second of each pair exceeds the largest density by one in the fourth digit.
+        # The second number of each pair exceeds the largest density by one in the fourth digit.
         for geometry, too_large in [([], ["9", "2.623"]), (["obstacle-diameter-spread=0.5"], ["6", "3.766"])]:
             largest = f"{float(too_large[1]) - 0.001:.3f}"
             for density in too_large:

@@ -1,4 +1,5 @@
-"""Comparison of two sweeps' clogging lengths, several files read as one sweep, and events of a sweep."""
+"""Tests the comparison of the clogging lengths of two sweeps, several files that are read as one sweep, and the events
+of a sweep."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""clogfit curve: a smooth curve through the clogging lengths of a sweep, from rows with known distances."""
+"""Tests clogfit curve, a smooth curve through the clogging lengths of a sweep, with rows that have known distances."""
 
 import csv
 import io
@@ -16,7 +16,7 @@ from support import BIN, ROOT, SMALL, ProgramTest
 sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
 
-# Such droplets might travel a hundred diameters: a test may give their rows any distance up to that.
+# Droplets of these runs might travel a hundred diameters, so a test may give their rows any distance up to that.
 FAR = ["max-time=1", "terminal-speed=100", "seeds=1..6"]
 TENSIONS = [0.03, 0.1, 0.3, 1.0, 3.0]
 LENGTHS = [0.1, 1.0, 10.0, 1.0, 0.1]  # a peak at 0.3
@@ -143,7 +143,7 @@ class Curve(ProgramTest):
         self.sweep(FAR[0], FAR[2], "line-tension=0.1,0.3,1,3", "obstacle-gap=0.4,0.5", lengths=tensions)
         self.assertEqual([curve["common_obstacles"] for curve in self.curve("--key=line-tension")["curves"]], [True, True])
         self.assertIn(words, self.succeed("clogfit", "curve", "sweep.h5", "--key=line-tension").stdout)
-        # test_fitted_curves.py has keys that make another array, and seeds of its own.
+        # test_fitted_curves.py tests keys that change the array, and points with different seeds.
 
     def test_several_files_are_one_sweep(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))

@@ -1,4 +1,4 @@
-"""Damaged files: readers notice the damage, and salvage keeps intact parts."""
+"""Tests that readers notice damage of files, and that salvage keeps intact parts."""
 
 import contextlib
 import io
@@ -42,7 +42,7 @@ class Damage(ProgramTest):
         self.rows = table(self.file)
 
     def multiply_a_distance(self):
-        """Multiplies the distance of a clogged row by 16, as a single flipped bit of the exponent does."""
+        """Multiplies the distance of a clogged row by 16, as a flipped bit of the exponent might."""
         content = self.file.read_bytes()
         self.file.write_bytes(content.replace(struct.pack("<d", self.rows.distance[1]), struct.pack("<d", 16 * self.rows.distance[1])))
         self.assertNotEqual(self.file.read_bytes(), content)
@@ -124,7 +124,7 @@ class Damage(ProgramTest):
         self.assertIn("preset=viscous", self.succeed("clogfit", "s.h5").stdout)
 
     def test_what_verify_refuses_is_not_salvaged(self):
-        """A foreign file may match its checksums and still contain impossible values."""
+        """A file of somebody else may match its checksums and still contain impossible values."""
         def repeat_a_run(rows):
             rows[2] = rows[1]
             rows["task"][2] = 2
@@ -177,14 +177,14 @@ class Damage(ProgramTest):
         return copy
 
     def test_verify_tells_when_only_other_readers_refuse_a_copy(self):
-        """HDF5's checksum of a chunk includes its padding; our checksums cover rows and attributes."""
+        """HDF5's checksum of a chunk includes the padding, whereas our checksums cover only rows and attributes."""
         copy = self.copied()
         whole = copy.read_bytes()
         with h5py.File(copy) as file:
             chunks = {name: file[name].id.get_chunk_info(0) for name in ("runs", "row_checksums")}
             num_rows, row_size = len(file["runs"]), file["runs"].dtype.itemsize
         self.assertIn("all undamaged", self.succeed("clogsweep", "verify", "copy.h5").stdout)
-        last = {name: chunk.byte_offset + chunk.size - 1 for name, chunk in chunks.items()}  # last byte of the checksum
+        last = {name: chunk.byte_offset + chunk.size - 1 for name, chunk in chunks.items()}  # the last byte of the chunk's checksum
         for place in (*last.values(), chunks["runs"].byte_offset + num_rows * row_size):
             content = bytearray(whole)
             content[place] ^= 1
@@ -200,7 +200,8 @@ class Damage(ProgramTest):
                 (self.folder / "whole.h5").unlink()
 
     def test_python_does_not_read_a_copy_whose_description_is_damaged(self):
-        """Checksums cover bytes only: other names, types or positions would change the numbers."""
+        """Our checksums cover the bytes of rows only. With other names, types or positions of columns these bytes would
+        mean other numbers."""
         copy = self.copied()
         whole = copy.read_bytes()
         self.assertEqual(len(clogsweep.open(copy).rows), 6)
@@ -220,7 +221,8 @@ class Damage(ProgramTest):
         self.assertGreater(refused, 15)
 
     def test_the_check_of_a_copy_is_not_reused_for_a_changed_copy(self):
-        """The check was once cached by name and time, so a changed copy with the same time counted as undamaged."""
+        """Once, the result of the check was cached by name and time, so a changed copy with the same time counted as
+        undamaged."""
         copy = self.copied()
         clogsweep.open(copy)
         content = copy.read_bytes()
@@ -239,7 +241,8 @@ class Damage(ProgramTest):
             clogsweep.open(run)
 
     def test_little_memory_is_no_damage_and_no_crash(self):
-        """HDF5 and Open MPI crash without memory; an intact file that they could not load was once called damaged."""
+        """HDF5 and Open MPI crash if memory is short. Once, an intact file that they could not load was called
+        damaged."""
         if not may_limit_memory():
             self.skipTest("programs with sanitizers map more memory than any machine has")
         sweep = [*SETTINGS[:-1], "new.h5"]
@@ -253,11 +256,12 @@ class Damage(ProgramTest):
             for name, *arguments in [("clogfit", "s.h5"), ("clogsweep", "verify", "s.h5"), ("clogsweep", *sweep)]:
                 size = megabytes * 2**20
                 done = run_with(size, name, arguments)
-                # In a range of 150 kB above what loading takes, Highway's library ends the process before main().
+                # If memory exceeds what loading takes by less than 150 kB, Highway's library ends the process before
+                # main().
                 if done.returncode == -signal.SIGABRT and run_with(size - 2**18, name, arguments).returncode == 127:
                     continue
                 with self.subTest(program=name, arguments=arguments[:1], megabytes=megabytes):
-                    self.assertIn(done.returncode, (0, 2, 127), done.stderr)  # 127: libraries do not fit
+                    self.assertIn(done.returncode, (0, 2, 127), done.stderr)  # 127: the libraries do not fit into memory
                     self.assertNotIn("damaged", done.stderr)
                 told.append((done.returncode, "out of memory" in done.stderr))
         self.assertIn((2, True), told)
@@ -316,10 +320,11 @@ class Damage(ProgramTest):
             self.assertEqual(self.file.read_bytes(), before)
 
     def test_a_column_offset_beyond_the_row_is_refused(self):
-        """Memory outside the row was once shown as a value, by the offset of a member in the table's description."""
+        """With a wrong offset of a member in the table's description, memory outside the row was once shown as a
+        value."""
         content = bytearray(self.file.read_bytes()[:-stored.SEAL_SIZE])
         name = content.index(b"kinetic_energy_ratio\0")
-        offset = name + 24  # names are padded to eight bytes; the member's offset follows
+        offset = name + 24  # names are padded to eight bytes, and the member's offset follows
         self.assertLess(struct.unpack_from("<I", content, offset)[0], 2000)
         struct.pack_into("<I", content, offset, 60000)
         self.file.write_bytes(content)
@@ -328,10 +333,10 @@ class Damage(ProgramTest):
 
     def test_a_full_disk_ends_with_exit_code_2(self):
         def limit():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # SIGXFSZ would end the program
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # the program must ignore SIGXFSZ, which would end it
 
         for name, *arguments in [("clogsweep", *SETTINGS[:-1], "new.h5"), ("clogrun", "array", *QUICK, "seeds=1", "--output", "run.h5")]:
-            # Excludes a daemon of Open MPI and shared memory of MPICH, which would meet the limit, too.
+            # Without these settings, a daemon of Open MPI and the shared memory of MPICH would meet the limit, too.
             done = subprocess.run([BIN / name, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, preexec_fn=limit,
                                   env={**os.environ, "OMPI_MCA_ess_singleton_isolated": "1", "UCX_TLS": "self,tcp"})
             self.assertEqual(done.returncode, 2, done.stderr)

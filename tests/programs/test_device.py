@@ -1,4 +1,5 @@
-"""Devices of a user: files of circles in any form, walls, entrance, exit; drawings of devices, and pictures."""
+"""Tests devices of a user: files of circles in any form, walls, entrance and exit; drawings of devices, and pictures of
+them."""
 
 import contextlib
 import io
@@ -43,8 +44,8 @@ def csv(scale=1.0):
 
 class Walls(Analysis):
     def slide(self, angle, tolerance):
-        """Along a wall without friction, at an angle to the flow, a droplet has its terminal speed times the cosine;
-        its speed along the flow has the square of the cosine."""
+        """A droplet that slides along a wall without friction, at an angle to the flow, has its terminal speed times
+        the cosine of the angle. Its speed along the flow has the square of the cosine."""
         tangent = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
         for radius, spacing, vertices in ((0.05, 0.0167, 128), (0.1, 0.0333, 64)):
             normal = np.array([-tangent[1], tangent[0]])
@@ -153,7 +154,7 @@ class Devices(Walls):
         group, = json.loads(self.succeed("clogfit", "s.h5", "--dwell", 1000, "--format", "json").stdout)["groups"]
         self.assertEqual((group["clogs"], group["flowing"]), (1, 0))
         self.assertNotIn("at rest", self.succeed("clogfit", "s.h5", "--dwell", 1000).stdout)
-        # The droplet rests from the beginning, for a time of one digit: the advice is a shorter time.
+        # The droplet rests from the beginning to max-time, 1000 t0. The advice must be a shorter time.
         self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=9.44", "entrance-from=4.9", "entrance-to=5.1",
                      "line-tension=1", "vertices=64", "max-time=1000", "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "t.h5")
         self.assertIn("--dwell=900 counts it as clogged", self.succeed("clogfit", "t.h5").stdout)
@@ -210,7 +211,7 @@ class Devices(Walls):
         for command, output in [("device", "device"), ("report", "report.html")]:
             self.draw(command, "s.h5", "--output", output, "--programs", BIN)
         self.assertTrue("2 of 2 runs finished (2 passed)" in (self.folder / "report.html").read_text())
-        # Merged with groups whose droplets do pass.
+        # The file is merged with groups whose droplets do pass.
         self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=6", "side-walls=on", "release=entrance", "entrance-from=4.5", "entrance-to=5.5", "exit=6",
                      "line-tension=1", "vertices=64", "max-time=500", "seeds=1..2", "--output", "t.h5")
         self.succeed("clogsweep", "merge", "s.h5", "t.h5", "--output", "both.h5")
@@ -340,7 +341,7 @@ class Drawings(Analysis):
         space.add_text("not a post")
         drawing.saveas(self.folder / "device.dxf")
         self.assert_posts(self.circles("device.dxf"), 1e-6)
-        # clogsweep reads the file as the printed command describes it.
+        # clogsweep reads the file by means of the printed command.
         self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-2], "max-time=5", "seeds=1", "--output", "s.h5")
         self.assertEqual(len(table(self.folder / "s.h5")), 1)
 
@@ -410,7 +411,7 @@ class Drawings(Analysis):
 
 
 class WrongDrawings(Analysis):
-    """Contents of a drawing that the user may not have intended."""
+    """Tests drawings with contents that the user may not have intended."""
 
     COMMAND = ["--droplet", "200um", "--output", "posts"]
 
@@ -480,7 +481,7 @@ class WrongDrawings(Analysis):
         self.assertIn("skipped: 2 LINE", told)
         with mock.patch.dict(sys.modules, {"shapely": None, "shapely.ops": None, "shapely.geometry": None}):
             told = self.said_of("other", circles=[(800, 300), (1600, 300)], lines=lines)
-        self.assertIn("2 outlines or lines as long as the device are taken for walls", told)  # lines of its edge
+        self.assertIn("2 outlines or lines as long as the device are taken for walls", told)  # these are lines of the device's edge
         self.assertIn("skipped: 11 LINE", told)
         self.assertIn("install python3-shapely", told)
 
@@ -572,7 +573,8 @@ def real(value):
 
 
 def gdsii(outlines, metres, more=b"", in_user_units=0.001):
-    """A GDSII file by hand. @param outlines  in layer 1, in user units; @param metres  in a user unit"""
+    """A GDSII file, written byte by byte. @param outlines  in layer 1, in user units; @param metres  length of a user
+    unit"""
     date = struct.pack(">12h", *[0] * 12)
     begin = [record(0, 2, struct.pack(">h", 600)), record(1, 2, date), record(2, 6, b"LIB "), record(3, 5, real(in_user_units) + real(in_user_units * metres)),
              record(5, 2, date), record(6, 6, b"TOP ")]
@@ -583,7 +585,7 @@ def gdsii(outlines, metres, more=b"", in_user_units=0.001):
 
 
 class OtherTools(Analysis):
-    """Drawings in the form in which other programs write them."""
+    """Tests drawings in the form in which other programs write them."""
 
     def device(self, name, *, layer=None, region=None, posts=None, droplet=200e-6, unit=None, tolerance=0.04):
         self.drawing = readers.read(self.folder / name, layer, posts)
@@ -592,7 +594,7 @@ class OtherTools(Analysis):
         return shapes.understood(self.drawing, unit or self.drawing.metres, droplet, tolerance, 0)
 
     def circles_of(self, name, **options):
-        """Converts the drawing to micrometres from the device's lower left corner."""
+        """Circles of the drawing, in micrometres from the device's lower left corner."""
         device = self.device(name, **options)
         self.assertEqual([outline.tolist() for outline in device.others], [])
         circles = device.circles * device.droplet_micrometres
@@ -669,7 +671,7 @@ class OtherTools(Analysis):
     def test_svg_shows_what_its_clips_leave(self):
         circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))
         left = '<clipPath id="left"><rect width="600" height="1200"/></clipPath>'
-        turned = '<clipPath id="turned" transform="rotate(45)"><rect y="-200" width="1000" height="700"/></clipPath>'  # holds (400, 300)
+        turned = '<clipPath id="turned" transform="rotate(45)"><rect y="-200" width="1000" height="700"/></clipPath>'  # contains the point (400, 300)
         styles = "<style>.left, .other {fill:red; clip-path:url(#left)}</style>"
         moved = circles.replace("cx", 'transform="translate(500 0)" cx')
         for body in [f'{left}<g clip-path="url(#left)">{circles}</g>', f'<defs>{left}</defs><g style="clip-path: url(&quot;#left&quot;)">{circles}</g>', f'{styles}{left}<g class="post left">{circles}</g>',
@@ -735,7 +737,7 @@ class OtherTools(Analysis):
 
     def test_dxf_polylines_with_a_width(self):
         drawing, space = self.dxf()
-        donut = [(475, 600, 50, 50, 1), (525, 600, 50, 50, 1)]  # a disc of 100, as DONUT draws it
+        donut = [(475, 600, 50, 50, 1), (525, 600, 50, 50, 1)]  # a disc of diameter 100, in the form in which DONUT draws it
         space.add_lwpolyline(donut, format="xyseb", close=True)
         space.add_lwpolyline([(950, 600, 1), (1050, 600, 1)], format="xyb", close=True, dxfattribs={"const_width": 20})
         np.testing.assert_allclose(self.saved(drawing), [(500, 600, 100), (1000, 600, 120)], atol=0.02)
@@ -858,7 +860,8 @@ class OtherTools(Analysis):
             return record(kind) + record(0x12, 6, name) + transform + size + record(16, 3, struct.pack(f">{2 * len(corners)}i", *(1000 * value for corner in corners for value in corner))) + record(17)
 
         def polygons(references):
-            """@param references  in TOP to MID, which contains an oblique array of POST"""
+            """@param references  references in the cell TOP to the cell MID, which contains an oblique array of the
+            cell POST"""
             date = record(5, 2, struct.pack(">12h", *[0] * 12))
             post = record(8) + record(13, 2, struct.pack(">h", 1)) + record(14, 2, struct.pack(">h", 0)) + record(16, 3, struct.pack(">8i", 0, 0, 30000, 0, 0, 20000, 0, 0)) + record(17)
             cells = record(7) + date + record(6, 6, b"POST") + post + record(7) + date + record(6, 6, b"MID\0")

@@ -1,5 +1,5 @@
-"""Tests the surroundings of a sweep: names with any byte, moved links, file modes and foreign journals. No row is lost
-in any of them."""
+"""Tests the surroundings of a sweep: names with any byte, moved links, file modes and foreign journals. In no case is a
+row lost."""
 
 import errno
 import os
@@ -16,7 +16,7 @@ OWN = ["obstacle-layout=file", "box=10", "vertices=64", "max-time=30"]
 
 
 class Limits(SweepTest):
-    """Limits of a shell or batch system: the program names them in one line."""
+    """Tests limits of a shell or batch system, which the program must name in one line."""
 
     def test_too_few_open_files(self):
         for most in (8, 10, 12, 18):
@@ -34,7 +34,8 @@ class Limits(SweepTest):
         self.assertEqual(done.stderr.count("\n"), 1)
 
     def under(self, what, limits):
-        """Root has no limit on processes, so as root another user runs a copy of the program."""
+        """Runs the program under a limit. Root has no limit on processes, so as root the test runs a copy of the
+        program as another user."""
         program = shutil.copy(BIN / "clogsweep", self.folder)
         os.chmod(self.folder, 0o777)
 
@@ -49,7 +50,7 @@ class Limits(SweepTest):
 
 
 class Names(SweepTest):
-    """A file of circles may have any name that the file system accepts."""
+    """Tests that a file of circles may have any name that the file system accepts."""
 
     def sweep_among(self, name):
         with open(os.fsencode(self.folder) + b"/" + name, "w") as file:
@@ -86,10 +87,11 @@ BRIEF = [word.replace("max-time=2e4", "max-time=5e3") for word in SLOW]
 
 
 class Places(SweepTest):
-    """A path is resolved once; changes by others affect neither their files nor a row."""
+    """Tests that a path is resolved only once. If others change it meanwhile, neither their files nor any row is
+    affected."""
 
     def begin(self, sweep, output):
-        """A sweep that has published a table."""
+        """Starts a sweep, and waits until it has published a table."""
         process = self.start(*sweep[:-1], output, ranks=1)
         self.wait_for(lambda: (self.folder / output).exists() or process.poll() is not None)
         return process
@@ -144,14 +146,14 @@ ACCESS_LIST = "system.posix_acl_access"
 
 
 def access_list(reader):
-    """An access list by which this user may read a file that only its owner may write."""
+    """An access list by which this user may read a file, which only its owner may write."""
     nobody = 2**32 - 1
     entries = [(0x01, 6, nobody), (0x02, 4, reader), (0x04, 0, nobody), (0x10, 4, nobody), (0x20, 0, nobody)]  # owner, a user, group, mask, others
     return struct.pack("<I", 2) + b"".join(struct.pack("<HHI", *entry) for entry in entries)
 
 
 class Access(SweepTest):
-    """The owner determines who may read a file, before and after it is rewritten."""
+    """Tests that the owner determines who may read a file, before and after it is rewritten."""
 
     GROWN = [*FINISHED[:-1], "seeds=100..104"]
 
@@ -189,14 +191,15 @@ class Access(SweepTest):
         try:
             os.setxattr(file, ACCESS_LIST, access_list(12))
         except OSError as error:
-            self.assertEqual(error.errno, errno.ENOTSUP)  # this file system has no access lists
+            self.assertEqual(error.errno, errno.ENOTSUP)  # the file system has no access lists
             return
         self.grow()
         self.assertEqual(os.getxattr(file, ACCESS_LIST), access_list(12))
 
 
 class LinksOfOthers(SweepTest):
-    """Links are followed as with fs.protected_symlinks: where everybody may make links, only the user's own."""
+    """Tests that links are followed as with fs.protected_symlinks: in a folder where everybody may make links, only the
+    user's own links."""
 
     def open_folder(self):
         folder = self.folder / "open"
@@ -213,7 +216,7 @@ class LinksOfOthers(SweepTest):
 
     def test_links_of_others_are_refused(self):
         if os.geteuid() != 0:
-            return  # without root nobody can make links of somebody else
+            return  # only root can make links that belong to somebody else
         folder = self.open_folder()
         for name in ("s.h5", "t.h5.journal"):
             (folder / name).symlink_to(self.folder / "elsewhere")
@@ -259,10 +262,10 @@ int unlinkat(int folder, const char* name, int flags) {
 
 
 class Refusals(SweepTest):
-    """A file system that fails after it has stored the rows."""
+    """Tests a file system that fails after it has stored the rows."""
 
     def where(self, fails, **more):
-        """The environment of a program for which these calls fail."""
+        """The environment in which these system calls of a program fail."""
         self.write("shim.c", SHIM)
         subprocess.run(["cc", "-shared", "-fPIC", "-o", "shim.so", "shim.c", "-ldl"], cwd=self.folder, check=True)
         return {**os.environ, "LD_PRELOAD": str(self.folder / "shim.so"), "FAILS": fails, "ASAN_OPTIONS": "verify_asan_link_order=0", **more}

@@ -32,7 +32,7 @@ from clogsweep.tools import rounded
 from clogsweep.labels.groups import Groups
 from clogsweep.paper import arrays, dilute
 
-# All of them take a few seconds: coarse droplets, short paths
+# Coarse droplets and short paths: all runs together take a few seconds.
 TINY = {
     **{name: ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4", "obstacle-density=80%"]
        for name in ("clogging-robust", "clogging-friction", "clogging-elastic", "clogging-filling", "clogging-saturated")},
@@ -57,7 +57,7 @@ SINGLE_RUNS = ("1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "D")
 
 
 class Survival(unittest.TestCase):
-    """Figure C2's curve, from numbers like those of clogfit."""
+    """Tests the curve of figure C2, with numbers like those of clogfit."""
 
     STEPS = [{"distance": 2.0, "probability": 0.75, "lower": 0.13, "upper": 0.96}, {"distance": 5.0, "probability": 0.375, "lower": 0.01, "upper": 0.8}]
 
@@ -89,7 +89,7 @@ class Survival(unittest.TestCase):
 
 
 class Parts(unittest.TestCase):
-    """Pictures of numbers and outlines that no program computed."""
+    """Tests pictures of made-up numbers and outlines."""
 
     def test_the_legend_of_displacements_has_the_order_of_the_curves_at_their_ends(self):
         def run(end):
@@ -132,7 +132,7 @@ class Parts(unittest.TestCase):
             self.assertGreater(np.abs(np.diff(colours, axis=0)).max(axis=1).min(), 0.3)
 
     def test_a_legend_stays_off_error_bars(self):
-        # Bars fill all but the lower right, or everything; the points alone leave room above them.
+        # The bars fill everything except the lower right, or everything. Above the points alone there would be room.
         for lowest in (6, 0):
             axes = style.new_figure().subplots()
             right = np.arange(12) > 8
@@ -195,10 +195,10 @@ class Drawn(Analysis):
         stored_rows.change(sweep, edit)
 
     def assert_clogs(self, sweep, *names):
-        """Marks one clog as wrapped, because so short a sweep wraps no droplet, and checks the figures."""
+        """Marks one clog as wrapped, because no droplet wraps in so short a sweep, and checks the figures."""
         self.call_wrapped(sweep, -1)
         before = table(sweep)
-        # Repeated commands run nothing.
+        # A repeated command runs nothing.
         self.figures(*names)
         pandas.testing.assert_frame_equal(table(sweep), before, check_exact=True)
         for name in names:
@@ -210,10 +210,10 @@ class Drawn(Analysis):
         task = clogs.task.iloc[-1]
         with h5py.File(sweep.parent.parent / "runs" / f"clogging-friction-{task}.h5") as file:
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
-        # A figure drawn from existing files must not show another droplet than its label.
+        # A figure that is drawn from existing files must show the droplet that its label names.
         self.call_wrapped(sweep, 0)
         self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-friction-", "leave out --draw-only"])
-        # clogsweep refuses other settings than the file's, with its own message.
+        # clogsweep refuses settings that differ from the file's, with its own message.
         self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--set", "clogging-friction:box=30", words=["box"])
 
     def assert_report(self, sweep):
@@ -231,7 +231,7 @@ class Drawn(Analysis):
         self.assertIn("command_line: clogsweep", page)
 
     def assert_curves(self, names, *more):
-        """@param names  sweep and quantity, by the name of a figure with numbers of clogfit"""
+        """@param names  sweep and quantity of each figure with numbers of clogfit, by the figure's name"""
         done = self.figures(*names, *more, "--ranks", 1)
         self.assertNotIn("Warning", done.stderr)
         for name in [*names, *more]:
@@ -248,13 +248,13 @@ class Drawn(Analysis):
             with self.subTest(figure=name):
                 self.assert_drawn(name)
         self.assert_passage_and_survival()
-        # --draw-only uses existing files, whatever the settings; nothing runs.
+        # --draw-only uses existing files, whatever the settings are, and runs nothing.
         before = self.times_of_runs()
         self.assertEqual(len(before), num_runs)
         self.figures(*redrawn, "--draw-only", "--set", "channel:max-time=200")
         self.figures(*names, "--set", "seeds=1..3")
         self.assertEqual(self.times_of_runs(), before)
-        # clogsweep refuses other settings than the sweep's, with its own message.
+        # clogsweep refuses settings that differ from the sweep's, with its own message.
         self.refuse_analysis("figures", redrawn[0], "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
 
     def assert_passage_and_survival(self):
@@ -275,7 +275,7 @@ class Drawn(Analysis):
 
 
 class Figures(Drawn):
-    """Some figures of every kind; slow_figures has all of them."""
+    """Tests some figures of every kind; slow_figures tests all figures."""
 
     def test_curves_show_what_clogfit_says(self):
         self.assert_curves({"7a": ("clogging-sp", "clogging_length"), "8ca": ("speed", "capillary_number")}, "9b")
@@ -461,7 +461,8 @@ class Pictures(Analysis):
     def test_edges_marked_as_touching_are_those_that_the_program_counts(self):
         # One post leaves gaps at both side walls that are narrower than the droplet.
         self.write("post.csv", "3,0.9,1\n")
-        # Uneven edges, whose chords touch at other places than the interface; contact at the surface and off it
+        # The edges are uneven, so their chords touch at other places than the interface. Contact is tested at the
+        # surface and off it.
         for name, points_per_vertex, keys in [
             ("surface", 2, ["preset=elastic", "vertices=32", "line-tension=0.3,1", "box=20"]),
             ("off", 2, ["contact-range=half-vertex", "vertices=32", "line-tension=1", "box=20"]),
@@ -529,7 +530,7 @@ class Pictures(Analysis):
             self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, "--frames", film, "--output", "r.h5", words=["own4.", "it exists"])
         after = self.snapshot()
         self.assertEqual({name: after[name] for name in before}, before)
-        # The command replaces an earlier page or picture of ours.
+        # The command replaces an earlier page or picture that it has made.
         self.write("report.html", "<!DOCTYPE html>\n<title>an earlier one</title>\n")
         self.draw("report", "s.h5", "--output", "report.html", "--programs", BIN, "--examples", 0)
         for _ in range(2):
@@ -588,7 +589,7 @@ class Pictures(Analysis):
             low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
             self.assertTrue((run.polygons[frame].min(axis=1) > low).all() and (run.polygons[frame].max(axis=1) < high).all())
             self.assertGreater(1, (high - low).max() / 10, "the droplet can be seen")
-            # The file has obstacles wherever the camera looks.
+            # The file contains obstacles wherever the camera looks.
             self.assertLess(run.obstacles[:, 0].min(), low[0] + 0.5)
             self.assertGreater(run.obstacles[:, 0].max(), high[0] - 0.5)
             shown.append([text.get_text() for text in axes.texts if text.get_visible()])
@@ -600,7 +601,8 @@ class Pictures(Analysis):
         self.assertGreater(len(run.times), 1000)
         self.assertEqual(frames[-1], len(run.times) - 1)
         self.assertLessEqual(len(frames), 100)
-        # The droplet moves too far for every tenth frame: the film shows the end, in steps that the eye can follow.
+        # In ten frames the droplet moves too far for the eye. So the film shows only the end, in steps that the eye can
+        # follow.
         self.assertGreater(frames[0], 0)
         steps = np.abs(np.diff(trajectory.centroids(run.polygons)[frames], axis=0)).sum(axis=1)
         self.assertLess(steps.max(), 2 * film.LONGEST_STEP)
@@ -650,7 +652,7 @@ class Pictures(Analysis):
         self.assertEqual([float(frame.get("timestep")) for frame in frames], times.tolist())
         last = xml.parse(self.folder / frames[-1].get("file"))
         points = self.numbers(last, "Points").reshape(-1, 3)
-        # First come the vertices, then the middles of the edges.
+        # The vertices come first, then the middles of the edges.
         np.testing.assert_array_equal(points[::2, :2], polygons[-1].T)
         piece, = last.findall(".//Piece")
         self.assertEqual(int(piece.get("NumberOfPoints")), len(points))

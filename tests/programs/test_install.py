@@ -1,4 +1,5 @@
-"""Tests an installation by cmake --install where nothing else is installed, and one of the Python package by pip."""
+"""Tests an installation by cmake --install in an environment without anything else, and an installation of the Python
+package by pip."""
 
 import os
 import pathlib
@@ -26,13 +27,13 @@ class Installation(unittest.TestCase):
         cls.folder = pathlib.Path(folder.name)
         first = cls.folder / "first"
         cls.called("cmake", "--install", BIN.parent, "--prefix", first)
-        # Moves the installation, so that a program that depends on its old place fails.
+        # The installation is moved, so that a program that depends on its old place fails.
         cls.prefix = cls.folder / "moved"
         first.rename(cls.prefix)
 
     @classmethod
     def called(cls, *command, **options):
-        # Only the installation and the system are visible.
+        # Programs see only the installation and the system.
         environment = {"PATH": f"{cls.folder}/moved/bin:{BIN.parent}/launcher:/usr/bin:/bin", "HOME": str(cls.folder), "OMPI_ALLOW_RUN_AS_ROOT": "1",
                        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONDONTWRITEBYTECODE": "1",
                        "PYTHONPATH": f"{cls.folder}/moved/lib/python3/dist-packages", "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "")}
@@ -45,7 +46,7 @@ class Installation(unittest.TestCase):
 class Installed(Installation):
     def test_nothing_knows_where_it_was_built(self):
         cache = (BIN.parent / "CMakeCache.txt").read_text()
-        # The sanitizers' own tables contain the full path of every source; nobody installs such a build.
+        # In a build with sanitizers, their tables contain the full path of every source. Nobody installs such a build.
         sources = [] if "CLOG_SANITIZE:STRING=address" in cache else [ROOT, BIN.parent]
         for path in self.prefix.rglob("*"):
             self.assertFalse(path.is_symlink(), path)
@@ -75,7 +76,7 @@ class Installed(Installation):
         self.assertIn("line-tension = 0.05,0.1,0.2,0.25,0.3,0.4,0.6", said)
 
     def test_the_script_for_slurm_finds_what_is_installed(self):
-        # Runs a copy of the script in another folder, as Slurm does.
+        # A copy of the script runs in another folder, as under Slurm.
         copy = shutil.copy(self.prefix / "share/clogsweep/jobs/slurm.sh", self.folder / "slurm_script")
         self.called("bash", copy, *KEYS[:-1], "seeds=1", "--output", "slurm.h5")
         self.assertEqual(len(pandas.read_hdf(self.folder / "slurm.h5", "runs")), 1)
@@ -86,7 +87,7 @@ class Installed(Installation):
         self.called("cmake", "-G", "Ninja", "-S", example, "-B", self.folder / "example", f"-DCMAKE_PREFIX_PATH={self.prefix}")
 
     def completed(self, *words, function="_clogsweep"):
-        """The words that bash offers for the last word."""
+        """The words that bash offers to complete the last word."""
         script = f"""
             compopt() {{ :; }}
             . {self.prefix}/share/bash-completion/completions/{words[0]}

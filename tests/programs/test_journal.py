@@ -1,4 +1,4 @@
-"""Figures for a journal, and rows of a sweep in files for other programs."""
+"""Tests figures for a journal, and files with the rows of a sweep for other programs."""
 
 import itertools
 
@@ -24,7 +24,8 @@ class Journal(Analysis):
         return clogsweep.open(shared_sweep(*keys), BIN).fit(lab=self.folder / "lab.cfg")
 
     def assert_tidy(self, picture):
-        """Labels of ticks and axes and words of the legend are on the page, and none covers another."""
+        """Checks that the labels of ticks and axes and the words of the legend are on the page, and that none covers
+        another."""
         axes, = picture.figure.axes
         picture.figure.canvas.draw()
         texts = list(axes.get_legend().get_texts())

@@ -1,5 +1,6 @@
-"""Every version 1.x reads a sweep that version 1.0.0 wrote. With the same model_version (11), it computes the same rows
-and continues the sweep; a version with another one refuses to, which these tests must then say.
+"""Tests that every version 1.x reads a sweep that version 1.0.0 wrote. With the same model_version (11), it also
+computes the same rows and continues the sweep. If a version has another model_version, it must refuse to continue, and
+these tests have to be changed.
 
     clogsweep line-tension=1,3 model=dp vertices=32 obstacle-gap=0.2 obstacle-density=0.5 box=20 boxes=2 max-time=1000 \
         seeds=1..4 --instruction-set=baseline --output written-by-1.0.0.h5

@@ -18,7 +18,7 @@ from clogsweep.drawing import measured  # noqa: E402
 from clogsweep.results import fit  # noqa: E402
 from clogsweep.tools.errors import UserError  # noqa: E402
 
-# Survival after leukaemia, with and without maintenance chemotherapy: data set `aml` of R's package survival 3.5-3.
+# Survival after leukaemia, with and without maintenance chemotherapy: the data set `aml` of R's package survival 3.5-3.
 AML = {"Maintained": "9 1, 13 1, 13 0, 18 1, 23 1, 28 0, 31 1, 34 1, 45 0, 48 1, 161 0",
        "Nonmaintained": "5 1, 5 1, 8 1, 8 1, 12 1, 16 0, 23 1, 27 1, 30 1, 33 1, 43 1, 45 1"}
 LAB = "diameter = 2 mm\nangle = 20 deg\nspeed = 7 mm/s\n"
@@ -51,8 +51,8 @@ class Lengths(ProgramTest):
         for name, expected in [("probability", 0.490909090909), ("standard_error", 0.1641932672211), ("lower", 0.1673309097769), ("upper", 0.753399790371)]:
             self.assertAlmostEqual(steps[4][name], expected, places=9)
         self.assertEqual(maintained["censored_distances"], [13, 28, 45, 161])
-        # The table of the Python module. summary(..., times=161), and the last step of the other group, whose bounds R
-        # does not know either
+        # Expected values for the table of the Python module: summary(..., times=161), and the last step of the other
+        # group, for which R gives no bounds either.
         groups = [*told["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
         known = types.SimpleNamespace(told={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
         end, not_censored, none = (fit.Fit.survival(known, group).iloc[-1].to_dict() for group in range(3))
@@ -98,7 +98,7 @@ class Lengths(ProgramTest):
 
 
 class Beside(ProgramTest):
-    """Comparison of measured distances with those of a sweep."""
+    """Tests the comparison of measured distances with the distances of a sweep."""
 
     def setUp(self):
         super().setUp()
@@ -127,7 +127,8 @@ class Beside(ProgramTest):
         found = self.compare("sweep.h5", "own.csv")
         self.assertEqual([(one["wall"], one["line_tension"]) for one in found], [(wall, tension) for wall in ("glass", "steel") for tension in self.groups])
         self.assertEqual({one["clogs_here"] for one in found}, {0, 2})
-        # The ratio of two lengths whose droplets all clogged follows Snedecor's F with 2 d and 2 d degrees of freedom.
+        # If all droplets clogged, the ratio of the two lengths follows Snedecor's F, each length with two degrees of
+        # freedom per clog.
         one = next(one for one in found if one["wall"] == "glass" and one["clogs_there"] == 2)
         quantile = scipy.stats.f.ppf(0.975, 4, 4)
         self.assertAlmostEqual(one["ratio_lower"], one["ratio"] / quantile, places=6)

@@ -1,4 +1,4 @@
-"""The Python module clogsweep, as users call it in a notebook."""
+"""Tests the Python module clogsweep as users call it in a notebook."""
 
 import json
 import os
@@ -67,7 +67,7 @@ class Module(Analysis):
             self.assertEqual(fit.groups[name].isna().tolist(), [False, True, True], name)
         self.assertEqual([group["relative_speed"] is None for group in fit.told["groups"]], [False, True, True])
         axes, = fit.speeds().figure.axes
-        self.assertEqual([bars.lines[0].get_xdata().tolist() for bars in axes.containers], [[0.1, 0.7]])  # of all runs
+        self.assertEqual([bars.lines[0].get_xdata().tolist() for bars in axes.containers], [[0.1, 0.7]])  # the speeds are those of all runs
         of_page = report.table_of_lengths(fit.known, fit.told["doubts"], table(self.folder / "s.h5"))
         cells = re.findall(r"<td><span>[^<]*</span><small>( \(mean of \d of \d runs: [^<]*\))</small></td>", of_page)
         self.assertEqual([re.search(r"\(.* runs", cell)[0] for cell in cells], ["(mean of 3 of 4 runs", "(mean of 2 of 4 runs"])

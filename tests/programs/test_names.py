@@ -1,4 +1,5 @@
-"""Names and words with any bytes are shown as text, and outputs of the Python package are complete, and in UTF-8."""
+"""Tests that names and words with any bytes are shown as text, and that outputs of the Python package are complete and
+in UTF-8."""
 
 import json
 import os
@@ -77,7 +78,7 @@ class Names(Analysis):
 
 
 class Words(Analysis):
-    """A foreign file with arbitrary words in its columns and attributes"""
+    """Tests a foreign file with arbitrary words in its columns and attributes."""
 
     def setUp(self):
         super().setUp()

@@ -1,4 +1,5 @@
-"""The cells of the gallery's notebook, with fewer and shorter runs: the module has everything that they call.
+"""Runs the cells of the gallery's notebook with fewer and shorter runs, to test that the module has everything that
+they call.
 
 slow_notebook tests whether they print the stored outputs.
 """
@@ -12,7 +13,7 @@ from drawing import Analysis
 from support import BIN, ROOT
 
 NOTEBOOK = ROOT / "docs" / "gallery" / "notebook.ipynb"
-# Commands that take long, and their replacements
+# Commands that take long, and shorter ones that replace them
 SHORTER = {"mpirun -np 2 clogsweep": str(BIN / "clogsweep"), "line-tension=0.2,0.3,0.5,1,2": "line-tension=0.3,1,3", "box=40": "box=20",
            "max-time=2000": "max-time=100", "seeds=1..12": "seeds=1..2", "most=4": "most=1", "interval=2": "interval=10", "most_frames=100": "most_frames=2"}
 

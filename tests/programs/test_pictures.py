@@ -49,7 +49,8 @@ class Calls(Analysis):
                 self.refuse_analysis(command, "nope.h5", "--output", "x", *self.needs(command), words=["cannot read nope.h5 (no such file); check the name"])
 
     def test_critical_angles_are_those_of_rigid_disks_and_drawn_from_the_table_too(self):
-        # A rigid disk follows the rows up to sin t = (sigma + sigma_ob)/(2 a) = 1/3 (Frechette and Drazer 2009).
+        # A rigid disk follows the rows up to the angle t with sin t = (sigma + sigma_ob)/(2 a) = 1/3 (Frechette and
+        # Drazer 2009).
         self.succeed("clogsweep", "obstacle-layout=lattice", "lattice=square,triangular", "pitch=3", "obstacle-diameter=1", "line-tension=1,3",
                      "terminal-speed=0.1", "vertices=64", "box=200", "max-time=1000", "seeds=1", "lattice-angle=15,18.5,20.7,25", "--output", "s.h5")
         printed = self.draw("critical-angle", "s.h5", "--format", "csv", "--programs", BIN).stdout
@@ -147,7 +148,7 @@ class Looks(Analysis):
         self.assertTrue(low < 0.5 and high > 3, (low, high))
 
     def test_two_presets_in_one_picture_have_a_curve_each(self):
-        # K_l is a number in robust and follows from the line tension in elastic.
+        # K_l is a given number in robust, but follows from the line tension in elastic.
         self.succeed("clogsweep", *SMALL, "line-tension=0.3,1", "seeds=1..2", "--output", "robust.h5")
         self.succeed("clogsweep", *SMALL, "line-tension=0.3,1", "seeds=1..2", "preset=elastic", "friction=0.05", "--output", "elastic.h5")
         groups = Groups(json.loads(self.succeed("clogfit", "robust.h5", "elastic.h5", "--format", "json").stdout))
@@ -165,7 +166,7 @@ class Looks(Analysis):
         self.assertIn("moved by $0.05", axes.get_xlabel())
         self.assertEqual([curve.get_label() for curve in axes.containers], [r"$\Gamma = 0.05$", r"$\Gamma = 0.3$"])
         soft, stiff = axes.containers
-        # No soft droplet rests, so arrows show bounds.
+        # No soft droplet rests, so arrows show lower bounds.
         self.assertTrue(np.isnan(soft.lines[0].get_xydata()[:, 1]).all())
         bounds, = [line for line in axes.lines if line.get_marker() is style.LOWER_BOUND and len(line.get_xdata()) > 0]
         places, lengths = stiff.lines[0].get_xydata().T
@@ -253,7 +254,7 @@ class Looks(Analysis):
             caption = self.fit("box=20", "max-time=20", "line-tension=0.5,1", "seeds=1", *given).caption()
             for word in ("$N_v = 64$", density):
                 self.assertEqual(word in caption, word in words, caption)
-            self.assertNotIn(r"\Gamma_\mathrm{w}", caption)  # a film of water, as by default
+            self.assertNotIn(r"\Gamma_\mathrm{w}", caption)  # there is a film of water, which is the default
 
     def test_a_passage_is_drawn_over_h_with_a_colour_bar_as_high_as_the_axes(self):
         self.succeed("clogrun", "channel", "vertices=64", "orifice=0.8", "start=-1", "end=1", "--polygon-interval", 10, "--output", "run.h5")
@@ -321,7 +322,7 @@ class Looks(Analysis):
     def test_the_last_frame_of_a_film_is_the_end_of_the_run(self):
         self.copy_sweep("run.h5", "array", *QUICK, "--polygon-interval", 10, program="clogrun")
         run = trajectory.read(self.folder / "run.h5")
-        # The row looks like a certified clog, whose equilibrium lies beyond the last frame.
+        # The row is made to look like a certified clog, whose equilibrium lies beyond the last frame.
         run.row["distance"] = run.table["distance"][-1] + 0.01
         moving = film.Film(run, film.chosen_frames(run, 50), "speed", 20)
         moving.show(len(moving) - 1)

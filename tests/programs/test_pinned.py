@@ -1,4 +1,4 @@
-"""--instruction-set determines every bit of a row, whatever else the processor supports."""
+"""Tests that --instruction-set determines every bit of a row, whatever else the processor supports."""
 
 import os
 import subprocess
@@ -13,9 +13,10 @@ from support import TIMING, ProgramTest, table
 PLAIN = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F"}
 COSINES = "import math; print([math.cos(0.01 * i).hex() for i in range(10000)])"
 
-# The release of droplets of 80 vertices uses sines and cosines that differ; those of large line tension soon clog.
+# The release of droplets with 80 vertices uses sines and cosines that would differ. Droplets of large line tension clog
+# soon.
 POLYGONS = ["vertices=80", "box=20", "obstacle-density=saturated", "obstacle-gap=0.3", "line-tension=log(0.3,1,3)", "max-time=100", "seeds=1..3"]
-# The angle of this lattice (8 columns over 69 rows) differs.
+# The angle of this lattice (8 columns over 69 rows) would differ.
 DISKS = ["model=sp", "wall-stiffness=10,100", "obstacle-layout=lattice", "lattice-angle=6.6135",
          "obstacle-diameter=0.3", "obstacle-gap=0.2", "box=35", "max-time=100", "seeds=1..3"]
 

@@ -1,4 +1,4 @@
-"""Sweeps of points, of lists of words, and in parts; merged files, and selected rows."""
+"""Tests sweeps of points, sweeps over lists of words, sweeps in parts, merged files and selected rows."""
 
 import json
 import unittest

@@ -1,4 +1,5 @@
-"""--until-precision adds seeds where lambda is not precise enough, and the same seeds after any interruption."""
+"""Tests that --until-precision adds seeds where lambda is not precise enough, and that it adds the same seeds after any
+interruption."""
 
 import json
 import re
@@ -8,7 +9,7 @@ import h5py
 import pandas
 from support import QUICK, TIMING, ProgramTest, shared_sweep, table
 
-# Every droplet clogs at Gamma = 2; few do at 0.3 in so short a time.
+# At Gamma = 2 every droplet clogs; at Gamma = 0.3 few do in so short a time.
 SWEEP = [*QUICK, "obstacle-gap=0.3", "line-tension=0.3,2", "seeds=1..4", "--until-precision=75%", "--most-seeds=14"]
 
 
@@ -66,7 +67,7 @@ class Precision(ProgramTest):
     def test_a_lower_precision_finishes_runs_of_a_higher_one(self):
         more = [*SWEEP[:-2], "--until-precision=30%", "--most-seeds=60"]
         begin = hours = 0.00004
-        for _ in range(200):  # until a stop comes after a later round has begun
+        for _ in range(200):  # until a stop comes in a later round than the first
             done = self.run_program("clogsweep", *more, "--output", "s.h5", f"--max-hours={hours}")
             if done.returncode == 0:  # the sweep ended before: start again
                 (self.folder / "s.h5").unlink()

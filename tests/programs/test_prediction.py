@@ -1,4 +1,4 @@
-"""Clogging lengths predicted from droplets on two obstacles, where the answer has a closed form."""
+"""Tests clogging lengths predicted from droplets on two obstacles, in cases whose answer has a closed form."""
 
 import math
 import os
@@ -54,7 +54,7 @@ class Geometry(unittest.TestCase):
 
 
 class Predicted(Analysis):
-    """One pair of obstacles with a gap of 0.5, in a box of 20."""
+    """Tests predictions for one pair of obstacles with a gap of 0.5, in a box of 20."""
 
     def pair(self, name, degrees, beside=0.0, fall=3):
         half_x, half_y = (0.4 * part(math.radians(degrees)) for part in (math.sin, math.cos))

@@ -1,5 +1,5 @@
-"""python3 -m clogsweep refine adds values and seeds where the fitted curve needs them, and the same ones after any
-interruption."""
+"""Tests that python3 -m clogsweep refine adds values and seeds where the fitted curve needs them, and that it adds the
+same ones after any interruption."""
 
 import contextlib
 import functools
@@ -29,7 +29,7 @@ from clogsweep.tools.errors import UserError  # noqa: E402
 
 SCHEMA = json.loads(subprocess.run([BIN / "clogsweep", "--schema"], check=True, capture_output=True, text=True).stdout)
 NUMBERS = {key["key"]: key for key in SCHEMA["keys"] if key.get("role") == "physics" and key["kind"].startswith("number")}
-# Keys without a curve (of channels), or with a search of their own.
+# Keys that have no curve (keys of channels), or that have their own search.
 ELSEWHERE = {name for name, key in NUMBERS.items() if key["scope"] == "channel"} | {"lattice-angle"}
 GOAL = "--until=curve=70%"
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT / "analysis")}
@@ -85,7 +85,7 @@ class EveryKey(ProgramTest):
         return Membership(keys, SCHEMA, values, functools.partial(self.tasks, keys, settings))
 
     def rows(self, tasks, copies):
-        """Rows of the tasks, with zeros and empty texts in all columns that are equal in all of them."""
+        """Rows of the tasks. Columns in which the tasks do not differ contain zeros and empty texts."""
         rows = pandas.DataFrame(0.0, index=range(copies * len(tasks)), columns=[column["name"] for column in SCHEMA["columns"]])
         for column in SCHEMA["columns"]:
             if column["kind"] in ("word", "text"):
@@ -97,21 +97,21 @@ class EveryKey(ProgramTest):
         return rows.assign(task=range(len(rows)), seed=range(1, len(rows) + 1), model="dp", vertices=64.0)
 
     def check_membership(self, keys, settings, values):
-        """Exactly the rows that have the parameters of a value belong to it."""
+        """Checks that a row belongs to a value if, and only if, it has the parameters of this value."""
         members, rows = self.members(keys, settings, values), self.rows(self.tasks(keys, settings, values), 2)
         others = []
         for column in SCHEMA["columns"]:
             name = column["name"]
             if column.get("parameter_role") not in ("physics", "numerics") or name in {NUMBERS[key]["column"] for key in keys}:
                 continue
-            other = rows.iloc[-1:].copy()  # a row of another sweep, which differs in this column alone
+            other = rows.iloc[-1:].copy()  # a row of another sweep, which differs only in this column
             other[name] = "other" if rows[name].dtype == object else other[name].fillna(0) * 1.01 + 7
             others.append(other.assign(task=len(rows) + len(others)))
         found = members.of_values(pandas.concat([rows, *others]))
         self.assertEqual(list(zip(found["task"], found["values"])), list(enumerate([*values, *values])))
 
     def check_peak(self, name, settings, values):
-        """The search finds the peak of a known curve, in the middle of its range."""
+        """Checks that the search finds the peak of a known curve, which is in the middle of its range."""
         search = CurveSearch([name], [values], [1, 2], 100.0, Options(Goal("peak", 0.001), math.inf, 100, False))
         members = self.members([name], settings, search.candidates)
         position = np.log(np.array(search.candidates)[:, 0] / values[0]) / math.log(values[-1] / values[0])
@@ -170,7 +170,7 @@ class Values(unittest.TestCase):
 
 
 class Choice(unittest.TestCase):
-    """The choice of blocks of seeds on 41 places, whose errors are equal within groups of three."""
+    """Tests the choice of blocks of seeds among 41 places. Errors of neighbouring places are correlated."""
 
     NUMBER = 41
 
@@ -269,7 +269,7 @@ class Refine(RefineTest):
     def test_an_unfinished_round_is_completed_before_another_is_planned(self):
         self.refine("line-tension", *SWEEP, "--until=curve=95%", "--output", "s.h5")
         (path,) = self.folder.glob("s.h5.refine-*.csv")
-        path.write_text(path.read_text() + "1.5,1001..1003\n")  # stored, but not begun
+        path.write_text(path.read_text() + "1.5,1001..1003\n")  # the points are stored, but their round has not begun
         self.refine("line-tension", *SWEEP, "--until=curve=95%", "--output", "s.h5")
         self.assertEqual(sorted(table(self.folder / "s.h5").query("line_tension == 1.5 and seed > 1000").seed), [1001, 1002, 1003])
 
@@ -367,7 +367,7 @@ class Refine(RefineTest):
                 self.assertEqual(self.run_refine("line-tension", *SWEEP, GOAL, "--output", "s.h5", launcher=["bash", "-c", words]).returncode, code)
 
 
-# Three seconds of a core: droplets follow the rows up to about 19 degrees.
+# A search that takes a core three seconds: droplets follow the rows up to about 19 degrees.
 LATTICE = ["obstacle-layout=lattice", "obstacle-gap=2", "obstacle-diameter=1", "vertices=64", "terminal-speed=0.1", "box=100", "seeds=1"]
 
 
@@ -382,7 +382,7 @@ class CriticalAngle(RefineTest):
         rows = table(self.folder / "s.h5")
         self.assertLess(len(rows), 15)
         for row in rows.itertuples():
-            # A droplet that follows the rows has the tangent of their angle as its slope; a droplet that leaves them
+            # The slope of a droplet that follows the rows is the tangent of their angle. A droplet that leaves the rows
             # goes to the other side.
             if row.lattice_angle <= lower + 0.01:
                 self.assertLess(math.tan(math.radians(row.lattice_angle)) - row.lateral_displacement / row.distance, 0.05)
@@ -424,7 +424,7 @@ class CriticalAngle(RefineTest):
 
 
 class Optimiser(ProgramTest):
-    """The ten lines of code in docs/developer/optimiser.md"""
+    """Runs the ten lines of code in docs/developer/optimiser.md."""
 
     def test_a_script_may_choose_the_points_and_goes_on_when_called_again(self):
         page = (ROOT / "docs" / "developer" / "optimiser.md").read_text()

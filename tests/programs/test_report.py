@@ -1,4 +1,4 @@
-"""The page of a sweep in a browser, as a reader uses it."""
+"""Tests the page of a sweep in a browser, as a reader uses it."""
 
 import base64
 import json
@@ -28,9 +28,9 @@ POINT = "svg.chart .point"
 
 
 def setUpModule():
-    """One browser for all tests, because starting one takes seconds."""
+    """Starts one browser for all tests, because starting a browser takes seconds."""
     options = webdriver.ChromeOptions()
-    # A container has little shared memory, and root has no sandbox.
+    # In a container shared memory is small, and for root there is no sandbox.
     for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1280,900"):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
@@ -40,9 +40,9 @@ def setUpModule():
 
 
 class Browser(ProgramTest):
-    """One page for all tests of a class, each of which loads it again."""
+    """Tests of one page. Each test of a class loads the page again."""
 
-    KEYS: list[str]  # of the sweep
+    KEYS: list[str]  # keys of the sweep
     browser: webdriver.Chrome
 
     @classmethod
@@ -65,7 +65,7 @@ class Browser(ProgramTest):
 
     def read_page(self):
         self.browser.get(self.page.as_uri())
-        self.point_at(self.find("h1"))  # moves the mouse away from where another test left it
+        self.point_at(self.find("h1"))  # another test may have left the mouse elsewhere
 
     def point_at(self, element):
         ActionChains(self.browser).move_to_element(element).perform()
@@ -126,9 +126,9 @@ class Lengths(Browser):
             for name in ("runs", "clogs"):
                 self.assertEqual(shown[name], str(group[name]))
             self.assertEqual(shown["seeds"], "1 to 4")
-            # Few runs clogged, so clogfit's sentence about this appears.
+            # Few runs clogged, so clogfit's sentence about few clogs appears.
             self.assertIn("more seeds are needed", shown["doubts"])
-            # Only the point's own curve is bright in the legend.
+            # In the legend only the point's own curve is bright.
             bright = first_chart.find_elements(By.CSS_SELECTOR, ".legend.of")
             self.assertEqual(len(bright), 1)
             self.assertIn(point.get_attribute("data-groups"), bright[0].get_attribute("data-groups").split())

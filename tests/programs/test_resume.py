@@ -1,4 +1,4 @@
-"""Sweeps that are stopped, changed or wrong: no row is lost, and the same command resumes them."""
+"""Tests sweeps that are stopped, changed or wrong: no row may be lost, and the same command must resume them."""
 
 import json
 import os
@@ -17,15 +17,16 @@ from support import (BIN, BLOCKED, ENDLESS, FEW_LONG, LONGEST, MPI, QUICK, ROOT,
 
 class Resumed(SweepTest):
     def journal(self):
-        """Number of the journal's records, and of records with snapshots."""
+        """The number of records in the journal, and how many of them have snapshots."""
         words = self.run_program("clogsweep", "verify", "s.h5").stdout
         found = re.search(r"s.h5.journal: (\d+) records?, (\d+) of them with snapshots", words)
         return (int(found[1]), int(found[2])) if found else (0, 0)
 
     def stop_with_unfinished_runs(self, sweep):
-        """Stops the sweep where a run has a snapshot, if need be at a later attempt. @return rows of unfinished runs"""
+        """Stops the sweep while a run has a snapshot, which may take several attempts. @return rows of unfinished
+        runs"""
         for attempt in range(100):
-            # A busy machine needs longer for this.
+            # Each attempt runs longer, because a busy machine needs longer for a snapshot.
             done = self.run_program("clogsweep", *sweep, f"--max-hours={0.0001 * 1.05**attempt:.6f}")
             if done.returncode != 75:
                 (self.folder / "s.h5").resolve().unlink()  # the sweep is complete: start again
@@ -49,7 +50,7 @@ class Resumed(SweepTest):
     def test_a_signal_stops_and_the_same_command_resumes(self):
         for signal_number in (signal.SIGUSR1, signal.SIGINT, signal.SIGTERM):
             process, error = self.until_in_time(lambda: self.stop_with_a_snapshot(SLOW, signal_number))
-            if signal_number == signal.SIGUSR1:  # a second after other signals, mpirun kills what is left
+            if signal_number == signal.SIGUSR1:  # a second after any other signal, mpirun kills the remaining ranks
                 self.assertIn("the same command resumes the sweep", error)
                 rows = table(self.folder / "s.h5")
                 self.assertGreater((rows.status == "interrupted").sum(), 0)
@@ -92,7 +93,8 @@ class Resumed(SweepTest):
         self.assertFalse((self.folder / "s.h5").exists())
 
     def hold_while_it_runs(self, ranks):
-        """@return the sweep's process and those of its ranks, which are stopped; nothing if the sweep ended before"""
+        """@return the sweep's process and the processes of its ranks, which are stopped; nothing if the sweep ended
+        before"""
         process = self.start(*SLOW, ranks=ranks)
 
         def runs():
@@ -196,7 +198,7 @@ class Resumed(SweepTest):
         self.assertIn(", all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
         journal = self.folder / "s.h5.journal"
         content = bytearray(journal.read_bytes())
-        content[500] ^= 1  # of the first record
+        content[500] ^= 1  # a byte of the first record
         journal.write_bytes(content + b"the torn end of a kill")
         verified = self.run_program("clogsweep", "verify", "s.h5")
         self.assertEqual(verified.returncode, 1)
@@ -227,7 +229,7 @@ class Resumed(SweepTest):
             self.assertEqual((self.folder / name).read_text(), name)
 
     def test_a_table_that_cannot_be_made_leaves_no_journal(self):
-        # The draft's name is longer than a file name may be, the journal's name is not.
+        # The name of the draft is too long for a file, the name of the journal is not.
         self.refuse("clogsweep", *SWEEP[:-1], 240 * "s", words=["cannot create", "File name too long"])
 
     def test_many_sessions_with_long_commands_fit(self):
@@ -333,7 +335,7 @@ class Resumed(SweepTest):
         self.refuse("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "clog-energy=1e-16", "gravity=vertex",
                     "perimeter-spring=mean", "--output", "s.h5",
                     words=["clog-energy=1e-16 (file: 1e-17)", "gravity=vertex (file: area)", "another --output"])
-        # Other texts of the same numbers count as equal.
+        # Different texts for the same numbers count as equal.
         done = self.succeed("clogsweep", "vertices=64", "box=2e1", "max-time=20", "seeds=1", "--output", "s.h5")
         self.assertIn("nothing left to do", done.stderr)
 
@@ -377,7 +379,8 @@ class Resumed(SweepTest):
 
 
 class Batch(ProgramTest):
-    """The scripts for batch systems, with the systems' own commands replaced by ones that only take notes."""
+    """Tests the scripts for batch systems. The commands of the systems are replaced by commands that only write down
+    their calls."""
 
     def script(self, name, *arguments, **environment):
         for command in ("scontrol", "qsub"):
@@ -399,7 +402,7 @@ class Batch(ProgramTest):
         return ["vertices=64", "box=20", "obstacle-gap=1.2", "seeds=1..20", *more, "--output", str(self.folder / "s.h5")]
 
     def warn(self, process, signal_number=signal.SIGUSR1):
-        """A warning interrupts the job's runs, and the job queues again."""
+        """Checks that a warning interrupts the job's runs, and that the job queues again."""
         self.wait_for(lambda: process.poll() is not None or (
             (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()))
         process.send_signal(signal_number)

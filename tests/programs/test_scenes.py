@@ -1,4 +1,5 @@
-"""Sweeps of channels, flat walls and user-supplied circles: the same keys as for one run, one row for each."""
+"""Tests sweeps of channels, flat walls and user-supplied circles: they have the same keys as single runs, and a row for
+each run."""
 
 import json
 import math
@@ -24,12 +25,12 @@ OWN = ["obstacles=posts.csv", "box=10", "vertices=64", "max-time=60"]
 
 
 def read_rows(path):
-    """The table's rows, with columns as attributes."""
+    """The rows of the table, with columns as attributes."""
     return list(table(path).itertuples(index=False))
 
 
 class BreakUp(Analysis):
-    """A droplet that sinks on one circle, a tenth of its diameter beside the middle."""
+    """Tests a droplet that sinks on one circle, a tenth of the droplet's diameter beside the middle."""
 
     KEYS = ["obstacles=one.csv", "box=20", "vertices=64", "max-time=250", "break-up-neck=0.03"]
 
@@ -82,7 +83,7 @@ class Channels(Analysis):
         row = rows[1]
         self.succeed("clogrun", "channel", *CHANNEL, "line-tension=0.6", "--sample-interval", 0.001, "--output", "r.h5")
         with h5py.File(self.folder / "r.h5") as file:
-            samples = file["trajectory"][1:]  # the row has samples of the checks, not of the release
+            samples = file["trajectory"][1:]  # the row takes account of samples at checks, not at the release
         largest = np.argmax(samples["shape_parameter"])
         self.assertEqual(row.largest_shape_parameter, samples["shape_parameter"][largest])
         self.assertEqual(row.largest_shape_parameter_at, samples["h"][largest])
@@ -92,8 +93,8 @@ class Channels(Analysis):
         slowest = np.argmin(fallen["speed_ratio"])
         self.assertEqual((row.smallest_relative_speed, row.smallest_relative_speed_at), (fallen["speed_ratio"][slowest], fallen["h"][slowest]))
         self.assertTrue(np.isnan(row.sag))
-        # Two caps on rounded tips have a shape parameter of 1.0952 (tests/core/scene). The widest shape occurs in the
-        # orifice.
+        # Two caps on rounded tips have a shape parameter of 1.0952 (tests/core/scene). The largest shape parameter
+        # occurs in the orifice.
         self.assertAlmostEqual(row.largest_shape_parameter, 1.0952, delta=0.01)
         self.assertLess(abs(row.largest_shape_parameter_at), 0.05)
 
@@ -147,7 +148,7 @@ class Channels(Analysis):
         page = (self.folder / "r.html").read_text()
         self.assertEqual((page.count("<svg"), page.count("<img")), (4, 0))
 
-        # Each point has the number of its group, and each marker shows how its run ended.
+        # Each point has its group's number, and each marker shows how the run ended.
         axes = style.figure_of(passages.draw_curves, Groups(fit), "largest_shape_parameter").axes[0]
         self.assertEqual(axes.get_xlabel(), labels.AXES["line_tension"])
         drawn = [(line.get_xdata()[0], line.get_ydata()[0], line.get_marker()) for line in axes.lines if len(line.get_xdata()) == 1]
@@ -207,7 +208,7 @@ class Channels(Analysis):
             keys = [word for word in CHANNEL if word.split("=")[0] not in names]
             self.refuse("clogsweep", *keys, "line-tension=1", *words, "--output", "s.h5", words=told)
         self.refuse("clogsweep", "orifice=0.6", "obstacle-layout=random", "--output", "s.h5", words=["orifice=0.6", "obstacle-layout=channel"])
-        self.succeed("clogsweep", "orifice=0.7", "vertices=64", "max-time=1", "--output", "s.h5")  # implies a channel
+        self.succeed("clogsweep", "orifice=0.7", "vertices=64", "max-time=1", "--output", "s.h5")  # this key implies a channel
         self.assertEqual([row.obstacle_filling for row in read_rows(self.folder / "s.h5")], ["channel"])
         self.refuse("clogrun", "channel", "obstacle-layout=wall", "--output", "r.h5", words=["obstacle-layout=channel"])
         self.refuse("clogrun", "array", "obstacle-layout=channel", "--output", "r.h5", words=["clogrun channel"])
@@ -235,7 +236,7 @@ class Walls(Analysis):
         self.succeed("clogsweep", "obstacle-layout=wall", "model=sp", "wall-stiffness=0.5,5", "--output", "s.h5")
         for row, stiffness in zip(read_rows(self.folder / "s.h5"), [0.5, 5], strict=True):
             self.assertAlmostEqual(row.sag, np.pi / (16 * stiffness), delta=1e-5)
-        # A disk has no outline that the report could show.
+        # The report has no outline to show, because a disk has none.
         self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
         page = (self.folder / "r.html").read_text()
         self.assertEqual((page.count("<svg"), page.count("<img")), (3, 0))
@@ -317,8 +318,8 @@ class OwnCircles(ProgramTest):
         self.assertNotIn("leaves y=", told)
 
     def test_droplets_that_fall_through_a_lane_met_nothing(self):
-        # Posts between two walls at y = 1 and 7 of a device that is 8 wide. Behind the walls there is a lane of 1.7, in
-        # which a droplet touches nothing.
+        # Posts between two walls at y = 1 and 7, in a device that is 8 wide. Behind the walls there is a lane of width
+        # 1.7, in which a droplet touches nothing.
         walls = [(0.53 * i % 16, y) for i in range(30) for y in (1, 7)] + [(1.0 + 2 * i, 0.5 * (i % 2) + y) for i in range(8) for y in (2, 3.1, 4.2, 5.3)]
         keys = ["box=8", "boxes=2", "release=anywhere", "vertices=64", "line-tension=4", "terminal-speed=0.1", "max-time=100", "seeds=1..12"]
         (self.folder / "walls.csv").write_text("x,y,diameter\n" + "".join(f"{x:.4f},{y},0.3\n" for x, y in walls))
@@ -339,7 +340,8 @@ class OwnCircles(ProgramTest):
         self.succeed("clogsweep", "verify", "s.h5")
 
     def test_the_length_between_two_walls_is_that_of_the_droplets_that_met_them_in_any_unit(self):
-        # 60 posts in two walls at y = 1 and 7, with a lane of 1.7 behind them, and a few columns of posts in between.
+        # 60 posts form two walls at y = 1 and 7, with a lane of width 1.7 behind them. Between the walls there are a
+        # few columns of posts.
         walls = [(round((i + 0.5) * 16 / 30, 4), y) for i in range(30) for y in (1, 7)]
         walls += [(1 + 4 * i, 1.75 + 0.75 * j + 0.3 * (i % 2)) for i in range(4) for j in range(7)]
         keys = ["box=8", "boxes=2", "release=anywhere", "vertices=64", "line-tension=3", "terminal-speed=0.1", "max-time=150", "seeds=1..20"]
@@ -357,7 +359,7 @@ class OwnCircles(ProgramTest):
         self.assertGreater(clogs, 0)
         self.assertAlmostEqual(group["clogging_length_met"], (met.distance - met.first_contact_at).sum() / clogs, places=9)
         self.assertLess(group["clogging_length_met"], group["clogging_length"] / 2)
-        # Default keys of devices do not appear.
+        # Keys of devices that have their defaults do not appear.
         text = self.succeed("clogfit", "walls.csv.h5").stdout
         for word in ("side_walls", "entrance", "exit=", " length="):
             self.assertNotIn(word, text)

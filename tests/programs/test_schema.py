@@ -1,4 +1,5 @@
-"""A sweep over any key is drawn correctly, and its clogs are found again. slow_schema tests whole pages."""
+"""Tests that a sweep over any key is drawn correctly, and that its clogs are found again. slow_schema tests whole
+pages."""
 
 import json
 import unittest
@@ -11,7 +12,7 @@ from clogsweep import style
 from clogsweep.drawing import clogs, curve
 from clogsweep.labels.groups import Groups
 
-# Settings for keys that apply only to certain runs, and for words, which take no list
+# Settings for keys that apply only to certain runs, and for keys with words as values, which take no list
 SURROUNDINGS = {
     "lattice-angle": ["obstacle-layout=lattice", "box=60", "obstacle-gap=0.5"],
     "pitch": ["obstacle-layout=lattice", "box=60"],
@@ -27,7 +28,7 @@ SURROUNDINGS = {
     **{key: ["obstacles=one.csv", "box=10", "vertices=64", "max-time=300", "release=entrance"]
        for key in ("entrance", "entrance-from", "entrance-to", "exit", "length")},
 }
-# These keys apply to channels, which have passages and no clogging lengths: see test_scenes.
+# These keys apply to channels, which have passages instead of clogging lengths: see test_scenes.
 OF_CHANNELS = {"orifice", "wedge-angle", "tip-radius", "start", "end"}
 VALUES = {"line-tension": "1,3", "wall-stiffness": "0.05,0.08", "obstacle-gap": "0.2,0.3", "obstacle-diameter": "0.3,0.4",
           "obstacle-diameter-spread": "0,0.2", "obstacle-density": "1.5,2", "lattice-angle": "0,10", "pitch": "0.8,0.9", "seeds": "1..3", "box": "20,25",
@@ -54,7 +55,7 @@ class Sweeps(Analysis):
 
     def sweep(self, key):
         (self.folder / "s.h5").unlink(missing_ok=True)
-        for name, x in [("one.csv", 6.2), ("other.csv", 6.25)]:  # rows of posts across the flow
+        for name, x in [("one.csv", 6.2), ("other.csv", 6.25)]:  # the files have rows of posts across the flow
             (self.folder / name).write_text("x,y,diameter\n" + "".join(f"{x},{i * 10 / 12},0.3\n" for i in range(12)))
         seeds = [] if key in ("seeds", "obstacles") else ["seeds=1..2"]
         tension = [] if key == "line-tension" else ["line-tension=2"]
@@ -72,9 +73,9 @@ class EveryKey(Sweeps):
                 self.sweep(key["key"])
                 groups = self.fit()
                 if key["role"] != "ensemble":
-                    if key["key"] == "laboratory":  # droplets of two sizes
+                    if key["key"] == "laboratory":  # the laboratory lists droplets of two sizes
                         self.assertEqual((groups.abscissa, groups.values("diameter_mm")), ("diameter_mm", {1, 2}))
-                    elif key["kind"] == "file":  # one curve each, because files make no axis
+                    elif key["kind"] == "file":  # each file has a curve, because files make no axis
                         self.assertEqual([len(members) for _, members in groups.curves()], [1, 1])
                     else:
                         self.assertEqual(groups.abscissa, key["column"])

@@ -1,4 +1,4 @@
-"""Sweeps over the droplets and tilts that a laboratory file lists."""
+"""Tests sweeps over the droplets and tilts that a laboratory file lists."""
 
 import json
 import math
@@ -115,7 +115,7 @@ class Sizes(ProgramTest):
                 np.testing.assert_allclose(np.stack([circles["x"], circles["y"], 2 * circles["radius"]], axis=1) * diameter,
                                            np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=2), rtol=1e-12, atol=1e-12)
                 self.assertAlmostEqual(row["box"] * diameter, 10.2)
-        # The circles of one size equal those of a file that was drawn for that size.
+        # For each droplet size, the circles equal those of a file that was drawn for this size.
         self.write("small.csv", POSTS.replace("droplet=1mm", "droplet=0.8mm"))
         self.succeed("clogsweep", "--lab", self.lab(diameter="0.8 mm", angle="20 deg"), *keys[1:], "obstacles=small.csv", "--output", "one.h5")
         rows, one = table(self.folder / "s.h5"), table(self.folder / "one.h5")
@@ -207,7 +207,7 @@ class Sizes(ProgramTest):
         heading, *lines = [line.split() for line in self.succeed("clogfit", "s.h5").stdout.split("\n\n")[1].splitlines()]
         self.assertEqual(heading[:3], ["diameter/mm", "angle/degrees", "lambda/mm"])
         self.assertEqual(heading[-3:], ["line_tension", "terminal_speed", "note"])
-        self.assertNotIn("tension/(mN/m)", heading)  # 2 for all droplets
+        self.assertNotIn("tension/(mN/m)", heading)  # it is 2 for all droplets
         self.assertEqual({tuple(map(float, line[:2])) for line in lines}, set(SETS))
         summary = clogsweep.open(self.folder / "s.h5", BIN).fit().summary
         self.assertEqual({"diameter_mm", "angle_degrees"} & set(summary.columns), {"diameter_mm", "angle_degrees"})

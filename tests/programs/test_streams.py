@@ -1,4 +1,4 @@
-"""Streams that are closed, full or not read, files that are not regular, and messages with unusual names."""
+"""Tests streams that are closed, full or not read, files that are not regular, and messages with unusual names."""
 
 import os
 import shutil
@@ -14,7 +14,7 @@ sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
 
 SMALL_SWEEP = [*QUICK, "seeds=1..3", "--verbose", "--output", "s.h5"]
-# All commands that print and end
+# All commands that print something and end by themselves
 REPORTS = [["clogsweep", "--help"], ["clogsweep", "--version"], ["clogsweep", "--print-config"], ["clogsweep", *QUICK, "--dry-run"],
            ["clogsweep", "doctor"], ["clogsweep", "doctor", "--help"], ["clogsweep", "status", "done.h5"],
            ["clogsweep", "verify", "done.h5"], ["clogsweep", "replay", "done.h5", "0"],
@@ -46,7 +46,7 @@ class Streams(SweepTest):
 
     def test_a_closed_stream_suppresses_output(self):
         for redirection in (">&-", "2>&-", "<&-", "<&- >&- 2>&-", ">/dev/full 2>/dev/full"):
-            # MPICH's mpirun does not start without its streams, and Open MPI's waits for a full one.
+            # MPICH's mpirun does not start without its streams, and Open MPI's mpirun waits for a full stream.
             for ranks in (None, 2) if MPI == "Open MPI" and "full" not in redirection else (None,):
                 with self.subTest(redirection, ranks=ranks):
                     done = self.redirect(redirection, "clogsweep", *SMALL_SWEEP, ranks=ranks)
@@ -74,7 +74,7 @@ class Streams(SweepTest):
                 (self.folder / "run.h5").unlink(missing_ok=True)
 
     def without_reader(self, stream, name, *arguments):
-        """Runs a program with a pipe that nobody reads any more as the given stream."""
+        """Runs a program with a pipe as the given stream. Nobody reads the pipe any more."""
         reader, writer = os.pipe()
         os.close(reader)
         streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, stream: writer}
@@ -175,7 +175,7 @@ class Files(SweepTest):
 
 
 class Alone(SweepTest):
-    """A single rank that no launcher has started"""
+    """Tests a single rank that no launcher has started."""
 
     def test_it_needs_neither_environment_nor_daemon(self):
         environment = {name: value for name, value in os.environ.items() if name == "ASAN_OPTIONS"}
@@ -189,7 +189,8 @@ class Alone(SweepTest):
         self.assertEqual(set(names.split()), {"clogsweep"})
 
     def test_it_needs_no_folder_for_its_own_files(self):
-        # All such ranks of a user would share one folder, and fail when one rank ends while another starts.
+        # Otherwise all such ranks of a user would share one folder, and a rank would fail that starts while another one
+        # ends.
         done = subprocess.run([str(BIN / "clogsweep"), *QUICK, "--output", "s.h5"], cwd=self.folder, env={**os.environ, "TMPDIR": "/proc"},
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)

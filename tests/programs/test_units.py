@@ -1,4 +1,4 @@
-"""clogfit units, and sweeps, fits and figures with a laboratory."""
+"""Tests clogfit units, and sweeps, fits and figures with a laboratory."""
 
 import html
 import json
@@ -18,14 +18,14 @@ from clogsweep import style  # noqa: E402
 from clogsweep.pages import report  # noqa: E402
 from clogsweep.tools import rounded  # noqa: E402
 
-# The droplets of Cheng et al.: diameter, tilt, terminal speed; V_t and Gamma_exp as printed there, each with the
-# uncertainty of half of its last digit, or of the digits from which it follows ("sigma = 3.5 mm, v_t = 7 mm/s" may be
-# off by one part in fourteen).
+# The droplets of Cheng et al.: diameter, tilt and terminal speed, then V_t and Gamma_exp as printed there, each with
+# its uncertainty. This is half of the last digit of the number, or follows from the digits of the quantities behind it
+# ("v_t = 7 mm/s" may be wrong by one part in fourteen).
 ARTICLE = [("3.5 mm", "28 deg", "7 mm/s", (0.08, 0.006), (0.57, 0.01)),
            ("1.98 mm", "8.5 deg", "0.97 mm/s", (0.028, 5e-4), (5.80, 0.07)),
            ("3.30 mm", "5.0 deg", "1.1 mm/s", (0.032, 5e-4), (3.47, 0.05))]
 FITTED = [0.16, 1.7, 1.08]  # Gamma* of these three droplets in the article
-TENSION = "9.6 mN/m"  # "about 10 mJ/m^2"; this value gives the printed Gamma_exp
+TENSION = "9.6 mN/m"  # the article says "about 10 mJ/m^2"; this value gives the printed Gamma_exp
 
 
 class Units(ProgramTest):
@@ -41,7 +41,7 @@ class Units(ProgramTest):
             found = self.units(self.lab(diameter, angle, speed))
             self.assertAlmostEqual(found["terminal_speed"], terminal_speed[0], delta=terminal_speed[1])
             self.assertAlmostEqual(found["line_tension_experiment"], experiment[0], delta=experiment[1])
-            # "Gamma**/Gamma_exp of about 0.3"
+            # The article finds "Gamma**/Gamma_exp of about 0.3".
             self.assertAlmostEqual(found["line_tension"], fitted, delta=0.1 * fitted)
             self.assertAlmostEqual(found["capillary_number"], 3.14159265 / 4 / found["line_tension"], delta=1e-6)
 
@@ -88,7 +88,7 @@ class Units(ProgramTest):
         told = self.succeed("clogfit", "units", lab).stdout
         self.assertIn("Gamma = 52.", told)
         self.assertIn("line-tension=30.0 clogs in the same places", told)
-        # Both models clog in the same places.
+        # Droplets of both models clog in the same places.
         common = ["obstacle-density=0.35", "obstacle-gap=0.2", "box=20", "max-time=1500", "seeds=1"]
         disk, = re.findall(r"model=sp wall-stiffness=\S*\d", told)
         ways = []
@@ -130,7 +130,7 @@ class Units(ProgramTest):
             self.assertEqual([stored.decode() for stored in set(file["runs"]["laboratory"])], list(file["laboratories"]))
             self.assertAlmostEqual(file["runs"]["line_tension"][0] / known["line_tension"], 1, places=3)
             self.assertAlmostEqual(file["runs"]["terminal_speed"][0] / known["terminal_speed"], 1, places=3)
-        self.succeed("clogsweep", "--lab", lab, *QUICK, "seeds=1..5", "--output", "s.h5")  # the sweep gets more seeds
+        self.succeed("clogsweep", "--lab", lab, *QUICK, "seeds=1..5", "--output", "s.h5")  # this gives the sweep more seeds
         self.succeed("clogsweep", "verify", "s.h5")
         fit = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
         group, = fit["groups"]
@@ -152,7 +152,8 @@ class Units(ProgramTest):
         self.assertEqual((json.loads(done.stdout)["laboratory"], done.stderr), (before["laboratory"], ""))
 
     def sweeps_of_two_droplets(self):
-        """Files of droplets of 0.8 and 1.2 mm in the same cell, in which they have the same interfacial tension."""
+        """Files of sweeps with droplets of 0.8 and 1.2 mm in the same cell. Both droplets have the same interfacial
+        tension."""
         for diameter in ("0.8", "1.2"):
             lab = self.lab(f"{diameter} mm", "20 deg", "1.2 mm/s", tension="10 mN/m", name=f"{diameter}.cfg")
             self.succeed("clogsweep", "--lab", lab, "vertices=64", "box=20", "max-time=40", "seeds=1..2", "--output", f"s{diameter}.h5")

@@ -3,10 +3,11 @@
 
     compare_outputs.py BEFORE AFTER [--trees TREE TREE] [--only WORD]     (folders of the programs; source trees)
 
-Pages of docs/tutorial, docs/how-to and docs/reference and README.md. What slow_tutorial follows is run block by block, the
-commands of the other pages one by one, cut down, as slow_pages does. Output, exit code and written files are compared, with
-times, speeds, hosts, dates and temporary folders masked. --trees: Python module of each side (default: this tree for both);
-pages and suites are those of the second. Exit code 1: something differs. Needs about ten minutes a side on an idle machine.
+The pages are README.md and those of docs/tutorial, docs/how-to and docs/reference. Pages of slow_tutorial are run block
+by block. The commands of the other pages are shortened and run one by one, as in slow_pages. Output, exit code and
+written files are compared; times, speeds, hosts, dates and temporary folders are masked. --trees: the source trees
+whose Python modules are used with BEFORE and AFTER (default: this tree for both); pages and test suites come from the
+second tree. Exit code 1: something differs. Needs about ten minutes a side on an idle machine.
 """
 
 import argparse
@@ -21,7 +22,7 @@ import subprocess
 import sys
 import tempfile
 
-LIMIT = 240  # seconds; a minute can take this long on a busy machine
+LIMIT = 240  # seconds; on a busy machine, a command of a minute can take this long
 UNITS = "steps/s|s|ms|us|min|minutes?|hours?|h|days?|seconds?|core-hours?|core-seconds|ranks? s|kB|MB|GB|MiB|GiB"
 MASKS = [(r"[\d.,e+-]+ (runs/min|ns per vertex-step|runs per minute)", r"SOME \1"),
          (r"/tmp/[\w./-]*", "TMP"), (r"\d{4}-\d\d-\d\d([T ]\d\d:\d\d(:\d\d)?(\.\d+)?Z?( UTC)?)?", "DATE"), (r"\d?\d:\d\d(:\d\d)?", "TIME"),
@@ -72,7 +73,7 @@ class Recorder:
         return {path: path.stat().st_mtime_ns for path in sorted(self.folder().rglob("*")) if path.is_file()}
 
     def call(self, name, run):
-        """@param run  returns a CompletedProcess, or nothing if there is nothing to compare"""
+        """@param run  makes the call; returns a CompletedProcess, or nothing if there is nothing to compare"""
         before = self.states()
         try:
             done = run()
@@ -89,7 +90,7 @@ class Recorder:
 
 
 def record(folder, tree, pages_tree, only, output):
-    # Programs look for the Python module beside their folder.
+    # Programs look for the Python module beside their folder, so it is linked there.
     own = tempfile.TemporaryDirectory(prefix="clog_programs_")
     programs = pathlib.Path(own.name) / "bin"
     shutil.copytree(folder, programs)

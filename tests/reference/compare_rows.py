@@ -3,9 +3,10 @@
 
     tests/reference/compare_rows.py BEFORE AFTER        (folders of the programs)
 
-Each case is a small run by both. Everything in the two files must be the same: datasets, columns, attributes, and thereby
-units and meanings, except what describes the circumstances of a run. The cases give every key of AFTER's schema a value
-other than its default, and every word of every key. Exit code 1: something differs, or no case covers a key.
+In each case both builds make the same small run. Everything in the two files must be the same: datasets, columns and
+attributes, and so also units and meanings. Only what describes the circumstances of a run may differ. The cases
+together give every key of AFTER's schema a value other than its default, and use every word of every key. Exit code 1:
+something differs, or no case covers a key.
 """
 
 import argparse
@@ -22,13 +23,13 @@ import time
 import h5py
 import numpy as np
 
-# Not compared: columns, attributes of the root ("@"), checksums of such columns.
+# These are not compared: columns, attributes of the root ("@"), checksums of such columns.
 CIRCUMSTANCES = {*(f"runs/{name}" for name in ("wall_seconds", "processor_seconds", "rank", "host", "attempt")), "row_checksums",
                  *(f"@{name}" for name in ("version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "checksums",
                                            "start_time", "command_line", "sessions", "activity", "parts"))}
 INPUTS = {"own.csv": "x,y,diameter\n2,5,0.5\n3.2,4.4,0.3\n3.4,5.9,0.4\n5,5.1,0.6\n7,4.2,0.3\n8.5,6.4,1\n",
           "points.csv": "line-tension,obstacle-gap\n0.1,0.3\n1,0.6\n"}
-# Dense arrays: the droplet meets obstacles at once.
+# Dense arrays, in which the droplet meets obstacles at once.
 ARRAY = "clogsweep box=20 vertices=64 seeds=3..4 obstacle-density=saturated"
 SWEEP = f"{ARRAY} max-time=40"
 DEVICE = "clogsweep obstacles=own.csv obstacle-layout=file box=10 vertices=64 seeds=1..2"
@@ -77,7 +78,7 @@ CASES = {
 
 
 def uncovered(programs):
-    """@return the keys that have only their default value in all cases, and the words of keys that occur in no case"""
+    """@return the keys that have their default in all cases, and the words of keys that no case uses"""
     given = collections.defaultdict(set)
     for word in shlex.split("\n".join(CASES.values())):
         key, _, values = word.partition("=")

@@ -6,8 +6,8 @@
 
 namespace clog::results {
 
-/// Makes a row that fault_of() accepts: the droplet moved at its terminal speed until the run ended, or, if
-/// it is still flowing, until it rested.
+/// Makes a row that fault_of() accepts. The droplet moved at its terminal speed over `distance`, where its
+/// run ended; a droplet that still flows has rested there since.
 /// @param distance  [sigma]
 inline void end_run(sweep::RunRow& row, RunStatus status, double distance) {
   row.status = status;

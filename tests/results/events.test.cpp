@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A sweep's file as readers find it again and again, with runs that a test advances.
+/// A sweep's file that is read again and again, while the test advances its runs.
 class EventsTest : public testing::Test {
  protected:
   store::SweepFile file_ = file_of("1..3");
@@ -25,7 +25,7 @@ class EventsTest : public testing::Test {
     settings.set("seeds", seeds);
     return settings;
   }
-  /// All runs of these seeds, none of them started.
+  /// A file with all runs of these seeds, none of which has started.
   static store::SweepFile file_of(const std::string& seeds) {
     const sweep::Settings settings = settings_of(seeds);
     const sweep::Plan plan(settings);

@@ -33,7 +33,7 @@ RunParameters device() {
   return resolve(run);
 }
 
-/// @param first_contact_at  empty: the droplet met no obstacle
+/// @param first_contact_at  distance of the first contact; empty if the droplet met no obstacle
 sweep::RunRow row(std::uint32_t seed, RunStatus status, double distance,
                   std::optional<double> first_contact_at) {
   RunParameters run = device();
@@ -71,7 +71,7 @@ void expect_passages(const Group& group, const std::vector<Counts>& expected) {
 TEST(Passages, AreThoseOfEachRowOfPostsAndOfTheExit) {
   const std::vector<Group> groups = group_runs(five_rows(), 0.95);
   ASSERT_EQ(groups.size(), 1u);
-  // The fourth droplet is still moving, beyond x = 5.
+  // The fourth droplet is beyond x = 5 and still moves.
   expect_passages(groups[0], {{3, 4, 1}, {6, 3, 1}, {9, 2, 2}, {device_exit, 2, 2}});
 }
 

@@ -22,7 +22,7 @@ class ProgressTest : public testing::Test {
   std::ostringstream out_;
   Progress progress_{out_, Progress::Screen::plain, 2, [](std::int64_t) { return std::int64_t{0}; }};
 
-  /// The last line, up to the rate, which depends on the time.
+  /// The last line, without the rate and what follows it, which depend on the time.
   std::string line() {
     progress_.finish();
     const std::string text = out_.str();
@@ -79,7 +79,7 @@ TEST(Progress, JudgesWhatIsLeftByItsOwnParameterSet) {
   for (const std::int64_t task : {0, 2, 4}) end(task, 1e6);
   end(1, 10);
   progress.finish();
-  // Two runs of ten seconds each wait for two ranks.
+  // Two runs of about ten seconds each wait for two ranks.
   EXPECT_NE(out.str().find(", 3 s to 36 s left"), std::string::npos) << out.str();
 }
 

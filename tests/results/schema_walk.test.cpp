@@ -1,5 +1,5 @@
-/// Two values of any parameter are two runs, everywhere: code that compares, groups, lists or shares runs has
-/// no own list of parameters, which could lack one.
+/// Checks for every parameter that two values of it mean two different runs. So the code that compares,
+/// groups, lists or shares runs cannot overlook a parameter.
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ sweep::Settings settings_for(const Parameter& parameter) {
   return settings;
 }
 
-/// Another value than in the settings, as text of a config.
+/// A value that differs from the one in the settings, as text of a config.
 std::string other_value(const Parameter& parameter, const sweep::Settings& settings) {
   if (parameter.kind == ValueKind::file) return "other.csv";
   if (parameter.kind == ValueKind::text) return "angle = 20 deg; diameter = 1 mm";
@@ -85,19 +85,19 @@ std::string other_value(const Parameter& parameter, const sweep::Settings& setti
   if (parameter.key == std::string("exit")) return "40";  // downstream of the release at the centre
   if (parameter.key == std::string("length")) return "50";
   if (parameter.key == std::string("entrance-to")) return "10";
-  if (parameter.unit == std::string("degrees")) return "10";  // a little less may be the same lattice
+  if (parameter.unit == std::string("degrees")) return "10";  // a small change may leave the lattice as it is
   if (const auto* number = std::get_if<double>(&value)) return shortest(*number == 0 ? 0.05 : 0.8 * *number);
   return "0.5";
 }
 
-/// The sweep over two values of a number.
+/// The sweep over both values of a numeric parameter.
 sweep::Plan plan_of_both(const Parameter& parameter) {
   sweep::Settings settings = settings_for(parameter);
   settings.set(parameter.key, settings.text(parameter.key) + "," + other_value(parameter, settings));
   return sweep::Plan(settings);
 }
 
-/// The two runs; words take no list.
+/// The two runs. They come from two sweeps, because a word takes no list of values.
 std::vector<RunParameters> both_runs(const Parameter& parameter) {
   sweep::Settings settings = settings_for(parameter);
   const RunParameters one = sweep::Plan(settings).task(0);
@@ -116,8 +116,8 @@ TEST_P(EveryKey, MakesTwoGroups) {
   EXPECT_EQ(group_runs(rows, 0.95).size(), GetParam().role == ParameterRole::ensemble ? 1u : 2u);
 }
 
-/// Four values of another number, each with two values of this parameter, give two curves, and a comparison
-/// that names the difference.
+/// A sweep over four values of another parameter and two values of this one has two curves. A comparison of
+/// the two values names this parameter.
 TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
   const Parameter& parameter = GetParam();
   if (parameter.role != ParameterRole::physics || parameter.key == std::string("line-tension")) return;
@@ -149,8 +149,8 @@ TEST_P(EveryKey, MakesTwoArraysIfItShapesThem) {
   EXPECT_EQ(sweep::array_key(runs[0]) != sweep::array_key(runs[1]), GetParam().shapes_array);
 }
 
-/// The possible places of release in a device depend on the droplet's reach: no run may get the walls of the
-/// run before.
+/// The possible places of release in a device depend on the droplet's reach, so a run must not reuse the
+/// walls of the run before.
 TEST_P(EveryKey, LeavesTheNextRunOfADeviceItsOwnWalls) {
   sweep::Settings settings;
   settings.attach("one.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.3}}));

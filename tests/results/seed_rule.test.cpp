@@ -14,14 +14,15 @@ namespace clog::results {
 namespace {
 
 TEST(SeedRule, AsksForMoreOnlyWhereTheIntervalIsWide) {
-  // In one of two parameter sets every droplet clogs, in the other every fourth. 60 % takes 14 clogs.
+  // In one of two parameter sets every droplet clogs, in the other every fourth. A precision of 60 % requires
+  // 14 clogs.
   const auto has_clogged = [](std::int64_t task) { return task % 2 == 0 || task / 2 % 4 == 3; };
   SeedRule rule(0.6, 2, 16, 100);
   const std::vector<std::int64_t> next = rule.next_round(has_clogged);
   EXPECT_EQ(rule.num_reached(), 1);
-  ASSERT_EQ(next.size(), 16u);  // as many as the set has, although 4 clogs of 16 require 40 more
+  ASSERT_EQ(next.size(), 16u);  // no more than the set has, although 4 clogs of 16 require 40 more
   for (std::size_t i = 0; i < next.size(); ++i) EXPECT_EQ(next[i], 2 * (16 + static_cast<int>(i)) + 1);
-  EXPECT_EQ(rule.next_round(has_clogged).size(), 24u);  // 8 of 32 clog: 56 seeds in all
+  EXPECT_EQ(rule.next_round(has_clogged).size(), 24u);  // 8 of 32 clog, so 56 seeds are needed
   EXPECT_TRUE(rule.next_round(has_clogged).empty());
   EXPECT_EQ(rule.num_reached(), 2);
 }
@@ -88,7 +89,7 @@ TEST(SeedRule, EndsAtTheBudgetWhereNothingClogs) {
 }
 
 TEST(SeedRule, DoesNotBiasTheClogsThatItStopsAt) {
-  // Exponential distances, censored at one clogging length; 400 sweeps of one parameter set.
+  // Distances are exponential and censored at one clogging length; there are 400 sweeps of one parameter set.
   std::mt19937 engine(11);
   std::exponential_distribution<double> distance(1);
   double mean = 0, covered = 0;

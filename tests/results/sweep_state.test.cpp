@@ -22,7 +22,8 @@
 
 namespace {
 
-/// A move by somebody else of a file onto this one just after it was renamed and its folder synchronised.
+/// A move of another file onto the sweep's file, which somebody else makes just after the sweep's file was
+/// renamed and its folder synchronised.
 struct Move {
   std::filesystem::path from, to;
 };
@@ -38,7 +39,7 @@ bool is_draft(int descriptor) {
 
 }  // namespace
 
-/// Replaces the system's in the test program.
+/// Replaces the system's fsync() in the test program.
 extern "C" int our_fsync(int descriptor) __asm__("fsync");
 int our_fsync(int descriptor) {
   for (; is_disk_slow && is_draft(descriptor); is_draft_waiting = true) usleep(1000);
@@ -54,7 +55,7 @@ int our_fsync(int descriptor) {
 namespace clog::results {
 namespace {
 
-/// A sweep of two runs, whose state is opened repeatedly, as after kills.
+/// A sweep of two runs. Its state is opened again and again, as after kills.
 class SweepStateTest : public testing::Test {
  protected:
   std::filesystem::path folder_ =
@@ -371,7 +372,7 @@ TEST_F(SweepStateTest, RefusesAJournalOfRunsWithOtherSettings) {
   };
   sweep::Settings settings = settings_;
   settings.set("line-tension", "0.7");
-  left_by(settings, model_version);  // from a larger plan of this sweep
+  left_by(settings, model_version);  // runs of a larger plan of this sweep
   EXPECT_EQ(open().num_beyond(), 1);
   std::filesystem::remove(journal);
   settings.set("max-time", "17");

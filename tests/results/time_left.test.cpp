@@ -23,8 +23,7 @@ TEST(TimeLeft, IsThatOfTheParameterSetsThatWait) {
   sets[1].num_waiting = 40;
   const TimeLeft left = time_left(sets, 2);
   EXPECT_TRUE(left.is_known);
-  EXPECT_NEAR(left.shortest, 20 / 1.292,
-              0.01);  // 80 % of a normal number lie within 1.2816/sqrt(25) = 0.2563
+  EXPECT_NEAR(left.shortest, 20 / 1.292, 0.01);  // 80 % interval: 1.2816/sqrt(25) = 0.2563 = log(1.292)
   EXPECT_NEAR(left.longest, 20 * 1.292, 0.01);
 }
 

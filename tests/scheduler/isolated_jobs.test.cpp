@@ -23,7 +23,7 @@ namespace {
 
 using namespace clog;
 
-/// Ways in which a task crashes, with the words in its row
+/// By task, the way in which it crashes, and the words in its row.
 const std::map<std::int64_t, std::pair<int, std::string>> crashes = {
     {3, {SIGSEGV, "its process was ended by SIGSEGV (Segmentation fault)"}},
     {8, {SIGFPE, "its process was ended by SIGFPE (Floating point exception)"}},
@@ -50,7 +50,8 @@ int oom_score_adj() {
   return score;
 }
 
-/// A job that crashes in its last slice, if its task is one of `crashes`. Its row contains its process.
+/// A job that crashes in its last slice, if its task is one of `crashes`. Its row contains the process that
+/// computed it.
 class CrashingJob final : public SyntheticJob {
  public:
   using SyntheticJob::SyntheticJob;
@@ -93,7 +94,7 @@ void a_crash_fails_its_task_and_no_other(const scheduler::Communicator& ranks,
                                          const sweep::JobFactory& make_job) {
   constexpr std::int64_t num_tasks = first_slow_task;
   std::map<std::int64_t, sweep::RunRow> rows;
-  std::map<std::int64_t, std::set<std::int64_t>> processes;  // by rank, of tasks that succeeded
+  std::map<std::int64_t, std::set<std::int64_t>> processes;  // processes of tasks that succeeded, by rank
   std::map<std::int64_t, std::int64_t> attempts;
   scheduler::SweepEvents events;
   events.started = [&](std::int64_t task, int) { return scheduler::Start{{}, ++attempts[task]}; };
@@ -166,7 +167,7 @@ void a_stopped_task_goes_on_from_its_snapshot(const scheduler::Communicator& ran
 }
 
 void hanging_tasks_block_nobody(const scheduler::Communicator& ranks, const sweep::JobFactory& make_job) {
-  // Every rank has one hanging task, and reports on it are due all the time.
+  // Every rank has one hanging task, on which a report is always due.
   std::vector<std::int64_t> tasks(ranks.size());
   std::iota(tasks.begin(), tasks.end(), first_hanging_task);
   const std::vector<std::byte> snapshot(3);

@@ -152,7 +152,7 @@ sweep::JobFactory failing_on(const scheduler::Communicator& ranks,
 struct Outcome {
   scheduler::SweepEnd end;
   std::map<std::int64_t, std::string> status;     // by task
-  std::map<std::int64_t, std::int64_t> attempts;  // those that count
+  std::map<std::int64_t, std::int64_t> attempts;  // attempts that count, by task
   std::map<std::int64_t, int> starts;
   std::set<int> set_aside;
 };
@@ -221,7 +221,7 @@ void who_was_set_aside_stays_so_in_the_next_round(const scheduler::Communicator&
 }
 
 void most_ranks_may_be_broken(const scheduler::Communicator& ranks) {
-  // There is only one attempt, so failures of broken ranks must not count.
+  // Each task has only one attempt, so failures of broken ranks must not count as attempts.
   const auto make_job = failing_on(
       ranks, [](int rank) { return rank > 0; }, never);
   const Outcome outcome = sweep(ranks, 60, 1, make_job);

@@ -75,7 +75,7 @@ TEST(TaskOrder, HandsOutTheLongestOfAllGroups) {
   struct Known {
     int num_left = 0, num_ended = 0;
     double time_ended = 0;
-    std::map<std::int64_t, double> starts;  // of those that run
+    std::map<std::int64_t, double> starts;  // start times of the running tasks
   };
   std::vector<Known> known(num_groups);
   for (int task = 0; task < num_tasks; ++task) ++known[task % num_groups].num_left;
@@ -83,8 +83,8 @@ TEST(TaskOrder, HandsOutTheLongestOfAllGroups) {
   std::mt19937 random(7);
   double now = 0;
   for (int i = 0; i < num_tasks; ++i, now += 0.125) {
-    // The group with the longest time per ended task is first; of equal ones the group with fewest begun
-    // tasks.
+    // The group with the longest time per ended task comes first; among equal groups, the one with fewest
+    // begun tasks.
     const auto turn = [&](const Known& group) {
       double time = group.time_ended;
       for (const auto& [task, start] : group.starts) time += now - start;

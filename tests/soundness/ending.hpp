@@ -8,12 +8,12 @@
 
 namespace clog::soundness {
 
-/// How a droplet ends that has not clogged in the given time.
+/// The state at the end of the given time, of a droplet that has not clogged.
 enum class Ending {
-  moving,      ///< travels: mean speed of its centre above `slowest_travel` V_t
-  decaying,    ///< stopped, its kinetic energy is falling
-  steady,      ///< stopped, its interface creeps on
-  chattering,  ///< stopped, its vertices shake about their places
+  moving,      ///< travels: the mean speed of its centre is above `slowest_travel` V_t
+  decaying,    ///< has stopped, and its kinetic energy is falling
+  steady,      ///< has stopped, but its interface creeps on
+  chattering,  ///< has stopped, but its vertices shake about their places
 };
 const char* name(Ending ending);
 
@@ -23,13 +23,13 @@ const char* name(Ending ending);
 /// chattering  coherence < least_coherence: the vertices' way is much shorter than their speed would take
 /// them steady      all others
 struct Tail {
-  double mean_speed = 0;  ///< distance of the centre along a straight line over the time [V_t]
+  double mean_speed = 0;  ///< distance between the first and last place of the centre over the time [V_t]
   double level = 0;       ///< median of log10(E_k/E_t) in the last quarter
   double fall = 0;        ///< fall of the median of log10(E_k/E_t) from the first quarter to the last
   double last_fall = 0;   ///< the same from the third quarter to the last
   double band = 0;        ///< log10(E_k/E_t) in the last quarter, 95 % quantile minus 5 % quantile
   double coherence =
-      0;  ///< distance of the vertices between looks divided by the distance that follows from E_k
+      0;  ///< way of the vertices between two samples, divided by the way that follows from E_k
 
   Ending ending() const;
 };
@@ -38,7 +38,7 @@ inline constexpr double slowest_travel = 0.01;
 inline constexpr double least_fall = 0.1;
 inline constexpr double least_coherence = 0.3;
 
-/// Collects what Tail is measured from.
+/// Collects the samples from which a Tail is computed.
 class TailRecorder {
  public:
   explicit TailRecorder(double terminal_speed) : terminal_speed_(terminal_speed) {}

@@ -7,14 +7,15 @@ namespace clog::soundness {
 
 /// Measures of a deformable droplet at one moment, or the worst of several moments.
 struct Findings {
-  int crossings = 0;   ///< see num_self_crossings()
-  int enclosed = 0;    ///< obstacles whose centre lies inside the droplet
-  double overlap = 0;  ///< depth of an obstacle's surface in the interface [vertex diameters, of 128 at most]
+  int crossings = 0;      ///< see num_self_crossings()
+  int enclosed = 0;       ///< obstacles whose centre lies inside the droplet
+  double overlap = 0;     ///< depth of an obstacle's surface inside the interface [vertex diameters, at least
+                          ///< those of 128 vertices]
   double area_error = 0;  ///< |area/rest area - 1|
   double edge_ratio = 1;  ///< longest over shortest edge
   double perimeter = 0;   ///< in units of the circle's
   double shape = 1;       ///< shape parameter
-  double substeps = 1;    ///< parts per time step, mean over an interval between two checks
+  double substeps = 1;  ///< parts into which a time step is split, mean over the interval between two checks
 
   void keep_worst(const Findings& other);
 };
@@ -27,9 +28,9 @@ inline constexpr double largest_area_error = 0.05;
 
 bool is_sound(const Findings& findings);
 
-/// Checks every edge of the refined interface (see refined()) and every obstacle near the droplet, without
-/// the contact lists of the forces, so it also finds obstacles missing from those. Does not change
-/// `substeps`.
+/// Checks every edge of the refined interface (see refined()) against every obstacle near the droplet. It
+/// does not use the contact lists of the forces, so it also finds obstacles that these lists lack. `substeps`
+/// keeps its default.
 Findings look_at(const DropletState& state, const ObstacleArray& obstacles);
 
 }  // namespace clog::soundness

@@ -52,7 +52,7 @@ The exit code is 0 when all were sound, 1 when one was not, 75 when it was stopp
 
 /// Time between two looks at a droplet, in checks of its run: 2 t0 at the default time step.
 constexpr int checks_per_look = 32;
-/// The last part of a run, in which its ending is judged.
+/// The length of the last part of a run, in which its ending is judged.
 constexpr double tail_part = 0.2;
 
 /// CPU time of this thread, which excludes other work on the machine [s].
@@ -71,15 +71,15 @@ struct CaseReport {
   RunResult result;
   double release_force = 0;  ///< largest component after a release, without weight [weight of a vertex]
   std::optional<Tail> tail;
-  double seconds = 0;  ///< of integration, or of the release
+  double seconds = 0;  ///< computing time of the integration, or of the release
 
   bool is_given_up() const { return refusal.empty() && ending() == "given up"; }
   bool is_sound() const {
     return refusal.empty() && result.status != RunStatus::failed && soundness::is_sound(worst) &&
            release_force <=
-               1.01 * release_force_tolerance;  // sums may have another order than in the release
+               1.01 * release_force_tolerance;  // sums may be taken in another order than in the release
   }
-  /// The ending in one word.
+  /// The ending, in a few words.
   std::string ending() const {
     if (!refusal.empty()) return "refused";
     if (result.status == RunStatus::running) return result.time > 0 ? "given up" : "released";
@@ -191,7 +191,7 @@ std::string describe(const CaseReport& report) {
   return line;
 }
 
-/// A Markdown table with columns of even width.
+/// A Markdown table, whose columns have even widths.
 class Table {
  public:
   explicit Table(std::vector<std::string> heads) { rows_.push_back(std::move(heads)); }
@@ -293,7 +293,7 @@ void print_release_table(const std::vector<CaseReport>& reports, std::size_t num
   table.print();
 }
 
-/// Writes one line for each run, for users who need more than the table.
+/// Writes a CSV file with one line for each run, for users who need more than the table.
 void write_runs(std::ofstream& out, const std::string& path, const std::vector<CaseReport>& all) {
   std::vector<CaseReport> reports;
   std::copy_if(all.begin(), all.end(), std::back_inserter(reports), [](const auto& r) { return r.done; });
@@ -313,8 +313,8 @@ void write_runs(std::ofstream& out, const std::string& path, const std::vector<C
   if (!out.flush()) throw Error("cannot write " + path);
 }
 
-/// Cases ordered by expected duration: small line tension and narrow gaps stretch a droplet and split its
-/// steps, so these take longest.
+/// The cases in the order of their expected duration. Runs with small line tension and narrow gaps take
+/// longest, because the droplet is stretched and its steps are split.
 std::vector<std::size_t> longest_first(const std::vector<CaseReport>& reports) {
   std::vector<std::size_t> order(reports.size());
   std::iota(order.begin(), order.end(), 0);
@@ -342,7 +342,8 @@ void do_all(std::vector<CaseReport>& reports, unsigned num_threads, DoCase do_ca
   });
 }
 
-/// Release k has the parameters of group k modulo the number of groups, and seed k + 1.
+/// Release k has the parameters of the group with the number k modulo the number of groups, and the seed k +
+/// 1.
 std::vector<CaseReport> planned_releases(const sweep::Plan& plan, std::int64_t num_releases) {
   std::vector<CaseReport> reports(num_releases);
   for (std::int64_t k = 0; k < num_releases; ++k) {
@@ -358,7 +359,7 @@ std::vector<CaseReport> planned_runs(const sweep::Plan& plan) {
   return reports;
 }
 
-/// Sets the grid that the program runs without arguments, and parses its options.
+/// Sets the default grid of cases, and parses the options.
 bool parse(cli::CommandLine& line, int argc, char** argv) {
   line.option("releases", "only release so many droplets, each with a new seed")
       .option("threads", "threads to use (all cores)")
@@ -372,7 +373,7 @@ bool parse(cli::CommandLine& line, int argc, char** argv) {
   settings.set("max-time", "2000");
   settings.set("box", "100");
   if (!cli::parse_command(line, argc, argv)) return false;
-  if (line.has("releases")) {  // the hardest gap, in boxes that take no time
+  if (line.has("releases")) {  // the most difficult gap, in boxes that are quickly filled
     if (!line.has("obstacle-gap")) settings.set("obstacle-gap", "0.2");
     if (!line.has("obstacle-density")) settings.set("obstacle-density", "saturated");
     if (!line.has("box")) settings.set("box", "20");

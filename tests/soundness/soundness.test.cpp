@@ -14,7 +14,7 @@ namespace clog::soundness {
 namespace {
 
 constexpr int num_vertices = 256;
-const double vertex_diameter = units::regular_edge_length(128);  // the unit of depths, for finer meshes too
+const double vertex_diameter = units::regular_edge_length(128);  // the unit of depths, also for finer meshes
 
 DropletState circle() { return test::state_of(regular_polygon(num_vertices, units::rest_area)); }
 
@@ -89,7 +89,7 @@ TEST(Ending, IsMovingWhenTheCentreTravelsAcrossFrames) {
   const Tail tail =
       tail_of([](DropletState& state, double time) { state.x() += 0.03 * time; }, [](double) { return 1.0; });
   EXPECT_EQ(tail.ending(), Ending::moving);
-  EXPECT_NEAR(tail.mean_speed, 1, 0.05);  // the last interval has no place at its end
+  EXPECT_NEAR(tail.mean_speed, 1, 0.05);  // no place was added at the end of the last interval
   EXPECT_NEAR(tail.coherence, 1, 1e-6);
 }
 

@@ -15,7 +15,7 @@ namespace {
 std::vector<int> next_errors;
 }  // namespace
 
-/// Takes the place of the C library's function in this program.
+/// Replaces the C library's function in this program.
 // NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the library's name is reserved
 extern "C" int fsync(int descriptor) {
   if (next_errors.empty()) return static_cast<int>(syscall(SYS_fsync, descriptor));

@@ -83,7 +83,7 @@ TEST_F(RunTableTest, KeepsCirclesOfAUsersOwn) {
 }
 
 TEST_F(RunTableTest, IsTheSameFromRowsThatAreGivenOneByOne) {
-  const std::vector<sweep::RunRow> rows = some_rows(2500);  // some blocks
+  const std::vector<sweep::RunRow> rows = some_rows(2500);  // enough rows for several blocks
   std::size_t next = 0;
   const auto row = [&](std::size_t i) {
     EXPECT_EQ(i, next++);
@@ -122,7 +122,7 @@ TEST_F(RunTableTest, IsPublishedOnlyInPlaceOfTheFileThatIsKnown) {
   const std::string stamp = place.stamp();
   EXPECT_TRUE(publish_sweep(place, stamp, {some_rows(2), {}, {}}));
   EXPECT_EQ(read_sweep(path()).rows.size(), 2u);
-  // Another file is in the place.
+  // Somebody else has moved another file to this name.
   write_text("other", "another's");
   fs::rename(path("other"), path());
   EXPECT_FALSE(publish_sweep(place, stamp, {some_rows(3), {}, {}}));
@@ -198,7 +198,7 @@ TEST_F(RunTableTest, IsWholeForAReaderAtEveryMoment) {
 }
 
 TEST_F(RunTableTest, IsNeverLockedWhereReadersLookForIt) {
-  // HDF5 locks files before it reads them, in h5py and pandas.
+  // In h5py and pandas, HDF5 locks a file before it reads the file.
   publish(path(), some_rows(1), {});
   const pid_t writer = fork();
   if (writer == 0) {
@@ -304,7 +304,7 @@ TEST_F(RunTableTest, LosesNoAttributeByADamagedListOfChecksums) {
       std::string damaged = content;
       damaged[byte] = static_cast<char>(damaged[byte] ^ (1 << bit));
       write_text("damaged.h5", damaged);
-      // A flip between the digits and the name, or in a digit's case, does not change what is read.
+      // A flipped bit between digits and name, or in the case of a digit, does not change what is read.
       try {
         EXPECT_EQ(read_sweep(path("damaged.h5")).provenance, read_sweep(path()).provenance)
             << byte << ' ' << bit;

@@ -54,8 +54,8 @@ inline void publish(const std::string& path, const std::vector<sweep::RunRow>& r
   publish_sweep(place, place.stamp(), {rows, provenance, circles});
 }
 
-/// Must run in its own process: a limit on the size of files simulates a full disk. Exits with 2 if an Error
-/// was thrown, and prints its text on the error stream.
+/// Simulates a full disk by a limit on the size of files, so it must run in its own process. If an Error is
+/// thrown, it prints the error's text on the error stream and exits with 2.
 [[noreturn]] inline void run_on_full_disk(rlim_t num_bytes, const std::function<void()>& action) {
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit before;

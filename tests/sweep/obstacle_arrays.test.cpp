@@ -28,7 +28,7 @@
 namespace clog::sweep {
 namespace {
 
-/// Large enough to be shared.
+/// An array that is large enough to be shared.
 const ObstacleParameters large{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 160};
 const ObstacleParameters small{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 20};
 
@@ -39,7 +39,7 @@ RunParameters run_in(const ObstacleParameters& obstacles, std::uint32_t seed) {
   return run;
 }
 
-/// A seed that no other test that runs at the same time has; no test has the odd seed after it either.
+/// A seed that no other test uses at the same time. No test uses the odd number after it, either.
 std::uint32_t own_seed() { return 2 * static_cast<std::uint32_t>(getpid()); }
 
 ObstacleParameters lattice() {
@@ -57,8 +57,8 @@ void expect_identical(const ObstacleArray& one, const ObstacleArray& other) {
   EXPECT_TRUE(std::ranges::equal(one.binned().cell_start, other.binned().cell_start));
 }
 
-/// The file behind an address, as the kernel names it: device and inode; "00:00 0" for a process's own
-/// memory.
+/// The file that is mapped at an address, as the kernel names it: device and inode. For a process's own
+/// memory this is "00:00 0".
 std::string file_behind(const void* address) {
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);) {
@@ -82,7 +82,7 @@ int num_sockets(pid_t process) {
   return number;
 }
 
-/// Another process that works, reports, and stays until the test kills it, without a chance to clean up.
+/// Another process. It works, reports, and stays until the test kills it, without a chance to clean up.
 class OtherProcess {
  public:
   /// @param work  returns the text that the process reports
@@ -197,7 +197,7 @@ TEST(ObstacleArrays, AreBuiltByTheNextWhenTheirBuilderIsKilledAtWork) {
   const ObstacleParameters slow{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 600};
   {
     const OtherProcess builder([&] {
-      if (fork() == 0) {  // reports that it has begun, and is at work when killed
+      if (fork() == 0) {  // reports that it has begun, and is killed at work
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         ObstacleArrays().get(run_in(slow, seed));
         _exit(0);
@@ -241,12 +241,12 @@ TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
   get_and_signal(arrays, start_and_stop_builder(), SIGKILL);
   EXPECT_EQ(arrays.num_built(), 1);
 
-  // The next array would be ready in the end, but this process does not wait for it.
+  // The next array would be completed later, but this process does not wait for it.
   arrays.get(run_in(small, 1));
   get_and_signal(arrays, start_and_stop_builder(), SIGCONT);
   EXPECT_EQ(arrays.num_built(), 3);
 
-  // A shared array that exists is still found; then waiting begins again.
+  // An existing shared array is still found. After that, the process waits for others again.
   ObstacleArrays other;
   other.get(run_in(large, seed));
   arrays.get(run_in(large, seed));
@@ -275,8 +275,8 @@ TEST(ObstacleArrays, AreBuiltAtOnceWhereNothingCanBeLocked) {
   const OtherProcess without_files([seed = own_seed()] {
     rlimit usual;
     getrlimit(RLIMIT_NOFILE, &usual);
-    // A process that waits until then finds the array. The thread must begin before the limit is set, because
-    // sanitizers inspect a new thread by opening a file.
+    // The thread must begin before the limit is set, because sanitizers open a file to inspect a new thread.
+    // A process that waited until the limit is lifted would find the array.
     std::atomic<bool> has_begun = false;
     std::thread later([&] {
       has_begun = true;
@@ -311,8 +311,8 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
   const auto take = [&](bool as_another) {
     return std::make_unique<OtherProcess>([&name, as_another] {
       static const NameLock lock(name);
-      // A process of another user is one that /proc shows as foreign. Without root the test cannot start one,
-      // but can make its own process look foreign.
+      // /proc shows whether a process belongs to another user. Without root the test cannot start such a
+      // process, but it can make its own process look foreign.
       const bool is_root = geteuid() == 0;
       constexpr uid_t nobody = 65534;
       if (as_another && is_root && setuid(nobody) != 0) return std::string("cannot become another");
@@ -331,7 +331,7 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
 }
 
 TEST(RunJob, GivesTheSameRowInASharedArray) {
-  // A run that goes far, around obstacles, and does not depend on the last bits.
+  // A run of a droplet that goes far among obstacles, whose outcome does not depend on the last bits.
   const Plan plan(settings_of({{"line-tension", "0.1"},
                                {"obstacle-density", "1"},
                                {"vertices", "64"},

@@ -187,7 +187,7 @@ TEST(Plan, AsksAfterListsThatCouldBeDecimals) {
   EXPECT_TRUE(asked("seeds", "0,5").empty()) << "integers";
 }
 
-/// Line tension, gap, seed, preset of every task.
+/// The line tension, gap, seed and preset of every task.
 std::vector<std::tuple<double, double, std::uint32_t, std::string>> runs_of(const Plan& plan) {
   std::vector<std::tuple<double, double, std::uint32_t, std::string>> all;
   for (std::int64_t task = 0; task < plan.size(); ++task) {

@@ -102,7 +102,7 @@ TEST(FaultOf, NoColumnThatAnOlderVersionDidNotHave) {
   EXPECT_EQ(fault_of(row), "");
 }
 
-/// The final row of a short run in another scene.
+/// The final row of a short run with the given layout.
 RunRow row_in(ObstacleLayout layout) {
   RunParameters run;
   run.dp.vertices = 64;
@@ -117,7 +117,7 @@ RunRow row_in(ObstacleLayout layout) {
   return job.row();
 }
 
-/// A run to which the column applies.
+/// The row of a run to which the column applies.
 const RunRow& row_with(const Column& column) {
   static const RunRow rows[] = {clogged(), row_in(ObstacleLayout::channel), row_in(ObstacleLayout::wall),
                                 row_in(ObstacleLayout::file)};
@@ -290,7 +290,7 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
   }
 }
 
-/// The final row of a run that rested twice, and ended hanging over an obstacle.
+/// The final row of a run whose droplet rested twice, and at the end hung over an obstacle.
 const RunRow& hanging() {
   static const RunRow row = [] {
     RunRow one = row_of({{"max-time", "1000"},

@@ -51,7 +51,7 @@ TEST(RunJob, IsInterruptedUntilItIsOver) {
 }
 
 TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
-  // Obstacles so close to each other that some seeds leave no void near the box's centre.
+  // Obstacles are so close to each other that with some seeds there is no void near the box's centre.
   const Plan plan(settings_of({{"obstacle-diameter", "3"},
                                {"obstacle-gap", "0.06"},
                                {"obstacle-density", "saturated"},
@@ -72,8 +72,8 @@ TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
   EXPECT_GT(num_failed, 0);
 }
 
-/// A snapshot of the task after `change` has changed the numbers of its dwells: eight times a length, a
-/// distance and a beginning, then the time from which they are known.
+/// A snapshot of the task in which `change` has changed the numbers of the dwells: for each of eight dwells a
+/// length, a distance and a beginning, then the duration from which on dwells are known.
 template <class Change>
 std::vector<std::byte> changed_snapshot(const RunParameters& run, Change change) {
   RunJob job(run, 0);

@@ -149,7 +149,7 @@ TEST(Shortest, IsNoLongerThanAnyTextThatReadsBack) {
   }
 }
 
-/// These texts belong to the rows' identity: other texts would mean other runs.
+/// These texts belong to the identity of rows, so other texts would mean other runs.
 TEST(Shortest, IsWrittenAsPeopleDo) {
   const std::pair<double, const char*> texts[] = {{0, "0"},
                                                   {-0.0, "-0"},

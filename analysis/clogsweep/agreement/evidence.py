@@ -59,12 +59,13 @@ def falls(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bo
 
 
 def trend(is_as_published: bool, is_opposite: bool) -> str:
-    """The verdict on a curve, or on two points: clear differences are as published, opposite, both, or absent."""
+    """The verdict on a curve, or on two points. Clear differences may be as published, opposite to these, both, or
+    absent."""
     return (IN_KIND if is_opposite else AGREES) if is_as_published else DOES_NOT if is_opposite else NOT_KNOWN
 
 
 def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callable[[Group, Group], bool], said: Callable[[Group], str]) -> Finding:
-    """Whether curves of soft disks, by their gaps, fall with E_w."""
+    """Whether lambda of soft disks falls with E_w, judged by one curve for each gap."""
     ordered = {gap: sorted(curve, key=lambda group: group["wall_stiffness"]) for gap, curve in found.items()}
     return Finding(overall([trend(falls(curve, is_less), rises(curve, is_less)) for curve in ordered.values()]),
                    "; ".join(f"gap {gap:g}: {said(curve[0])} at {curve[0]['wall_stiffness']:g}, {said(curve[-1])} at {curve[-1]['wall_stiffness']:g}"

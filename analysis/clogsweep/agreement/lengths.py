@@ -27,7 +27,8 @@ def peak(curve: Sequence[Group]) -> Group | None:
 
 
 def shape(curve: Sequence[Group]) -> str:
-    """Is a curve non-monotonic? It is monotonic if it only falls and the softest droplets do not clog."""
+    """The verdict on whether a curve is non-monotonic. A curve without a peak that falls is monotonic if the softest
+    droplets do not clog."""
     return AGREES if peak(curve) else DOES_NOT if falls(curve, shorter) and curve[0]["clogs"] == 0 else NOT_KNOWN
 
 
@@ -43,7 +44,8 @@ def is_not_monotonic(groups: list[Group]) -> Finding:
 
 
 def peak_draws(curve: Sequence[Group], seed: int) -> tuple[features.Peak, Numbers]:
-    """The fitted peak, and the logarithms of its place in curves drawn from the posterior. @param seed  so that curves are independent"""
+    """The fitted peak, and log Gamma_peak of each curve drawn from the posterior. @param seed  another one for each
+    gap, so that draws of different gaps are independent"""
     known = model.Points(np.log([[group["line_tension"]] for group in curve]), *(np.array([group[name] for group in curve], float) for name in ("clogs", "total_distance")))
     places = points.grid_over(known.places)
     fitted = model.fit_curve(known, places)
@@ -51,7 +53,7 @@ def peak_draws(curve: Sequence[Group], seed: int) -> tuple[features.Peak, Number
 
 
 @statement_of_walls("4.2, figure 6c", "the peak moves to larger Γ as gaps widen",
-                    does_not_agree="there is no peak, or it moves the other way", not_known="fewer than two curves have a peak, or the sign of the slope is uncertain")
+                    does_not_agree="no peak moves to larger Γ", not_known="fewer than two curves have a peak, or the sign of the slope is uncertain")
 def peak_moves(groups: list[Group]) -> Finding:
     """Judges by the fraction of posterior draws in which the regression of log Gamma_peak on the gap has a slope of zero or
     less."""
@@ -65,7 +67,7 @@ def peak_moves(groups: list[Group]) -> Finding:
     slopes = np.polyfit(list(inside), np.array([draws for _, draws in inside.values()]), 1)[0]
     share = float(np.mean(slopes <= 0))
     verdict = AGREES if share <= 1 - CONFIDENCE else DOES_NOT if share >= CONFIDENCE else NOT_KNOWN
-    return Finding(verdict, f"peaks at {words}; slope of zero or less in {100 * share:.2g} % of draws")
+    return Finding(verdict, f"peaks at {words}; no move to larger Γ in {100 * share:.2g} % of draws from the fit")
 
 
 def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
@@ -76,16 +78,16 @@ def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
 
 
 @statement_of_walls("4.2, figure 6c", "wrapping gives way to squeezing at larger Γ as gaps widen", in_kind="the ranges of the narrowest and the widest gap overlap",
-                    does_not_agree="wrapped clogs nowhere prevail", not_known="the branches meet in fewer than two gaps, or their ranges overlap")
+                    does_not_agree="at no Γ are most clogs wrapped", not_known="the branches meet in fewer than two gaps, or their ranges overlap")
 def transition_moves(groups: list[Group]) -> Finding:
-    """Compares the crossovers of the narrowest gap and the widest."""
+    """Compares the crossover in the narrowest gap with the crossover in the widest gap."""
     found = {gap: range_ for gap, curve in curves(groups, "obstacle_gap").items() if (range_ := transition(curve))}
     wrapped, clogs = (sum(group[name] for group in groups) for name in ("wrapped", "clogs"))
     if len(found) < 2:
         return Finding(DOES_NOT if not found and clogs >= 20 else NOT_KNOWN, f"{wrapped} of {clogs} clogs are wrapped")
     (low, high), *_, (last_low, last_high) = found.values()
     verdict = AGREES if last_low > high else DOES_NOT if last_high < low else IN_KIND if last_low * last_high > low * high else NOT_KNOWN
-    return Finding(verdict, "; ".join(f"gap {gap:g}: {first:g} to {second:g}" for gap, (first, second) in found.items()))
+    return Finding(verdict, "; ".join(f"gap {gap:g}: between {first:g} and {second:g}" for gap, (first, second) in found.items()))
 
 
 @statement_of_walls("4.2, figure 6a, b", "soft droplets clog by wrapping, stiff ones by squeezing",
@@ -100,14 +102,14 @@ def two_mechanisms(groups: list[Group]) -> Finding:
 
 
 @statement_of_families("4.2, figure 6a", "wrapped clogs carry additional forces from neighbouring obstacles",
-                       in_kind="only the obstacles that they wrap hold most of them", does_not_agree="only the obstacles that they wrap hold them", not_known=SLIDES)
+                       in_kind="most wrapped clogs are held only by the obstacles that they wrap", does_not_agree="wrapped clogs are held only by the obstacles that they wrap", not_known=SLIDES)
 def neighbours_support(shop: Workshop, family: Family) -> Finding:
     shop.sweep(family.config)
     rows = shop.rows(family.config)
     support = rows.wrapped_support[(rows.mechanism == "wrapped") & np.isclose(rows.friction, family.friction)]
     helped = int((support < 0.999).sum())
     verdict = NOT_KNOWN if support.empty else DOES_NOT if helped == 0 else AGREES if 2 * helped > len(support) else IN_KIND
-    return Finding(verdict, f"{helped} of {len(support)} wrapped clogs, {1 - support.median():.1%} of the support in the median" if len(support) else "no wrapped clog")
+    return Finding(verdict, f"{helped} of {len(support)} wrapped clogs, neighbours bear {1 - support.median():.1%} of the support in the median" if len(support) else "no wrapped clog")
 
 
 def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) -> Finding:
@@ -122,27 +124,30 @@ def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) 
         verdicts[place] = trend(shorter(narrow, wide), shorter(wide, narrow))
         if verdicts[place] != NOT_KNOWN:
             words.append(f"{length_of(narrow)} and {length_of(wide)} at {place:g}")
+    if words:
+        words[0] = f"narrowest and widest gap: {words[0]}"
     alike = [f"{place:g}" for place, verdict in verdicts.items() if verdict == NOT_KNOWN]
     verdict = overall(list(verdicts.values()))
-    return Finding(IN_KIND if verdict == AGREES and alike else verdict, "; ".join(words + ([f"alike at {', '.join(alike)}"] if alike else [])))
+    return Finding(IN_KIND if verdict == AGREES and alike else verdict, "; ".join(words + ([f"no clear difference at {', '.join(alike)}"] if alike else [])))
 
 
 @statement_of_walls("4.2, figure 6c", "λ grows with the gap, right of the peak",
-                    in_kind="not for stiff droplets at equal density; for all droplets at equal filling (figure 6c-filling)", not_known="too few clogs")
+                    in_kind="at equal density λ of stiff droplets does not grow; at equal filling it grows for all droplets (figure 6c-filling)", not_known="too few clogs")
 def longer_in_wide_gaps(groups: list[Group]) -> Finding:
     tops = [top["line_tension"] for curve in curves(groups, "obstacle_gap").values() if (top := peak(curve))]
     return grows_with_gap(groups, "line_tension", max(tops, default=0.0))
 
 
-@statement_of_walls("4, text", "at intermediate Γ droplets flow continuously", in_kind="not in every gap, or also at small Γ", does_not_agree="some clog at every Γ")
+@statement_of_walls("4, text", "at intermediate Γ droplets flow continuously", in_kind="not in every gap, or not only at intermediate Γ", does_not_agree="some clog at every Γ")
 def flows_between(groups: list[Group]) -> Finding:
-    """Whether no droplet clogs at a line tension between two at which some droplets clog."""
+    """Whether there is a line tension at which no droplet clogs, while some clog at a smaller and some at a larger
+    one."""
     verdicts, words = [], []
     for gap, curve in curves(groups, "obstacle_gap").items():
         free = [i for i, point in enumerate(curve) if point["clogs"] == 0]
         between = [i for i in free if any(point["clogs"] for point in curve[:i]) and any(point["clogs"] for point in curve[i:])]
         verdicts.append(AGREES if between else IN_KIND if free else DOES_NOT)
-        words.append(f"gap {gap:g}: none clogs at {', '.join(format(curve[i]['line_tension'], 'g') for i in free) or 'no Γ'}")
+        words.append(f"gap {gap:g}: " + (f"none clogs at {', '.join(format(curve[i]['line_tension'], 'g') for i in free)}" if free else "some clog at every Γ"))
     return Finding(overall(verdicts), "; ".join(words))
 
 
@@ -167,8 +172,8 @@ def more_hybrids(groups: Sequence[Group], is_inside: Callable[[Group], bool], wh
 
 # The map: other densities
 
-@statement_of_walls("5", "hybrid clogs depend on the density: dense arrays have more", "map", MAPS, in_kind="more often there, but not significantly",
-                    does_not_agree="not more often there", not_known="no clog is hybrid")
+@statement_of_walls("5", "hybrid clogs depend on the density: dense arrays have more", "map", MAPS, in_kind="dense arrays have more, but not significantly",
+                    does_not_agree="dense arrays do not have more", not_known="no clog is hybrid")
 def hybrids_in_dense_arrays(groups: list[Group]) -> Finding:
     return more_hybrids(groups, lambda group: group["obstacle_density"] > PUBLISHED["obstacle_density"], f"beyond {PUBLISHED['obstacle_density']:g} obstacles per σ²")
 
@@ -225,11 +230,11 @@ def energy_decays(shop: Workshop) -> Finding:
 
 statement("4.2, figure 7a", "λ of soft disks falls monotonically with E_w", "7a", not_known="too few clogs")(
     lambda shop: fall_with_stiffness(curves(shop.sweep("clogging-sp"), "obstacle_gap"), shorter, length_of))
-statement("4.2, figure 7a", "λ of soft disks grows with the gap", "7a", in_kind="not for stiff disks at equal density", not_known="too few clogs")(
+statement("4.2, figure 7a", "λ of soft disks grows with the gap", "7a", in_kind="at equal density λ of stiff disks does not grow", not_known="too few clogs")(
     lambda shop: grows_with_gap(shop.sweep("clogging-sp"), "wall_stiffness"))
 
-APART = 0.25  # the published sag beyond which the models differ
-ALIKE = 2.0  # factor within which lengths are alike
+APART = 0.25  # published: the models differ where the sag is larger
+ALIKE = 2.0  # lengths are alike if their ratio is at most this
 
 
 def over_the_sag(shop: Workshop, config: str, groups: Sequence[Group]) -> list[tuple[float, Group]]:
@@ -238,8 +243,8 @@ def over_the_sag(shop: Workshop, config: str, groups: Sequence[Group]) -> list[t
 
 
 def compared(shop: Workshop, family: Family, is_beyond: bool) -> Finding:
-    """Polygons and disks of the same sag on one side of APART agree if their intervals overlap, or if they differ by
-    less than ALIKE. Lower bounds count as lengths."""
+    """Compares polygons with disks of the same sag, where the sag is larger (`is_beyond`) or smaller than APART. Their
+    lengths agree if the intervals overlap, or if the ratio is at most ALIKE. Lower bounds count as lengths."""
     disks = over_the_sag(shop, "clogging-sp", shop.sweep("clogging-sp"))
     logs = [math.log(sag) for sag, _ in disks]
 
@@ -255,7 +260,7 @@ def compared(shop: Workshop, family: Family, is_beyond: bool) -> Finding:
             right.append((overlap or 1 / ALIKE <= ratio <= ALIKE) != is_beyond)
             words.append(f"{ratio:.2g} at {sag:.3f}")
     verdict = NOT_KNOWN if not right else AGREES if all(right) else IN_KIND if any(right) else DOES_NOT
-    return Finding(verdict, f"polygon/disk ratio at each sag: {', '.join(words)}" if words else "no polygon of such a sag")
+    return Finding(verdict, f"polygon/disk ratio of λ at each sag: {', '.join(words)}" if words else "no polygon has such a sag")
 
 
 statement_of_families("4.2, figure 7c", "λ against the sag is the same for disks and polygons below 0.25 σ", "7c", in_kind="the lengths of disks and polygons separate at a smaller sag")(

@@ -1,5 +1,5 @@
-"""Section 4.1, appendices A and B: channels, where nothing is random and runs have no intervals; and measured
-quantities."""
+"""Section 4.1, appendices A and B: measured quantities, and passages through channels, which have no confidence
+intervals because nothing in them is random."""
 
 import math
 from typing import Any
@@ -26,7 +26,7 @@ def largest_shape(shop: Workshop, orifice: float, published: float, tolerance: f
 
 
 statement("4.1, figure 2", "w = 0.4: A = 1.07 at h = 0.5", "2", in_kind="the droplet is stretched more")(lambda shop: shape_at(shop, 0.5, 1.07))
-statement("4.1, figure 2", "w = 0.4: A = 1.00 at h = -0.5: the shape is not symmetric about the orifice", "2")(lambda shop: shape_at(shop, -0.5, 1.0))
+statement("4.1, figure 2", "w = 0.4: A = 1.00 at h = -0.5, so the shape is not symmetric about the orifice", "2")(lambda shop: shape_at(shop, -0.5, 1.0))
 statement("4.1, figure 3", "w = 0.9: largest A = 1.014", "3", in_kind="the droplet is stretched less")(lambda shop: largest_shape(shop, 0.9, 1.014, 0.002))
 statement("4.1, figure 3", "w = 0.7: largest A = 1.093", "3")(lambda shop: largest_shape(shop, 0.7, 1.093, 0.01))
 
@@ -38,7 +38,8 @@ def first_minimum(shop: Workshop) -> Finding:
 
 
 def slowest_before(way: Any) -> float:
-    """The place of a droplet's least speed on the last diameter before the orifice; farther away it starts from rest."""
+    """Where the droplet is slowest, within the last diameter before the orifice: farther upstream it still accelerates
+    from rest."""
     before = way[(way["h"] > -1) & (way["h"] < 0)]
     return float(before["h"][np.argmin(before["speed_ratio"])])
 
@@ -52,9 +53,9 @@ def top_behind(way: Any) -> Any:
 
 
 def tops_of_speeds(shop: Workshop, orifice: float) -> tuple[list[float], str]:
-    """The largest speeds of the droplets of figure 4 that pass, and a text about all droplets."""
+    """The largest speed of each droplet of figure 4 that passes, and a text about all droplets of this figure."""
     tops = {tension: top_behind(run.table) for tension, run in channels.overshooting(shop, orifice).items()}
-    words = [f"{tension:g} does not pass" if top is None else f"{top['speed_ratio']:.2f} at {tension:g}" for tension, top in tops.items()]
+    words = [f"the droplet of {tension:g} does not pass" if top is None else f"{top['speed_ratio']:.2f} at {tension:g}" for tension, top in tops.items()]
     return [top["speed_ratio"] for top in tops.values() if top is not None], f"w = {orifice:g}, b_0/b_∞ = {channels.OVERSHOOTS[orifice]:g}: {', '.join(words)}"
 
 
@@ -98,9 +99,10 @@ def drag_exponent(shop: Workshop) -> Finding:
 
 
 @statement("appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on", "B1",
-           in_kind="smooth only from a finer mesh on", does_not_agree="ripples shrink up to the finest mesh")
+           in_kind="smooth only on finer meshes", does_not_agree="ripples shrink up to the finest mesh")
 def profiles_are_smooth(shop: Workshop) -> Finding:
-    """A mesh is smooth if its ripples, and those of all finer meshes, exceed the ripples of the finest mesh by at most a tenth."""
+    """A mesh counts as smooth if the ripples on it and on every finer mesh are at most a tenth larger than on the
+    finest mesh."""
     noise = {count: roughness(run.table) for count, run in channels.meshes(shop).items()}
     counts = sorted(noise)
     rough = [count for count in counts if noise[count] > 1.1 * noise[counts[-1]]]

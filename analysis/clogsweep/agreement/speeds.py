@@ -50,7 +50,7 @@ def plateau_by_diameter(shop: Workshop) -> Finding:
 
 
 @statement("4.3, figure 8b", "at small Γ droplets pass larger obstacles faster", "8b",
-           not_known="the errors are as large as the difference")
+           not_known="the difference is less than two standard errors")
 def soft_by_diameter(shop: Workshop) -> Finding:
     soft = [curve[0] for curve in speed_curves(shop, "speed-diameter", "obstacle_diameter", "line_tension").values()]
     return Finding(trend(slower(soft[0], soft[-1]), slower(soft[-1], soft[0])), ", ".join(f"{speed_of(group)} for a diameter of {group['obstacle_diameter']:g}" for group in soft))
@@ -64,7 +64,7 @@ def speed_by_capillary_number(shop: Workshop) -> Finding:
         small = [group for group in curve if group["capillary_number"] < 1]
         spread = max(group["relative_speed"] for group in small) - min(group["relative_speed"] for group in small) if small else math.nan
         verdicts.append(NOT_KNOWN if not small else DOES_NOT if not falls(curve, slower) else AGREES if spread < 0.05 else IN_KIND)
-        words.append(f"gap {gap:g}: within {spread:.2f} below Ca = 1, {speed_of(curve[-1])} at {curve[-1]['capillary_number']:.2g}")
+        words.append(f"gap {gap:g}: below Ca = 1 speeds differ by up to {spread:.2f}, {speed_of(curve[-1])} at Ca = {curve[-1]['capillary_number']:.2g}")
     return Finding(overall(verdicts), "; ".join(words))
 
 
@@ -80,7 +80,8 @@ def soft_disks_are_free(shop: Workshop) -> Finding:
 
 
 def speed_pairs(shop: Workshop) -> list[tuple[float, Group, float, Group]]:
-    """Stiffest and softest polygon and disk in gaps of 1.1, with their sags."""
+    """Two pairs in gaps of 1.1: the stiffest polygon with the stiffest disk, and the softest polygon with the softest
+    disk, each with its sag."""
     found = []
     for config in ("speed", "speed-sp"):
         groups = [group for group in shop.sweep(config) if math.isclose(group["obstacle_gap"], 1.1) and group["relative_speed"] is not None]
@@ -121,7 +122,8 @@ def drag_slows_down(shop: Workshop) -> Finding:
     pairs = [(first, last) for first in lines[0] for last in lines[-1] if first["line_tension"] == last["line_tension"]]
     right = [slower(last, first) for first, last in pairs]
     return Finding(AGREES if all(right) else IN_KIND if any(right) else DOES_NOT,
-                   "; ".join(f"{speed_of(first)} and {speed_of(last)} at {first['line_tension']:g}" for first, last in pairs))
+                   f"b_0/b_∞ {lines[0][0]['near_wall_drag']:g} and {lines[-1][0]['near_wall_drag']:g}: "
+                   + "; ".join(f"{speed_of(first)} and {speed_of(last)} at {first['line_tension']:g}" for first, last in pairs))
 
 
 statement("appendix E, figure E", "the speed rises monotonically with Γ for every near-wall drag", "E", in_kind="the speed has a maximum")(

@@ -15,7 +15,7 @@ from ..tools.errors import NotThere, UserError
 AGREES, IN_KIND, FITTED = "agrees", "qualitatively", "by construction"
 FORCED, BY_MESH = "agrees with an added force", "artefact of the mesh"
 DOES_NOT, NOT_KNOWN, NOT_RUN = "does not agree", "not known", "not run"
-VERDICTS = [AGREES, IN_KIND, FORCED, BY_MESH, FITTED, DOES_NOT, NOT_KNOWN, NOT_RUN]  # in the order of the table's summary
+VERDICTS = [AGREES, IN_KIND, FORCED, BY_MESH, FITTED, DOES_NOT, NOT_KNOWN, NOT_RUN]  # the summary of the table has this order
 
 
 @dataclasses.dataclass(frozen=True)
@@ -36,7 +36,7 @@ Judge = Callable[..., Finding]
 class Statement:
     where: str
     text: str
-    figures: tuple[str, ...]  # figures whose sweeps judge it
+    figures: tuple[str, ...]  # figures from whose sweeps the statement is judged
     judge: Judge
     reasons: Mapping[str, str] = dataclasses.field(default_factory=dict)  # by verdict
 
@@ -82,7 +82,8 @@ def with_variants(found: Mapping[Family, Finding]) -> Finding:
 
 
 def statement_of_families(where: str, text: str, figure: str = "6c", families: Sequence[Family] = FAMILIES, **reasons: str) -> Callable[[Judge], Judge]:
-    """Registers a judge of the sweeps and one family of walls. @param families  first the one nearest to the published model"""
+    """Registers a function that judges a statement from the sweeps, for each family of walls. @param families  the
+    first is nearest to the published model"""
     def register(judge: Judge) -> Judge:
         statement(where, text, figure, **reasons)(lambda shop: with_variants({family: tried(judge, shop, family) for family in families}))
         return judge
@@ -91,7 +92,7 @@ def statement_of_families(where: str, text: str, figure: str = "6c", families: S
 
 
 def statement_of_walls(where: str, text: str, figure: str = "6c", families: Sequence[Family] = FAMILIES, **reasons: str) -> Callable[[Judge], Judge]:
-    """Registers a judge of a family's groups, sorted by gap, then line tension."""
+    """Registers a function that judges a statement from the groups of one family, sorted by gap, then line tension."""
     def register(judge: Judge) -> Judge:
         def of_family(shop: Workshop, family: Family) -> Finding:
             return judge(sorted(family.of(shop.sweep(family.config)), key=lambda group: (group["obstacle_gap"], group["line_tension"])))
@@ -109,7 +110,7 @@ class Judged:
 
     @property
     def reason(self) -> str:
-        """The reason of the verdict. If the verdict is not known or no agreement, also the attempts."""
+        """The reason for the verdict. If there is no verdict or no agreement, it also tells what was tried."""
         figures = ", ".join(self.statement.figures) if self.finding.verdict in (DOES_NOT, NOT_KNOWN) else ""
         return "; ".join(filter(None, [self.statement.reasons.get(self.finding.verdict), figures and f"tried: runs of figure{'s' * (',' in figures)} {figures}"]))
 
@@ -120,13 +121,13 @@ def judge(shop: Workshop, one: Statement) -> Judged:
 
 
 def judge_all(shop: Workshop) -> tuple[list[Judged], int]:
-    """@param shop  a workshop that runs nothing. @return also the model version. @throws UserError  if the sweeps have several
-    model versions"""
+    """@param shop  a workshop that runs nothing. @return the judged statements, and the model version of the sweeps.
+    @throws UserError  if the sweeps have several model versions"""
     return [judge(shop, one) for one in STATEMENTS], the_version(shop.model_versions())
 
 
 def the_version(versions: Mapping[str, Iterable[int]]) -> int:
-    """@param versions  of the rows of each sweep"""
+    """@param versions  model versions in the rows of each sweep"""
     newest = max((version for of_sweep in versions.values() for version in of_sweep), default=0)
     older = sorted(name for name, of_sweep in versions.items() if set(of_sweep) - {newest})
     if older:

@@ -16,7 +16,7 @@ def cells(one: Judged) -> list[str]:
 
 
 def counts(judged: Sequence[Judged]) -> str:
-    """The verdicts and their numbers, such as *agrees* for 31 and *qualitatively* for 12."""
+    """How many statements have each verdict, such as *agrees* for 31 and *qualitatively* for 12."""
     number = collections.Counter(one.finding.verdict for one in judged)
     *others, last = [f"*{verdict}* for {number[verdict]}" for verdict in VERDICTS if number[verdict]]
     return f"{', '.join(others)} and {last}" if others else last

@@ -7,17 +7,17 @@ import numpy as np
 from ..tools.hints import Numbers
 from .profiles import Profile, at
 
-# Relative deviation of a frame that the simulated droplet never reached, and the largest deviation of any other frame.
+# Smallest residual of a frame that the simulated droplet never reached. All other residuals are limited to this.
 NEVER_REACHED = 10
-# Fewer successive residuals do not determine their correlation.
+# A profile with fewer residuals has no correlation.
 FEWEST_CORRELATED = 8
 
 
 def speed_residuals(measured: Profile, simulated: Profile) -> tuple[Numbers, int]:
     """v_measured/v_simulated - 1 of each frame, and the number of frames that the simulated droplet never reached.
 
-    Such a frame counts 10, and 10 more for each missing diameter, which gives a direction to a search among droplets
-    that clog.
+    For such a frame the residual is 10, and 10 more for each diameter between the droplet's end and the frame. So a
+    search among droplets that clog can tell which of them get closer.
     """
     speed = at(simulated, measured.h).speed
     never = np.isnan(speed)
@@ -40,6 +40,7 @@ def root_mean_square(values: Numbers) -> float:
 
 
 def correlation(residuals: Numbers) -> float:
-    """The correlation of successive residuals about zero: within 1/sqrt(residuals) of zero for noise, near one where the profiles differ in shape."""
+    """The correlation of successive residuals about zero. For n residuals of pure noise it is about 1/sqrt(n) or less;
+    if the profiles differ in shape it is near one."""
     squares = float(residuals @ residuals)
     return float(residuals[1:] @ residuals[:-1]) / squares if len(residuals) >= FEWEST_CORRELATED and squares > 0 else math.nan

@@ -10,14 +10,15 @@ from ..results import laboratory
 from ..tools.errors import ProgramFailed, UserError
 from .profiles import Scales
 
-# Quantities that clogfit units needs, but a command may lack.
+# Values for quantities that clogfit units requires, in commands whose user did not give them.
 UNKNOWN = {"diameter": "1 mm", "angle": "90 deg"}
 
 
 def quantities(given: Mapping[str, str | None], folder: pathlib.Path) -> tuple[dict[str, Any], Scales]:
     """The answer of clogfit units, and the divisors of columns in laboratory units.
 
-    @param given  quantities by the names of a lab file, None if unknown. @throws UserError  naming the option
+    @param given  quantities by their names in a lab file, None if unknown. @throws UserError  that names the wrong
+    option
     """
     known = {name: text for name, text in given.items() if text}
     try:

@@ -15,16 +15,17 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
 FEWEST_FRAMES = 3
-# A simulated passage that is calibrated begins and ends, like a measured one, at this distance from the orifice [sigma].
+# If a simulated passage is calibrated, only its part within this distance from the orifice is used, as in an experiment
+# [sigma].
 FARTHEST_FRAME = 1.5
 FRAMES_PER_DIAMETER = 20
-METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "\u00b5m": 1e-6, "\u03bcm": 1e-6}  # as clogfit units; Unicode has two signs for micro
+METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "\u00b5m": 1e-6, "\u03bcm": 1e-6}  # the units that clogfit units knows; Unicode has two signs for micro
 
 
 class Profile(NamedTuple):
     """A droplet in a channel, frame by frame; arrays of equal length. A simulation is in the order of time."""
 
-    h: Numbers  # of the centre of mass from the orifice, positive downstream [sigma]
+    h: Numbers  # distance of the centre of mass from the orifice, positive downstream [sigma]
     speed: Numbers  # along the flow [v_t]
     shape: Numbers  # A = perimeter^2/(4 pi area); NaN where unknown
 
@@ -37,8 +38,8 @@ class Scales(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """The conditions of a passage besides the droplet. The names are those of columns, and with hyphens those of
-    keys."""
+    """The conditions of a passage, except for those of the droplet. Each field has the name of a column, and with
+    hyphens that of a key."""
 
     orifice: float
     wedge_angle: float
@@ -62,7 +63,8 @@ def read_text(path: str) -> str:
 
 
 def factor(header: str, reduced: str, scale: float, option: str) -> float:
-    """Factor of a column, such as h [mm]. @param reduced  the unit that needs no scale: sigma or v_t"""
+    """Factor that converts a column, such as h [mm], to reduced units. @param reduced  the reduced unit: sigma or
+    v_t"""
     unit = header.partition("[")[2].partition("]")[0].strip()
     if unit == reduced:
         return 1
@@ -89,7 +91,8 @@ def number(cell: str) -> float:
 def read_table(path: str, length: str, scales: Scales) -> Numbers:
     """Columns `length`, v and A of a text file as spreadsheets write it (docs/how-to/own-obstacles.md), in reduced units.
 
-    @return shape (3, lines); an empty cell of A, or none, is NaN. @throws UserError  naming file and line
+    @return shape (3, lines); A is NaN where its cell is empty, or if there is no such column. @throws UserError  that
+    names file and line
     """
     separator, rows = "", []
     columns: dict[str, int] = {}
@@ -125,7 +128,7 @@ def read_run(path: str) -> tuple[Profile, np.void]:
 
 
 def at(profile: Profile, h: Numbers) -> Profile:
-    """The droplet where it first reaches each h, interpolated linearly; NaN where it never does."""
+    """The profile at each h, where the droplet first reaches it, interpolated linearly; NaN if it never does."""
     first = profile.h >= np.maximum.accumulate(profile.h)
     return Profile(h, *(np.interp(h, profile.h[first], values[first], left=math.nan, right=math.nan) for values in profile[1:]))
 

@@ -1,9 +1,9 @@
 """Searches the line tension and the near-wall drag of the simulation that is closest to a measured passage.
 
-Close to a line tension at which the droplet clogs, Delta_v has several minima, each a percent wide. The search begins
-on a coarse grid and descends from its best points by the simplex method. It brackets the line tension at which droplets
-clog, descends again from doubling distances to it, and ends with Gauss-Newton steps until these and another simplex
-gain nothing.
+Close to a line tension at which the droplet clogs, Delta_v has several minima, each about a percent of Gamma wide. The
+search begins on a coarse grid and descends from its best points by the simplex method. It brackets the line tension at
+which droplets clog, and descends again from several line tensions below it, each twice as far away as the one before.
+It ends with Gauss-Newton steps until these and another simplex gain nothing.
 """
 
 import itertools
@@ -28,19 +28,19 @@ LOWER = np.array([math.log(0.02), 0])
 UPPER = np.array([math.log(10), 2])
 GRID_TENSIONS = LOWER[0] + (UPPER[0] - LOWER[0]) * (np.arange(7) + 0.5) / 7
 GRID_DRAGS = np.array([0, 0.01, 0.03, 0.1, 0.3]) * UPPER[1]
-LADDER_DISTANCES = (0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32)  # of log Gamma from a clog
+LADDER_DISTANCES = (0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32)  # distances from the bracketed clog, in log Gamma
 LADDER_DRAGS = (0.9, 1, 1.1)
 NUM_STARTS = 3
-CLOG_WIDTH = 0.005  # of the bracket, in log Gamma
-# Residuals are linear over such differences where no droplet clogs.
+CLOG_WIDTH = 0.005  # width of the bracket around the clog, in log Gamma
+# Finite differences of log Gamma and b_0/b_inf. If no droplet clogs, residuals are linear over the longest ones.
 LONGEST_STEP = np.array([0.05, 0.01])
 SHORTEST_STEP = np.array([5e-4, 1e-4])
 MOST_ROUNDS = 20
-WORTH_IT = 0.999  # Delta_v after a round that is worth another, relative to that before
-NEGLIGIBLE = 0.03  # length of a step, in standard errors
+WORTH_IT = 0.999  # a round has gained something if it multiplies Delta_v by less than this
+NEGLIGIBLE = 0.03  # Gauss-Newton steps shorter than this are not taken [standard errors]
 
-GOOD = 0.2  # Delta_v of speeds that agree within a fifth
-MESH = 0.01  # runs without noise differ by less, smoothly, in speed and in shape
+GOOD = 0.2  # a larger Delta_v causes a warning: speeds differ by more than a fifth
+MESH = 0.01  # smaller systematic residuals cause no warning: noiseless runs differ by less, but smoothly, in speed and in shape
 NEAR_CLOG = 1.1
 
 
@@ -58,10 +58,10 @@ class Attempt(NamedTuple):
 
 
 class Calibration(NamedTuple):
-    """Line tension and near-wall drag of one profile. Errors are NaN if the frames do not determine both."""
+    """Line tension and near-wall drag of one profile. Errors are NaN if the frames do not determine both of these."""
 
     line_tension: float  # [g rho sigma^2]
-    line_tension_error: float  # from the scatter of the frames about the best run
+    line_tension_error: float  # follows from the scatter of the frames about the best run
     near_wall_drag: float  # b_0/b_inf
     near_wall_drag_error: float
     delta_v: float
@@ -69,7 +69,7 @@ class Calibration(NamedTuple):
     speed_correlation: float
     shape_correlation: float
     converged: bool
-    clogging_tension: float  # from which on droplets do not reach all frames; NaN if all do, or none
+    clogging_tension: float  # droplets of this Gamma and more do not reach all frames; NaN if all droplets do, or none
     simulations: int
     warnings: list[str]
 
@@ -82,7 +82,8 @@ class Linearised(NamedTuple):
 
 
 class Search:
-    """Places that were tried for one profile. Simulations run in parallel, and seldom twice at one place."""
+    """The simulations of one profile, by their places (log Gamma and b_0/b_inf). They run in parallel, and a place is
+    seldom simulated twice."""
 
     def __init__(self, measured: Profile, simulate: Simulation, progress: Callable[[float, float, float], None]) -> None:
         self.measured, self.simulate, self.progress = measured, simulate, progress
@@ -126,15 +127,16 @@ class Search:
         return Linearised(-np.linalg.lstsq(slopes, here.residuals, rcond=None)[0], np.sqrt(variance * np.diag(np.linalg.inv(information))))
 
     def linearise(self, place: Place) -> Linearised | None:
-        """Takes differences first over steps so short that the droplet passes on both sides, then over steps as long as the errors."""
+        """Computes finite differences twice: first over steps so short that droplets on both sides of the place pass,
+        then over steps as long as the errors."""
         step = LONGEST_STEP
         while (found := self.linearise_over(np.array(place), step)) is None and np.all(step > 2 * SHORTEST_STEP):
             step = step / 2
         return found and self.linearise_over(np.array(place), np.clip(found.errors, SHORTEST_STEP, step))
 
     def polish(self, best: Attempt) -> tuple[Attempt, bool]:
-        """Gauss-Newton steps, then a new simplex if these gain nothing, because the last one may have collapsed on a
-        slope."""
+        """Gauss-Newton steps, then a new simplex if these gain nothing: the previous simplex may have shrunk to a point
+        that is not a minimum."""
         for _ in range(MOST_ROUNDS):
             before = best.delta
             if around := self.linearise(best.place):
@@ -149,7 +151,8 @@ class Search:
         return best, False
 
     def bracket_clog(self, grid: Sequence[Attempt], drag: float) -> tuple[float, float] | None:
-        """log Gamma of the stiffest droplet that passes all frames and of the next stiffer droplet that does not, if they exist."""
+        """log Gamma of a droplet that reaches all frames, and of a slightly stiffer one that does not; None if there is
+        no such pair."""
         brackets = [(softer.place[0], stiffer.place[0]) for softer, stiffer in zip(grid, grid[len(GRID_DRAGS):])
                     if softer.num_never_reached == 0 < stiffer.num_never_reached]
         if not brackets:
@@ -161,7 +164,8 @@ class Search:
         return passing, clogging
 
     def run(self) -> tuple[Attempt, bool, float]:
-        """@return the best, whether the search converged, and the Gamma from which on droplets clog, or NaN"""
+        """@return the best simulation, whether the search converged, and the Gamma from which on droplets clog, or
+        NaN"""
         grid = self.attempts(list(itertools.product(GRID_TENSIONS, GRID_DRAGS)))
         minima = in_parallel(lambda start: self.descend(start, (0.4, max(0.3 * start[1], 0.03)), (0.01, 0.002), 40)[0], starts(grid))
         drag = nearest(minima).place[1]
@@ -173,7 +177,7 @@ class Search:
 
 
 def in_parallel(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
-    """Each item has a thread that waits; each simulation has one core."""
+    """Works on all items at once. Each has a thread, which waits until a core is free for its simulation."""
     with ThreadPoolExecutor(max_workers=len(items)) as threads:
         return list(threads.map(function, items))
 
@@ -191,7 +195,7 @@ def starts(attempts: Sequence[Attempt]) -> list[tuple[float, float]]:
 
 
 def warnings(best: Attempt, found: Calibration) -> list[str]:
-    """What spoils a result."""
+    """Reasons to doubt a result."""
     num_frames, log_tension, drag = len(best.residuals), *best.place
     # The correlation of independent noise exceeds this limit once in seven hundred trials. If residuals are systematic, something other than
     # Gamma and b_0 differs.
@@ -215,9 +219,10 @@ def warnings(best: Attempt, found: Calibration) -> list[str]:
 
 
 def calibrate(measured: Profile, simulate: Simulation, progress: Callable[[float, float, float], None] = lambda *_: None) -> Calibration:
-    """Minimises Delta_v. The same every time.
+    """Minimises Delta_v. The same profile gives the same result every time.
 
-    Errors are those of linearised least squares with independent frames of equal relative scatter, over a range like the errors.
+    Errors come from least squares, on the assumption that the frames are independent and have equal relative scatter.
+    The residuals are linearised over differences about as long as the errors.
     @param simulate  is called from several threads; @param progress  gets line tension, drag and Delta_v of each simulation
     @throws what a simulation throws
     """

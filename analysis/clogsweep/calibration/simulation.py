@@ -16,15 +16,16 @@ from ..tools.errors import ProgramFailed
 from ..tools.signals import stop_signals
 from .profiles import Channel, Profile, read_run
 
-Simulation = Callable[[float, float], Profile]  # of line tension and near-wall drag
+Simulation = Callable[[float, float], Profile]  # its arguments are line tension and near-wall drag
 
-# Half a diameter before the first frame the motion is overdamped and has forgotten its start.
+# The run starts half a diameter before the first frame. Motion is overdamped, so at the first frame it no longer
+# depends on the start.
 APPROACH = 0.5
-# The start has to be clear of the wedges.
+# A droplet that starts here is usually clear of the wedges [sigma].
 USUAL_START = -2.0
-# A droplet that moves at 1/30 of its terminal speed on average still passes.
+# The run is long enough for a droplet to pass at 1/30 of its terminal speed, on average.
 SLOWEST = 30
-# Shorter than 64 steps; clogrun stores at most one sample for 64 steps.
+# Shorter than any step, so clogrun stores as many samples as it can: one every 64 steps.
 SAMPLE_INTERVAL = 1e-9
 
 
@@ -62,7 +63,7 @@ class Clogrun:
 
     @contextlib.contextmanager
     def stoppable(self) -> Iterator[None]:
-        """In this block a signal that stops the program ends all runs, and these raise Stopped."""
+        """A block in which a stop signal ends all runs, whose calls then raise Stopped."""
         def stop(_number: int, _frame: FrameType | None) -> None:
             self.stopping.set()
             for process in list(self.running):
@@ -82,7 +83,8 @@ class Clogrun:
         return Channel(*(float(config[name.replace("_", "-")]) for name in Channel._fields))
 
     def past(self, measured: Profile, words: Sequence[str]) -> Simulation:
-        """Simulations of passages past the frames of a measured one. @param words  keys of clogrun channel"""
+        """A function that simulates a passage which begins before and ends after the frames of a measured one.
+        @param words  keys of clogrun channel"""
         words = [word for word in words if word.partition("=")[0].lstrip("-") not in ("start", "end", "max-time")]
         start, end = min(float(min(measured.h)) - APPROACH, USUAL_START), float(max(measured.h)) + 0.1
         try:
@@ -96,7 +98,7 @@ class Clogrun:
         words += [f"start={start}", f"end={end}", f"max-time={SLOWEST * (end - start) / channel.terminal_speed}", f"--sample-interval={SAMPLE_INTERVAL}"]
 
         def simulate(line_tension: float, near_wall_drag: float) -> Profile:
-            """The passage, which ends where the droplet breaks or clogs."""
+            """The passage; it ends early if the droplet breaks or clogs."""
             with tempfile.TemporaryDirectory(prefix="clogsweep-calibrate-") as place:
                 self(*words, f"line-tension={line_tension}", f"near-wall-drag={near_wall_drag}", f"--output={place}/run.h5")
                 return read_run(f"{place}/run.h5")[0]

@@ -1,4 +1,5 @@
-"""Break-up of droplets on a single obstacle: the largest line tension, vs the offset from its centre."""
+"""Break-up of droplets on a single obstacle: the largest line tension at which they break up, vs the offset of their
+path from the obstacle's centre."""
 
 import math
 import pathlib
@@ -7,14 +8,14 @@ from collections.abc import Sequence
 from ..reading import programs, stored
 
 DIAMETER = 0.3  # of the obstacle [sigma]
-FALL = 3  # from the release to the obstacle's centre [sigma]: far enough that the droplet starts where it is told to
+FALL = 3  # from the release to the obstacle's centre [sigma]: the obstacle is too far away to displace the release
 BOX = 20
 KEYS = {"preset": "robust", "vertices": "128", "terminal-speed": "0.03", "break-up-neck": "0.02"}
-TENSIONS = (0.01, 0.6)  # from droplets softer than the tested range to some that never break
+TENSIONS = (0.01, 0.6)  # range of the search: from below the tested range of line tensions to droplets that never break
 PRECISION = 0.02
-STEPS = 6  # of a sweep
+STEPS = 6  # a sweep divides the range into so many steps
 
-Threshold = tuple[float | None, float | None]  # the largest line tension of a droplet that breaks up, the next of one that does not
+Threshold = tuple[float | None, float | None]  # the largest tried line tension at which the droplet breaks up, and the smallest larger one at which it does not
 
 
 def symmetry(offset: float) -> float:
@@ -32,7 +33,7 @@ class Collisions:
 
     def __init__(self, clogsweep: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> None:
         self.clogsweep, self.folder, self.keys = clogsweep, folder, KEYS | keys
-        # A droplet that hangs for four times the duration of its fall has not broken up.
+        # A droplet that has not broken up after four times the duration of its fall counts as whole.
         self.keys.setdefault("max-time", f"{4 * FALL / float(self.keys['terminal-speed']):g}")
 
     def break_up(self, offset: float, tensions: Sequence[float]) -> list[bool]:

@@ -1,4 +1,5 @@
-"""Clogging lengths from droplets that fall onto one or two obstacles: which obstacles hold a droplet, and how many of these an array has.
+"""Predicts clogging lengths from droplets that fall onto one or two obstacles. They show which obstacles hold a
+droplet; then such obstacles are counted in an array.
 
 docs/explanation/predicted.md has the law and its limits.
 """
@@ -16,15 +17,15 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from .collision import BOX, FALL
 
-GAP_STEP = 0.04  # of pairs that are tried [sigma]: a twentieth of the range in which they can hold a droplet
+GAP_STEP = 0.04  # between the gaps of the simulated pairs [sigma]: a twentieth of the range of gaps that can hold a droplet
 ANGLE_STEP = 3  # [degrees]
-DIAMETER_STEP = 0.1  # of the mean diameter of a pair [sigma]
-EXIT = 6  # behind the obstacles: farther than droplets hang [sigma]
-LONGEST_FALL = 90  # at terminal speed, before a droplet that creeps on an obstacle counts as free [sigma]
-OFFSET_PRECISION, OFFSET_STEPS = 0.0001, 6  # of the half-width within which one obstacle holds a droplet [sigma]; of a search
-SPEED = 0.03  # terminal speed by default [sqrt(sigma g)]
-SMALLEST_LENGTH = 4  # [sigma]: shorter ones were too long by a third and more
-SOFTEST = 1  # line tension: at 0.5 up to 42 % of all clogs hang on three obstacles, at 0.3 85 % (docs/explanation/predicted.md)
+DIAMETER_STEP = 0.1  # between the mean diameters of the simulated pairs [sigma]
+EXIT = 6  # distance of the exit behind the obstacles: droplets that hang there do not reach it [sigma]
+LONGEST_FALL = 90  # a droplet that still moves after the time of such a fall at terminal speed counts as free [sigma]
+OFFSET_PRECISION, OFFSET_STEPS = 0.0001, 6  # precision of the half-width within which one obstacle holds a droplet [sigma]; its search divides each bracket into so many steps
+SPEED = 0.03  # default of the terminal speed [sqrt(sigma g)]
+SMALLEST_LENGTH = 4  # [sigma]: predictions below this were too long by a third and more
+SOFTEST = 1  # smallest line tension without a doubt: up to 42 % of all clogs hang on three obstacles at 0.5, and 85 % at 0.3 (docs/explanation/predicted.md)
 ARRAYS, ARRAY_BOX = 4, 60  # number of random arrays in which pairs are counted, and their width [sigma]
 
 # The keys of the array. All other keys belong to the droplet; `obstacle-diameter` belongs to both.
@@ -43,14 +44,15 @@ class Array:
     area: float  # [sigma^2]
     obstacles: int
     mean_diameter: float  # of the obstacles [sigma]
-    diameters: Numbers  # mean of the two obstacles, of each pair [sigma]
-    separations: Numbers  # of the centres, of each pair [sigma]
-    angles: Numbers  # between their line and the horizontal, which is across the flow, 0 to 90 [degrees]
-    is_isotropic: bool  # of no direction, as random arrays are
+    diameters: Numbers  # mean diameter of the two obstacles of each pair [sigma]
+    separations: Numbers  # distance between the two centres of each pair [sigma]
+    angles: Numbers  # angle between the line through the two centres and the direction across the flow, 0 to 90 [degrees]
+    is_isotropic: bool  # all directions of pairs are equally likely, as in random arrays
 
 
 def pairs_of(circles: Numbers, width: float, length: float) -> Iterator[Numbers]:
-    """Pairs of obstacles between which a free droplet does not fit, in a periodic array, for each obstacle and those behind it in the list.
+    """Pairs of obstacles in a periodic array between which a free droplet does not fit: for each obstacle, its pairs
+    with later ones in the list.
 
     @param circles  n x 3, x, y and diameter [sigma]; @param width  period across the flow, y; @param length  along it, x
     @return arrays of m x 3: vector from the first to the second obstacle, mean diameter
@@ -68,17 +70,18 @@ class Droplets:
     """Droplets that fall onto one or two obstacles."""
 
     def __init__(self, clogsweep: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> None:
-        """@param keys  of clogsweep, those of the droplet"""
+        """@param keys  those keys of clogsweep that describe the droplet"""
         self.clogsweep, self.folder = clogsweep, folder
         try:
             speed = float(keys.get("terminal-speed", SPEED))
         except ValueError:
             raise UserError(f"invalid terminal-speed={keys['terminal-speed']} (must be a number); try {SPEED}") from None
-        # Soft droplets creep on an obstacle; those that pass end at the exit.
+        # Soft droplets may creep on an obstacle until max-time. Droplets that pass end at the exit.
         self.keys = {"max-time": f"{LONGEST_FALL / speed:g}", "exit": f"{BOX / 2 + FALL + EXIT:g}"} | keys
 
     def ends(self, arrays: Sequence[Circles], tension: float | None = None) -> dict[float, list[bytes]]:
-        """What holds it. @param arrays  of each droplet, from FALL below its release on; @param tension  if not all of the keys
+        """What holds the droplet in each array. @param arrays  obstacles, with x = 0 at the distance FALL below the
+        release; @param tension  None: all line tensions of the keys
         @return for each line tension, a word per array: wrapped, squeezed and so on, empty if it passed
         """
         files = [self.folder / f"{index}.csv" for index in range(len(arrays))]
@@ -99,13 +102,15 @@ class Droplets:
         return found
 
     def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
-        """Which pairs stop a droplet that falls onto their middle, if not one of their obstacles alone does. @param angles  of the pairs [degrees]"""
+        """For each line tension: which pairs stop a droplet that falls onto the middle between the two obstacles. Pairs
+        of which one obstacle alone holds the droplet do not count. @param angles  of the pairs [degrees]"""
         halves = [[(gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos)] for angle in angles]
         ends = self.ends([[(0, -y, diameter), (2 * x, y, diameter)] for x, y in halves])
         return {tension: [end in (b"squeezed", b"hybrid") for end in words] for tension, words in ends.items()}
 
     def half_width(self, diameter: float, tension: float) -> float:
-        """Largest offset from the centre of one obstacle at which it holds the droplet [sigma], 0 if below OFFSET_PRECISION."""
+        """Largest offset from an obstacle's centre at which the obstacle holds the droplet [sigma], or 0 if this is
+        below OFFSET_PRECISION."""
         low, high = 0.0, (1 + diameter) / 2
         while high - low > max(OFFSET_PRECISION, low / OFFSET_STEPS**2):
             offsets = [low + (high - low) * step / OFFSET_STEPS for step in range(OFFSET_STEPS + 1)]
@@ -118,16 +123,18 @@ class Droplets:
 def mean_cosine(held: Sequence[bool]) -> float:
     """Mean of cos(angle) over all directions, 0 where a pair does not hold the droplet.
 
-    A pair that holds it catches what arrives between its centres; a droplet that arrives beside them slides off outwards.
-    @param held  for angles in the middles of steps of ANGLE_STEP
+    A pair that holds the droplet stops all droplets that arrive between the centres of its obstacles; others slide off
+    outwards.
+    @param held  whether the pair holds the droplet at the middle of each interval of ANGLE_STEP, beginning with 0
+    degrees
     """
     edges = np.radians(ANGLE_STEP * np.arange(len(held) + 1))
     return float(np.sum(np.diff(np.sin(edges))[np.array(held, dtype=bool)]) / (math.pi / 2))
 
 
 def largest_angle(gap: float, diameter: float) -> float:
-    """Largest angle at which a rigid disc rests on two obstacles [degrees]: the disc's centre is above the line
-    between the obstacles' centres."""
+    """Largest angle at which a rigid disc rests on two obstacles [degrees]: then the disc's centre is straight above
+    the centre of the lower obstacle."""
     return math.degrees(math.asin(min(1.0, (gap + diameter) / (1 + diameter))))
 
 
@@ -136,8 +143,8 @@ class Prediction(NamedTuple):
 
     tension: float
     length: float
-    squeezed: float  # by pairs alone
-    wrapped: float  # by single obstacles alone
+    squeezed: float  # if only pairs held droplets
+    wrapped: float  # if only single obstacles held droplets
 
 
 def length_of(rate: float) -> float:
@@ -172,7 +179,8 @@ def doubts_of(tension: float, length: float) -> list[str]:
 
 
 def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> Array:
-    """Has clogrun make the array, or several of a random one. @param keys  that describe it. @throws UserError"""
+    """Has clogrun make the array, or several arrays if it is random. @param keys  that describe the array.
+    @throws UserError"""
     run, circle_file = folder / "array.h5", folder / "array.csv"
     is_own = keys.get("obstacle-layout", "random") != "random" or "obstacles" in keys
     keys = keys if is_own else {"box": str(ARRAY_BOX)} | keys

@@ -5,8 +5,8 @@
 
 Judges every statement from the sweeps of the figures, and prints the result with its interval, the results of other
 walls, and the verdict: agrees, qualitatively, agrees with an added force (wall friction), artefact of the mesh, by
-construction (a parameter was fitted to the published number), does not agree, not known, not run. All rows must be of
-one model version.
+construction (a parameter was fitted to the published number), does not agree, not known, not run. All rows must have
+the same model version.
 """
 
 import argparse

@@ -83,7 +83,8 @@ def refuse_contradictions(arguments: argparse.Namespace, names: set[str]) -> Non
 
 
 def refuse_other_channel(file: str, stored: Channel | None, simulated: Channel, names: set[str]) -> None:
-    """Gamma depends on the channel, which a measured passage does not contain."""
+    """Refuses keys that contradict the channel stored with a simulated passage. A measured passage needs the channel as
+    keys, because Gamma depends on it."""
     if stored is None and "orifice" not in names:
         raise UserError("missing orifice (the line tension that is found depends on the channel) give its width in droplet diameters, "
                         "e.g. orifice=0.8, and wedge-angle, tip-radius unless they are those of --help")
@@ -94,7 +95,8 @@ def refuse_other_channel(file: str, stored: Channel | None, simulated: Channel, 
 
 
 def means(found: Sequence[Calibration]) -> dict[str, float]:
-    """Mean and standard deviation over independent trials, as published (Cheng et al., Fig. 2); the latter is NaN for one trial."""
+    """Mean and standard deviation over independent trials, as published (Cheng et al., Fig. 2). The standard deviation
+    of a single trial is NaN."""
     values = {"line_tension": [one.line_tension for one in found], "near_wall_drag": [one.near_wall_drag for one in found]}
     every: dict[str, float] = {}
     for name, numbers in values.items():

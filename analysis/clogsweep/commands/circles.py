@@ -5,12 +5,12 @@ micrograph).
     python3 -m clogsweep circles scan.png --pixel 2.5um --droplet 200um --output posts
     clogsweep obstacles=posts.csv box=... length=...      # as the command prints it
 
-posts.csv has the posts in micrometres, and the droplet's diameter. posts.png shows how the drawing was interpreted:
-look at it before you run anything. An outline that contains everything else is the edge of the device; without one it
-is a box around the posts. Lines that meet are joined into outlines. Flat outlines and lines along the sides are walls;
-other lines are red. Round posts are circles. Other shapes, such as triangles, are red in the picture, and nothing is
-written unless --as-rows replaces each by rows of overlapping circles along its outline, or --as-circles by a circle of
-the same area.
+posts.csv lists the posts in micrometres, and the droplet's diameter. posts.png shows how the drawing was interpreted:
+look at it before you run anything. An outline that contains everything else becomes the edge of the device; without
+such an outline the edge is a box around the posts. Lines that meet are joined into outlines. Flat outlines and lines
+along the sides become walls; other lines are red in the picture. Round posts become circles. Posts of other shapes,
+such as triangles, are red, too. Then posts.csv is written only with --as-rows, which replaces each such post by rows of
+overlapping circles along its outline, or with --as-circles, which replaces it by a circle of the same area.
 """
 
 import argparse
@@ -102,7 +102,7 @@ def call_of(device: shapes.Device, output: pathlib.Path) -> str:
 
 
 def told(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> list[str]:
-    """Describes the content of the drawing."""
+    """Lines that describe the content of the drawing."""
     edge = "the region" if drawing.frame and not drawing.is_picture else "its own edge" if device.has_frame else "between its walls" if len(device.walls) == 2 else "no edge is drawn"
     micrometres = device.droplet_micrometres
     words = [f"{rounded.counted(device.num_posts(), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]

@@ -1,13 +1,13 @@
-"""Draws the clogging length against line tension (DP) or wall stiffness (SP), one curve per obstacle array; of lattices the
-lateral displacement per distance against the angle of their rows.
+"""Draws the clogging length against line tension (DP) or wall stiffness (SP), one curve per obstacle array. For
+lattices it draws the lateral displacement per distance against the angle of the rows.
 
     python3 -m clogsweep clogging-length sweep.h5        # sweep-clogging-length.png, sweep-clogging-length.pdf
     python3 -m clogsweep clogging-length sweep.h5 --with own.csv --lab lab.cfg     # beside measured distances, see clogfit lengths
-    clogfit sweep.h5 --format json | python3 -m clogsweep clogging-length /dev/stdin --output clogging-length     # its points
+    clogfit sweep.h5 --format json | python3 -m clogsweep clogging-length /dev/stdin --output clogging-length     # points only
 
 Every length comes from clogfit. Bars are its confidence intervals; smooth lines with bands are the curves of clogfit
-curve, which need the sweep itself. Markers show the mechanism of most clogs; a hollow marker is a length with a doubt,
-which the picture explains; a triangle pointing up is a lower bound, because no run clogged.
+curve, which need the sweep itself. Markers show the mechanism of most clogs. A hollow marker means a doubt, which the
+picture explains. A triangle pointing up is a lower bound, because no run clogged.
 """
 
 import argparse

@@ -4,8 +4,9 @@
     python3 -m clogsweep clogs sweep.h5                  # sweep-clogs.png, sweep-clogs.pdf
 
 Replays the clogged rows until they rest (clogrun), because no table contains outlines. The flow is to the right.
-Touched obstacles are blue, arcs of contact red, the droplet's convex hull dashed. Titles give mechanism and distance,
-the number of wrapped obstacles with their fraction of the support, and the numbers of gaps and contacts.
+Touched obstacles are blue, arcs of contact red, the droplet's convex hull dashed. Titles give the mechanism and the
+distance, the number of wrapped obstacles and which fraction of the support they bear, and the numbers of gaps and
+contacts.
 """
 
 import argparse

@@ -4,11 +4,12 @@ centre.
     python3 -m clogsweep collision --output collision                     # collision.png, collision.pdf; the numbers as CSV
     python3 -m clogsweep collision --output fine vertices=512 break-up-neck=0.05 --offsets 0,0.1,0.3
 
-For each offset droplets fall onto a circle of 0.3 sigma, in sweeps over the line tension that bracket the largest at
-which they break up. KEY=VALUE are keys of clogsweep for all of them. The symmetry S of a collision is the droplet's
-area on one side of the vertical line through the obstacle divided by that on the other, at most 1; the capillary number
-Ca is weight divided by tension, pi/(4 Gamma). The upper axis of the picture is the fraction of collisions that break up a
-droplet of the curve's line tension, if all offsets with contact are equally likely.
+For each offset, droplets of several line tensions fall onto a circle of diameter 0.3 sigma. Repeated sweeps bracket the
+largest line tension at which they break up. KEY=VALUE are keys of clogsweep for all of these sweeps. The vertical line
+through the obstacle divides the droplet into two parts; the symmetry S of a collision is the area of the smaller part
+divided by that of the larger part. The capillary number Ca is weight divided by tension, pi/(4 Gamma). The upper axis
+of the picture shows which fraction of collisions breaks a droplet of the curve's line tension, on the assumption that all
+offsets with contact are equally likely.
 """
 
 import argparse
@@ -38,7 +39,7 @@ def offsets(word: str) -> list[float]:
 
 def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="keys of clogsweep; vertices, terminal-speed, break-up-neck, max-time have values "
+    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="keys of clogsweep; vertices, terminal-speed, break-up-neck, max-time have defaults "
                         "of their own here")
     command_line.add_output(parser, "name of the picture; .png and .pdf are made", ".png", ".pdf", required=True)
     parser.add_argument("--offsets", type=offsets, default="0,0.01,0.02,0.05,0.1,0.15,0.2,0.25,0.3,0.35", help="offsets of the droplet's path from the obstacle's centre [sigma]")

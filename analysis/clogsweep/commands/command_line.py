@@ -1,4 +1,4 @@
-"""Calls every command here, and reports mistakes as the programs do: one line, exit code 2."""
+"""Runs the commands of this folder, and reports mistakes as the programs do: in one line, with exit code 2."""
 
 from __future__ import annotations
 
@@ -31,13 +31,14 @@ _own_name = ""
 
 
 def speak_as(name: str) -> None:
-    """Name of the command in its messages; by default that of the script."""
+    """Sets the command's name in its messages. The default is the script's name."""
     global _own_name
     _own_name = name
 
 
 def name() -> str:
-    """Name of the command in its messages; callers under another name, as clogfit report, set CLOG_CALLED_AS."""
+    """Name of the command in its messages. A program that calls it under another name, such as clogfit report, sets
+    CLOG_CALLED_AS."""
     return os.environ.get("CLOG_CALLED_AS") or _own_name or pathlib.Path(sys.argv[0]).name
 
 
@@ -62,7 +63,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def whole(least: int) -> Callable[[str], int]:
-    """Type of an option: a whole number that is not smaller."""
+    """Type of an option: a whole number that is not smaller than `least`."""
     def number(word: str) -> int:
         if not word.lstrip("+-").isdecimal() or int(word) < least:
             raise argparse.ArgumentTypeError(f"invalid value: {word} (must be a whole number, {least} or more)")
@@ -101,7 +102,7 @@ def key_and_value(word: str) -> tuple[str, str]:
 
 
 def add_output(parser: argparse.ArgumentParser, meaning: str, *endings: str, required: bool = False) -> None:
-    """--output of a command. @param endings  such as ".png", that it adds itself: a name may have them or not"""
+    """Adds --output. @param endings  that the command adds itself, such as ".png"; the user may write them or not"""
     def without_ending(word: str) -> pathlib.Path:
         path = pathlib.Path(word)
         return path.with_suffix("") if path.suffix in endings else path
@@ -118,10 +119,12 @@ def beside(source: pathlib.Path, ending: str) -> pathlib.Path:
 
 def sweep_to_draw(about: str | None, ending: str, what: str = "file of clogsweep --output",
                   more: Sequence[Callable[[argparse.ArgumentParser], None]] = ()) -> argparse.Namespace:
-    """Options of a command that makes one picture of a sweep: sweep, output, programs.
+    """Parses the options of a command that makes one picture of a sweep: the sweep, --output, --programs.
 
-    @param about  the command's docstring; @param ending  of the picture's name, which begins with that of the sweep
-    @param what  is given as the sweep; @param more  add other options. @throws UserError  if the picture could not be written
+    @param about  the command's docstring; @param ending  of the picture's default name, which begins with the sweep's
+    name
+    @param what  help text for the sweep; @param more  functions that add other options. @throws UserError  if the
+    picture cannot be written
     """
     parser = Parser(about)
     parser.add_argument("sweep", type=pathlib.Path, help=what)
@@ -136,7 +139,7 @@ def sweep_to_draw(about: str | None, ending: str, what: str = "file of clogsweep
 
 
 def add_format(parser: argparse.ArgumentParser) -> None:
-    """--format, which is text or json."""
+    """Adds --format, which is text or json."""
     def known(word: str) -> str:
         if word not in ("text", "json"):
             raise UserError(f"invalid --format={word} (is not one of text, json)")
@@ -151,11 +154,11 @@ def add_lab(parser: argparse.ArgumentParser) -> None:
 
 def add_width(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--width", type=between(4, 30, "a width in cm"), metavar="CM",
-                        help="lay the picture out for a column of a journal, of this width, such as 8.6, and print what the caption has to say")
+                        help="lay the picture out for a journal column of this width, such as 8.6, and print the text that belongs in the caption")
 
 
 def save(picture: Picture, arguments: argparse.Namespace) -> int:
-    """@param arguments  with output, possibly with width. @return exit code 0"""
+    """@param arguments  with `output`, and possibly `width`. @return exit code 0"""
     if width := getattr(arguments, "width", None):
         picture.for_journal(width)
     tell("\n".join(filter(None, [f"{picture.save(arguments.output)} (and .pdf)", picture.caption])))
@@ -176,7 +179,7 @@ def quieten_libraries() -> None:
 
 @contextlib.contextmanager
 def needs_modules() -> Iterator[None]:
-    """Guards a block that loads modules which may be missing."""
+    """A block that loads modules. If one of them is missing, the error says which package to install."""
     quieten_libraries()
     try:
         yield
@@ -190,7 +193,8 @@ def tell(text: object) -> None:
 
 
 def _give_up(stream: TextIO) -> None:
-    """At exit Python writes the rest of a stream, and returns 120 if that fails."""
+    """Redirects a failed stream to /dev/null. At exit Python would try to write the rest of it, and return 120 when
+    that fails."""
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, stream.fileno())
     os.close(null)
@@ -199,7 +203,7 @@ def _give_up(stream: TextIO) -> None:
 def _refuse(reason: object) -> int:
     try:
         print(printable(f"{name()}: {' '.join(str(reason).split())}"), file=sys.stderr, flush=True)
-    except OSError:  # its reader may have closed it
+    except OSError:  # the reader of the stream may have closed it
         if sys.stderr is not None:
             _give_up(sys.stderr)
     return USER_FAULT
@@ -207,9 +211,10 @@ def _refuse(reason: object) -> int:
 
 @contextlib.contextmanager
 def _whole_output() -> Iterator[None]:
-    """Writes everything printed before the block ends, so that a full disk is an error of the block."""
+    """Flushes standard output at the end of the block, so that a full disk is an error inside the block."""
     if isinstance(sys.stdout, io.TextIOWrapper):
-        # A locale may lack letters. With PYTHONUNBUFFERED each print() would fail, not the end.
+        # The locale's encoding may lack letters. Without buffering (PYTHONUNBUFFERED) each print() would fail on a full
+        # disk, instead of the flush below.
         sys.stdout.reconfigure(errors="backslashreplace", write_through=False)
     try:
         yield
@@ -217,7 +222,7 @@ def _whole_output() -> Iterator[None]:
         if sys.stdout is not None:
             try:
                 sys.stdout.flush()
-            except BrokenPipeError:  # its reader closed it
+            except BrokenPipeError:  # the reader of the stream closed it
                 _give_up(sys.stdout)
                 raise
             except OSError as error:

@@ -4,8 +4,8 @@
     python3 -m clogsweep compare sweep.h5 --by friction
 
 Every number comes from clogfit compare, and its options are the same; `clogfit compare --picture NAME` draws this, too.
-Bars are its confidence intervals. A filled marker has an interval from pairs of the same seed, a hollow one from the
-numbers of clogs alone.
+Bars are its confidence intervals. The interval of a filled marker comes from pairs of runs with the same seed, that of
+a hollow marker from the numbers of clogs alone.
 """
 
 import json
@@ -22,7 +22,7 @@ def body() -> int:
     parser = Parser(__doc__)
     parser.add_argument("sweeps", type=pathlib.Path, nargs="+", help="files of clogsweep --output; each further file is compared with the first")
     parser.add_argument("--by", help="key whose values are compared with each other")
-    parser.add_argument("--within", help="clogs of a pair within this distance are at the same place [sigma]")
+    parser.add_argument("--within", help="the two clogs of a pair count as one place if they are within this distance [sigma]")
     parser.add_argument("--confidence", help="confidence level of the intervals (0.95)")
     add_output(parser, "name of the picture; .png and .pdf are made (FIRST-compare)", ".png", ".pdf")
     add_width(parser)

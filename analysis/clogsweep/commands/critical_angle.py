@@ -1,4 +1,4 @@
-"""Draws the critical angle of lattices, up to which droplets follow the rows, vs line tension or another parameter.
+"""Draws the critical angle of lattices vs line tension or another parameter. Up to this angle droplets follow the rows.
 
     python3 -m clogsweep critical-angle lattice.h5                           # lattice-critical-angle.png, .pdf
     python3 -m clogsweep critical-angle lattice.h5 --format csv > angles.csv # a table
@@ -51,7 +51,7 @@ def body() -> int:
     else:
         with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs) as file:
             source = stored.source(stored.attributes(file))
-        # Sizes come first, and values that may follow from others last.
+        # Droplet sizes come first; parameters that may follow from others come last.
         parameters = sorted((name for name, column in columns.items() if column.get("role") == "parameter" and column.get("parameter_role") != "ensemble"),
                             key=lambda name: (name != "obstacle_diameter", "key" not in columns[name], "automatic_in" in columns[name]))
         rows = stored.read_table(arguments.sweep, arguments.programs)

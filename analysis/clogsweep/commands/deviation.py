@@ -3,8 +3,8 @@ a channel from simulated ones, as JSON.
 
   clogfit deviation measured.csv simulated1.csv simulated2.csv
 
-All are CSV files with the header h [sigma], v [v_t], A, or written by clogrun channel. Simulated frames are in the
-order of time and interpolated to the measured h.
+Each file is a CSV file with the header h [sigma], v [v_t], A, or was written by clogrun channel. Simulated frames must
+be in the order of time; they are interpolated to the measured h.
 """
 
 from ..calibration import deviation, laboratory, profiles

@@ -2,10 +2,10 @@
 
     python3 -m clogsweep dwell sweep.h5        # sweep-dwell.png, sweep-dwell.pdf
 
-An experiment calls a droplet clogged that has not moved for a waiting time, although it might move on; the longer the
-time, the longer the length. One curve for each group of runs, from clogfit --dwell. The first time is the shortest for
-which all rows record the dwells, the last is the duration of the runs, with the length of clogs alone. Bars are
-confidence intervals; an arrow begins at a lower bound where no run clogged.
+In an experiment a droplet counts as clogged if it has not moved for a waiting time, although it might move on. The
+longer this time is, the longer is the clogging length. One curve for each group of runs, from clogfit --dwell. The
+first waiting time is the shortest one for which every row records its dwells. The last one is the duration of the runs,
+at which only clogs count. Bars are confidence intervals; an arrow begins at a lower bound where no run clogged.
 """
 
 from ..drawing import dwell

@@ -3,8 +3,9 @@
     python3 -m clogsweep export sweep.h5 rows.csv
     python3 -m clogsweep export monday.h5 tuesday.h5 rows.h5      # several files as one sweep
 
-rows.csv has the names of the columns in its first line, each with its unit in brackets; numbers are those of the sweep, bit for
-bit. rows.h5 has a dataset for each column, with the attributes `unit` and `meaning`. Missing values are empty or NaN.
+The first line of rows.csv has the names of the columns, each with its unit in brackets; the numbers equal those of the
+sweep, bit for bit. rows.h5 has a dataset for each column, with the attributes `unit` and `meaning`. Missing values are
+empty or NaN.
 """
 
 import pathlib

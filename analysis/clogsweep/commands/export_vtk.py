@@ -6,8 +6,9 @@
 
 Makes RUN.pvd, which lists every frame with its time, the frames in the folder RUN-vtk, and RUN-obstacles.vtp with discs
 and walls (of diameter 0) within five diameters of the droplet's path. All are VTK's XML PolyData, as text. An outline
-is the refined interface, in which vertices and midpoints of edges alternate. Frames have its points' speed, and, as
-field data, the columns of the trajectory at that time. Units are those of docs/reference/files.md.
+is the refined interface, in which vertices and midpoints of edges alternate. Each frame contains the speed of the
+outline's points and, as field data, the columns of the trajectory at its time. Units are those of
+docs/reference/files.md.
 """
 
 import pathlib

@@ -5,7 +5,7 @@
     python3 -m clogsweep figures all --size full --output results/figures
 
 The same command resumes an interrupted sweep, and never repeats finished runs. Figures that share a sweep run it once.
-Beside FOLDER/SIZE/figure-NAME.png are the same as .pdf, its numbers as .csv, and their origin as .txt.
+Each figure is written to FOLDER/SIZE as figure-NAME.png and .pdf, with its numbers as .csv and their origin as .txt.
 """
 
 import argparse

@@ -1,14 +1,15 @@
-"""Predicts clogging lengths in an array in which no droplet has run, from droplets that fall onto one or two obstacles.
+"""Predicts the clogging lengths of an array without runs in it, from droplets that fall onto one or two obstacles.
 
     python3 -m clogsweep predict obstacle-gap=0.3 obstacle-density=0.3 line-tension=1,3
     python3 -m clogsweep predict obstacles=posts.csv box=20 line-tension=2
     python3 -m clogsweep predict preset=elastic friction=0.05 line-tension=0.05,0.07,0.1,0.5,1,3 --output curve --with sweep.h5
 
-KEY=VALUE are keys of clogsweep. Pairs of obstacles of all gaps and directions are tried, one droplet each, and the
-offset at which one obstacle no longer holds a wrapped droplet is searched, half a minute for a stiff line tension; then
-the obstacles and pairs of the array are counted. Prints lengths as CSV, with the reasons to doubt them: soft (line
-tension below 1: clogs on three obstacles and more are not predicted), crowded (below 4 sigma: too long, other obstacles
-come between). docs/explanation/predicted.md says how far it holds.
+KEY=VALUE are keys of clogsweep. One droplet falls onto each pair of obstacles, for all gaps and directions. Others fall
+onto a single obstacle, to find the offset from which on it no longer holds a wrapped droplet. This takes half a minute
+for a stiff line tension. Then the obstacles and pairs of the array are counted. The command prints lengths as CSV, with
+the reasons to doubt them: soft (line tension below 1: clogs on three obstacles and more are not predicted), crowded
+(length below 4 sigma: the prediction is too long, because other obstacles come between). docs/explanation/predicted.md
+says how far it holds.
 """
 
 import argparse
@@ -59,7 +60,7 @@ def body() -> int:
               " ".join(prediction.doubts_of(one.tension, one.length)), sep=",")
     if arguments.output:
         fit = fits.told(folder_of_programs / "clogfit", arguments.measured) if arguments.measured else {"groups": [], "confidence": 0.95}
-        from .. import style  # matplotlib only for a picture
+        from .. import style  # loads matplotlib, which only a picture needs
         from ..drawing import predicted
 
         style.Picture(predicted.draw(found, fit["groups"], fit["confidence"], [f"{key}={value}" for key, value in keys.items() if key != "line-tension"])).save(arguments.output)

@@ -32,13 +32,13 @@ from ..tools.errors import ProgramFailed, UserError
 from . import command_line
 
 PASSED_ON = ("lab", "attempts", "isolate", "report-seconds", "master-computes", "instruction-set")
-BLOCKS_OF_A_VALUE = 50  # most blocks of seeds, without --most-seeds
+BLOCKS_OF_A_VALUE = 50  # largest number of blocks of seeds of one value, without --most-seeds
 SPACED = re.compile(r"(lin|log)\(([^,()]+),([^,()]+),\s*(\d+)\s*\)")
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", metavar="KEY[,KEY]", help="one key, or two with a comma between; the lists of these keys give the bounds")
+    parser.add_argument("keys", metavar="KEY[,KEY]", help="one key, or two with a comma between; the outermost values given for a key are its bounds")
     parser.add_argument("settings", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUES", help="keys of clogsweep")
     parser.add_argument("--config", help="file with lines `key = value`")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="HDF5 file to create, to resume or to add to")
@@ -122,7 +122,7 @@ def search_of(arguments: argparse.Namespace, keys: list[str], config: dict[str, 
 
 
 def printed_tasks(*command: object) -> str:
-    """What a dry run prints of its tasks; it is stopped before it estimates their cost. @throws UserError"""
+    """The tasks that a dry run prints. The dry run is stopped before it estimates their cost. @throws UserError"""
     words = [*map(str, command), "--dry-run"]
     lines: list[str] = []
     with tempfile.TemporaryFile("w+", encoding="utf-8", errors="backslashreplace") as errors:
@@ -144,7 +144,7 @@ def printed_tasks(*command: object) -> str:
 
 
 def _alone() -> dict[str, str]:
-    """In an allocation of several tasks clogsweep refuses a single rank; here it is intended."""
+    """The environment for a run on one rank, which clogsweep would refuse in an allocation of several tasks."""
     return {name: value for name, value in os.environ.items() if name != "SLURM_NTASKS"}
 
 
@@ -169,7 +169,8 @@ def body() -> int:
 
     with tempfile.TemporaryDirectory(prefix="clogsweep-refine-") as temporary:
         folder = pathlib.Path(temporary)
-        # The same settings and first round have the same rounds, for any goal.
+        # Searches with the same settings and first round share their files, whatever their goal, because the same
+        # rounds belong to them.
         content = config + driver.points_text(keys, search.first_round()) + _circles(values["obstacles"])
         name = "refine-" + hashlib.sha256(content.encode(errors="surrogateescape")).hexdigest()[:8]
         beside = folder / name if arguments.dry_run else arguments.output.with_name(f"{arguments.output.name}.{name}")

@@ -15,15 +15,17 @@ from ..tools.hints import AnyPath, Column, Group, Numbers
 from . import features, model, points
 
 ALL = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
-# Columns of lambda, by the name of clogfit's number of such ends.
+# For each cause (clogfit's column with the number of such ends): the columns of its length and of both ends of the
+# interval.
 CAUSES = {cause: tuple(f"clogging_length_{cause}{end}" for end in ("", "_lower", "_upper")) for cause in ("wrapped", "squeezed", "hybrid", "other")}
 CAUSES["broken"] = ("break_up_length", "break_up_length_lower", "break_up_length_upper")
 
 
 def of_sweep(clogfit: pathlib.Path, paths: Sequence[AnyPath], keys: Sequence[str] = (), *options: object,
              crossing: Sequence[float] = ()) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The curves of one or more files as one sweep, and the model's units in the laboratory, if it is known. @param
-    keys see points.find_keys(); @param options  of clogfit @throws UserError; ProgramFailed with clogfit's reason"""
+    """The curves of one sweep, which may consist of several files, and the model's units in the laboratory, if these
+    are known. @param keys see points.find_keys(); @param options  of clogfit @throws UserError; ProgramFailed with
+    clogfit's reason"""
     fit = fits.told(clogfit, *paths, *options)
     rows = [stored.read_rows(path, clogfit.parent) for path in paths]
     names = [name for name in stored.columns_of(rows[0]) if all(name in stored.columns_of(others) for others in rows)]
@@ -100,8 +102,9 @@ def _column(groups: Sequence[Group], name: str) -> Numbers:
 
 def bands_by_cause(groups: Sequence[Group], known: model.Points, places: Numbers, confidence: float,
                    whole: Numbers) -> dict[tuple[str, ...], Numbers]:
-    """The curve of the clogs by each mechanism that occurs, all others being censored; none if some are of unknown mechanism.
-    @param whole  the band of all clogs, which is that of a mechanism to which all belong"""
+    """The band of each cause that occurs, for which clogs by other causes count as censored. There is none if the
+    causes of some clogs are unknown. @param whole  the band of all clogs, used for a cause to which all of them
+    belong"""
     if any(group[cause] is None for group in groups for cause in CAUSES):
         return {}
     counts = {names: _column(groups, cause) for cause, names in CAUSES.items() if any(group[cause] > 0 for group in groups)}

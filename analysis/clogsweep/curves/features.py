@@ -11,14 +11,14 @@ from ..tools.hints import Numbers
 from .model import Curve
 
 NUM_DRAWS = 2000
-FIRST_JITTER = 1e-10  # of the largest variance, so that rounding leaves the covariance positive definite
+FIRST_JITTER = 1e-10  # times the largest variance: added to the diagonal, so that rounding leaves the covariance positive definite
 
 
 @dataclasses.dataclass(frozen=True)
 class Peak:
     """The peak of a curve. `place` and its interval hold the logarithm of each key; lengths [sigma].
 
-    `probability_inside` is the fraction of possible curves whose peak is not at a border of the places.
+    `probability_inside` is the fraction of curves drawn from the posterior whose peak is not at a border of the places.
     """
 
     place: Numbers
@@ -32,8 +32,8 @@ class Peak:
 
 @dataclasses.dataclass(frozen=True)
 class Crossing:
-    """Logarithm of the key at which a curve has a length, and its interval from the band: infinite if it extends to a
-    border."""
+    """The logarithm of the key at which a curve crosses a length, and its interval, which comes from the band. An end
+    of the interval is infinite if it would be beyond the places."""
 
     place: float
     lower: float
@@ -49,13 +49,14 @@ def normal_deviate(confidence: float) -> float:
 
 
 def band(curve: Curve, confidence: float) -> Numbers:
-    """lambda and both ends of its pointwise interval at every place [sigma]. @return three rows"""
+    """lambda and the lower and upper end of its pointwise interval at every place [sigma]. @return three rows"""
     half = normal_deviate(confidence) * curve.deviation
     return np.exp([curve.mean, curve.mean - half, curve.mean + half])
 
 
 def drawn_curves(curve: Curve, number: int = NUM_DRAWS, seed: int = 1) -> Numbers:
-    """Curves of log lambda drawn from the distribution, the same ones in every call: one in every row. Curves drawn with another seed are independent."""
+    """Draws curves of log lambda from the distribution, one per row. The same seed gives the same curves, another seed
+    independent ones."""
     variance = max(float(np.max(np.diagonal(curve.covariance))), float(np.finfo(float).tiny))
     jitter = FIRST_JITTER
     while True:
@@ -96,7 +97,8 @@ def tops(heights: Numbers, places: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def find_peak(curve: Curve, places: Numbers, confidence: float) -> Peak:
-    """Place and height of the mean curve's peak; the intervals come from drawn curves. @param places  see tops()"""
+    """Place and height of the mean curve's peak, with intervals from curves drawn from the distribution. @param places
+    see tops()"""
     draws = drawn_curves(curve)
     draw_places, draw_heights = tops(draws, places)
     (place,), (height,) = tops(curve.mean[None], places)
@@ -114,8 +116,8 @@ def peak_probabilities(curve: Curve) -> Numbers:
 
 
 def find_crossings(curve: Curve, x: Numbers, length: float, confidence: float) -> list[Crossing]:
-    """Where a curve of one key has a length. Between two places the curve is a straight line. @param x  logarithms of
-    the key, in increasing order; @param length  [sigma]"""
+    """The places where a curve over one key crosses a length. Between two places the curve is taken as a straight line.
+    @param x  logarithms of the key, in increasing order; @param length  [sigma]"""
     above = curve.mean - np.log(length)
     half = normal_deviate(confidence) * curve.deviation
 
@@ -127,7 +129,7 @@ def find_crossings(curve: Curve, x: Numbers, length: float, confidence: float) -
     for i in np.flatnonzero((above[:-1] < 0) != (above[1:] < 0)):
         is_upward = bool(above[i] < 0)
         before, after = (above + half, above - half) if is_upward else (above - half, above + half)
-        outside_before = np.flatnonzero((before[:i + 1] < 0) == is_upward)  # places left of it whose band is on the other side
+        outside_before = np.flatnonzero((before[:i + 1] < 0) == is_upward)  # places up to the crossing where the whole band is on the side that the curve leaves
         outside_after = np.flatnonzero((after[i + 1:] >= 0) == is_upward) + i + 1
         crossings.append(Crossing(zero(above, i), zero(before, outside_before[-1]) if outside_before.size else -np.inf,
                                   zero(after, outside_after[0] - 1) if outside_after.size else np.inf, is_upward))

@@ -18,11 +18,11 @@ from scipy import linalg
 
 from ..tools.hints import Numbers
 
-LEVEL_VARIANCE = 100.0  # of the process's mean about the points' common log lambda: a factor of e^10
-JITTER = 1e-8  # of the kernel's variance, so that rounding leaves the matrix positive definite
-AMPLITUDES = (0.25, 0.5, 1, 2, 4, 8)  # standard deviations of log lambda: factors of 1.3 to 3000
+LEVEL_VARIANCE = 100.0  # prior variance of the process's mean about the common log lambda of all points: a standard deviation of a factor e^10
+JITTER = 1e-8  # times the kernel's variance: added to the diagonal, so that rounding leaves the matrix positive definite
+AMPLITUDES = (0.25, 0.5, 1, 2, 4, 8)  # standard deviations of log lambda; as factors of lambda 1.3 to 3000
 RANGE_FRACTIONS = (0.1, 0.16, 0.25, 0.4, 0.63, 1, 1.6, 3)  # correlation lengths, divided by the range of the places
-WEIGHT_USED = 0.98  # of all scales; the least likely ones change nothing
+WEIGHT_USED = 0.98  # the most likely scales are used until their weights sum to this; the others change nothing
 MOST_STEPS = 200
 MOST_HALVINGS = 40
 SETTLED = 1e-10  # gain of log posterior below which Newton's iteration ends
@@ -57,7 +57,7 @@ class Points:
 
     @property
     def level(self) -> float:
-        """Logarithm of the common clogging length; half a clog if there is none."""
+        """Logarithm of the common clogging length of all points. If there is no clog, half a clog is assumed."""
         return float(np.log(self.distances.sum() / max(self.clogs.sum(), 0.5)))
 
 
@@ -65,7 +65,7 @@ class Points:
 class Curve:
     """Normal distribution of log lambda at some places.
 
-    `log_evidence` is the logarithm of the marginal likelihood, up to a constant of the points.
+    `log_evidence` is the logarithm of the marginal likelihood, up to a constant that depends on the points alone.
     """
 
     mean: Numbers
@@ -82,8 +82,8 @@ class Mode:
     """The maximum of the posterior for known scales, and its curvature there."""
 
     scales: Scales
-    slopes: Numbers  # of the log likelihood: K^-1 f
-    roots: Numbers  # of the expected clogs W = S exp(-f), the likelihood's curvature
+    slopes: Numbers  # gradient of the log likelihood at the mode, which equals K^-1 f
+    roots: Numbers  # square roots of the expected clogs W = S exp(-f), which are the curvature of the log likelihood
     factor: Numbers  # lower triangular factor of 1 + W^1/2 K W^1/2
     log_evidence: float
 
@@ -97,7 +97,7 @@ def matern(distance: Numbers) -> Numbers:
 def kernel(rows: Numbers, columns: Numbers, scales: Scales) -> Numbers:
     product = np.full((len(rows), len(columns)), float(scales.amplitude**2))
     for key, length in enumerate(scales.lengths):
-        # A grid has few values of each key.
+        # On a grid each key has few different values, so the correlation is computed for these only.
         first, row = np.unique(rows[:, key], return_inverse=True)
         second, column = np.unique(columns[:, key], return_inverse=True)
         product *= matern((first[:, None] - second) / length)[np.ix_(row, column)]
@@ -107,10 +107,10 @@ def kernel(rows: Numbers, columns: Numbers, scales: Scales) -> Numbers:
 def find_mode(points: Points, scales: Scales) -> Mode:
     """Newton's iteration for a concave function, with steps halved where they are too long."""
     covariance = kernel(points.places, points.places, scales) + JITTER * scales.amplitude**2 * np.eye(len(points.places))
-    exposures = points.distances * np.exp(-points.level)  # so that log lambda is about zero
+    exposures = points.distances * np.exp(-points.level)  # in units in which log lambda is about zero
 
     def height(slopes: Numbers, f: Numbers) -> float:
-        with np.errstate(over="ignore"):  # -inf for a step that is far too long
+        with np.errstate(over="ignore"):  # a step that is far too long gives -inf
             return float(np.sum(-points.clogs * f - exposures * np.exp(-f)) - slopes @ f / 2)
 
     def curvature(f: Numbers) -> tuple[Numbers, Numbers]:
@@ -144,19 +144,21 @@ def curve_of_mode(points: Points, mode: Mode, places: Numbers) -> Curve:
 
 
 def curve_of_scales(points: Points, scales: Scales, places: Numbers) -> Curve:
-    """The curve for known scales, at places like those of the points."""
+    """The curve for known scales. @param places  in the form of Points.places"""
     return curve_of_mode(points, find_mode(points, scales), places)
 
 
 def all_scales(places: Numbers) -> list[Scales]:
-    """Amplitudes and lengths, evenly on a logarithmic scale. A key with one value has no length."""
+    """All combinations of amplitudes and correlation lengths, which are spread evenly on a logarithmic scale. A key
+    with one value has no correlation length."""
     ranges = np.ptp(places, axis=0)
     lengths = [[fraction * extent for fraction in RANGE_FRACTIONS] if extent > 0 else [1.0] for extent in ranges]
     return [Scales(amplitude, chosen) for amplitude in AMPLITUDES for chosen in itertools.product(*lengths)]
 
 
 def fit_curve(points: Points, places: Numbers) -> Curve:
-    """The curve at these places, averaged over the scales by their marginal likelihood. @param places  like those of the points"""
+    """The curve at these places, averaged over the scales by their marginal likelihood. @param places  in the form of
+    Points.places"""
     modes = [find_mode(points, scales) for scales in all_scales(np.concatenate([points.places, places]))]
     modes.sort(key=lambda mode: -mode.log_evidence)
     weights = np.exp([mode.log_evidence - modes[0].log_evidence for mode in modes])

@@ -20,10 +20,10 @@ from ..tools.errors import UserError
 from ..tools.hints import Column, Group, Numbers, Records
 from ..tools.texts import did_you_mean
 
-FEWEST_VALUES = 4  # of the key, through which a curve is shown: two or three leave its shape to the prior
-FEWEST_CLOGGING = 3  # of these with a clog: bounds alone do not tell the shape
+FEWEST_VALUES = 4  # a curve needs so many values of the key: with two or three its shape would come from the prior
+FEWEST_CLOGGING = 3  # so many of these values need clogs: lower bounds alone do not determine a shape
 MOST_KEYS = 2
-SAME_SHARE = 6  # digits of a density divided by the saturated one
+SAME_SHARE = 6  # densities in units of the saturated density are compared to so many digits
 
 Fit = dict[str, Any]  # clogfit's JSON
 
@@ -32,7 +32,7 @@ Fit = dict[str, Any]  # clogfit's JSON
 class Members:
     """The groups of one curve, by their numbers in clogfit's table, in the order of the keys' values."""
 
-    shared: dict[str, Any]  # what tells this curve from the others
+    shared: dict[str, Any]  # parameters that distinguish this curve from the others
     groups: list[int]
 
 
@@ -53,13 +53,14 @@ def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
 
 
 def may_be_key(fit: Fit, column: Column) -> bool:
-    """Whether it is a number that a user chooses and that affects the physics, not a number that follows from others."""
+    """Whether the parameter is a number that the user chose and that affects the physics. A number that follows from
+    others is no key."""
     return column.get("parameter_role") == "physics" and column["kind"] != "word" and all(
         group[column["name"]] is not None and not is_automatic(fit, column, group) for group in fit["groups"])
 
 
 def find_keys(fit: Fit, names: Sequence[str] = ()) -> list[Column]:
-    """The columns of these keys; without any, of the one physical parameter that varies.
+    """The columns of these keys; if `names` is empty, the column of the only physical parameter that varies.
     @throws UserError  if a name is no such key, does not vary or has values without a logarithm; or if none is given and several vary"""
     groups: list[Group] = fit["groups"]
     possible = {column["key"].replace("-", "_"): column for column in fit["columns"] if may_be_key(fit, column)}
@@ -92,7 +93,7 @@ def refuse_key(name: str, fit: Fit) -> Column:
 
 
 def physics_of(fit: Fit, group: Group, keys: Collection[Column]) -> dict[str, Any]:
-    """Values of the physical parameters except the keys and what follows from others."""
+    """Values of the physical parameters, without the keys and without parameters that follow from others."""
     values = {column["name"]: group[column["name"]] for column in fit["columns"]
               if column not in keys and column["name"] != "preset" and column.get("parameter_role", "physics") == "physics"
               and not is_automatic(fit, column, group)}
@@ -114,7 +115,8 @@ def _key(values: dict[str, Any]) -> tuple[tuple[str, Any], ...]:
 
 
 def crossed_numerics(fit: Fit, groups: Iterable[int], keys: Collection[Column]) -> set[str]:
-    """Names of the numerics that vary between groups of the same physics and the same keys."""
+    """Names of the numerical parameters that vary between groups with the same physics and the same values of the
+    keys."""
     seen: dict[tuple[Any, ...], dict[str, set[Any]]] = {}
     for index in groups:
         group = fit["groups"][index]
@@ -125,7 +127,7 @@ def crossed_numerics(fit: Fit, groups: Iterable[int], keys: Collection[Column]) 
 
 
 def why_too_few(fit: Fit, members: Members, keys: Sequence[Column]) -> str:
-    """Empty if these groups make a curve."""
+    """Why these groups are too few for a curve; empty if they are enough."""
     groups = [fit["groups"][index] for index in members.groups]
     names = " and ".join(key["key"] for key in keys)
     where = " with " + ", ".join(f"{name.replace('_', '-')}={told(value)}" for name, value in members.shared.items()) if members.shared else ""
@@ -146,13 +148,15 @@ def told(value: Any) -> str:
 
 
 def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Excluded]]:
-    """The groups of each curve that can be shown, and all others with the reason. `shared` has only the differences."""
+    """The groups of each curve that can be shown, and all others with the reason. `shared` contains only parameters in
+    which the curves differ."""
     excluded, useful = [], []
     for index, group in enumerate(fit["groups"]):
         if not (group["total_distance"] or 0) > 0:
             excluded.append(Excluded(index, "no run of it has covered any distance"))
         elif group["exit"]:
-            # The few places of a short device that hold droplets tell nothing about values of the key between those of the sweep.
+            # Few places of a short device hold droplets, so its clogs tell nothing about values of the key that were
+            # not run.
             excluded.append(Excluded(index, "the array ends at an exit, so its clogs are not at random places"))
         else:
             useful.append(index)
@@ -177,7 +181,8 @@ def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Exclude
 
 
 def grid_over(places: Numbers) -> Numbers:
-    """Evenly on a logarithmic scale between the outermost values: 97 for one key (over two decades, a step is 5 %), 25 x 25 for two."""
+    """Places between the outermost values, evenly spaced on a logarithmic scale: 97 for one key (over two decades, a
+    step is 5 %), 25 x 25 for two keys."""
     low, high = places.min(axis=0), places.max(axis=0)
     share = np.linspace(0, 1, 97 if len(low) == 1 else 25)
     axes = [(1 - share) * first + share * last for first, last in zip(low, high)]
@@ -185,7 +190,7 @@ def grid_over(places: Numbers) -> Numbers:
 
 
 def seeds_of_groups(fit: Fit, rows: Records) -> list[set[int]]:
-    """The seeds of each group's runs, from the rows of the sweep. @param rows  of all its files"""
+    """The seeds of each group's runs. @param rows  from all files of the sweep"""
     names = [column["name"] for column in fit["columns"] if len({str(group[column["name"]]) for group in fit["groups"]}) > 1]
     failed = rows["status"] == b"failed"
 
@@ -202,7 +207,7 @@ def seeds_of_groups(fit: Fit, rows: Records) -> list[set[int]]:
 
 
 def have_common_obstacles(members: Members, keys: Iterable[Column], seeds: Sequence[set[int]]) -> bool:
-    """Whether points share seeds and obstacles: no key shapes the array."""
+    """Whether points share obstacles, because they share seeds and no key shapes the array."""
     if any(key["shapes_array"] for key in keys):
         return False
     own = [seeds[index] for index in members.groups]

@@ -12,7 +12,7 @@ from ..tools import rounded
 from .answer import ALL, CAUSES
 from .points import told
 
-EVERY_ON_LINE = 8  # of 97 places
+EVERY_ON_LINE = 8  # every eighth of the 97 places on a curve of one key is printed
 ON_SIDE = 25
 EVERY_ON_SIDE = 6
 
@@ -94,14 +94,14 @@ def _comma_separated(rows: Iterable[Sequence[str]]) -> str:
 
 
 def comma_separated(answer: dict[str, Any]) -> str:
-    """A line for every place of every curve."""
+    """CSV with a line for every place of every curve."""
     shared, names = list(answer["curves"][0]["shared"]), [*answer["keys"], *ALL, *(name for names in CAUSES.values() for name in names)]
     return _comma_separated([[*shared, *names], *([*(shortest(curve["shared"].get(name)) for name in shared), *(shortest(place.get(name)) for name in names)]
                                                   for curve in answer["curves"] for place in curve["curve"])])
 
 
 def peaks(answer: dict[str, Any]) -> str:
-    """A line for every curve: its peak, or none if it may be at a border."""
+    """CSV with a line for every curve. It has the curve's peak, unless this may be at a border."""
     shared, names = list(answer["curves"][0]["shared"]), [f"{name}{end}" for name in [*answer["keys"], ALL[0]] for end in ("", "_lower", "_upper")]
     found = [(curve["shared"], curve["peak"], curve["peak"]["probability_between_borders"]) for curve in answer["curves"]]
     return _comma_separated([[*shared, *names, "probability_between_borders"], *(

@@ -13,12 +13,13 @@ from .libraries import library
 from .shapes import Drawing, fitted_circle, holds
 from .walls import SHARE, is_rectangle
 
-NEAR = 1e-6  # of the size of all outlines, by which those that touch may miss each other: corners are rounded in files
-SAME = 1e-8  # of the largest coordinate, up to which corners are the same
+NEAR = 1e-6  # outlines touch if the gap between them is at most this fraction of the size of all outlines: files round corners
+SAME = 1e-8  # corners are the same if they differ by at most this fraction of the largest coordinate
 
 
 def tidy(drawing: Drawing, region: Numbers | None, tolerance: float) -> None:
-    """Drops duplicates, unites outlines that touch, and leaves a region. @param region  two corners, as a drawing program shows them;
+    """Drops duplicates, unites outlines that touch, and cuts out a region. @param region  two corners, as a drawing
+    program shows them, or None;
     @param tolerance  as in fitted_circle()"""
     if not drawing.is_picture:
         drop_duplicates(drawing)
@@ -74,8 +75,8 @@ def drop_duplicates(drawing: Drawing) -> None:
 
 
 def unite(drawing: Drawing) -> None:
-    """Unites outlines that touch: writers of GDSII cut circles into slices. Outlines within others, the edge of the
-    device and walls are not united."""
+    """Unites outlines that touch, because programs that write GDSII cut circles into slices. Outlines within others,
+    the edge of the device and walls are not united."""
     outlines = drawing.outlines
     pairs = meeting(outlines)
     if not pairs:
@@ -83,7 +84,7 @@ def unite(drawing: Drawing) -> None:
     geometry = library("shapely.geometry", "python3-shapely")
     shapes = {i: geometry.Polygon(outlines[i]) for i in {one for pair in pairs for one in pair}}
     tolerance = NEAR * float(np.ptp(np.vstack(outlines), axis=0).max())
-    root = list(range(len(outlines)))  # of each outline: another one that it touches
+    root = list(range(len(outlines)))  # for each outline, another one that it touches, or itself
 
     def group_of(i: int) -> int:
         while root[i] != i:
@@ -105,8 +106,8 @@ def unite(drawing: Drawing) -> None:
 
 
 def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
-    """Pairs whose bounding boxes touch, except edges of the device and walls: outlines as long as the drawing that are
-    rectangular or also as wide."""
+    """Pairs of outlines whose bounding boxes touch. Edges of the device (as long and as wide as the drawing) and walls
+    (rectangles as long as the drawing) are left out."""
     if len(outlines) < 2:
         return []
     lows, highs = (np.array([end(outline, axis=0) for outline in outlines]) for end in (np.min, np.max))
@@ -118,8 +119,8 @@ def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
 
 
 def cut(drawing: Drawing, region: tuple[float, float, float, float], tolerance: float) -> None:
-    """Keeps a region, which becomes the frame: whole round posts, and parts of other outlines and of lines. @param
-    region left, bottom, right, top; @param tolerance  as in fitted_circle()"""
+    """Keeps what is in a region, which becomes the frame. Round posts at its border stay whole; other outlines and
+    lines are cut there. @param region left, bottom, right, top; @param tolerance  as in fitted_circle()"""
     geometry = library("shapely.geometry", "python3-shapely")
     box = geometry.box(*region)
     number = len(drawing.circles) + len(drawing.outlines) + len(drawing.lines)

@@ -17,12 +17,12 @@ from .shapes import Drawing
 
 UNITS = {1: 25.4e-3, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 8: 25.4e-9, 9: 25.4e-6, 11: 1e-10, 12: 1e-9, 13: 1e-6, 14: 0.1}  # $INSUNITS, in metres
 UNITLESS = 0
-FLATNESS = 1e-4  # of a curve's size, that straight pieces may be off
+FLATNESS = 1e-4  # largest deviation of straight pieces from a curve, as a fraction of its size
 CURVES = ("LINE", "ARC", "LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE", "SOLID", "TRACE")
 FILLED = ("SOLID", "TRACE")
 HATCHES = ("HATCH", "MPOLYGON")
-HATCH_IGNORES_HOLES = 2  # hatch_style
-SEGMENTS = 256  # of a circle, where wide lines are curved
+HATCH_IGNORES_HOLES = 2  # a value of hatch_style
+SEGMENTS = 256  # number of straight pieces that a full circle would have, for the arcs of wide lines
 
 
 def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
@@ -52,8 +52,8 @@ def metres_of(document: Any, path: pathlib.Path) -> float | None:
 
 
 def visible(entities: Any, layers: Any, parent: str | None, skipped: dict[str, int]) -> Iterator[tuple[Any, str]]:
-    """Entities and their layers, those of blocks in world coordinates. In a block, layer 0 is that of the block's
-    reference.
+    """Entities and their layers. Entities of blocks are in world coordinates; in a block, layer 0 means the layer of
+    the block's reference.
     @param parent  layer of the block's reference. @throws UserError  if a block is in another file"""
     def count_distorted(part: Any, _: str) -> None:
         skipped[f"{part.dxftype()} in a distorted block"] += 1
@@ -79,7 +79,7 @@ def visible(entities: Any, layers: Any, parent: str | None, skipped: dict[str, i
 
 
 def add(found: Drawing, entity: Any) -> None:
-    """As circle, outline or line."""
+    """Adds an entity as a circle, an outline or a line."""
     paths = library("ezdxf.path", "python3-ezdxf")
     kind = entity.dxftype()
     if kind == "CIRCLE" and abs(entity.dxf.extrusion.normalize().z) > 1 - 1e-9:
@@ -106,7 +106,7 @@ def has_width(entity: Any) -> bool:
 
 
 def trace_of(polyline: Any) -> list[Any]:
-    """Quadrilaterals that a wide LWPOLYLINE consists of. A DONUT is one, with two arcs."""
+    """The quadrilaterals of which a wide LWPOLYLINE consists. A DONUT is a wide LWPOLYLINE with two arcs."""
     trace, geometry = library("ezdxf.render.trace", "python3-ezdxf"), library("shapely.geometry", "python3-shapely")
     builder = trace.TraceBuilder.from_polyline(polyline, segments=SEGMENTS)
     faces = builder.faces_wcs(polyline.ocs(), 0.0)  # the elevation is along z and does not count

@@ -1,4 +1,4 @@
-"""Lines that are drawn separately but close into outlines, such as the three of a triangle."""
+"""Lines that are drawn separately but form closed outlines, such as the three sides of a triangle."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ from ..tools.hints import Numbers
 from .libraries import library
 from .shapes import Drawing
 
-MISSED = 1e-5  # of the size of all lines, by which ends may miss each other
+MISSED = 1e-5  # ends of lines meet if their distance is at most this fraction of the size of all lines
 
 
 def join(drawing: Drawing) -> None:
-    """Moves pieces that form closed outlines there; the others remain lines, as do all without shapely."""
+    """Moves the pieces that form closed outlines to `outlines`. The others become `lines`, and so do all pieces if
+    shapely is not installed."""
     pieces = [(kind, piece) for kind, piece in drawing.pieces if np.ptp(piece, axis=0).max() > 0]
     if not pieces:
         return
@@ -29,7 +30,7 @@ def join(drawing: Drawing) -> None:
     shapes = [geometry.LineString(piece) for piece in meeting([piece for _, piece in pieces], tolerance)]
     faces: list[Any] = []
     left = list(range(len(pieces)))
-    for cut in (distinct, ops.unary_union):  # first those that meet with their ends, so that a centre line cuts no post in two; then those that cross
+    for cut in (distinct, ops.unary_union):  # first lines that meet at their ends, so that a centre line cuts no post in two; then lines that cross
         found = [face for face in ops.polygonize(cut([shapes[index] for index in left])) if face.is_valid]
         near = ops.unary_union([face.boundary for face in found]).buffer(tolerance)
         within = prepared.prep(near)

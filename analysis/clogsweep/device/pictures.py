@@ -16,10 +16,10 @@ from .shapes import METRES, Drawing
 from .walls import area
 
 ENDINGS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg")
-FEWEST_CORNERS = 12  # of an outline: a speck of three pixels has so many
-MOST_OF_BORDER = 0.95  # of a picture, dark where posts are bright
+FEWEST_CORNERS = 12  # outlines with fewer corners are specks; the outline of three pixels has so many
+MOST_OF_BORDER = 0.95  # posts may be bright only if this fraction of the picture's border is dark
 X_RESOLUTION, Y_RESOLUTION, RESOLUTION_UNIT, DESCRIPTION, PHOTOMETRIC = 282, 283, 296, 270, 262  # tags of TIFF
-MODES = ("1", "L", "RGB", "RGBA")  # of Pillow, up to 8 bits
+MODES = ("1", "L", "RGB", "RGBA")  # modes of Pillow with up to 8 bits per channel
 ORIENTATION = 274  # tag of EXIF and TIFF
 METRES_IN_TIFF = {2: METRES["in"], 3: METRES["cm"]}
 UNITS_OF_IMAGEJ = {"micron": "um", "microns": "um", "\\u00b5m": "um", "inch": "in", "centimeter": "cm", "millimeter": "mm"}
@@ -78,7 +78,7 @@ def grey(path: pathlib.Path, tags: dict[int, Any]) -> Numbers:
     if image.ndim == 3:
         opacity = image[..., -1] if image.shape[2] in (2, 4) else np.ones(image.shape[:2])
         image = colour.rgb2gray(image[..., :3]) if image.shape[2] >= 3 else image[..., 0]
-        ground = 1.0 if opacity.any() and image[opacity > 0].mean() < 0.5 else 0.0  # behind transparent parts: unlike the posts
+        ground = 1.0 if opacity.any() and image[opacity > 0].mean() < 0.5 else 0.0  # brightness of transparent parts, unlike that of the posts
         image = opacity * image + (1 - opacity) * ground
     if np.ptp(image) == 0:
         raise UserError(f"cannot read {path} (it is of one colour); give a mask in black and white")
@@ -86,8 +86,8 @@ def grey(path: pathlib.Path, tags: dict[int, Any]) -> Numbers:
 
 
 def pixels(path: pathlib.Path, tags: dict[int, Any]) -> tuple[Any, bool]:
-    """The pixels of a picture, and whether 0 is white. Pillow reads what scikit-image needs another library for: TIFF with
-    LZW or fax compression; it turns 0 to black itself. @throws UserError"""
+    """The pixels of a picture, and whether 0 is white. Pillow reads TIFF with LZW or fax compression, for which
+    scikit-image needs another library. Pillow itself converts pictures in which 0 is white. @throws UserError"""
     try:
         return np.asarray(library("skimage.io", "python3-skimage").imread(path)), tags.get(PHOTOMETRIC) == 0
     except ValueError as error:

@@ -14,7 +14,8 @@ from .svg import read_svg
 
 
 def read(path: pathlib.Path, layer: str | None = None, posts: str | None = None) -> Drawing:
-    """@param layer  of a DXF or GDSII file, if only that one counts; @param posts  of a picture: dark or bright; None: found out. @throws UserError"""
+    """@param layer  the only layer to be read of a DXF or GDSII file; None: all; @param posts  of a picture: dark or
+    bright; None: decided from the picture. @throws UserError"""
     readers: dict[str, Callable[[], Drawing]] = {".dxf": lambda: read_dxf(path, layer), ".gds": lambda: read_gds(path, layer), ".gdsii": lambda: read_gds(path, layer),
                                                  ".svg": lambda: read_svg(path), **{ending: lambda: read_picture(path, posts) for ending in ENDINGS}}
     reader = readers.get(path.suffix.lower())
@@ -28,5 +29,5 @@ def read(path: pathlib.Path, layer: str | None = None, posts: str | None = None)
         return found
     except UserError:
         raise
-    except Exception as error:  # of many libraries
+    except Exception as error:  # each library raises errors of its own
         raise UserError(f"cannot read {path} ({type(error).__name__}: {error}); is it really of this kind?") from error

@@ -13,8 +13,8 @@ from ..tools.hints import Numbers
 from .libraries import library
 from .shapes import Device
 
-SPACING = 1 / 3  # of a row's circles, over their radius: the wall is rough by 1.4 % of the radius
-SMALLEST_VOID = 0.35  # radius of what may be left empty inside a post, where no droplet fits [sigma]
+SPACING = 1 / 3  # distance between neighbouring circles of a row, divided by their radius: the row's roughness is 1.4 % of the radius
+SMALLEST_VOID = 0.35  # largest radius of an empty space inside a post: no droplet fits in [sigma]
 MOST_FILLERS = 100
 MOST_CIRCLES, MANY_CIRCLES = 200000, 20000
 
@@ -33,13 +33,14 @@ class Rows:
 
     device: Device
     corner: float  # the largest radius of circles in a row
-    farthest: float  # of a drawn outline from the posts: what corners lose
+    farthest: float  # largest distance of a drawn outline from the circles, which do not reach into its corners
     roughness: float
 
 
 def as_rows(device: Device, corner: float) -> Rows:
-    """With rows of circles in place of each outline that is not round. @param corner  radius to which corners are rounded; of
-    a thinner post, nearly half of its width. @throws UserError  if an outline crosses itself"""
+    """With rows of circles in place of each outline that is not round. @param corner  radius to which corners are
+    rounded; in a post that is too thin for it, nearly half of the post's width. @throws UserError  if an outline
+    crosses itself"""
     geometry = shapely("geometry")
     frame = geometry.box(0, 0, device.length, device.width)
     circles, posts = [device.circles], [np.arange(len(device.circles))]
@@ -66,7 +67,7 @@ def valid(polygon: Any) -> Any:
 
 
 def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:
-    """@throws UserError  before it makes more circles than are usable"""
+    """@throws UserError  if there would be more circles than are usable"""
     number = sum(core.exterior.length / (SPACING * radius) for of_part in all_cores for core, radius in of_part)
     if number > MOST_CIRCLES:
         raise UserError(f"--as-rows needs {number:.2g} circles (at most {MOST_CIRCLES}); give a larger --corner, or check --unit and --droplet")
@@ -75,12 +76,12 @@ def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:
 
 
 def parts(shape: Any) -> list[Any]:
-    """The polygons of a polygon or of several."""
+    """The polygons of a shape, which is one polygon or several."""
     return [part for part in getattr(shape, "geoms", [shape]) if part.geom_type == "Polygon" and part.area > 0]
 
 
 def deepest(polygon: Any) -> tuple[Any, float]:
-    """The centre and radius of the largest circle that fits in."""
+    """The centre and radius of the largest circle that fits into the polygon."""
     ops = shapely("ops")
     centre = ops.polylabel(polygon, 1e-3 * np.sqrt(polygon.area))
     return centre, polygon.boundary.distance(centre)

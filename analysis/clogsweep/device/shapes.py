@@ -16,12 +16,12 @@ from . import walls
 from .walls import area, centroid
 
 METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3, "mil": 25.4e-6}
-MARGIN = 0.5  # between the posts and the edge of a device without a drawn one [sigma]
-NEAR = 0.01  # by which a line may be beyond the edge that it is part of [sigma]
-SAME = 1e-3  # of a circle's diameter, by which two may differ that are one
-WINDOW = 1000  # circles along x, among which a circle that is drawn twice is looked for
-LONGEST = 10000  # side of a device that is not taken for a mistake of the unit [sigma]
-Line = tuple[str, Numbers]  # kind of an object in a drawing, and its points (n, 2)
+MARGIN = 0.5  # distance between the posts and the edge, in a device whose edge is not drawn [sigma]
+NEAR = 0.01  # a line that is part of the edge may be this far outside [sigma]
+SAME = 1e-3  # two circles are the same if they differ by at most this fraction of the diameter
+WINDOW = 1000  # a circle drawn twice is looked for among this number of neighbours along x
+LONGEST = 10000  # a longer side of a device is taken for a mistake of the unit [sigma]
+Line = tuple[str, Numbers]  # the kind of an object in a drawing, and its points (n, 2)
 
 
 @dataclasses.dataclass
@@ -30,23 +30,23 @@ class Drawing:
 
     circles: list[tuple[float, float, float]]  # x, y, diameter
     outlines: list[Numbers]  # corners (n, 2); the last one is joined to the first unless the border of a picture cuts it
-    metres: float | None  # in one unit; None if the drawing does not say
-    frame: tuple[float, float, float, float] | None = None  # left, bottom, right, top: of a picture, or of the region that the user gave
-    is_picture: bool = False  # of pixels
-    holes: list[Numbers] = dataclasses.field(default_factory=list)  # in outlines: none is a post, but one may be the device's edge
+    metres: float | None  # length of the drawing's unit [m]; None if the drawing does not state it
+    frame: tuple[float, float, float, float] | None = None  # left, bottom, right, top of a picture, or of the region that the user gave
+    is_picture: bool = False  # it consists of pixels
+    holes: list[Numbers] = dataclasses.field(default_factory=list)  # holes in outlines: none is a post, but one may be the device's edge
     pieces: list[Line] = dataclasses.field(default_factory=list)  # open lines, before they are joined
     lines: list[Line] = dataclasses.field(default_factory=list)  # the pieces that do not form a closed outline
     objects: int = 0  # circles, outlines and lines that were read
     joined: tuple[int, int] = (0, 0)  # how many pieces were joined, and into how many outlines
     united: tuple[int, int] = (0, 0)  # how many outlines touched, and how many they became
-    duplicates: int = 0  # outlines and circles that were drawn twice
-    unit_hint: str = ""  # on a unit that the drawing may mean
-    notes: list[str] = dataclasses.field(default_factory=list)  # on how it was read
-    outside: int = 0  # outlines, circles and lines out of the region that the user gave
+    duplicates: int = 0  # how many outlines and circles were drawn twice
+    unit_hint: str = ""  # names a unit that the drawing may mean
+    notes: list[str] = dataclasses.field(default_factory=list)  # messages about how it was read
+    outside: int = 0  # how many outlines, circles and lines are outside the region that the user gave
     can_join: bool = True
-    unit_in_words: str | None = None  # its name, if that is not the length `metres`
-    from_own: Callable[[Any], Numbers] = np.asarray  # points (n, 2) as a drawing program shows them, into coordinates of this
-    skipped: dict[str, int] = dataclasses.field(default_factory=dict)  # kinds of objects that are no posts, lines apart, with their numbers
+    unit_in_words: str | None = None  # the unit's name, if it is not the name of the length `metres`
+    from_own: Callable[[Any], Numbers] = np.asarray  # converts points (n, 2) from the coordinates that a drawing program shows to those of this object
+    skipped: dict[str, int] = dataclasses.field(default_factory=dict)  # how many objects of each kind are no posts; lines are not counted here
 
     @property
     def unit(self) -> str:
@@ -63,10 +63,10 @@ class Device:
     width: float
     has_frame: bool
     droplet_metres: float
-    post_of: Numbers | None = None  # number of the post of each circle; None: each is one
-    replaced: list[Numbers] = dataclasses.field(default_factory=list)  # outlines for which there are circles
+    post_of: Numbers | None = None  # number of the post to which each circle belongs; None: each circle is a post
+    replaced: list[Numbers] = dataclasses.field(default_factory=list)  # outlines that circles have replaced
     walls: list[Numbers] = dataclasses.field(default_factory=list)  # outlines or lines beside the device, replaced by side-walls=on
-    lines: list[Line] = dataclasses.field(default_factory=list)  # that form no closed outline, and are no walls
+    lines: list[Line] = dataclasses.field(default_factory=list)  # lines that form no closed outline and are no walls
 
     @property
     def droplet_micrometres(self) -> float:
@@ -82,8 +82,9 @@ class Device:
 
     @functools.cached_property
     def _gaps(self) -> tuple[float, list[tuple[int, int]]]:
-        """The narrowest gap, and two circles of each pair of posts that touch. Circles in the order of x are compared with the next one, the
-        next but one, and so on, until all are farther apart along x than the narrowest gap so far."""
+        """The narrowest gap, and two circles of each pair of posts that touch. Circles are sorted by x. Each is
+        compared with the next one, then with the next but one, and so on, until all compared circles are farther apart
+        along x than the narrowest gap so far."""
         posts = np.arange(len(self.circles)) if self.post_of is None else self.post_of
         order = np.argsort(self.circles[:, 0], kind="stable")
         x, y, diameter = self.circles[order].T
@@ -131,7 +132,7 @@ def length_in_metres(text: str, option: str) -> float:
 
 
 def unit_name(metres: float) -> str:
-    """A unit's name, such as um, or its length if it has none."""
+    """A unit's name, such as um, or the unit's length if it has no name."""
     return next((name for name, size in METRES.items() if np.isclose(size, metres, rtol=1e-6, atol=0)), f"{metres:.4g} m")
 
 
@@ -141,7 +142,8 @@ def is_likely(length: float, width: float) -> bool:
 
 
 def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_picture: bool) -> None:
-    """@param unit, metres  in which the drawing was read; @param is_picture  made of pixels, whose size is no unit.
+    """@param unit, metres  in which the drawing was read; @param is_picture  the drawing consists of pixels, whose size
+    is no unit.
     @throws UserError  if the device is too large or too small for such droplets"""
     if is_likely(device.length, device.width):
         return
@@ -154,7 +156,7 @@ def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_pi
 
 
 def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
-    """Evenly spaced points along the edges, because a square's corners alone would be on a circle."""
+    """Evenly spaced points along the edges. The corners of a square alone would lie on a circle."""
     ends = np.vstack([outline, outline[:1]]) if is_closed else outline
     ways = np.hypot(*np.diff(ends, axis=0).T)
     places = np.concatenate([[0], np.cumsum(ways)])
@@ -181,8 +183,8 @@ def fitted_circle(outline: Numbers, is_closed: bool, tolerance: float) -> tuple[
 
 
 def edges_among(outlines: list[Numbers], holes: list[Numbers], centres: Numbers) -> tuple[Numbers | None, list[Numbers]]:
-    """The edge of the device, and the other outlines: an outline that contains everything else, or a rectangle or hole
-    in it that contains the rest. @param centres  of circles"""
+    """The edge of the device, and the other outlines. The edge is an outline that contains everything else; if a
+    rectangle or hole in it contains all the rest, this is the edge. @param centres  of circles"""
     edge: Numbers | None = None
     while (index := holder_among(outlines, centres)) is not None and (edge is None or walls.is_rectangle(outlines[index])):
         edge, outlines = outlines[index], outlines[:index] + outlines[index + 1:]
@@ -206,7 +208,7 @@ def holds(outline: Numbers, others: list[Numbers]) -> bool:
 
 
 def distinct(circles: Numbers) -> Numbers:
-    """Removes circles that are drawn twice, which may differ by the inaccuracy of curves in a drawing."""
+    """Removes circles that are drawn twice. The two may differ slightly, because curves in a drawing are inaccurate."""
     kept: list[int] = []
     for index in np.argsort(circles[:, 0], kind="stable"):
         near = np.array(kept[-WINDOW:], dtype=int)
@@ -216,8 +218,8 @@ def distinct(circles: Numbers) -> Numbers:
 
 
 def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float, turns: int) -> Device:
-    """@param metres  in a unit of the drawing; @param droplet  its diameter [m]; @param turns  by 90 degrees
-    counter-clockwise, until the flow is along +x. @throws UserError  for an empty drawing"""
+    """@param metres  length of the drawing's unit; @param droplet  diameter of the droplet [m]; @param turns  number of
+    turns by 90 degrees counter-clockwise that bring the flow to +x. @throws UserError  for an empty drawing"""
     found, others = list(drawing.circles), []
     outlines = drawing.outlines
     edge: Numbers | None = None
@@ -261,12 +263,12 @@ def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tup
 
 
 def is_within(line: Numbers, edges: Numbers) -> bool:
-    """A line beside the drawn edge, such as that of a dimension, is no wall."""
+    """Whether a line is within the drawn edge. One beside it, such as a dimension line, is no wall."""
     return bool((line >= edges.min(axis=0) - NEAR).all() and (line <= edges.max(axis=0) + NEAR).all())
 
 
 def surroundings(circles: Numbers, others: list[Numbers]) -> Numbers:
-    """Points whose bounding box is that of all posts."""
+    """Points with the same bounding box as all posts together."""
     radii = circles[:, 2:] / 2
     return np.vstack([circles[:, :2] - radii, circles[:, :2] + radii, *others])
 

@@ -20,7 +20,7 @@ from .shapes import Drawing, holds
 
 METRES_IN_PIXEL = 25.4e-3 / 96
 LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
-PIECES_OF_CURVE = 64  # of each segment: a quarter of a circle is off by 2e-5 of its radius
+PIECES_OF_CURVE = 64  # straight pieces of each curved segment: those of a quarter of a circle deviate by 2e-5 of its radius
 NAMESPACE = "{http://www.w3.org/2000/svg}"
 TEMPLATES = [NAMESPACE + name for name in ("symbol", "marker", "mask")]  # drawn only if something refers to them
 LINKS = ("href", "{http://www.w3.org/1999/xlink}href")
@@ -84,7 +84,7 @@ def invisible(element: Any) -> str:
 
 
 def number(text: Any) -> float:
-    """An opacity; 1 for other texts."""
+    """An opacity as a number; 1 if the text is no number."""
     try:
         return float(str(text).rstrip("%"))
     except ValueError:
@@ -92,8 +92,9 @@ def number(text: Any) -> float:
 
 
 def expand(element: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> None:
-    """Replaces each <use> by a group with a copy of its target, before the library would: it drops references to
-    elements below them, draws <symbol> where it is defined, and ignores its viewBox."""
+    """Replaces each <use> by a group with a copy of its target, because the library does this wrongly: it drops
+    references to elements further down in the file, draws a <symbol> where it is defined, and ignores the viewBox of a
+    <symbol>."""
     element[:] = [group_of(child, by_id, path) if child.tag == NAMESPACE + "use" else child for child in element if child.tag not in TEMPLATES]
     for child in element:
         expand(child, by_id, path)
@@ -106,7 +107,7 @@ def group_of(use: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> Any:
         raise UserError(f"cannot read {path} (<use> refers to '{link[:60]}', which is not in the file); embed it, or unlink clones, in the drawing program")
     original = copy.deepcopy(by_id[link[1:]])
     if original.tag == NAMESPACE + "symbol":
-        original.tag = NAMESPACE + "svg"  # it is drawn as an inner drawing
+        original.tag = NAMESPACE + "svg"  # a <symbol> is drawn like an <svg> inside the drawing
         original.attrib.update({name: use.get(name) for name in ("width", "height") if use.get(name)})
     attributes = {name: value for name, value in use.attrib.items() if name not in ("x", "y", "width", "height", *LINKS)}
     attributes["transform"] = f"{use.get('transform', '')} translate({use.get('x', 0)}, {use.get('y', 0)})"
@@ -116,9 +117,9 @@ def group_of(use: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> Any:
 
 
 class Clips:
-    """The part of a shape inside its own clip-path or the clip-path of a group around it. The library ignores clips, so each is
-    drawn as shapes of the clipped group, where they get its transform; attributes that the library keeps mark these
-    shapes and what they clip."""
+    """The part of a shape inside its own clip-path or the clip-path of a group around it. The library ignores clips. So
+    the shapes of each clip are added to the clipped group, where they get its transform. Attributes that the library
+    keeps mark these shapes, and the shapes that they clip."""
 
     SHAPE, USED = "clip-shape", "clipped-by"
 

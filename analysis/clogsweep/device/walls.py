@@ -6,9 +6,9 @@ import numpy as np
 
 from ..tools.hints import Numbers
 
-SHARE = 0.9  # of the device's length, from which an outline at a side is a wall
-SLENDER = 3  # length over thickness, at least: a column of square posts has no walls
-FLAT = 0.05  # by which a wall's outline may be off a rectangle [sigma]
+SHARE = 0.9  # an outline at a side is a wall if its length is at least this fraction of the device's length
+SLENDER = 3  # smallest length of a wall divided by its thickness, so that square posts are no walls
+FLAT = 0.05  # largest deviation of a wall's outline from a rectangle [sigma]
 
 
 def among(circles: Numbers, outlines: list[Numbers], lines: list[Numbers], length: float) -> tuple[list[Numbers], list[Numbers]]:
@@ -28,7 +28,7 @@ def is_one_of(outline: Numbers, others: list[Numbers]) -> bool:
 
 
 def is_wall(outline: Numbers, length: float) -> bool:
-    """Whether an outline is a flat rectangle along the flow. A wall with teeth is no such rectangle."""
+    """Whether an outline is a flat rectangle along the flow, which a wall with teeth is not."""
     low, high = outline.min(axis=0), outline.max(axis=0)
     along, across = high - low
     if along < SHARE * length or along < SLENDER * across:
@@ -52,5 +52,5 @@ def centroid(outline: Numbers) -> Numbers:
 
 
 def is_rectangle(outline: Numbers) -> bool:
-    """Along the axes."""
+    """Whether the outline is a rectangle along the axes."""
     return abs(area(outline)) >= 0.98 * float(np.ptp(outline, axis=0).prod())

@@ -12,7 +12,7 @@ from .. import style
 from ..tools import rounded
 
 Session = dict[str, Any]
-UNITS = [("s", 1.0, 120.0), ("min", 60.0, 7200.0), ("h", 3600.0, float("inf"))]  # name, seconds, up to how many seconds
+UNITS = [("s", 1.0, 120.0), ("min", 60.0, 7200.0), ("h", 3600.0, float("inf"))]  # name, length in seconds, largest time that is given in it [s]
 
 
 def sessions_of(attributes: dict[str, str]) -> list[Session]:
@@ -22,7 +22,7 @@ def sessions_of(attributes: dict[str, str]) -> list[Session]:
 
 
 def draw_on(axes: Axes, sessions: Sequence[Session]) -> None:
-    """One session after the other."""
+    """Draws one session after the other."""
     whole = sum(session["seconds"] for session in sessions)
     name, unit, _ = next(known for known in UNITS if whole <= known[2])
     begin = 0.0

@@ -22,25 +22,26 @@ from ..tools.errors import ProgramFailed, UserError
 from ..tools.hints import Numbers, Records
 from . import surroundings
 
-MARGIN = 0.15  # above a sheet [inches]
+MARGIN = 0.15  # free height above the panels of a sheet [inches]
 MECHANISMS = ("wrapped", "squeezed", "hybrid", "other")
 
 
 def of_polygons(rows: Records, path: object) -> list[np.void]:
-    """Rows of the polygons that have clogged. @param path  of their sweep. @throws UserError  if they were in a channel or on a wall"""
+    """Rows of the polygons that have clogged. @param path  the sweep's file. @throws UserError  if they were in a
+    channel or on a wall"""
     if len(rows) > 0 and rows["obstacle_filling"][0] in (b"channel", b"wall"):
         raise UserError(f"cannot draw clogs of {path} (its droplets were in a channel or on a wall); clogfit report draws their results")
     return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"]
 
 
 def mechanism_of(row: np.void) -> str:
-    """The mechanism by clogfit's name: `other` if it is none of the three."""
+    """The mechanism, by the name that clogfit uses: `other` if it is not wrapped, squeezed or hybrid."""
     name = stored.text(row["mechanism"])
     return name if name in MECHANISMS else "other"
 
 
 def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: Collection[int] | None, most: int) -> list[np.void]:
-    """@param rows  clogs of the sweep. @throws UserError  if there are none, or not all of the tasks"""
+    """@param rows  clogs of the sweep. @throws UserError  if there are none, or if one of `tasks` has no clog"""
     if not rows:
         raise UserError(f"{path} holds no clogged polygon (soft disks do not count); resume it, or sweep with a longer max-time into another file")
     if mechanism not in (None, *MECHANISMS):
@@ -57,11 +58,11 @@ def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: C
 class Clog:
     """A droplet at rest. Shows itself in a notebook."""
 
-    row: np.void  # of the sweep
+    row: np.void  # the sweep's row
     polygon: Numbers  # 2 x N, the interface that walls meet [sigma]
     obstacles: Numbers  # n x 3: x, y, diameter [sigma]
     wedges: Numbers  # n x 6: side walls, as in a trajectory's file [sigma]
-    source: str = ""  # where the row comes from
+    source: str = ""  # provenance of the row, in words
 
     @property
     def task(self) -> int:
@@ -84,7 +85,7 @@ class Clog:
 
 
 class Clogs(Sequence[Clog]):
-    """Several of a sweep. Show themselves on one sheet."""
+    """Several clogs of a sweep. They show themselves on one sheet."""
 
     def __init__(self, clogs: list[Clog]) -> None:
         self._clogs = clogs
@@ -118,14 +119,14 @@ class Clogs(Sequence[Clog]):
 def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, source: str, row: np.void, folder: str) -> Clog:
     """@throws ProgramFailed"""
     output = pathlib.Path(folder) / f"{row['task']}.h5"
-    # A certified row describes an equilibrium, before which the run ends.
+    # --to-rest: a run whose clog was certified ends before the droplet reaches the equilibrium in its row.
     replays.replay(clogrun, sweep, row["task"], output, "--to-rest", "--polygon-interval", "1e9", "--sample-interval", "1e9")
     with stored.opened(output) as file:
         return Clog(row, trajectory.refined(file["polygons"][-1], row), file["obstacles"][:], file["wedges"][:] if "wedges" in file else np.empty((0, 6)), source)
 
 
 def run_all(clogrun: pathlib.Path, sweep: pathlib.Path, rows: Sequence[np.void], jobs: int) -> Clogs:
-    """@param jobs  at a time. @throws UserError  with clogrun's reason"""
+    """@param jobs  number of simultaneous replays. @throws UserError  with clogrun's reason"""
     with stored.opened(sweep, folder=clogrun.parent) as file:
         source = stored.source(stored.attributes(file))
     with tempfile.TemporaryDirectory(prefix="clogsweep-clogs-") as folder, concurrent.futures.ThreadPoolExecutor(jobs) as pool:
@@ -136,7 +137,7 @@ def run_all(clogrun: pathlib.Path, sweep: pathlib.Path, rows: Sequence[np.void],
 
 
 def distances(polygon: Numbers, obstacle: Numbers) -> Numbers:
-    """Distances from an obstacle's surface to every edge."""
+    """Distance of each edge from an obstacle's surface."""
     begin, way = polygon, np.roll(polygon, -1, axis=1) - polygon
     to_centre = obstacle[:2, None] - begin
     along = np.clip((to_centre * way).sum(axis=0) / (way**2).sum(axis=0), 0, 1)
@@ -144,7 +145,7 @@ def distances(polygon: Numbers, obstacle: Numbers) -> Numbers:
 
 
 def distances_to_wedge(polygon: Numbers, wedge: Numbers) -> Numbers:
-    """Distances from a wedge's surface to the nearer end of every edge."""
+    """Distance of each edge from a wedge's surface, measured at the edge's nearer end."""
     tip, axis, half_angle, radius = wedge[:2], wedge[2:4], wedge[4], wedge[5]
     from_centre = polygon - (tip + radius * axis)[:, None]
     along, across = axis @ from_centre, np.abs([-axis[1], axis[0]] @ from_centre)
@@ -170,13 +171,13 @@ def title(row: np.void) -> str:
 
 
 def view_of(clogs: Sequence[Clog]) -> Numbers:
-    """Width and height with room for each of them and for the guides [sigma]."""
+    """Width and height with room for each of the clogs and for the guides [sigma]."""
     width, height = np.max([np.ptp(clog.polygon, axis=1) for clog in clogs], axis=0) + 0.6
     return np.array([max(width, height / 1.4), max(1.2 * height, 0.5 * width)])
 
 
 def draw(axes: Axes, clog: Clog, view: Numbers, has_guides: bool = True) -> None:
-    """Draws around the droplet's middle. @param view  of view_of()"""
+    """Draws a clog, with the droplet in the middle. @param view  from view_of()"""
     polygon = clog.polygon
     middle = (polygon.min(axis=1) + polygon.max(axis=1)) / 2
     interface = polygon - middle[:, None]
@@ -199,14 +200,14 @@ def draw(axes: Axes, clog: Clog, view: Numbers, has_guides: bool = True) -> None
 
 
 def sheet(clogs: Sequence[Clog]) -> Figure:
-    """All in one scale, with the guides in the first panel."""
+    """All clogs in one scale, with the guides in the first panel."""
     view = view_of(clogs)
     across = min(3 if view[0] > 1.5 * view[1] else 4, len(clogs))
     down = -(-len(clogs) // across)
     width = 10 / across if len(clogs) > 1 else 4.6
     height = (width * view[1] / view[0] + 0.75) * down + MARGIN
     figure, axes = style.subplots(down, across, figsize=(width * across, height), squeeze=False)
-    # Otherwise the titles of the first row leave the sheet.
+    # Without this margin the titles of the first row would be cut off.
     figure.get_layout_engine().set(h_pad=0.1, rect=(0, 0, 1, 1 - MARGIN / height))
     for place in axes.flat:
         place.axis("off")

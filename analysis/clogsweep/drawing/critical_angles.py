@@ -20,7 +20,8 @@ def abscissa_of(table: pandas.DataFrame) -> str:
 
 
 def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> None:
-    """@param table  brackets `lower` and `upper` [degrees], and the parameters that vary; @param columns  of clogsweep --schema"""
+    """@param table  has the ends of the brackets, `lower` and `upper` [degrees], and the parameters that vary;
+    @param columns  from clogsweep --schema"""
     abscissa = abscissa_of(table)
     others = [name for name in table if name not in (abscissa, *FOUND)]
     curves = [points for _, points in table.groupby(others)] if others else [table]
@@ -33,7 +34,7 @@ def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> 
         half = (points["upper"] - points["lower"]).fillna(0) / 2  # matplotlib takes no list of NaN alone
         with style.curve(axes, label):
             axes.errorbar(places, middle, yerr=half, label=label or None, capsize=2, **look)
-            for bound, marker in (("lower", "^"), ("upper", "v")):  # where the other end is not known
+            for bound, marker in (("lower", "^"), ("upper", "v")):  # brackets of which only one end is known
                 axes.plot(places[middle.isna()], points[bound][middle.isna()], marker, color=look["color"], fillstyle="none")
     style.logarithmic_abscissa(axes, table[abscissa].tolist())
     axes.set_xlabel(axis_label(columns[abscissa]))

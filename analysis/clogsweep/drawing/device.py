@@ -25,14 +25,14 @@ from . import device_plan
 
 T = TypeVar("T")
 MOST_PANELS = 6
-BESIDE, OF_LETTER = 0.9, 0.055  # width of the colour bar, or of the legend without its text; of a letter of that text [inches]
-STEP = 0.1  # between two points of a way, of a free droplet [sigma]
-CELL = 0.1  # of the map of passages [sigma]
+BESIDE, OF_LETTER = 0.9, 0.055  # width of the colour bar, or of the legend without its text; width of a letter of this text [inches]
+STEP = 0.1  # distance between two points of the path of a free droplet [sigma]
+CELL = 0.1  # side of a cell of the map of passages [sigma]
 
 
 @dataclasses.dataclass
 class Place:
-    """The user-supplied circles that runs of a sweep share, and these runs."""
+    """User-supplied circles, and the runs of a sweep among them."""
 
     name: str
     circles: Numbers  # (n, 3): x, y, diameter
@@ -48,7 +48,7 @@ class Place:
         return np.column_stack([x if self.exit > 0 else x % self.length, y if self.has_walls else y % self.width])
 
     def parts(self, groups: Groups) -> list[Part]:
-        """Its runs by parameter set, in the order of clogfit's table."""
+        """The runs of each parameter set, in the order of clogfit's table."""
         found = []
         for member in groups.members:
             is_of_group = np.ones(len(self.rows), dtype=bool)
@@ -68,7 +68,7 @@ class Place:
 
 
 def panel_label(groups: Groups, member: Group) -> str:
-    """What distinguishes a group, also in the laboratory's units."""
+    """What distinguishes a group, with the interfacial tension if there is a laboratory."""
     tension = member.get("tension_mN_per_m") if groups.varies("line_tension") else None
     return groups.label_of(member) + (f" ({rounded.plain(tension)} mN/m)" if tension else "")
 
@@ -79,8 +79,8 @@ class Part:
 
     label: str
     place: Place
-    lines: Sequence[Numbers] = ()  # places of the centre (n, 2)
-    mapped: Sequence[Numbers] = ()  # the same, for the map of passages
+    lines: Sequence[Numbers] = ()  # the paths of centres that are drawn as lines (n, 2)
+    mapped: Sequence[Numbers] = ()  # the paths behind the map of passages (n, 2)
 
 
 DEVICE_COLUMNS = ["obstacles", "obstacle_diameter", "box", "boxes", "length", "side_walls", "exit"]
@@ -117,7 +117,7 @@ def the_place(path: AnyPath, folder: AnyPath | None = None) -> Place:
 
 
 def chosen(rows: Records, number: int) -> list[np.void]:
-    """Runs whose paths are shown, evenly among all that are over, from the shortest to the longest."""
+    """The runs whose paths are shown: of all runs that are over, sorted by distance, evenly spaced ones."""
     over = np.sort(rows[np.isin(rows["status"], [b"clogged", b"flowing", b"passed", b"broken"])], order=["distance", "task"])
     return evenly(list(over), number)
 
@@ -130,7 +130,7 @@ def evenly(members: list[T], number: int) -> list[T]:
 
 
 def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: int, jobs: int) -> list[Numbers]:
-    """Places of the centre along the path (n, 2), from replayed runs."""
+    """The paths of the droplets' centres (n, 2), from replayed runs."""
     rows = chosen(place.rows, number)
     if not rows:
         return []
@@ -142,8 +142,9 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
 
 
 def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> tuple[list[Part], int]:
-    """Those parameter sets that have a panel, with their paths, and the number of all parameter sets. @param num_lines, num_mapped  runs of each panel drawn
-    as lines, and behind its map. Prints a line if some are left out. @throws UserError  if no run has ended"""
+    """The parameter sets that have a panel, with their paths, and the number of all parameter sets. Prints a line if
+    some parameter sets are left out. @param num_lines  number of runs of each panel whose paths are drawn as lines;
+    @param num_mapped  number of runs behind its map. @throws UserError  if no run has ended"""
     every = place.parts(groups)
     if not every:
         raise UserError(f"no run among the circles of {place.name} has ended; let the sweep finish some first")
@@ -157,7 +158,7 @@ def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: path
 
 
 def unbroken(points: Numbers, place: Place) -> Numbers:
-    """A path in the device, with a gap wherever it leaves at one side and enters at the other."""
+    """A path in the device, with a gap wherever it leaves the device at one side and enters it at the opposite side."""
     inside = place.wrapped(points)
     jumps = np.flatnonzero((np.abs(np.diff(inside, axis=0)) > [place.length / 2, place.width / 2]).any(axis=1)) + 1
     return np.insert(inside, jumps, np.nan, axis=0)
@@ -195,7 +196,7 @@ def came_past(place: Place) -> tuple[Numbers, Numbers]:
 
 
 def draw_passages(axes: Axes, parts: Sequence[Part]) -> None:
-    """The droplets that passed each place along the flow, divided by those released."""
+    """Draws the fraction of the released droplets that passed each place along the flow."""
     for number, part in enumerate(parts):
         middles, counts = came_past(part.place)
         axes.step(middles, counts / len(part.place.rows), where="mid", color=style.shades(len(parts))[number], linewidth=1.2, label=part.label)
@@ -227,14 +228,14 @@ def passages(place: Place, ways: Sequence[Numbers]) -> Numbers:
 
 
 def along(way: Numbers) -> Numbers:
-    """Adds points where two are farther apart than a cell."""
+    """Adds points where neighbouring points are farther apart than a cell."""
     ways = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))])
     wanted = np.linspace(0, ways[-1], int(ways[-1] / CELL) + 2)
     return np.column_stack([np.interp(wanted, ways, way[:, axis]) for axis in (0, 1)])
 
 
 def draw_map(axes: Axes, part: Part) -> AxesImage:
-    """Where droplets went."""
+    """Draws the map of passages."""
     shares = passages(part.place, part.mapped)
     return axes.imshow(np.where(shares > 0, shares, np.nan), extent=(0, part.place.length, 0, part.place.width), origin="lower", cmap=style.PASSAGES,
                        vmin=0, vmax=1, interpolation="nearest", aspect="equal", zorder=0)
@@ -264,8 +265,9 @@ def draw_part(axes: Axes, part: Part, legend_columns: int) -> None:
 
 
 def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None) -> Figure:
-    """A panel for each part, and a strip that compares them. @param parts  of one device; @param num_parts  of all its parameter sets;
-    @param droplet_mm  its diameter, if it is known [mm]"""
+    """Draws a panel for each part, and a strip that compares the parts. @param parts  of one device; @param num_parts
+    number of all parameter sets of the device;
+    @param droplet_mm  diameter of the droplet, if it is known [mm]"""
     place = parts[0].place
     beside = BESIDE + OF_LETTER * max(len(part.label) for part in parts) if len(parts) > 1 else BESIDE if parts[0].mapped else 0
     figure, (*panels, below) = device_plan.axes_for(place.length, place.width, len(parts), strip=1.5, beside=beside)
@@ -287,7 +289,8 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
 
 
 def align(strip: Axes, panel: Axes) -> None:
-    """Makes the strip as wide as the panel above it, which may be narrower than its slot in the layout, because its scales are equal."""
+    """Makes the strip as wide as the panel above it. Because a panel has equal scales, it may be narrower than its slot
+    in the layout."""
     strip.figure.draw_without_rendering()
     strip.figure.set_layout_engine("none")
     panel.apply_aspect()

@@ -18,15 +18,16 @@ from ..tools.hints import Numbers
 from ..tools.texts import literal
 from . import surroundings
 
-WIDEST, NARROWEST = 14.0, 5.0  # figures [inches]
-TALLEST = 11.0  # all panels together [inches]
+WIDEST, NARROWEST = 14.0, 5.0  # limits of a figure's width [inches]
+TALLEST = 11.0  # largest height of all panels together [inches]
 RED = "#D00000"
 
 
 def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0, beside: float = 0.0) -> tuple[Figure, list[Axes]]:
-    """A figure and its axes, with equal scales along and across a device of this shape: in one column, or in as many as keep the
-    figure from growing too tall.
-    @param strip  height of a last one, below the devices [inches]; @param beside  width for what is drawn beside them [inches]"""
+    """A figure and its axes, with equal scales along and across a device of this shape. Panels are in one column, or in
+    several if one column would be too tall.
+    @param strip  height of an additional panel below the devices [inches]; @param beside  width for what is drawn
+    beside the devices [inches]"""
     figure_width = min(WIDEST, max(NARROWEST, 0.45 * length))
     shapes = [(columns, -(-panels // columns)) for columns in range(1, panels + 1)]
     columns, rows = next((shape for shape in shapes if figure_width / shape[0] * shape[1] * width / length <= TALLEST), shapes[-1])
@@ -52,7 +53,7 @@ def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> No
 
 
 def rings_among(circles: Numbers) -> list[Numbers]:
-    """Closed chains of overlapping circles, as centres (n, 2), drawn filled, because droplets meet the post, not the
+    """Closed chains of overlapping circles, as centres (n, 2). They are drawn filled, because no droplet gets into the
     space inside."""
     def overlap(i: int, j: int) -> bool:
         return bool(np.hypot(*(circles[i, :2] - circles[j, :2])) < max(circles[i, 2], circles[j, 2]) / 2)
@@ -60,7 +61,7 @@ def rings_among(circles: Numbers) -> list[Numbers]:
     breaks = [i for i in range(1, len(circles)) if not overlap(i - 1, i)]
     found = []
     for begin, end in zip([0, *breaks], [*breaks, len(circles)]):
-        # A circle that fills the inside may follow the row.
+        # Circles that fill the inside of a post may follow its row.
         last = next((j for j in range(end - 1, begin + 2, -1) if overlap(j, begin)), None)
         if last is not None:
             found.append(circles[begin:last + 1, :2])
@@ -80,7 +81,8 @@ def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[N
 
 
 def draw_flow(axes: Axes, points_below: float) -> None:
-    """An arrow along the flow, `points_below` points below the right end of the axes, clear of all posts."""
+    """Draws an arrow along the flow, `points_below` points below the right end of the axes, where there are no
+    posts."""
     place = axes.transAxes + ScaledTranslation(0, -points_below / 72, axes.figure.dpi_scale_trans)
     start = axes.transAxes + ScaledTranslation(-0.6, -points_below / 72, axes.figure.dpi_scale_trans)
     axes.annotate("flow", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9, annotation_clip=False,
@@ -88,7 +90,8 @@ def draw_flow(axes: Axes, points_below: float) -> None:
 
 
 def understood(device: Device, source: str) -> Figure:
-    """Posts grey, other shapes red, the edge dashed. @param source  name of the drawing"""
+    """Draws how a drawing was interpreted: posts grey, other shapes red, the edge dashed. @param source  name of the
+    drawing"""
     figure, (axes,) = axes_for(device.length, device.width)
     draw_posts(axes, device.circles)
     for outline in device.others:

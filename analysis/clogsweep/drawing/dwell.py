@@ -16,19 +16,19 @@ NUM_TIMES = 12
 
 
 def times_of(groups: Groups) -> list[float]:
-    """Evenly spaced on a logarithmic scale, for all groups. @throws UserError  if there are none"""
+    """Waiting times for all groups, evenly spaced on a logarithmic scale. @throws UserError  if there are none"""
     known = [group["dwells_known_from"] for group in groups.members]
     if None in known:
         raise UserError("cannot draw dwells (the file holds rows of a version that did not look for them); compute the sweep anew, into another file")
     first, last = max(known), max(groups.values("max_time"))
     if not 0 < first < last:
         raise UserError(f"cannot draw dwells (they are known from {first:.4g} t0 on, and no run is longer); make max-time longer")
-    # Exact ends, because a first time that is rounded down would be refused.
+    # clogfit would refuse a first time that is rounded down, so the ends are exact.
     return [first, *np.geomspace(first, last, NUM_TIMES)[1:-1].tolist(), last]
 
 
 def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
-    """@param fits  groups of the same sweep for each of these times"""
+    """@param fits  the groups of the sweep for each of these times"""
     figure, axes = style.subplots(figsize=(6.4, 4.8))
     curves = list(zip(*(groups.members for groups in fits)))
     for index, members in enumerate(curves):

@@ -29,19 +29,19 @@ from . import surroundings
 Pixels = npt.NDArray[np.uint8]  # height x width x 4: red, green, blue, alpha
 
 FORMAT = (9.6, 5.4)  # inches
-SIZES = {"540p": 100, "1080p": 200, "2160p": 400}  # pixels an inch
-LINE = 0.002  # of the figure: without it half of the frame's line would be outside
-HEIGHT = 0.93  # of the droplet's surroundings in the figure
-WIDTHS = {"speed": 0.91, "mechanism": 1 - 2 * LINE}  # the same, with room for a colour bar or not
-LONGEST_STEP = 0.5  # between frames [sigma]: what moves farther cannot be followed by eye
+SIZES = {"540p": 100, "1080p": 200, "2160p": 400}  # pixels per inch
+LINE = 0.002  # margin, as a fraction of the figure: without it half of the frame's line would be outside
+HEIGHT = 0.93  # height of the droplet's surroundings, as a fraction of the figure
+WIDTHS = {"speed": 0.91, "mechanism": 1 - 2 * LINE}  # their width, with and without room for a colour bar
+LONGEST_STEP = 0.5  # largest distance between two frames [sigma]: the eye cannot follow a droplet that moves farther
 SECONDS_OF_VERDICT = 2
 ENDINGS = (".mp4", ".gif")
 COLOURS = tuple(WIDTHS)
-SHADES = 96  # of the first frame and of the colour bar in a palette
+SHADES = 96  # number of colours in a palette for the first frame, and for the colour bar
 
 
 def chosen_frames(run: trajectory.Trajectory, most: int) -> npt.NDArray[np.int64]:
-    """Every n-th frame, at most `most` of them. If the droplet moves too far in n frames, n is smaller and the film
+    """Every n-th frame, at most `most` frames. If the droplet moved too far in n frames, n is reduced, and the film
     shows only the end of the run."""
     count = len(run.times)
     way = np.abs(np.diff(trajectory.centroids(run.polygons), axis=0)).sum()
@@ -59,8 +59,8 @@ def smoothed(values: Numbers, width: int) -> Numbers:
 class Camera:
     """Follows the droplet smoothly, and zooms out for a long droplet."""
 
-    HALF_HEIGHT = 2.0  # at least [sigma]
-    LEAD = 0.12  # of the width: more is seen ahead of the droplet than behind it
+    HALF_HEIGHT = 2.0  # smallest value [sigma]
+    LEAD = 0.12  # the view's centre is this fraction of its width ahead of the droplet
 
     def __init__(self, polygons: Numbers, frames_of_a_turn: int, aspect: float) -> None:
         """@param aspect  width divided by height of its view"""
@@ -69,7 +69,7 @@ class Camera:
         half_height = np.maximum(self.HALF_HEIGHT, 0.75 * np.maximum(length / aspect, height))
         self._aspect = aspect
         self._middle = np.stack([smoothed(middle, frames_of_a_turn) for middle in ((low + high) / 2).T], axis=1)
-        # Averages the local maxima, so that it is never too small.
+        # The average of local maxima is never too small for the droplet.
         self._half_height = smoothed(ndimage.maximum_filter1d(half_height, 2 * frames_of_a_turn + 1, mode="nearest"), frames_of_a_turn)
 
     def corners(self, frame: int) -> tuple[Numbers, Numbers]:
@@ -97,7 +97,7 @@ class Layer:
 
 
 def pixels_of(figure: Figure) -> Pixels:
-    """The pixels drawn so far; further drawing changes them."""
+    """The pixels drawn so far, not as a copy: further drawing changes them."""
     return np.asarray(figure.canvas.buffer_rgba())
 
 
@@ -139,11 +139,11 @@ class Film:
         if colour == "mechanism":
             shown += [Patch(facecolor=face, edgecolor="black", alpha=0.75, label=f"clogged, {name}") for name, face in style.MECHANISM_COLOURS.items()
                       if name == self._run.word("mechanism")]
-        return self._axes.legend(handles=shown, loc="upper right", fontsize=9, edgecolor="none", framealpha=1)
+        return self._axes.legend(handles=shown, loc="upper right", fontsize=9, edgecolor="0.7", framealpha=1)
 
     def _separate(self, inset: list[Artist], still: list[Artist]) -> None:
-        """Separates the static from the moving parts. The bar is as long as the droplet is wide, so it changes when the
-        camera zooms out."""
+        """Separates the static from the moving parts. The bar is as long as a droplet is wide, so it moves when the
+        camera zooms."""
         under = [*self._axes.patches[:self._num_walls], self._obstacles, self._trail, self._inside, self._outline, self._frame]
         over = [self._course, self._head, self._clock, self._verdict]
         for artist in (*under, *inset, *still, *over, self._bar):
@@ -163,7 +163,8 @@ class Film:
     def _draw_droplet(self, colour: str) -> None:
         self._trail, = self._axes.plot([], [], color=style.DROPLET, linewidth=1.5, alpha=0.6)
         self._inside, = self._axes.fill([0], [0], facecolor=style.DROPLET if colour == "speed" else "0.6", alpha=0.75)
-        # One path per edge; all are views of one array, because making new paths for each frame takes longer than drawing.
+        # One path per edge. All paths are views of one array: making new paths for each frame would take longer than
+        # drawing them.
         self._edges = np.zeros((self._run.polygons.shape[2], 2, 2))
         self._outline = PathCollection([Path(edge) for edge in self._edges], cmap="viridis", facecolor="none", linewidth=2, capstyle="round")
         self._axes.add_collection(self._outline)
@@ -179,7 +180,7 @@ class Film:
         self._colour_of_the_end = style.MECHANISM_COLOURS.get(self._run.word("mechanism")) if colour == "mechanism" else None
 
     def _draw_course(self) -> list[Artist]:
-        """@return its static parts"""
+        """@return the artists that are static"""
         table = self._run.table
         paper = self._axes.add_patch(Rectangle((0.69, 0), 0.31, 0.37, transform=self._axes.transAxes, facecolor="white", alpha=0.85))
         inset = self._axes.inset_axes((0.745, 0.1, 0.24, 0.25))
@@ -197,7 +198,7 @@ class Film:
         return len(self._frames)
 
     def show(self, index: int) -> None:
-        """Moves the droplet, and draws nothing. @param index  of the chosen frames"""
+        """Moves the droplet, and draws nothing. @param index  index among the chosen frames"""
         frame = self._frames[index]
         polygon = self._run.polygons[frame].T
         self._look(*self._camera.corners(index))
@@ -243,7 +244,8 @@ class Film:
         self._clock.set_text(f"t = {time:.0f} t\N{SUBSCRIPT ZERO},  r = {distance:.2f} \N{GREEK SMALL LETTER SIGMA}")
 
     def _show_end(self) -> None:
-        # A certified clog's distance is that of the equilibrium, up to a hundredth of a diameter beyond the last frame.
+        # If the clog is certified, its distance is that of the equilibrium, which is up to a hundredth of a diameter
+        # beyond the last frame.
         self._show_time(self._run.row["time"], self._run.row["distance"])
         self._verdict.set_text(trajectory.verdict(self._run))
         self._verdict.set_visible(True)
@@ -256,14 +258,15 @@ class Film:
             yield self.pixels(index)
 
     def play_and_hold(self) -> Iterator[Pixels]:
-        """The same; the last frame stays."""
+        """Plays the film, and repeats the last frame for SECONDS_OF_VERDICT."""
         yield from self.play()
         for _ in range(SECONDS_OF_VERDICT * self._rate):
             yield pixels_of(self.figure)
 
 
 def size_for(path: pathlib.Path | None) -> str:
-    """The default among SIZES: smaller for a .gif, which is large and held in memory. @param path  of a film; None: pictures"""
+    """The default among SIZES. It is smaller for a .gif, because this is a large file that is held in memory.
+    @param path  of a film; None: pictures"""
     return "540p" if path is not None and path.suffix == ".gif" else "1080p"
 
 
@@ -282,7 +285,7 @@ def path_of(output: pathlib.Path) -> pathlib.Path:
 
 
 def write_film(film: Film, path: pathlib.Path, rate: int) -> pathlib.Path:
-    """The path has a complete film, or nothing. @param path  see path_of(). @return the file written"""
+    """Writes a complete film, or nothing. @param path  see path_of(). @return the file written"""
     with outputs.replaced(path) as fresh:
         (write_mp4 if path.suffix == ".mp4" else write_gif)(film, fresh, rate)
     return path
@@ -291,7 +294,8 @@ def write_film(film: Film, path: pathlib.Path, rate: int) -> pathlib.Path:
 def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
     """@throws UserError  with the reason of ffmpeg"""
     height, width, _ = pixels_of(film.figure).shape
-    # The encoder takes most of the time; `veryfast` two thirds of its default, for files a sixth larger. Players ask for `yuv420p`.
+    # The encoder takes most of the time. With `veryfast` it takes two thirds of its default time, and the file is a
+    # sixth larger. Players require `yuv420p`.
     command = ["ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba", "-video_size", f"{width}x{height}", "-framerate", str(rate),
                "-i", "pipe:", "-c:v", "libx264", "-preset", "veryfast", "-pix_fmt", "yuv420p", f"file:{path}"]
     with tempfile.TemporaryFile() as said, subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said) as process:
@@ -308,8 +312,8 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
 
 
 def palette_of(first: Pixels) -> Image.Image:
-    """One palette for all frames: the colours of the first, shades of the colour bar, greys, and colours that only
-    occur at the end."""
+    """One palette for all frames: the colours of the first frame, shades of the colour bar, greys, and colours that
+    only occur at the end."""
     seen = np.reshape(Image.fromarray(first[..., :3]).quantize(SHADES).getpalette()[:3 * SHADES], (-1, 3)) / 255
     bar = style.VIRIDIS(np.linspace(0, 1, SHADES))[:, :3]
     greys = np.repeat(np.linspace(0, 1, 32), 3).reshape(-1, 3)
@@ -324,19 +328,19 @@ def palette_of(first: Pixels) -> Image.Image:
 
 def write_gif(film: Film, path: pathlib.Path, rate: int) -> None:
     palette = palette_of(film.pixels(0))
-    # One byte a pixel: all frames are held until the last.
+    # All frames are held in memory until the last one is drawn, so each pixel has one byte.
     frames = (Image.fromarray(pixels[..., :3]).quantize(palette=palette, dither=Image.Dither.NONE) for pixels in film.play_and_hold())
     next(frames).save(path, save_all=True, append_images=frames, duration=1000 / rate, loop=0)
 
 
 def write_pictures(film: Film, output: str) -> pathlib.Path:
-    """Numbered ones. @param output  their folder"""
+    """Writes numbered pictures. @param output  their folder"""
     folder = pathlib.Path(output)
     folder.mkdir(parents=True, exist_ok=True)
     for index, pixels in enumerate(film.play()):
         with outputs.replaced(folder / f"{index:05d}.png") as fresh:
             Image.fromarray(pixels[..., :3]).save(fresh)
-    # Frames of an earlier, longer run do not belong to this one.
+    # Frames that an earlier, longer film left behind do not belong to this one.
     for earlier in folder.glob("[0-9]" * 5 + ".png"):
         if int(earlier.stem) >= len(film):
             earlier.unlink()

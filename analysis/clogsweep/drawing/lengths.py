@@ -13,7 +13,7 @@ from ..labels.groups import Groups
 from ..tools import rounded
 from ..tools.hints import Group
 
-# Doubts of clogfit in a length itself, and how a note explains them.
+# The doubts of clogfit that concern a length itself, and the words that explain them in a note.
 HOLLOW_MARKERS = {
     "few_clogs": "fewer than 5 clogs",
     "held_by_mesh": "clogs that the polygon's corners may hold",
@@ -25,16 +25,17 @@ HOLLOW_MARKERS = {
 
 
 def reasons_for_hollow_marker(group: Group) -> list[str]:
-    """The arrow of a group without clogs already shows this."""
+    """The doubts that make a group's marker hollow. A group without clogs has no marker: its arrow shows that there are
+    few clogs."""
     return [doubt for doubt in style.doubts(group) if doubt in HOLLOW_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
 
 
 SPEED_NOTES = ["bars: standard errors"]
-NOTE_WIDTH = 100  # characters of a line below a picture
-OF_ALL_RUNS = "relative_speed_all"  # of clogfit: distance divided by time, for runs of any distance
-THROUGH_BOUNDS = "_through bounds"  # label of a line, in no legend
+NOTE_WIDTH = 100  # number of characters in a line below a picture
+OF_ALL_RUNS = "relative_speed_all"  # clogfit's name for distance divided by time, of runs of any distance
+THROUGH_BOUNDS = "_through bounds"  # label of a line that no legend shows
 FITTED = "_fitted"  # likewise
-FITTED_TO_COMMON_OBSTACLES = "_fitted, common obstacles"  # likewise, where points share seeds
+FITTED_TO_COMMON_OBSTACLES = "_fitted, common obstacles"  # likewise, for points that share seeds
 
 
 def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> list[str]:
@@ -72,12 +73,13 @@ def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: 
 
 def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
                  size: float = 5.5, unit: str = "") -> None:
-    """Clogging lengths with clogfit's intervals, `linestyle` if it is not that of the index, markers of `size` points,
-    in the `unit` at the end of column names ("_mm"; sigma). The marker shows the mechanism of most clogs; a hollow one
-    is a length in doubt (HOLLOW_MARKERS), an arrow begins at a lower bound, because no run clogged."""
+    """Draws clogging lengths with clogfit's intervals. A marker shows the mechanism of most clogs and is hollow if the
+    length is in doubt (HOLLOW_MARKERS). If no run clogged, an arrow begins at the lower bound. @param linestyle  None:
+    that of `index`; @param size  of markers [pt]; @param unit  end of the names of clogfit's columns: "_mm", or "" for
+    sigma"""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
-    # NaN if no run clogged: the line breaks there and continues dotted.
+    # A length is NaN if no run clogged. There the solid line is interrupted and a dotted one continues.
     middle, lower, upper = (f"clogging_length{end}{unit}" for end in ("", "_lower", "_upper"))
     lengths = [math.nan if group["clogs"] == 0 else group[middle] for group in groups]
     bars = [[math.nan if group["clogs"] == 0 else abs(group[middle] - group[end]) for group in groups] for end in (lower, upper)]
@@ -86,7 +88,7 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     axes.errorbar(places, lengths, yerr=bars if has_bars else None, color=colour, linestyle=linestyle or line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
                   gid=style.mark("curve", groups))
     for x, y, group in zip(places, lengths, groups):
-        face = "white" if reasons_for_hollow_marker(group) else "auto"  # the marker's colour, also later
+        face = "white" if reasons_for_hollow_marker(group) else "auto"  # "auto" follows the line's colour, even if this is changed later
         axes.plot(x, y, color=colour, marker=style.MECHANISM_MARKERS[style.main_mechanism(group)], markerfacecolor=face, markersize=size, zorder=3,
                   gid=style.mark("point", [group]) if group["clogs"] > 0 else None)
     if linestyle != "none" and len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
@@ -98,9 +100,9 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
 
 
 def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, column: str = "relative_speed") -> None:
-    """Mean speeds relative to the terminal speed, with standard errors from the scatter between runs, if there are
-    several. @param column  "relative_speed", the mean of runs that went far enough to have a speed, as published; or
-    OF_ALL_RUNS, "lateral_slope" """
+    """Draws mean speeds relative to the terminal speed. Groups of several runs have standard errors, from the scatter
+    between runs. @param column  "relative_speed" (the mean of runs that went far enough to have a speed, as published),
+    OF_ALL_RUNS, or "lateral_slope" """
     points = sorted(((place, group) for place, group in zip(places, groups) if group[column] is not None), key=lambda point: point[0])
     known = [group for _, group in points]
     drawn = axes.errorbar(
@@ -110,8 +112,8 @@ def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], in
 
 
 def speed_column(groups: Iterable[Group]) -> str:
-    """The mean of single runs represents fast ones, which went far enough before they clogged. Files without dwells
-    have no other mean."""
+    """The column with the mean speed. Only runs that went far enough have a speed, and fast runs more often do; so the
+    speed of all runs is preferred. Files without dwells have no such column."""
     return OF_ALL_RUNS if any(group.get(OF_ALL_RUNS) is not None for group in groups) else "relative_speed"
 
 
@@ -138,8 +140,8 @@ def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
 
 
 def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
-    """A second one at this side, "top" or "right", with other units. The first must be complete: a change would undo
-    the ticks."""
+    """Adds a second scale with other units at a side, "top" or "right". The first scale must be complete, because a
+    later change would undo the ticks of the second."""
     upright = side == "right"
     second = (axes.secondary_yaxis if upright else axes.secondary_xaxis)(side, functions=(lambda value: value * factor, lambda value: value / factor))
     axis = second.yaxis if upright else second.xaxis
@@ -150,7 +152,8 @@ def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
 
 
 def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> None:
-    """@param draw_curve  draw_lengths or draw_speeds: axes, places, groups of the curve, its index, its label"""
+    """@param draw_curve  draw_lengths or draw_speeds. It is called with the axes, the places and groups of the curve,
+    its index and its label"""
     curves = groups.curves()
     for index, (label, members) in enumerate(curves):
         with style.curve(axes, label):
@@ -159,7 +162,7 @@ def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> 
 
 
 def places(groups: Groups, members: Sequence[Group], index: int, num_curves: int) -> list[float]:
-    """Shifts a curve's points away from those of the others, to separate their bars."""
+    """The places of a curve's points, shifted so that its bars do not cover the bars of other curves."""
     values = groups.values(groups.abscissa)
     if groups.is_logarithmic():
         return [group[groups.abscissa] * style.side_by_side(index, num_curves, values) for group in members]
@@ -189,7 +192,7 @@ def draw_fitted(axes: Axes, groups: Groups, members: Sequence[Group], index: int
 
 
 def draw_on(axes: Axes, groups: Groups) -> None:
-    """Points with their bars, with fitted curves, or else straight lines."""
+    """Draws points with their bars, and fitted curves through them; where none could be fitted, straight lines."""
     def draw_curve(axes: Axes, places: Sequence[float], members: Sequence[Group], index: int, label: str) -> None:
         is_fitted = draw_fitted(axes, groups, members, index)
         draw_lengths(axes, places, members, index, label, linestyle="none" if is_fitted else None, unit="_mm" if groups.are_in_mm else "")

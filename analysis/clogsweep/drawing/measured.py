@@ -12,12 +12,12 @@ from ..reading import programs
 from ..tools.errors import UserError
 
 COLOUR = "#444444"
-ABOVE = 4  # in front of simulated markers, which have 3
+ABOVE = 4  # drawing order: in front of the simulated markers, which have 3
 LENGTHS = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 
 
 def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None, *options: object) -> list[dict[str, Any]]:
-    """The groups of a table of distances, by clogfit lengths, in the unit of the picture.
+    """The groups that clogfit lengths finds in a table of distances, in the unit of the picture.
     @param groups  of the sweep, whose laboratory gives the diameter. @throws UserError  if the table is in mm and no diameter is known"""
     told = json.loads(programs.run_program(programs.programs_in(folder) / "clogfit", "lengths", table, "--format", "json", *options))
     members: list[dict[str, Any]] = told["groups"]
@@ -30,8 +30,8 @@ def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None,
 
 
 def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: str) -> None:
-    """A star with its interval for each group that has a value of the abscissa; for each other group a band over the
-    whole range of the abscissa. An arrow points up from a lower bound, because no droplet clogged."""
+    """Draws a star with its interval for each group that has a value of the abscissa, and a band over the whole range
+    of the abscissa for each other group. If no droplet of a group clogged, an arrow points up from its lower bound."""
     drawn = False
     for group in measured:
         place = next((value for name, value in group.items() if name.replace("-", "_") == groups.abscissa_key()), None)
@@ -48,4 +48,4 @@ def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: s
         else:
             axes.errorbar(place, length, yerr=[[length - lower], [upper - length]], fmt="*", color=COLOUR, markersize=9, capsize=2.5, label=name, zorder=ABOVE)
         drawn = True
-    style.legend(axes)  # the markers of the sweep are in it already
+    style.legend(axes)  # entries for the sweep's markers exist already

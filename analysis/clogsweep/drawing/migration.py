@@ -14,8 +14,8 @@ from . import lengths
 
 
 def draw_rows(axes: Axes, groups: Groups) -> bool:
-    """Draws lines for a droplet that follows the rows and for a droplet that moves straight on. @return whether the first is
-    drawn"""
+    """Draws one line for a droplet that follows the rows, and one for a droplet that moves straight on. @return whether
+    the line for the rows is drawn"""
     angles = [group["lattice_angle"] for group in groups.members]
     axes.axhline(0, color="0.6", linewidth=0.8, linestyle=":", zorder=1)
     dashed: dict[str, Any] = {"color": "0.6", "linewidth": 0.8, "linestyle": "--", "zorder": 1}

@@ -25,10 +25,10 @@ class Kind:
     """Headings, labels and columns for droplets in a channel, or on a wall."""
 
     heading: str
-    goal: str  # the status of those that came where they should
-    outcomes: dict[str, str]  # in words, by status
-    curves: dict[str, str]  # labels of axes, by column: one picture each
-    columns: dict[str, str]  # headings of the table, by column
+    goal: str  # the status of droplets that passed, or came to rest
+    outcomes: dict[str, str]  # words for each status
+    curves: dict[str, str]  # a picture is drawn of each of these columns; labels of their axes
+    columns: dict[str, str]  # the table's columns, and their headings
     outline: str
     about: str
 
@@ -54,7 +54,7 @@ def kind_of(groups: Groups) -> Kind:
 
 
 def share(kind: Kind, members: Sequence[Group]) -> str:
-    """How many of a curve's droplets passed, or rest."""
+    """How many of a curve's droplets passed, or came to rest."""
     return f"{sum(group['status'] == kind.goal for group in members)} of {len(members)} {kind.outcomes[kind.goal]}"
 
 
@@ -65,7 +65,8 @@ def drawn_columns(groups: Groups) -> dict[str, str]:
 
 
 def draw_curves(axes: Axes, groups: Groups, column: str) -> None:
-    """One point for each droplet; a cross is one that clogged in a channel, a hollow marker one that was in progress at the end."""
+    """Draws one point for each droplet. A cross means that the droplet clogged in a channel, a hollow marker that it
+    was in progress at the end."""
     kind = kind_of(groups)
     markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}
     for index, (label, members) in enumerate(groups.curves()):
@@ -84,13 +85,14 @@ def draw_curves(axes: Axes, groups: Groups, column: str) -> None:
 
 
 def shares(groups: Groups, value: Callable[[Any], str]) -> list[tuple[str, str]]:
-    """The same for every curve, after its label. @param value  formats a parameter's"""
+    """For every curve its label, and how many of its droplets passed or came to rest. @param value  formats a
+    parameter's value"""
     kind, names = kind_of(groups), groups.curve_parameters()
     return [(", ".join(f"{name.replace('_', ' ')} {value(members[0][name])}" for name in names), share(kind, members)) for _, members in groups.curves()]
 
 
 def examples(rows: npt.NDArray[np.void], count: int) -> list[np.void]:
-    """Rows that are spread over the sweep, the first and the last among them."""
+    """Rows spread evenly over the sweep, including the first and the last."""
     over = [row for row in rows if stored.text(row["status"]) in FINISHED and row["model"] == b"dp"]
     return [over[place] for place in sorted({round(place) for place in np.linspace(0, len(over) - 1, min(count, len(over)))})]
 
@@ -99,7 +101,7 @@ def followed(rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path
     """Replays each row's droplet. @param folder  for their files"""
     if not rows:
         return []
-    # Frames a fiftieth of a diameter apart at terminal speed.
+    # At terminal speed a droplet moves by a fiftieth of its diameter between two frames.
     frame = min(0.02 / row["terminal_speed"] for row in rows)
     return replays.follow_all(clogrun, sweep, rows, folder, 2, frame, frame)
 

@@ -14,7 +14,7 @@ from .lengths import draw_lengths, length_notes
 
 
 def draw(found: Sequence[Prediction], measured: Sequence[Group], confidence: float, shared: Sequence[str]) -> Figure:
-    """@param measured  groups of a sweep, of the same array; @param shared  phrases of the caption"""
+    """@param measured  groups of a sweep in the same array; @param shared  phrases of the caption"""
     figure, axes = style.subplots(figsize=(6.8, 5.0))
     tensions = [one.tension for one in found]
     for label, name, look in (("both", "length", {"color": "0.8", "linewidth": 5}), ("squeezed, by two obstacles", "squeezed", {"color": style.COLOURS[0]}),

@@ -17,14 +17,15 @@ Comparison = dict[str, Any]
 
 
 def abscissa_of(told: dict[str, Any]) -> str:
-    """The number that takes most values, line tension first; empty if nothing varies."""
+    """The parameter for the abscissa: the number with most values, line tension among equals; empty if nothing
+    varies."""
     comparisons = told["comparisons"]
     numbers = [name for name in told["columns"] if all(is_number(str(one[name])) for one in comparisons)]
     return max(numbers, key=lambda name: (len({one[name] for one in comparisons}), name == "line_tension"), default="")
 
 
 def curves_of(told: dict[str, Any], abscissa: str) -> list[tuple[str, list[Comparison]]]:
-    """A label, and the comparisons that differ in the abscissa only."""
+    """For every curve a label, and its comparisons, which differ in the abscissa only."""
     others = [name for name in told["columns"] if name != abscissa]
     curves: dict[tuple[Any, ...], list[Comparison]] = {}
     for one in told["comparisons"]:

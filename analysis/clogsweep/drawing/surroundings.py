@@ -12,7 +12,7 @@ from .. import style
 from ..reading.trajectory import Trajectory, wedge_outline, with_middles
 from ..tools.hints import Numbers, Point
 
-HALO = withStroke(linewidth=3, foreground="white")  # for what may be drawn over obstacles without hiding them
+HALO = withStroke(linewidth=3, foreground="white")  # outline of guides, which may lie over obstacles
 
 
 def draw_surroundings(axes: Axes, trajectory: Trajectory, origin: Point = (0.0, 0.0)) -> None:
@@ -24,7 +24,7 @@ def draw_surroundings(axes: Axes, trajectory: Trajectory, origin: Point = (0.0, 
 
 
 def draw_droplet(axes: Axes, trajectory: Trajectory, frame: int, origin: Point = (0.0, 0.0)) -> None:
-    """One outline among its surroundings, smooth where they are larger than edges."""
+    """Draws one outline among its surroundings, as a smooth curve through the vertices."""
     draw_surroundings(axes, trajectory, origin)
     outline = with_middles(with_middles(trajectory.polygons[frame]))
     axes.fill(*(outline - np.asarray(origin)[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
@@ -36,7 +36,7 @@ def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0)
 
 
 def draw_guides(axes: Axes) -> None:
-    """A bar as long as a droplet is wide, and the direction of the flow. Both stay in their corners when axes are
+    """Draws a bar as long as a droplet is wide, and an arrow along the flow. Each stays in its corner when the axes are
     moved."""
     draw_bar(axes)
     arrow = axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
@@ -47,7 +47,7 @@ def draw_guides(axes: Axes) -> None:
 
 
 def draw_bar(axes: Axes) -> None:
-    """As long as a droplet is wide."""
+    """Draws a bar as long as a droplet is wide."""
     bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True, frameon=False)
     bar.set_zorder(6)
     axes.add_artist(bar)

@@ -10,7 +10,7 @@ from ..tools.hints import Group, Numbers
 
 
 def longest_way(group: Group) -> float:
-    """The longest distance of all runs, including those that still moved [sigma]."""
+    """The longest distance of any run, also of runs that still moved at their end [sigma]."""
     return max([step["distance"] for step in group["survival"]] + group["censored_distances"])
 
 
@@ -22,8 +22,8 @@ def probability(group: Group, distances: Sequence[float] | Numbers) -> Numbers:
 
 
 def draw(axes: Axes, group: Group, colour: str | Sequence[float], label: str, label_of_ticks: str | None = None, begin: float = 0.0) -> None:
-    """The estimate up to the longest distance, and a tick for every run that was last seen moving. @param begin  of the
-    curve [sigma]"""
+    """Draws the estimate up to the longest distance, with a tick for every run that still moved at its end.
+    @param begin  distance at which the curve begins [sigma]"""
     corners = [begin, *(step["distance"] for step in group["survival"]), longest_way(group)]
     axes.step(corners, probability(group, corners), where="post", color=colour, linewidth=1.2, label=label,
               gid=style.mark("point", [group]))

@@ -20,12 +20,12 @@ def view(run: trajectory.Trajectory) -> tuple[Numbers, Numbers]:
     return run.polygons.min(axis=(0, 2)) - 0.5, run.polygons.max(axis=(0, 2)) + 0.5
 
 
-LONGEST_STRIP = 30.0  # of a way; a longer one is drawn in several, below each other [sigma]
-MOST_STRIPS = 10  # which are longer where these are not enough
+LONGEST_STRIP = 30.0  # a longer path is drawn in several strips, one below the other [sigma]
+MOST_STRIPS = 10  # if the path needs more strips, these are longer instead
 
 
 def draw(run: trajectory.Trajectory, num_outlines: int) -> Figure:
-    """@param run  with outlines; @param num_outlines  of each strip"""
+    """@param run  a run with outlines; @param num_outlines  number of outlines in each strip"""
     low, high = view(run)
     width, height = high - low
     if width > LONGEST_STRIP and len(run.wedges) != 2:
@@ -37,7 +37,7 @@ def draw(run: trajectory.Trajectory, num_outlines: int) -> Figure:
 
 
 def draw_strips(run: trajectory.Trajectory, num_outlines: int) -> Figure:
-    """A long path from the top to the bottom, from the left to the right."""
+    """Draws a long path in strips, which follow one another from the top to the bottom."""
     low, high = view(run)
     count = min(math.ceil((high[0] - low[0]) / LONGEST_STRIP), MOST_STRIPS)
     ends = np.linspace(low[0], high[0], count + 1)

@@ -30,7 +30,7 @@ LABORATORY = {
 }
 
 
-# What the presets of the interface differ in; docs/explanation/model.md has all of it.
+# The main difference between the presets of the interface; docs/explanation/model.md lists all differences.
 INTERFACES = {
     "robust": "constant tension",
     "heavy-interface": "constant tension, weight on the interface",
@@ -44,7 +44,8 @@ def interface_of(preset: str) -> str:
 
 
 def tex(unit: str) -> str:
-    """A unit as clogsweep writes it, e.g. g rho sigma^2, for matplotlib: the model's in italics, millimetres upright."""
+    """A unit that clogsweep writes as, e.g., g rho sigma^2, for matplotlib: units of the model in italics, millimetres
+    upright."""
     unit = unit.replace("mm", r"\mathrm{mm}")
     for word in ("rho", "sigma"):
         unit = unit.replace(word, rf"\{word}")
@@ -64,8 +65,8 @@ def is_number(word: str) -> bool:
 
 
 def symbol(column: Column) -> str:
-    """A parameter's symbol divided by its unit, which gives a pure number; for words, the name itself. A parameter in
-    AXES is already a pure number."""
+    """A parameter's symbol divided by its unit, which is a pure number; for a parameter whose values are words, its
+    name. The symbols in AXES are pure numbers already."""
     if column["symbol"] and column["name"] in AXES:
         return column["symbol"]
     if not column["symbol"]:

@@ -23,32 +23,32 @@ class Groups:
 
     def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
         """@param fit  the JSON of clogfit; @param circle_files  see stored.circle_files()"""
-        # Nothing is random in a channel or on a wall: a group is one run, which has a status.
+        # Nothing is random in a channel or on a wall, so each group is one run and has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
         self._fit = fit
         fit = fits.in_millimetres(fit)
-        self.are_in_mm = "in_mm" in fit  # parameters, and lengths in pictures
+        self.are_in_mm = "in_mm" in fit  # whether parameters, and lengths in pictures, are in millimetres
         self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] + group["met_none"] > 0)]
         self._told: list[Group] = fit["groups"]
         self.confidence: float = fit["confidence"]
-        self.laboratory: dict[str, float | None] = fit.get("laboratory", {})  # what the model's units are there, if all have one
-        self.laboratories: dict[str, str] = fit.get("laboratories", {})  # descriptions, by their check sums
+        self.laboratory: dict[str, float | None] = fit.get("laboratory", {})  # the model's units in the laboratory, if all groups share one
+        self.laboratories: dict[str, str] = fit.get("laboratories", {})  # descriptions of the laboratories, by their checksums
         self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
         self.lists: Collection[str] = fit["lists"]
-        self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # none of older programs
+        self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # empty for files of older programs
         self._circle_files = circle_files or self._only_circle_file()
-        self.tells_what_all_share = True  # in caption()
-        self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
+        self.tells_what_all_share = True  # whether caption() describes what all groups share
+        self.abscissa = self._choose_abscissa() if self.members else ""  # without members there is nothing to draw
         self._ask_for_curves: Callable[[], dict[str, Any]] = lambda: NO_CURVES  # see fit_curves()
 
     def finished(self, source: object = "the sweep") -> Groups:
-        """@throws UserError  if none of their runs has finished"""
+        """@throws UserError  if no run has finished"""
         if not self.members:
             raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
         return self
 
     def with_lengths(self, source: object = "the sweep") -> Groups:
-        """The same. @throws UserError  for a sweep of channels or walls, too, which has no clogging lengths"""
+        """As finished(). @throws UserError  also for a sweep of channels or walls, which has no clogging lengths"""
         if self.are_passages:
             raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws their results")
         if not any(group["runs"] for group in self.finished(source).members):
@@ -56,14 +56,14 @@ class Groups:
         return self
 
     def fit_curves(self, sweep: AnyPath, folder: pathlib.Path) -> Groups:
-        """The same with smooth curves as a function of the abscissa, if these can be fitted. @param sweep  that was
-        fitted; @param folder  of the programs"""
+        """Asks for smooth curves as a function of the abscissa, which are fitted on first use, if that is possible.
+        @param sweep  the file that was fitted; @param folder  of the programs"""
         def ask() -> dict[str, Any]:
             from ..curves import answer, points  # SciPy is slow to load
 
             try:
                 return answer.of_fit(self._fit, points.seeds_of_groups(self._fit, stored.read_rows(sweep, folder)), [self.abscissa])
-            except UserError:  # such as an abscissa with the value 0
+            except UserError:  # no curve can be fitted, e.g. because the abscissa has the value 0
                 return NO_CURVES
 
         if self.members and not self.are_passages and self.is_logarithmic():
@@ -75,15 +75,15 @@ class Groups:
         return self._ask_for_curves()
 
     def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
-        """The fitted curve through these groups, if there is one. A fitted curve through groups of several drawn
-        curves belongs to the curve with its first point."""
+        """The fitted curve through these groups, if there is one. If a fitted curve goes through groups of several
+        drawn curves, it belongs to the drawn curve that has its first point."""
         for curve in self._fitted["curves"]:
             if any(self._told[curve["points"][0]["group"]] is group for group in members):
                 return curve
         return None
 
     def excluded_from_curves(self) -> list[str]:
-        """Points outside all fitted curves, if there are any curves, each with the reason."""
+        """The points outside all fitted curves, grouped by reason; empty if no curve was fitted."""
         if not self._fitted["curves"]:
             return []
         points: dict[str, list[str]] = {}
@@ -128,7 +128,7 @@ class Groups:
         """Whether the parameter's values can follow from others. They cannot if the sweep gives a number or a list for it."""
         fillings = self.values("obstacle_filling")
         if name in ("obstacle_gap", "obstacle_density") and fillings == {"file"}:
-            return True  # it follows from the circles and the length of their array
+            return True  # both follow from the circles and the length of their array
         if name in self.lists or self._is_given_number(name):
             return False
         of_filling = fillings <= {"saturated", *LATTICES} or bool(self._share_of_saturated())
@@ -136,7 +136,8 @@ class Groups:
         return from_array or all(name in group["automatic"] for group in self.members)
 
     def _is_of_preset(self, name: str) -> bool:
-        """Whether it follows from line tension and preset, automatic for some presets and a number for others."""
+        """Whether the parameter's value follows from abscissa and preset, because it is automatic for some presets and
+        a number for others."""
         return any(name in group["automatic"] for group in self.members) and self.follows(name, [self.abscissa, "preset"])
 
     def _share_of_saturated(self) -> str:
@@ -145,12 +146,13 @@ class Groups:
         return share if share.endswith("%") and is_number(share[:-1]) and self.values("obstacle_filling") == {"density"} else ""
 
     def _is_given_number(self, name: str) -> bool:
-        """Whether the config has it as a number. A box also for lattices, whose own follows."""
+        """Whether the config gives the parameter as a number. The box does not count: a lattice's own box follows from
+        the number."""
         return name != "box" and is_number(self.settings.get(name.replace("_", "-"), ""))
 
     def curve_parameters(self) -> list[str]:
         """Names of the parameters that separate the curves."""
-        # A laboratory and circles include what follows from them, such as the place of an exit.
+        # What follows from the laboratory or the circles, such as the place of an exit, adds nothing to their names.
         told = [name for name in ("laboratory", "obstacles") if self.varies(name)]
         if self.are_in_mm:
             droplet = [name for name in fits.DROPLETS if self.varies(name) and name != self.abscissa]
@@ -174,25 +176,28 @@ class Groups:
         return interface_of(str(value)) if name == "preset" else said(self.columns[name], self.named(name, value))
 
     def named(self, name: str, value: Any) -> Any:
-        """A parameter's value. User-supplied circles are stored as a checksum, which becomes the name of their file if that is known."""
+        """A parameter's value. User-supplied circles are stored as a checksum; it is replaced by the name of their
+        file, if this is known."""
         return self._circle_files.get(value, value) if name == "obstacles" else value
 
     def laboratory_label(self, check_sum: str) -> str:
-        """The entries in which a laboratory differs from the others; all entries of a single one."""
+        """The entries in which a laboratory differs from the others; all entries if there is only one laboratory."""
         parts = {one: text.split("; ") for one, text in self.laboratories.items()}
         own = [part for part in parts[check_sum] if not all(part in other for other in parts.values())]
         return "; ".join(own or parts[check_sum])
 
     def distinguishing(self) -> list[str]:
-        """Names of the parameters in which the groups differ. The model's name covers parameters of one model only."""
+        """Names of the parameters in which the groups differ. If the groups have several models, a parameter is left
+        out that only one model has, with a single value: the model's name implies it."""
         names = [name for name in [self.abscissa, *self.curve_parameters()] if name != "model" and self.varies(name)]
         if not self.varies("model"):
             return names
         return ["model", *(name for name in names if len(self.values(name) - {None}) > 1)]
 
     def row_values(self, member: Group) -> dict[str, Any]:
-        """Parameters that the rows of a group have. A value unknown to clogfit, such as the density of a saturated
-        array, follows from the others; so does one that the model of these runs lacks."""
+        """Values that identify the rows of a group. Values unknown to clogfit, such as the density of a saturated
+        array, are left out because they follow from the others, and so are parameters that the model of these runs
+        lacks."""
         values = member.get("in_table", member)
         names = [name for name in self.distinguishing() if name not in fits.DROPLETS] + (["laboratory"] if self.are_in_mm else [])
         return {name: values[name] for name in names if values[name] is not None}
@@ -210,7 +215,7 @@ class Groups:
         return axis_label(self.columns[self.abscissa])
 
     def curves(self) -> list[tuple[str, list[Group]]]:
-        """A label, and the groups that differ in the abscissa only, for every curve."""
+        """For every curve a label, and its groups, which differ in the abscissa only."""
         names = self.curve_parameters()
         keys = sorted({tuple(group[name] for name in names) for group in self.members},
                       key=lambda key: [(value is None, isinstance(value, str), value) for value in key])
@@ -218,7 +223,7 @@ class Groups:
                  [group for group in self.members if tuple(group[name] for name in names) == key]) for key in keys]
 
     def legend_title(self) -> str:
-        """What the numbers in the labels of curves() are called."""
+        """The names of the parameters whose values are in the labels of curves()."""
         return ", ".join(name.replace("_", " ") for name in self.curve_parameters() if self._is_number(name) and name not in fits.DROPLETS)
 
     def is_logarithmic(self) -> bool:
@@ -248,7 +253,8 @@ class Groups:
         return ", ".join(words)
 
     def _only_circle_file(self) -> dict[str, str]:
-        """The file of circles that the config names, for a fit without its sweep; with several, the config does not say which is which."""
+        """The name of the file of circles in the config, for a fit without its sweep. If there are several, the config
+        does not tell which file has which checksum."""
         name = self.settings.get("obstacles", "none")
         if name == "none" or "," in name:
             return {}
@@ -259,15 +265,16 @@ class Groups:
         return str(self.named("obstacles", *sums)) if len(sums) == 1 and sums <= self._circle_files.keys() else "a file" if len(sums) == 1 else "files"
 
     def _is_worth_a_word(self, name: str, value: Any) -> bool:
-        """Parameters that shape the array, and those that differ from their defaults."""
+        """Whether the caption names a parameter: it does if the parameter shapes the array, or differs from its
+        default."""
         column = self.columns[name]
         if name == "obstacle_diameter" and self.values("obstacle_filling") == {"file"}:
-            return False  # of circles that have none of their own
+            return False  # it only applies to circles without a diameter of their own
         if self.varies(name) or not self._is_number(name) or value is None or name == self.abscissa or self._is_automatic(name):
             return False
         if name == "obstacle_density":
-            return self.values("obstacle_filling") == {"density"}  # has no role: it is a result of the other arrays
+            return self.values("obstacle_filling") == {"density"}  # in other arrays the density is a result
         is_array = column["shapes_array"] and column.get("parameter_role") == "physics" and value != 0
-        is_default = column.get("default") in (str(value), f"{value:g}") or (name, value) == ("wall_tension", 1)  # of auto without angles
+        is_default = column.get("default") in (str(value), f"{value:g}") or (name, value) == ("wall_tension", 1)  # the value of `auto` if no contact angles are given
         is_special = column.get("parameter_role") == "physics" and not is_default
         return is_array or is_special or (name == "vertices" and self.are_polygons)

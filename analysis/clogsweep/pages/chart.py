@@ -18,11 +18,11 @@ COLOUR = re.compile(r"#([0-9a-f]{6})\b")
 REFERENCE = re.compile(r"url\(#(\w+)\)")
 DIGITS = re.compile(r"(\.\d\d)\d+")
 MARK = re.compile(r"(point|curve|legend)-([\d,]+)")
-REACH = 7  # of a point for a mouse [pt]
+REACH = 7  # radius around a point in which a mouse selects it [pt]
 
 DARK_PAPER = (0x16, 0x18, 0x1D)
 DARK_INK = (0xE6, 0xE6, 0xE6)
-LEAST_CONTRAST = 3.5  # of a colour on dark paper; WCAG 2.1 asks for 3
+LEAST_CONTRAST = 3.5  # smallest contrast of a colour on dark paper; WCAG 2.1 requires 3
 
 BLACK = "000000"
 Colour = tuple[float, float, float]
@@ -39,13 +39,14 @@ def luminance(colour: Colour) -> float:
 
 
 def mixed(colour: Colour, other: Colour, share: float) -> Colour:
-    """@param share  of the other"""
+    """@param share  fraction of the other colour"""
     red, green, blue = ((1 - share) * a + share * b for a, b in zip(colour, other))
     return red, green, blue
 
 
 def in_the_dark(colour: Colour) -> Colour:
-    """Greys are inverted, from white paper and black ink; other colours are made lighter until they are visible."""
+    """The colour for dark mode. Greys are inverted, so that white paper becomes dark and black ink light; other colours
+    are made lighter until they are visible."""
     if len(set(colour)) == 1:
         return mixed(DARK_INK, DARK_PAPER, colour[0] / 255)
     shares = (step / 20 for step in range(21))
@@ -56,7 +57,7 @@ def in_the_dark(colour: Colour) -> Colour:
 class Charts:
     """The charts of one page. They share letters, markers and colours.
 
-    @param labels  what to say of each group
+    @param labels  the label of each group
     """
 
     def __init__(self, labels: Sequence[str]) -> None:
@@ -68,8 +69,8 @@ class Charts:
     def draw(self, figure: Figure, caption: str) -> str:
         """@return an element of HTML"""
         out = io.StringIO()
-        # Letters as shapes, because fonts of another machine would misplace those of a formula. A salt of its own would
-        # give equal elements of two charts different names.
+        # Letters are drawn as shapes, because the fonts of another machine would misplace the letters of a formula. The
+        # salt is constant, so that equal elements of two charts have the same name.
         with matplotlib.rc_context({"svg.fonttype": "path", "svg.hashsalt": "clogsweep"}):
             figure.savefig(out, format="svg", transparent=True, metadata={"Date": None})
         ElementTree.register_namespace("", SVG)
@@ -95,8 +96,8 @@ class Charts:
         return declared(named.items()), declared((name, in_the_dark(colour)) for name, colour in named.items())
 
     def _rename(self, root: ElementTree.Element) -> None:
-        """Replaces colours by names, removes unused names, and renames clips, which may have the names of another
-        chart's."""
+        """Replaces colours by names, removes unused names, and renames clips, because a clip of another chart may have
+        the same name."""
         for node in root.iter():
             node.text = node.tail = None  # line breaks
             if HREF in node.attrib:
@@ -130,7 +131,7 @@ class Charts:
         if kind != "point":
             node.attrib |= {"class": kind, "data-groups": " ".join(groups)}
         elif markers:
-            for line in node.findall(f"{{{SVG}}}path"):  # through the points
+            for line in node.findall(f"{{{SVG}}}path"):  # the lines through the points
                 line.attrib |= {"class": "curve", "data-groups": " ".join(groups)}
             for (parent, marker), group in zip(markers, groups, strict=True):
                 reach = element("circle", cx=marker.get("x", ""), cy=marker.get("y", ""), r=str(REACH), **{"class": "reach"})
@@ -158,7 +159,7 @@ class Charts:
 
 
 def drop_doubles(parent: ElementTree.Element) -> None:
-    """Markers of the same kind in the same place: thousands of runs may have ended at one distance."""
+    """Removes markers of the same kind at the same place: thousands of runs may have ended at one distance."""
     seen = set()
     for child in list(parent):
         if child.tag == f"{{{SVG}}}use" and "x" in child.attrib:

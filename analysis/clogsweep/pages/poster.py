@@ -25,18 +25,18 @@ from . import report
 if TYPE_CHECKING:
     import pandas
 
-PAGE = (11.69, 16.54)  # A3 [inches]; A2 has letters half as large again
+PAGE = (11.69, 16.54)  # A3 [inches]; a print on A2 has letters 1.4 times as large
 MARGIN = 0.5
-MOST_CURVES = 2  # P(r) and causes are drawn of the first and the last only
-WAY = 8.0  # [sigma]: what clogged about there shows how droplets move, and is still large
+MOST_CURVES = 2  # P(r) and causes are drawn for the first and the last curve only
+WAY = 8.0  # [sigma]: the path of a droplet that clogged near this distance shows how droplets move, and the droplet is still drawn large
 FRAMES_OF_WAY = 300
 
 Draw = Callable[[Axes], None]
-Row = tuple[float, Sequence[Draw]]  # a share of the height, and what is side by side
+Row = tuple[float, Sequence[Draw]]  # a row's height relative to the other rows, and its drawings, side by side
 
 
 def page(title: str, about: str, rows: Sequence[Row], footer: str) -> Figure:
-    """@param about, footer  one line each, or several"""
+    """@param about, footer  text of one or more lines"""
     figure = style.new_figure(figsize=PAGE, layout="constrained")
     _, body, _ = figure.subfigures(1, 3, width_ratios=[MARGIN, PAGE[0] - 2 * MARGIN, MARGIN])
     heights = [0.7, *(height for height, _ in rows), 0.25]
@@ -52,12 +52,12 @@ def page(title: str, about: str, rows: Sequence[Row], footer: str) -> Figure:
 
 
 def cut(text: str) -> str:
-    """Cuts lines that are wider than the page."""
+    """Shortens lines that are wider than the page."""
     return "\n".join(line if len(line) < 150 else f"{line[:147]}..." for line in text.splitlines())
 
 
 def counted(rows: pandas.DataFrame, words: dict[str, str]) -> str:
-    """@param rows  table of the sweep; @param words  for a status, where there is a better one"""
+    """@param rows  the sweep's table; @param words  better words for some statuses"""
     counts = ", ".join(f"{count} {words.get(status, status)}" for status, count in rows.status.value_counts().items())
     return f"{rounded.counted(len(rows), 'run')}: {counts}"
 
@@ -107,7 +107,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
 def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> list[Row]:
     def draw_outline(axes: Axes, run: Trajectory) -> None:
         passages.draw_outline(axes, groups, run)
-        axes.xaxis.label.set_size(8)  # three are side by side
+        axes.xaxis.label.set_size(8)  # three drawings are side by side
 
     rows: list[Row] = [(1.2, [partial(passages.draw_curves, groups=groups, column=column)]) for column in passages.drawn_columns(groups)]
     with tempfile.TemporaryDirectory(prefix="clogsweep-poster-") as folder:
@@ -138,5 +138,5 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path, *options: object) -> Figure:
         title, words = f"{curve.heading(groups).capitalize().removesuffix(' per distance')} vs {abscissa}", {"flowing": "still going"}
         rows = of_lengths(groups.with_lengths(sweep), sweep, folder / "clogrun")
     head = f"{groups.caption()}\n{of_laboratory(groups)}{counted(stored.read_table(sweep, folder), words)}"
-    groups.tells_what_all_share = False  # the head has them, so panels need none
+    groups.tells_what_all_share = False  # the poster's head describes this
     return page(title, head, rows, literal(cut(stored.source(about))))

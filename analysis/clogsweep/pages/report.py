@@ -34,8 +34,8 @@ def framed(content: str, caption: str, kind: str = "") -> str:
 
 
 def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """P(r) of one curve's members to their longest distances, each with the exponential of its length if it is
-    known."""
+    """Draws P(r) of the members of one curve up to their longest distances, each with the exponential law of its
+    clogging length, if this is known."""
     begin = min(0.01 * (group["clogging_length"] or survival_curve.longest_way(group)) for group in members)
     for group, colour in zip(members, style.shades(len(members))):
         if group["survival"]:
@@ -52,18 +52,19 @@ def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Grou
 
 
 def mark_steps(axes: Axes) -> None:
-    """The legend of curves of one group each."""
+    """Draws the legend of curves, each of which belongs to one group."""
     handles, _ = axes.get_legend_handles_labels()
     style.mark_legend(axes.legend(frameon=False, fontsize=8, ncols=1 + len(handles) // 8), handles)
 
 
 def occurring_causes(members: Sequence[Group]) -> list[str]:
-    """Words of clogfit for the causes that ended runs of these groups, in the order of their colours."""
+    """The causes that ended runs of these groups, in clogfit's words and in the order of their colours."""
     return [name for name in style.CAUSE_COLOURS if any(name in group["incidence"] for group in members)]
 
 
 def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
-    """Probability of an end by each cause within a distance r, with the other causes present (Aalen-Johansen), for one curve's members."""
+    """Draws the probability that a run ends by each cause within a distance r, in competition with the other causes
+    (Aalen-Johansen), for the members of one curve."""
     names = occurring_causes(members)
     figure, all_axes = style.subplots(1, len(names), figsize=(3.2 * len(names), 4.8), sharex=True, sharey=True, squeeze=False)
     longest = max(survival_curve.longest_way(group) for group in members)
@@ -93,7 +94,7 @@ def with_runs(members: Sequence[Group]) -> list[Group]:
 
 
 def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """How the runs of one curve ended, as fractions. @param members  see with_runs()"""
+    """Draws the fractions of the runs of one curve that ended in each way. @param members  see with_runs()"""
     ranks, base = np.arange(len(members)), np.zeros(len(members))
     shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
               for name, colour in style.CAUSE_COLOURS.items()}
@@ -121,8 +122,8 @@ def length(group: Group) -> str:
 
 
 def speed(group: Group) -> str:
-    """The speed of all runs, distance divided by time; also the mean of single runs, if only some went far enough to
-    have a speed."""
+    """The speed of all runs, which is distance divided by time. If only some runs went far enough to have a speed,
+    their mean speed, too."""
     runs = rounded.counted(group["relative_speed_runs"], "run")
     mean = None if group["relative_speed"] is None else rounded.with_error(group["relative_speed"], group["relative_speed_error"])
     if group.get(lengths.OF_ALL_RUNS) is None:
@@ -147,7 +148,7 @@ def in_laboratory(group: Group, name: str) -> str:
 
 
 def migration(group: Group, name: str) -> str:
-    """Lateral displacement per distance, or the share along the rows."""
+    """The lateral displacement per distance, or its share of the displacement along the rows."""
     return "-" if group.get(name) is None else rounded.with_error(group[name], group[f"{name}_error"])
 
 
@@ -157,17 +158,17 @@ def value(cell: float | str | None, digits: int = 6) -> str:
 
 
 def cell(groups: Groups, group: Group, name: str) -> str:
-    """The same of a group, with a file's name for user-supplied circles."""
+    """A parameter's value in a group as a table shows it, with the file's name for user-supplied circles."""
     return value(groups.named(name, group[name]))
 
 
 def parameters(groups: Groups) -> list[str]:
-    """Names of those that tell groups apart."""
+    """Names of the parameters that distinguish groups."""
     return [*groups.curve_parameters(), groups.abscissa]
 
 
 def seeds_of(values: dict[str, Any], rows: pandas.DataFrame) -> str:
-    """@param values  in which the rows of a group differ from others"""
+    """@param values  values of a group that distinguish its rows from those of other groups"""
     of_group = rows
     for name, value in values.items():
         of_group = of_group[of_group[name] == value]
@@ -184,7 +185,7 @@ def doubts_of(group: Group, sentences: dict[str, str]) -> str:
 
 
 def table_cell(text: str) -> str:
-    """In HTML. In a narrow table the part in brackets moves to a line of its own."""
+    """A cell in HTML. In a narrow table its part in brackets moves to a line of its own."""
     number, space, rest = text.partition(" (")
     if not rest:
         return f"<td>{html.escape(text)}</td>"
@@ -194,7 +195,7 @@ def table_cell(text: str) -> str:
 def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequence[str]) -> str:
     """Every number of the page; `page.js` shows them at points, and sorts them.
 
-    @param titles  in HTML; @param lines  cells of each group; @param doubts  of each, in HTML
+    @param titles  headings in HTML; @param lines  cells of each group; @param doubts  doubts of each group, in HTML
     """
     head = "".join(f'<th scope="col">{title}</th>' for title in [*titles, "doubts"])
     body = "\n".join(f'<tr data-groups="{number}">' + "".join(table_cell(cell) for cell in cells) + f'<td class="doubt">{doubt}</td></tr>'
@@ -224,7 +225,7 @@ def table_of_passages(groups: Groups, sentences: dict[str, str]) -> str:
 
 
 def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.DataFrame) -> str:
-    """@param sentences  of clogfit, by the words that its groups hold"""
+    """@param sentences  clogfit's sentences, by the words for doubts that its groups contain"""
     words = []
     for name in dict.fromkeys(name for group in groups for name in style.doubts(group)):
         count = sum(name in style.doubts(group) for group in groups)
@@ -236,7 +237,7 @@ def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.Data
 
 
 def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
-    """Clogs to show: the typical one of every mechanism, the others spread from the least to the most deformed.
+    """Clogs to show: the typical one of every mechanism, and others, evenly from the least to the most deformed.
 
     Clogs of droplets that travelled a diameter or more come first: clogs at the release represent its void, not the array.
 
@@ -251,7 +252,7 @@ def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     for row in ordered:
         kinds.setdefault(row["mechanism"], []).append(row)
     typical = [kind[len(kind) // 2] for kind in kinds.values()]
-    # The most and the least deformed clogs are often the least sound runs.
+    # The most and the least deformed clogs often come from the least sound runs.
     spread = [ordered[int(place)] for place in np.linspace(0.05, 0.95, count) * (len(ordered) - 1)]
     return list({row["task"]: row for row in typical + spread + ordered}.values())[:count]
 
@@ -268,7 +269,7 @@ def example_pictures(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pat
 
 
 def progress_of(status: dict[str, Any], rows: pandas.DataFrame) -> str:
-    """@param status  of clogsweep status; @param rows  the tasks that have begun"""
+    """@param status  output of clogsweep status; @param rows  rows of the tasks that have begun"""
     counts = ", ".join(f"{count} {name}" for name, count in rows.status.value_counts().items())
     return f"{status['finished']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
 
@@ -278,7 +279,7 @@ LENGTHS = ("&lambda; is the distance that a fraction 1/e of the droplets travels
 
 
 def label_of_length(groups: Groups, group: Group) -> str:
-    """A point's title, which needs no script."""
+    """The title of a point, which a browser shows without a script."""
     known = "" if speed(group) == "-" else f", speed {speed(group)}"
     return (f"{valued(groups, group)}: length {length(group)}{known}, {group['clogs']} of {rounded.counted(group['runs'], 'run')} clogged")
 
@@ -287,12 +288,12 @@ def valued(groups: Groups, group: Group) -> str:
     return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
 
 
-MAPPED = 4  # runs in each panel of a device whose ways make its map
+MAPPED = 4  # number of runs whose paths make the map in each panel of a device
 
 
 def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
-    """User-supplied circles, with releases and clogs.
-    @param count  paths to draw in each panel; with 0 nothing is replayed"""
+    """Draws user-supplied circles, with releases and clogs.
+    @param count  number of paths in each panel; with 0 nothing is replayed"""
     if groups.values("obstacle_filling") != {"file"}:
         return {}
     caption = "releases, clogs, where droplets went, and the share that came past each place"
@@ -305,7 +306,7 @@ def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Pa
 
 
 def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
-    """The sections about droplets among obstacles. @param count  clogs to show. @return contents by title"""
+    """The sections about droplets among obstacles. @param count  number of clogs to show. @return contents by title"""
     def chart(figure: Figure, caption: str) -> str:
         is_wide = figure.get_figwidth() > 1.5 * figure.get_figheight()
         return framed(charts.draw(figure, caption), caption, "wide" if is_wide else "")
@@ -330,7 +331,7 @@ def label_of_passage(groups: Groups, group: Group) -> str:
 
 
 def of_passages(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
-    """The same for droplets in a channel or on a wall. @param count  outlines to show"""
+    """The sections about droplets in a channel or on a wall. @param count  number of outlines to show"""
     kind = passages.kind_of(groups)
     curves = [framed(charts.draw(style.figure_of(passages.draw_curves, groups, column), name), name) for column, name in passages.drawn_columns(groups).items()]
     with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
@@ -397,7 +398,7 @@ def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: path
     status = json.loads(programs.run_program(folder / "clogsweep", "status", sweep, "--format", "json"))
     groups = Groups(told, circle_files).finished(sweep).fit_curves(sweep, folder)
     for number, group in enumerate(groups.members):
-        group["number"] = number  # by which the page knows each (style.mark())
+        group["number"] = number  # identifies the group in the page (style.mark())
     rows = stored.read_table(sweep, folder)
     with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)

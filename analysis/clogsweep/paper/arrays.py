@@ -29,7 +29,7 @@ HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
 
 
 def numbers(groups: Sequence[Group], label: str, **more: Sequence[Any]) -> list[dict[str, Any]]:
-    """The values of each group that are drawn, from clogfit."""
+    """The numbers of clogfit that a figure draws, for each group."""
     columns = ["model", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter", "obstacle_density", "near_wall_drag", "runs", "clogs",
                "clogging_length", "clogging_length_lower", "clogging_length_upper", "relative_speed", "relative_speed_error", "capillary_number", "doubts"]
     return [{"curve": label, **{name: group[name] for name in columns}, **{name: values[i] for name, values in more.items()}}
@@ -41,15 +41,16 @@ def of_each(curve: Sequence[Group], *names: str) -> dict[str, list[Any]]:
 
 
 def by(groups: Iterable[Group], name: str) -> list[tuple[Any, list[Group]]]:
-    """Groups of one curve each, by the value that tells the curves apart."""
+    """The groups of each curve, by the value in which the curves differ."""
     return [(value, [group for group in groups if group[name] == value]) for value in sorted({group[name] for group in groups})]
 
 
-DRAWINGS: dict[str, Callable[..., None]] = {"length": draw_lengths, "speed": draw_speeds}  # by the quantity
+DRAWINGS: dict[str, Callable[..., None]] = {"length": draw_lengths, "speed": draw_speeds}  # the function that draws each quantity
 
 
 def finish(axes: Axes, shop: Workshop, config: str, drawn: Sequence[Group], abscissa: str, quantity: str, varied: Sequence[str]) -> None:
-    """Legend, labels of the axes, caption and notes. @param quantity  of DRAWINGS; @param varied  columns that the caption leaves out"""
+    """Legend, labels of the axes, caption and notes. @param quantity  a key of DRAWINGS; @param varied  columns that
+    the caption leaves out"""
     if quantity == "length":
         style.logarithmic_ordinate(axes)
     style.label(axes, AXES[abscissa], AXES[quantity])
@@ -100,7 +101,8 @@ enter("E", "mean speed against line tension for three near-wall drags", "near-wa
 # Both models against the sag
 
 def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
-    """delta_s for each group, from one sweep of walls with all its line tensions or stiffnesses."""
+    """delta_s for each group, from one sweep of droplets on walls with the line tensions or stiffnesses of all
+    groups."""
     is_polygon = groups[0]["model"] == "dp"
     column, key = ("line_tension", "line-tension") if is_polygon else ("wall_stiffness", "wall-stiffness")
     keys = shop.keys(config)
@@ -111,7 +113,7 @@ def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
     return [known[group[column]]["sag"] for group in groups]
 
 
-# A sweep, the label of a curve, and its groups among those of the sweep.
+# For each curve: a sweep, the curve's label, and a function that selects its groups among those of the sweep.
 Curve = tuple[str, str, Callable[[Sequence[Group]], list[Group]]]
 
 
@@ -175,13 +177,13 @@ def sag_picture(shop: Workshop) -> Plate:
 
 # Clogs
 
-CLOGS = "clogging-friction"  # walls with friction hold droplets that wrap, on any mesh
+CLOGS = "clogging-friction"  # with friction, walls hold droplets that wrap, whatever the mesh
 
 
 def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pandas.Series]:
-    """A clog of the sweep, replayed with its outline. Of squeezed clogs it is the stiffest that travelled at least
-    half a diameter, if any did; of wrapped clogs the one of median shape, preferably one that only hangs over
-    obstacles."""
+    """A clog of the sweep, replayed with its outline. Among squeezed clogs it is the stiffest droplet that travelled at
+    least half a diameter, if there is one. Among wrapped clogs it is the one of median shape, preferably among those
+    that only hang over obstacles."""
     shop.sweep(CLOGS)
     rows = shop.rows(CLOGS)
     if "mechanism" not in rows or not rows.mechanism.any():
@@ -212,7 +214,7 @@ def clog_numbers(run: trajectory.Trajectory, row: pandas.Series, frame: int) -> 
              "distance": row.distance, "x": x, "y": y} for x, y in run.polygons[frame].T]
 
 
-VIEW = np.array([5.6, 3.2])  # of Figs. 5 and 6, which have one scale [sigma]; droplets that are longer need more
+VIEW = np.array([5.6, 3.2])  # width and height shown in Figs. 5 and 6, which have the same scale [sigma]; longer droplets need more
 
 
 def view_of(outlines: Numbers) -> Numbers:
@@ -221,7 +223,7 @@ def view_of(outlines: Numbers) -> Numbers:
 
 
 def show_clog(axes: Axes, run: trajectory.Trajectory, frame: int, view: Numbers, outlines: Numbers) -> None:
-    """@param view  of view_of(); @param outlines  in whose middle it lies"""
+    """@param view  from view_of(); @param outlines  determine the middle of the view"""
     surroundings.draw_droplet(axes, run, frame)
     middle = (outlines.min(axis=(0, 2)) + outlines.max(axis=(0, 2))) / 2
     surroundings.frame_limits(axes, middle - view / 2, middle + view / 2)
@@ -270,7 +272,7 @@ def two_ways(shop: Workshop) -> Plate:
 # Single runs and P(r)
 
 def energies(shop: Workshop) -> dict[float, trajectory.Trajectory]:
-    """Ways of Fig. C1, by the gap: a droplet that clogs and one that flows."""
+    """Paths of Fig. C1, by the gap: of a droplet that clogs, and of one that flows."""
     rows = shop.runs("energy", "trajectory", {"seeds": 1, "line-tension": 0.5, "obstacle-gap": [0.3, 1.1], "clog-detection": "threshold"})
     return {row["obstacle_gap"]: way for row, way in zip(rows, shop.ways("energy", rows, 1))}
 
@@ -299,7 +301,7 @@ def kinetic_energy(shop: Workshop) -> Plate:
 def draw_band(axes: Axes, group: Group) -> None:
     """The error of P(r), up to the longest distance."""
     steps = group["survival"]
-    known = [step for step in steps if step["lower"] is not None]  # not of the last one if no run is left
+    known = [step for step in steps if step["lower"] is not None]  # the last step has no band if no run is left there
     end = survival_curve.longest_way(group) if known == steps else steps[-1]["distance"]
     axes.fill_between([0.0] + [step["distance"] for step in known] + [end], *(
         [1.0] + [step[bound] for step in known] + [known[-1][bound] if known else 1.0] for bound in ("lower", "upper")),
@@ -307,8 +309,8 @@ def draw_band(axes: Axes, group: Group) -> None:
 
 
 def lowest_shown(group: Group, end: float) -> float:
-    """The band, the curve and the exponential up to the longest distance have room above it, except those that have reached
-    zero."""
+    """The lower end of the ordinate. Band, curve and exponential are above it up to the longest distance, unless they
+    have reached zero."""
     lowest = [step[name] for step in group["survival"] for name in ("lower", "probability") if step[name]]
     return 0.7 * min(1.0, *lowest, math.exp(-end / group["clogging_length"]))
 
@@ -340,7 +342,7 @@ def survival(shop: Workshop) -> Plate:
 
 
 def displacements(shop: Workshop) -> dict[float, trajectory.Trajectory]:
-    """Ways of Fig. D, by the line tension."""
+    """Paths of Fig. D, by the line tension."""
     rows = shop.runs("displacement", "trajectory", {"seeds": 1, "line-tension": [0.04, 0.1, 0.2, 0.5, 1.0], "obstacle-gap": 1.1, "preset": "elastic"})
     return {row["line_tension"]: way for row, way in zip(rows, shop.ways("displacement", rows, 2))}
 

@@ -20,8 +20,8 @@ def arrays_of(groups: Sequence[Group]) -> str:
 
 
 def describe(columns: dict[str, Column], groups: Sequence[Group], without: Collection[str] = ()) -> str:
-    """Phrases separated by commas. Parameters of polygons only are attributed to the polygons. @param columns  see
-    Workshop.columns(); @param without  parameters that the figure names elsewhere"""
+    """Phrases separated by commas. Parameters that only polygons have are attributed to the polygons. @param columns
+    see Workshop.columns(); @param without  parameters that the figure names elsewhere"""
     polygons = [group for group in groups if group["model"] == "dp"]
 
     def common(name: str, members: Sequence[Group] = groups) -> bool:

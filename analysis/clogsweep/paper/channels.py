@@ -16,19 +16,20 @@ from ..tools.errors import UserError
 from .plate import Plate, figure
 from .workshop import Workshop, measured
 
-SMOOTH = 512  # vertices from which on a passage of w = 0.4 shows no ripple
+SMOOTH = 512  # with so many vertices or more a passage through w = 0.4 shows no ripples
 
 
 def passages(shop: Workshop, name: str, **keys: object) -> list[np.void]:
-    """Rows of a sweep of channels. @param keys  as of Workshop.runs(), with _ for -"""
+    """Rows of a sweep of channels. @param keys  keys of Workshop.runs(), with _ instead of -"""
     start, end = (-10, 3) if shop.size == "full" else (-2, 2)
     return shop.runs(name, "channel", {"obstacle-layout": "channel", "start": start, "end": end} | {key.replace("_", "-"): value for key, value in keys.items()})
 
 
 def profiles(shop: Workshop, name: str, outlines: bool = False, **keys: object) -> list[Trajectory]:
-    """The same with h, v and A along the path, and outlines."""
+    """Replays of these rows, with h, v and A along the path, and outlines."""
     rows = passages(shop, name, **keys)
-    # Frames a fiftieth of a diameter apart, samples a fifth of that.
+    # A droplet at terminal speed moves by a fiftieth of a diameter between frames, and by a fifth of that between
+    # samples.
     frame = 0.02 / rows[0]["terminal_speed"]
     return shop.ways(name, rows, frame / 5, frame if outlines else None)
 
@@ -40,7 +41,7 @@ def parameters(run: Trajectory, orifice: float) -> str:
 
 
 def ending(run: Trajectory) -> str:
-    """A droplet that did not pass is shown up to its last position; its legend notes this."""
+    """The end of a label, for droplets that did not pass: they are shown up to their last position."""
     return "" if run.word("status") == "passed" else f" (stops at $h = {run.table['h'][-1]:.2f}$)"
 
 
@@ -167,7 +168,7 @@ def two_orifices(shop: Workshop) -> Plate:
             style.caption(axes, parameters(run, orifice))
             if run.word("status") != "passed":
                 axes.legend(frameon=False)
-        # The most deformed outline, where nothing else is drawn.
+        # Draws the most deformed outline in an empty part of the figure.
         inset = panels[line][0].inset_axes([0.68, 0.5, 0.3, 0.47])
         frame = run.frame_at("h", run.row["largest_shape_parameter_at"])
         surroundings.draw_droplet(inset, run, frame, run.middle)
@@ -181,7 +182,7 @@ def two_orifices(shop: Workshop) -> Plate:
     return Plate(drawing, data)
 
 
-OVERSHOOTS = {0.7: 0.02, 0.8: 0.0}  # near-wall drag, by the orifice of Fig. 4
+OVERSHOOTS = {0.7: 0.02, 0.8: 0.0}  # near-wall drag for each orifice of Fig. 4
 
 
 def overshooting(shop: Workshop, orifice: float) -> dict[float, Trajectory]:
@@ -230,7 +231,8 @@ def near_wall_drag(shop: Workshop) -> Plate:
     alpha, strength = fit["near_wall_exponent"], fit["near_wall_drag"]
     axes.plot(d, d**alpha / strength, color=style.COLOURS[0], linewidth=1,
               label=rf"fit to these: exponent ${alpha:.2f}\pm{fit['near_wall_exponent_error'] or math.nan:.2f}$")
-    # The speed of a circle, on each of whose vertices the drag acts: b_0/b_inf times the mean of d_i^-alpha over them.
+    # v/(v_t - v) of a circle with the drag on each vertex: 1 over b_0/b_inf times the mean of d_i^-alpha over the
+    # vertices.
     exponent, height = row["near_wall_exponent"], 0.5 * (1 - np.abs(np.sin(np.linspace(0, 2 * np.pi, row["vertices"], endpoint=False))))
     circle = 1 / (row["near_wall_drag"] * np.mean((d[:, None] + height) ** -exponent, axis=1))
     axes.plot(d, circle, ":", color="black", linewidth=1, label="sum over the vertices of a circle (no fit)")
@@ -245,8 +247,8 @@ def near_wall_drag(shop: Workshop) -> Plate:
 
 
 def meshes(shop: Workshop) -> dict[int, Trajectory]:
-    """Passages of Fig. B1, by the number of vertices: up to this multiple of the config's, because the finest run takes
-    most of the time."""
+    """Passages of Fig. B1, by the number of vertices, which is limited to a multiple of the config's number, because
+    the finest run takes most of the time."""
     line_tension, most = (1.08, 4) if shop.size == "full" else (0.83, 2)
     counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= most * int(shop.keys("channel")["vertices"])]
     return dict(zip(counts, profiles(shop, "vertices", orifice=0.7, line_tension=line_tension, near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)))

@@ -24,7 +24,7 @@ CONFIGS = {"density-robust": "constant tension", "density-elastic": "tension gro
 
 @dataclasses.dataclass(frozen=True)
 class DensityFit:
-    """A parabola through log lambda as a function of log density, and where it has the published length.
+    """A parabola through log lambda as a function of log density, and the density at which it has the published length.
 
     A length from n clogs has a relative error of 1/sqrt(n), which is the error of its logarithm.
     """
@@ -34,7 +34,7 @@ class DensityFit:
     chi_squared: float
     degrees_of_freedom: int
     density: float  # [1/sigma^2]
-    lower: float  # of its 95 % interval, which holds the fit's error and the published one
+    lower: float  # lower end of the 95 % interval, which includes the error of the fit and the published error
     upper: float
 
     def length(self, density: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

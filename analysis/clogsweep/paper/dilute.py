@@ -1,5 +1,5 @@
-"""Clogging lengths in dilute arrays, the published ones: mechanisms with different walls, both models vs the sag, and
-the map."""
+"""Clogging lengths in dilute arrays, as in the article: mechanisms with different walls, polygons and disks vs the sag,
+and the map."""
 
 import dataclasses
 import math
@@ -26,9 +26,9 @@ from .workshop import Workshop
 # The one clogging length that was published, with its error: Appendix C. The density was not published: figure
 # `density` finds it from the length.
 PUBLISHED = {"line_tension": 1.09, "obstacle_gap": 0.2, "clogging_length": 24.0, "error": 1.0, "obstacle_density": 0.35}
-ENOUGH_CLOGS = 10  # from which on clogfit asks whether P(r) is exponential
+ENOUGH_CLOGS = 10  # with so many clogs or more clogfit tests whether P(r) is exponential
 FINER = (0, (4, 2))
-STAR = {"color": "black", "marker": "*", "markersize": 15, "markeredgewidth": 1.4, "markerfacecolor": "none", "linestyle": "none"}  # hides no point
+STAR = {"color": "black", "marker": "*", "markersize": 15, "markeredgewidth": 1.4, "markerfacecolor": "none", "linestyle": "none"}  # hollow, so that it hides no point
 
 
 @dataclasses.dataclass(frozen=True)
@@ -64,7 +64,8 @@ def draw_published(axes: Axes) -> None:
 
 
 def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
-    """A panel for each family, a curve for each gap. @param finer  draw the second mesh, too, that of CONFIG-mesh"""
+    """Draws a panel for each family, with a curve for each gap. @param finer  also draw the sweep CONFIG-mesh, which
+    has a second mesh"""
     kinds = [(family, family.of(shop.sweep(family.config)), family.of(shop.sweep(f"{family.config}-mesh")) if finer else []) for family in chosen]
     kinds = [(family, coarse, fine) for family, coarse, fine in kinds if coarse]
     every = [group for _, coarse, fine in kinds for group in [*coarse, *fine]]
@@ -110,8 +111,8 @@ MAPS = [Family("map-robust", "no friction, no corner pinning"), Family("map-fric
 
 
 def is_exponential(group: Group) -> bool | None:
-    """Whether Weibull's shape is compatible with 1, and lambda exceeds the release void. None if there are too few
-    clogs to decide."""
+    """Whether P(r) is exponential: the shape of a Weibull law is compatible with 1, and lambda exceeds the release
+    void. None if there are too few clogs to decide."""
     if group["clogs"] < ENOUGH_CLOGS or group["weibull_p_value"] is None:
         return None
     return group["weibull_p_value"] >= 0.05 and "below_spacing" not in style.doubts(group)
@@ -123,12 +124,12 @@ def known_length(group: Group) -> float:
 
 
 def density_key(group: Group) -> tuple[bool, float]:
-    """Saturated arrays last, for any density at this gap."""
+    """The key by which densities are sorted: saturated arrays come last, whatever their density."""
     return (True, 0.0) if group["obstacle_filling"] == "saturated" else (False, group["obstacle_density"])
 
 
 def place_of(values: Sequence[float], value: float) -> float:
-    """Where a value lies among the equally wide columns or rows of a map."""
+    """The position of a value among the columns or rows of a map, which are equally wide."""
     return float(np.interp(math.log(value), np.log(values), np.arange(len(values))))
 
 

@@ -30,7 +30,7 @@ def output_of(name: str, shop: Workshop) -> pathlib.Path:
 
 
 def refuse_unwritable(name: str, shop: Workshop) -> None:
-    """Checks the four files of write() before minutes of work."""
+    """Checks that write() can write its four files, before a computation of minutes."""
     output = output_of(name, shop)
     outputs.refuse_unwritable_picture(output, *shop.profiles)
     for ending in ("csv", "txt"):

@@ -17,14 +17,16 @@ from .arrays import HOLDS, by, numbers, of_each
 from .plate import Plate, figure
 from .workshop import Workshop
 
-# x, y, diameter [sigma]: a droplet falls onto the post from 7 sigma above, 0.08 sigma beside the post's centre.
+# The post: x, y, diameter [sigma]. A droplet falls onto it from 7 sigma upstream, along a line 0.08 sigma beside its
+# centre.
 POST = (47.0, 5.08, 0.3)
-# Touching the post or the interface on it [sigma].
+# Vertices closer to the post's surface than this belong to an interface over the post [sigma].
 NEAR = 0.12
 
 
 def by_mesh(shop: Workshop, config: str, kinds: Sequence[tuple[str, Sequence[Group]]], without: Sequence[str]) -> Plate:
-    """A panel for each kind, a curve for each mesh. @param kinds  what differs in words, and groups; @param config, without  see panels.draw()"""
+    """Draws a panel for each kind, with a curve for each mesh. @param kinds  for each panel, what distinguishes it in
+    words, and its groups; @param config, without  see panels.draw()"""
     meshes = sorted({group["vertices"] for _, groups in kinds for group in groups})
     found: list[panels.Panel] = [(title, [(curve, meshes.index(vertices), f"$N_v = {vertices}$", {}) for vertices, curve in by(groups, "vertices")]) for title, groups in kinds]
     data = [row for title, groups in kinds for row in numbers(groups, title.replace("\n", ", "), **of_each(groups, "vertices", "friction", *HOLDS))]
@@ -47,7 +49,8 @@ def lengths_by_friction(shop: Workshop) -> Plate:
 
 
 def over_a_post(shop: Workshop, films: str) -> Trajectory:
-    """A droplet of two lobes of unequal weight over a post. @param films  value of film-friction"""
+    """Replays a droplet that hangs over a post, with lobes of unequal weight on the two sides. @param films  value of
+    film-friction"""
     obstacles = shop.table("post", ["x", "y", "diameter"], [POST])
     row, = shop.runs(f"post-{films}", None, {
         "obstacles": obstacles, "box": 10, "boxes": 8, "preset": "elastic", "line-tension": 0.05, "friction": 0.3, "film-friction": films,
@@ -56,18 +59,18 @@ def over_a_post(shop: Workshop, films: str) -> Trajectory:
 
 
 def tensions(vertices: Numbers, row: np.void) -> Numbers:
-    """Tensions of the edges of a polygon whose springs pull them to their length at rest [g rho sigma^2].
+    """Tensions of the edges of a polygon with springs, which pull edges to their length at rest [g rho sigma^2].
     @param vertices  2 x N_v [sigma]"""
     number = vertices.shape[1]
     lengths = np.hypot(*(np.roll(vertices, -1, axis=1) - vertices))
-    at_rest = math.sqrt(math.pi * math.tan(math.pi / number) / number)  # of a regular polygon as large as the droplet
+    at_rest = math.sqrt(math.pi * math.tan(math.pi / number) / number)  # edge of a regular polygon of the droplet's area
     return row["line_tension"] + row["perimeter_stiffness"] * number * (lengths - at_rest)
 
 
 def interfaces(vertices: Numbers) -> Iterator[Numbers]:
-    """Indices of the parts of a contour over the post, the one that touches it first."""
+    """Indices of the parts of a contour that lie over the post. The part that touches the post comes first."""
     apart = np.hypot(vertices[0] - POST[0], vertices[1] - POST[1])
-    begin = int(np.argmax(apart))  # in a lobe, so that no part is cut in two
+    begin = int(np.argmax(apart))  # begins in a lobe, so that no part is cut in two
     around = np.roll(np.arange(apart.size), -begin)
     near = around[apart[around] < POST[2] / 2 + NEAR]
     breaks = np.flatnonzero(np.diff((near - begin) % apart.size) > 1) + 1
@@ -79,7 +82,7 @@ def tensions_over_a_post(shop: Workshop) -> Plate:
     held, slides = over_a_post(shop, "on"), over_a_post(shop, "off")
     drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 3.8), width_ratios=[1.3, 1])
     last = held.polygons[-1][:, ::2]  # without the middles of edges
-    # The other interface passes here, too.
+    # The moment at which the other droplet, which slides, passes the position where this one is held.
     passing = slides.polygons[int(np.argmin(np.abs(slides.polygons[:, 0].mean(axis=1) - held.polygons[-1][0].mean())))][:, ::2]
     edges = np.stack([last.T, np.roll(last, -1, axis=1).T], axis=1) - POST[:2]
     line = left.add_collection(LineCollection(edges, array=tensions(last, held.row) / held.row["line_tension"], cmap="viridis", linewidth=1.8))

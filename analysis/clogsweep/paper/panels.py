@@ -15,14 +15,15 @@ from ..tools.hints import Group
 from .captions import describe
 from .workshop import Workshop
 
-# Groups, the number of their colour, their name in the legend, options of draw_lengths().
+# For each curve: its groups, the number of its colour, its name in the legend, and options of draw_lengths().
 Curve = tuple[Sequence[Group], int, str, dict[str, Any]]
-# What differs from the other panels, in words, and curves.
+# For each panel: what distinguishes it, in words, and its curves.
 Panel = tuple[str, Sequence[Curve]]
 
 
 def explain_gap(axes: Axes, tensions: Sequence[float], groups: Sequence[Group]) -> None:
-    """Marks the line tensions of other panels below those that were run here. @param tensions  of all panels, ascending"""
+    """Marks the line tensions below those of this panel, which were run for other panels only. @param tensions  of all
+    panels, ascending"""
     first = min(group["line_tension"] for group in groups)
     if first == tensions[0]:
         return
@@ -35,8 +36,9 @@ def explain_gap(axes: Axes, tensions: Sequence[float], groups: Sequence[Group]) 
 
 def draw(shop: Workshop, config: str, panels: Sequence[Panel], without: Collection[str], across: int = 2,
          marks: Sequence[tuple[Artist, str]] = (), on_each: Callable[[Axes], None] = lambda axes: None) -> Figure:
-    """@param config  a sweep that tells columns and confidence; @param without  parameters that the caption leaves out; @param across  panels side by side;
-    @param marks  legend entries of what `on_each` draws and of other marks"""
+    """@param config  a sweep, for its columns and the confidence; @param without  parameters that the caption leaves
+    out; @param across  number of panels side by side; @param marks  legend entries for what `on_each` draws and for
+    other marks"""
     every = [group for _, curves in panels for groups, *_ in curves for group in groups]
     tensions = sorted({group["line_tension"] for group in every})
     num_colours = 1 + max(index for _, curves in panels for _, index, *_ in curves)

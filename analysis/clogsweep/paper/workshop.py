@@ -43,7 +43,7 @@ def as_text(value: object) -> str:
 
 
 def in_row(row: np.void, key: str, otherwise: str) -> str:
-    """The text of a key's value in a row, and that of a key that has no column of numbers."""
+    """The text of a key's value in a row; `otherwise` if the row has no number for the key."""
     if key == "perimeter-stiffness-ratio":
         return as_text(row["perimeter_stiffness"] / row["line_tension"])
     column = key.replace("-", "_")
@@ -101,11 +101,13 @@ class Workshop:
         return keys
 
     def _arguments(self, name: str, own_keys: dict[str, str]) -> list[str]:
-        """The config and the changes to it: first --set, then the figure's own keys, which override it."""
+        """The arguments for a config and its changes. First comes --set, then the figure's own keys, which override
+        --set."""
         in_file = config_keys(self.config(name))
         keys = self.keys(name) | own_keys
         if own_keys.get("obstacle-layout") in ("channel", "wall"):
-            # Nothing is random or periodic in a channel or on a wall, so a --set of such a key is meant for other sweeps.
+            # In a channel or on a wall nothing is random or periodic. So a --set of a key for random or periodic arrays
+            # is meant for other sweeps.
             keys = {key: value for key, value in keys.items() if key not in ("seeds", "box")}
         return ["--config", str(self.config(name)), *(f"{key}={value}" for key, value in keys.items() if in_file.get(key) != value)]
 
@@ -139,10 +141,10 @@ class Workshop:
         return [group for group in self._fits[name]["groups"] if group["runs"] > 0]
 
     def runs(self, name: str, config: str | None, keys: Mapping[str, object]) -> list[np.void]:
-        """Runs the missing part of a sweep of a figure's own keys.
+        """Runs the missing part of a sweep over keys that the figure sets itself.
 
-        @param config  whose keys apply where these do not, or None for the defaults @param keys  a value or a list of
-        them for each, e.g. {"line-tension": [0.3, 1]} @return the rows, in the order of the lists, the last of which
+        @param config  the config for all other keys, or None for their defaults @param keys  for each key a value or a
+        list of values, e.g. {"line-tension": [0.3, 1]} @return the rows, in the order of the lists; the last list
         varies fastest
         """
         lists = {key: [as_text(value) for value in (values if isinstance(values, list) else [values])] for key, values in keys.items()}
@@ -150,7 +152,7 @@ class Workshop:
         wanted = list(itertools.product(*lists.values()))
         self._complete(name, self._arguments(config, words) if config else [f"{key}={word}" for key, word in words.items()],
                        min(self.ranks, len(wanted)))
-        # The file may contain others. Keys without a column are the same in all of them.
+        # The file may contain other rows, too. A key without a column has the same value in all of them.
         known = {tuple(in_row(row, key, values[0]) for key, values in lists.items()): row for row in stored.read_rows(self.sweep_file(name), self.programs)}
         if missing := [values for values in wanted if values not in known]:
             which = ", ".join(map("=".join, zip(lists, missing[0])))
@@ -186,7 +188,8 @@ class Workshop:
     # Ways of single droplets
 
     def ways(self, name: str, rows: Iterable[np.void], samples: float, outlines: float | None = None) -> list[Trajectory]:
-        """Replays of a sweep's rows, see replays.follow_all(); reused if a file has the same already."""
+        """Replays of a sweep's rows, see replays.follow_all(). A replay that a file already contains is not
+        repeated."""
         folder = self.folder / "runs"
         if not self.draw_only:
             print(printable(f"ways of {name}: {folder}"), flush=True)
@@ -202,7 +205,7 @@ class Workshop:
     # Fits of tables
 
     def fit(self, *arguments: object) -> dict[str, Any]:
-        """JSON of clogfit drag, clogfit deviation."""
+        """The JSON output of clogfit drag or clogfit deviation."""
         self._sources.append("clogfit " + shlex.join(map(str, arguments)))
         return json.loads(self._call("clogfit", *arguments))
 

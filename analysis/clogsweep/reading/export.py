@@ -15,11 +15,12 @@ if TYPE_CHECKING:
 
 
 def write(table: pandas.DataFrame, path: pathlib.Path, source: str) -> None:
-    """@param table  see stored.read_table(); @param path  .csv: a unit follows the name of its column in brackets; .h5: a dataset
-    for each column, with the attributes `unit` and `meaning`. @param source  of the rows. @throws UserError"""
+    """@param table  see stored.read_table(); @param path  .csv: the name of each column is followed by its unit in
+    brackets; .h5: a dataset for each column, with the attributes `unit` and `meaning`. @param source  provenance of the
+    rows. @throws UserError"""
     if path.suffix not in (".csv", ".h5"):
         raise UserError(f"cannot write {path} (it can only be .csv or .h5); give another ending")
-    if path.exists():  # perhaps a sweep, or a table of the user's own
+    if path.exists():  # it may be a sweep, or a table of the user's own
         raise UserError(f"will not overwrite {path} (it exists); give another name, or remove it first")
     units, meanings = table.attrs["units"], table.attrs["meanings"]
     with outputs.replaced(path) as fresh:

@@ -14,7 +14,7 @@ def told(clogfit: pathlib.Path, *words: object) -> dict[str, Any]:
     return json.loads(programs.run_program(clogfit, *words, "--format", "json"))
 
 
-# What distinguishes droplets of one sweep in a laboratory.
+# The quantities in which droplets of one sweep may differ if a lab file lists several.
 DROPLETS: dict[str, dict[str, Any]] = {
     "diameter_mm": {"key": "diameter", "symbol": r"\sigma", "unit": "mm", "meaning": "diameter of the droplet", "label": "diameter {:.4g} mm"},
     "angle_degrees": {"key": "angle", "symbol": r"\theta", "unit": "degrees", "meaning": "tilt of the plates", "label": "tilt {:.4g}°"}}
@@ -27,9 +27,9 @@ def follows(groups: Collection[Group], name: str, others: Iterable[str]) -> bool
 
 
 def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
-    """A fit of droplets in several laboratories, with the diameter and the tilt as parameters, and lengths in mm: in
-    droplet diameters one array would differ between droplets. Any other fit is unchanged. A group's "in_table" has the
-    values of the rows."""
+    """Converts a fit of several droplets in a laboratory: their diameter and tilt become parameters, and lengths are in
+    mm, because in droplet diameters the same array has other lengths for each droplet. Any other fit stays unchanged.
+    "in_table" of a group contains its values as they are in the sweep's table."""
     groups = fit["groups"]
     if "laboratory" in fit or "in_mm" in fit or not groups or not all(group.get("diameter_mm") for group in groups):
         return fit

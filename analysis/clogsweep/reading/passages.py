@@ -13,7 +13,7 @@ from ..tools.errors import Damaged, UserError
 from ..tools.hints import Records
 from . import stored
 
-READING_SECONDS = 10  # of a processor; a passage has a few thousand samples
+READING_SECONDS = 10  # limit on the processor time of reading; a passage has a few thousand samples
 
 
 def is_hdf5(path: str) -> bool:

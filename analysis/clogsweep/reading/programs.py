@@ -12,12 +12,12 @@ from ..tools.errors import ProgramFailed, UserError
 PACKAGE = pathlib.Path(__file__).resolve().parents[1]
 
 try:
-    from .._installed import JOBS_FOLDER, PROGRAMS_FOLDER  # relative to this package; cmake --install writes it
+    from .._installed import JOBS_FOLDER, PROGRAMS_FOLDER  # folders relative to this package; cmake --install writes this module
 except ImportError:
-    if (PACKAGE / "jobs").is_dir():  # installed by pip, as PREFIX/lib/python3.11/site-packages/clogsweep
+    if (PACKAGE / "jobs").is_dir():  # pip has installed the package as PREFIX/lib/python3.11/site-packages/clogsweep
         JOBS = PACKAGE / "jobs"
         PROGRAMS = [PACKAGE.parents[3] / "bin"]
-    else:  # the source tree
+    else:  # the package is in the source tree
         _SOURCE = PACKAGE.parents[1]
         JOBS = _SOURCE / "jobs"
         PROGRAMS = [_SOURCE / "build" / "release" / "bin"]
@@ -27,14 +27,15 @@ else:
 
 
 def reason(text: str) -> str:
-    """The program's own error line; mpirun prints others around it."""
+    """The program's own error line, without the lines that mpirun prints around it."""
     lines = [line for line in text.splitlines() if line.strip()]
     ours = [line for line in lines if line.startswith(("clogsweep", "clogrun", "clogfit"))]
     return (ours or lines[-1:] or ["no reason given"])[-1]
 
 
 def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
-    """Folder of clogsweep, clogrun and clogfit: the user's own choice, or else those of CLOG_BIN, of the PATH, or beside this package.
+    """The folder with clogsweep, clogrun and clogfit: `folder` if it is given, otherwise the first of CLOG_BIN, the
+    folder of clogsweep in the PATH, and the folder beside this package.
 
     @throws UserError  if they are not there
     """
@@ -49,18 +50,18 @@ def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
 
 
 def add_option(parser: argparse.ArgumentParser) -> None:
-    """--programs, for programs_in()."""
+    """Adds --programs, whose value is for programs_in()."""
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of clogsweep, clogrun and clogfit (CLOG_BIN, that of the PATH, or beside this package)")
 
 
 def run_program(program: str | os.PathLike[str], *arguments: object, ranks: int = 1) -> str:
-    """@return what it prints. @throws ProgramFailed  with its reason"""
+    """@return the program's output. @throws ProgramFailed  with its reason"""
     return _outputs(program, *arguments, ranks=ranks)[0]
 
 
 def warnings_of(program: str | os.PathLike[str], *arguments: object) -> str:
-    """Runs it for its output on the error stream. @throws ProgramFailed  with its reason"""
+    """Runs a program. @return its output on the error stream. @throws ProgramFailed  with its reason"""
     return _outputs(program, *arguments)[1]
 
 
@@ -68,7 +69,7 @@ def _outputs(program: str | os.PathLike[str], *arguments: object, ranks: int = 1
     command = [str(program), *map(str, arguments)]
     environment = dict(os.environ)
     if ranks == 1:
-        # In an allocation of several tasks clogsweep refuses a single rank; here it is intended.
+        # With this variable of an allocation clogsweep would refuse to run on one rank, as it is to do here.
         environment.pop("SLURM_NTASKS", None)
     else:
         settings = shlex.quote(str(JOBS / "mpi-settings.sh"))

@@ -24,15 +24,16 @@ def replay(clogrun: pathlib.Path, sweep: AnyPath, task: int, output: AnyPath, *o
 
 
 def is_of(known: Trajectory, row: np.void, options: list[str]) -> bool:
-    """Whether this trajectory is that of the row's run with these options."""
+    """Whether this trajectory comes from a replay of this row with these options."""
     return shlex.split(known.attributes["command_line"])[4:-2] == options and known.row.dtype == row.dtype and all(
         known.row[column].tobytes() == row[column].tobytes() for column in set(stored.columns_of(row)) - CIRCUMSTANCES)
 
 
 def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, folder: AnyPath, options: list[str]) -> Trajectory:
-    """The trajectory of a row, in a file of the folder, which is reused if it already has this trajectory.
+    """The trajectory of a row, from a file in the folder. The row is replayed only if the file does not contain its
+    trajectory yet.
 
-    @param clogrun  the program; None: run nothing
+    @param clogrun  the program; None: never replay a row
     """
     file = pathlib.Path(folder) / f"{sweep.stem}-{row['task']}.h5"
     known = trajectory.read(file, needs_frames=False) if file.exists() else None
@@ -40,7 +41,7 @@ def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, fold
         return known
     if clogrun is None:
         raise NotThere(f"{file} is {'not there' if known is None else 'another run'}; leave out --draw-only")
-    # Another script may do the same run.
+    # Another script may replay the same row at the same time.
     with outputs.replaced(file) as fresh:
         replay(clogrun, sweep, row["task"], fresh, *options)
     return trajectory.read(file, needs_frames=False)
@@ -48,7 +49,8 @@ def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, fold
 
 def follow_all(clogrun: pathlib.Path | None, sweep: pathlib.Path, rows: Iterable[np.void], folder: AnyPath, jobs: int, samples: float,
                outlines: float | None = None) -> list[Trajectory]:
-    """The same for several rows, some at a time. @param samples, outlines  time between two of them [t0]"""
+    """The trajectories of several rows, as follow(). @param jobs  number of simultaneous replays; @param samples  time
+    between two samples [t0]; @param outlines  time between two outlines [t0]"""
     options = ["--sample-interval", f"{samples:.3g}", *(["--polygon-interval", f"{outlines:.3g}"] if outlines else [])]
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         return list(pool.map(lambda row: follow(clogrun, sweep, row, folder, options), rows))

@@ -77,8 +77,8 @@ def kind_of(path: AnyPath, folder: AnyPath | None = None) -> str:
 
 @functools.lru_cache
 def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
-    """Has clogsweep check a sweep without a seal, which another program copied or changed, and prints its warnings; once for each
-    state of the file. @throws Damaged; UserError"""
+    """Has clogsweep check a sweep without a seal, which another program copied or changed, and prints the warnings. The
+    check is repeated only if the file has changed. @throws Damaged; UserError"""
     try:
         clogsweep = programs.programs_in(folder) / "clogsweep"
     except UserError as error:
@@ -108,7 +108,7 @@ def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None
     """The file for h5py, read only. @param kind  SWEEP or RUN, if only that is acceptable; @param folder  of the
     programs. @throws Damaged; UserError if it cannot be read"""
     if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
-        raise unreadable(path, "not a regular file: a pipe, device or socket", kind)  # which may never end
+        raise unreadable(path, "not a regular file: a pipe, device or socket", kind)  # reading it may never end
     try:
         is_whole = is_sealed(path)
         if h5py.is_hdf5(path) and not is_whole:
@@ -143,20 +143,21 @@ def attributes(file: h5py.File) -> dict[str, str]:
 
 
 def writer(attributes: dict[str, str]) -> str:
-    """Version and commit of the program that wrote a file, in words. Files before 0.2.0 have only the commit's hash, a
-    salvaged one may lack all."""
+    """Version and commit of the program that wrote a file, in words. Files from before version 0.2.0 have only the
+    commit's hash, and a salvaged file may have neither."""
     commit = attributes.get("git_describe") or attributes.get("git_hash") or "unknown"
     return f"{attributes.get('version', 'of unknown version')}, git {commit}"
 
 
 def source(attributes: dict[str, str]) -> str:
-    """Provenance of a file's rows, for the reader of a picture of them. @param attributes  of the file"""
+    """Provenance of a file's rows, to be shown with a picture of these. @param attributes  of the file"""
     began = f", begun {attributes['start_time']}" if "start_time" in attributes else ""
     return f"clogsweep {writer(attributes)}{began}\n{attributes.get('command_line', '')}".strip()
 
 
 def settings(config: str) -> dict[str, str]:
-    """Keys and values of a stored config: of all keys, `auto` and the like for defaults."""
+    """Keys and values of a stored config. It has all keys; defaults that follow from other keys are words such as
+    `auto`."""
     pairs = [line.partition(" = ") for line in config.split("\n")]
     of_points = {key for name, _, keys in pairs if name == "point-keys" for key in keys.split()}
     return {key: unescaped(value) for key, equals, value in pairs if equals and key not in of_points}
@@ -190,21 +191,21 @@ def read_rows(path: AnyPath, folder: AnyPath | None = None) -> Records:
 
 
 def unit(meaning: str) -> str:
-    """A column's unit, in brackets in its description; empty for counts, ratios and words."""
+    """A column's unit, which stands in brackets in its description; empty for counts, ratios and words."""
     found = re.search(r"\[(.*?)\]", meaning)
     return found[1] if found else ""
 
 
 def read_table(path: AnyPath, folder: AnyPath | None = None) -> pandas.DataFrame:
-    """The same for pandas, with text as strings. `attrs` of the table holds the columns' `units` and `meanings`, by
-    name."""
+    """The table of runs for pandas, with text as strings. Its `attrs` contain the `units` and `meanings` of the
+    columns, by name."""
     with opened(path, folder=folder) as file:
         return table_of(file)
 
 
 def table_of(file: h5py.File) -> pandas.DataFrame:
-    """The same of an open file."""
-    import pandas  # slow to load, and not needed by all
+    """The table of runs of an open file, for pandas."""
+    import pandas  # slow to load, and not always needed
 
     rows = file["runs"][:]
     meanings = {name: text(file["runs"].attrs.get(name, "")) for name in rows.dtype.names}

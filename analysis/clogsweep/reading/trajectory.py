@@ -16,8 +16,8 @@ POINTS_OF_DISK = 128
 
 @dataclasses.dataclass
 class Trajectory:
-    """Shapes as in docs/reference/files.md; without --polygon-interval there are no frames, obstacles and wedges. The
-    polygons are refined, see outlines()."""
+    """A trajectory file. Arrays have the shapes given in docs/reference/files.md. Without --polygon-interval there are
+    no frames, obstacles and wedges. The polygons are refined, see outlines()."""
 
     path: pathlib.Path
     table: Records
@@ -32,7 +32,7 @@ class Trajectory:
         return stored.text(self.row[column])
 
     def frame_at(self, column: str, value: float) -> int:
-        """Index of the first frame at which a column of the trajectory is nearest to a value."""
+        """Index of the first frame in which the value of a column is nearest to a given value."""
         at_frames = np.interp(self.times, self.table["time"], self.table[column])
         return int(np.argmin(np.abs(at_frames - value)))
 
@@ -43,7 +43,8 @@ class Trajectory:
 
 
 def refined(polygons: Numbers, row: np.void) -> Numbers:
-    """Polygons with the middles of their edges, which walls touch. Polygons of runs with wall-contact=vertex stay unchanged.
+    """Polygons with the middles of their edges, where walls also touch them. Polygons of runs with wall-contact=vertex
+    stay unchanged.
 
     @param polygons  (..., 2, N_v) [sigma]
     @return (..., 2, 2 N_v)
@@ -52,7 +53,8 @@ def refined(polygons: Numbers, row: np.void) -> Numbers:
 
 
 def with_middles(polygons: Numbers) -> Numbers:
-    """Polygons with a point added between every two, by the four-point rule (docs/explanation/model.md); repeated, it gives a smooth curve. @param polygons  (..., 2, N)"""
+    """Polygons with a point added between every two vertices, by the four-point rule (docs/explanation/model.md).
+    Repeated calls give a smooth curve. @param polygons  (..., 2, N)"""
     before, after = np.roll(polygons, 1, axis=-1), np.roll(polygons, -1, axis=-1)
     middles = (9 * (polygons + after) - before - np.roll(polygons, -2, axis=-1)) / 16
     return np.stack([polygons, middles], axis=-1).reshape(*polygons.shape[:-1], -1)
@@ -123,13 +125,13 @@ def end_of(trajectory: Trajectory) -> str:
 
 
 def verdict(trajectory: Trajectory) -> str:
-    """The same with its distance, for a picture."""
+    """How the run ended, with its distance, for a picture."""
     return rf"{literal(end_of(trajectory))} after $r = {trajectory.row['distance']:.2f}\,\sigma$"
 
 
 def centroids(polygons: Numbers) -> Numbers:
     """The centroid of each enclosed area. @param polygons  frames x 2 x N. @return frames x 2"""
-    reference = polygons[:, :, :1]  # near to the polygon: no digits are lost far from the origin
+    reference = polygons[:, :, :1]  # near the polygon, so that no digits are lost far from the origin
     x, y = np.moveaxis(polygons - reference, 1, 0)
     next_x, next_y = np.roll(x, -1, axis=-1), np.roll(y, -1, axis=-1)
     cross = x * next_y - next_x * y

@@ -1,4 +1,4 @@
-"""Values that a search may try, and the choice of those with the most information for their work."""
+"""Values that a search may try, and the choice of values with the most information for the work of their runs."""
 
 import math
 from collections.abc import Sequence
@@ -10,12 +10,12 @@ from ..curves.model import Curve
 from ..tools.hints import Numbers
 
 SERIES = (192, 96, 48, 24, 12, 6)  # preferred numbers per decade (IEC 60063); the coarser series are parts of the finer
-NEARNESS = 1e-3  # squared share of the range: points that are nearer count alike
+NEARNESS = 1e-3  # square of a distance divided by the range: points that are nearer to each other count alike
 
 
 def preferred_values(given: Sequence[float], most: int) -> list[float]:
-    """Preferred numbers of three figures between the outermost values, and the values given: at most `most`, or one
-    more than given. So files of two people have the same values."""
+    """The given values, and preferred numbers of three figures between the outermost of them: at most `most` values, or
+    one more than given. With preferred numbers the files of two people have values in common."""
     values = sorted(given)
     for per_decade in SERIES:
         first, last = (round_(per_decade * math.log10(end)) for round_, end in ((math.floor, given[0]), (math.ceil, given[-1])))
@@ -27,7 +27,7 @@ def preferred_values(given: Sequence[float], most: int) -> list[float]:
 
 
 def spread(values: Sequence[float], count: int) -> list[float]:
-    """`count` of the values, evenly on a logarithmic scale, including the outermost; fewer if they coincide."""
+    """`count` of the values, spread evenly on a logarithmic scale, including the outermost; fewer if some coincide."""
     logs = np.log(values)
     nearest = [int(np.argmin(abs(logs - place))) for place in np.linspace(logs[0], logs[-1], count)]
     return [values[i] for i in dict.fromkeys(nearest)]
@@ -37,7 +37,8 @@ def expected_runs(sums: pandas.DataFrame, known: Numbers, places: Numbers, log_l
                   max_time: float) -> tuple[Numbers, Numbers]:
     """Expected clogs and work of one run at each place. Speed and work per time are interpolated from known points.
 
-    @param sums  of distance, time and work at the `known` places; @param log_length  of the fitted curve at `places`
+    @param sums  sums of distance, time and work over the runs at the `known` places; @param log_length  log lambda of
+    the fitted curve at `places`
     """
     extent = np.ptp(places, axis=0)
     apart = (((places[:, None] - known) / np.where(extent > 0, extent, 1)) ** 2).sum(axis=2)
@@ -51,11 +52,12 @@ def expected_runs(sums: pandas.DataFrame, known: Numbers, places: Numbers, log_l
 
 def choose_blocks(curve: Curve, clogs: Numbers, work: Numbers, weights: Numbers, most_blocks: Numbers,
                   work_of_round: float, most_work: float) -> Numbers:
-    """Number of blocks of seeds for each place: repeatedly adds the block that most reduces the weighted variance per
-    work, until the round has its work.
+    """Number of blocks of seeds for each place. Repeatedly adds the block that reduces the weighted variance most for
+    its work, until the work of the round is used up.
 
-    The variances fall as if the expected clogs were observed (rank-one updates); the means stay.
-    @param clogs, work  expected of one block at each place; @param most_work  upper bound
+    Each added block reduces the variances as if its expected clogs had been observed (a rank-one update); the means do
+    not change.
+    @param clogs, work  expected values for one block at each place; @param most_work  upper bound on the round's work
     """
     covariance = curve.covariance.copy()
     blocks = np.zeros(len(most_blocks), dtype=int)

@@ -14,18 +14,18 @@ from .membership import Membership, Values
 
 KEY = "lattice-angle"
 FOLLOWING = ("lattice_angle", "length", "box")  # the angle, and what follows from it
-SMALLEST_BOX = 5.0  # [sigma], and no less than two spacings
+SMALLEST_BOX = 5.0  # [sigma]; a box also has at least two spacings
 ROUNDING = 1e-9
-DECIMALS = 6  # of an angle: far fewer than tell two lattices apart
-MOST_ROWS_OFF = 1.0  # a droplet that follows the rows comes no farther off its own
-FEWEST_ROWS = 2.0  # that a path along the flow must cross for the run to count
+DECIMALS = 6  # decimals of an angle: different lattices differ by far more than the last one
+MOST_ROWS_OFF = 1.0  # a droplet follows the rows if it comes no farther off its row than this many row spacings
+FEWEST_ROWS = 2.0  # a run can show that droplets follow the rows only if a straight path of its length would cross so many of them
 
 
 def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
     """Whether droplets leave the rows, and whether they follow them, by angle in increasing order."""
     angle = np.radians(runs["lattice_angle"])
     of_pitch = np.select([runs["obstacle_filling"] == "triangular", runs["obstacle_filling"] == "rhombic"], [math.sqrt(3) / 2, np.cos(angle)], 1)
-    spacing = (runs["obstacle_gap"] + runs["obstacle_diameter"]) * of_pitch  # of the rows
+    spacing = (runs["obstacle_gap"] + runs["obstacle_diameter"]) * of_pitch  # spacing of the rows
     along, across = runs["distance"], runs["lateral_displacement"]
     counts = runs["status"] != "failed"
     leaves = counts & (abs(across * np.cos(angle) - along * np.sin(angle)) > MOST_ROWS_OFF * spacing)
@@ -36,16 +36,17 @@ def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
 
 
 def bracket(angles: pandas.DataFrame) -> tuple[float, float]:
-    """The bracket. Its upper end is the smallest angle at which some droplets leave the rows, its lower end the largest
-    angle below this at which droplets follow the rows; NaN where there is none."""
+    """The bracket of the critical angle. Its upper end is the smallest angle at which some droplets leave the rows; its
+    lower end is the largest smaller angle at which droplets follow the rows. An end without such an angle is NaN."""
     upper = angles.index[angles["leaves"]].min()
     below = angles if math.isnan(upper) else angles[angles.index < upper]
     return below.index[below["follows"]].max(), upper
 
 
 def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFrame:
-    """The bracket of every set of parameters, `lower` and `upper`, with those that vary and the number of `runs`.
-    @param parameters  names of columns; one that follows from those before it is left out. @throws UserError"""
+    """For every set of parameters: those that vary, the ends of the bracket, `lower` and `upper`, and the number of
+    `runs`. @param parameters  names of columns; a column that follows from those before it is left out.
+    @throws UserError"""
     lattices = rows[rows["lattice_angle"].notna()]
     if lattices.empty:
         raise UserError("cannot find critical angles (these are no lattices) try refine lattice-angle obstacle-layout=lattice")
@@ -62,8 +63,8 @@ def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFr
 
 
 def nearest_lattice(spacing: float, angle: float, box: float, kind: str = "square") -> float | None:
-    """Angle of the lattice nearest to `angle` that has periods of at most `box`: tan(angle) = q/p, of triangular ones
-    sqrt(3) q/p, with whole numbers p and q."""
+    """Angle of the lattice nearest to `angle` whose periods are at most `box`. Such lattices have tan(angle) = q/p,
+    triangular ones sqrt(3) q/p, with whole numbers p and q."""
     unit = math.sqrt(3) if kind == "triangular" else 1
     p = np.arange(1, int(box * (1 + ROUNDING) / spacing * (2 if kind == "triangular" else 1)) + 1)
     q = np.floor(p * math.tan(math.radians(angle)) / unit).astype(int)
@@ -74,7 +75,7 @@ def nearest_lattice(spacing: float, angle: float, box: float, kind: str = "squar
         p, q = p // np.gcd(p, q), q // np.gcd(p, q)
         along = p if kind == "rhombic" else np.hypot(p, unit * q) * np.where((p - q) % 2, 1, 0.5)
         across = np.ones_like(p) if kind == "rhombic" else unit * along / np.where(p % 3, 1, 3)
-        # The longest multiples that fit.
+        # The longest multiples of the periods that fit into the box.
         periods = [period * np.floor(box * (1 + ROUNDING) / period) for period in (spacing * along, spacing * across)]
     fits = [(period >= max(SMALLEST_BOX, 2 * spacing) * (1 - ROUNDING)) & (period <= box * (1 + ROUNDING)) for period in periods]
     angles = np.degrees(np.arctan2(unit * q, p))[np.all(fits, axis=0)]
@@ -82,13 +83,14 @@ def nearest_lattice(spacing: float, angle: float, box: float, kind: str = "squar
 
 
 class AngleSearch:
-    """Rounds of up to three angles, between the last angle whose rows droplets follow and the first whose rows they leave."""
+    """Rounds of up to three angles, between the last angle at which droplets follow the rows and the first at which
+    they leave them."""
 
     keys: Sequence[str] = (KEY,)
 
     def __init__(self, given: Sequence[float], config: dict[str, str], num_seeds: int, width: float, budget: float) -> None:
         """@param given  angles, increasing; @param config  settings by key
-        @param width  of the bracket to be reached, 0 if only the budget ends it"""
+        @param width  width of the bracket at which the search ends; 0 if only the budget ends it"""
         self.end = ""
         spacing = float(config["pitch"]) or float(config["obstacle-gap"]) + float(config["obstacle-diameter"])
         self._width, self._budget, self._box, self._num_seeds = width, budget, float(config["box"]), num_seeds
@@ -106,7 +108,8 @@ class AngleSearch:
         return sorted(rounded - {round(angle, DECIMALS) for angle in tried})
 
     def _look(self, rows: pandas.DataFrame, members: Membership) -> tuple[pandas.DataFrame, float]:
-        # The box is a period of the lattice: it follows from the angle and does not affect the droplet.
+        # The box is a period of the lattice, which follows from the angle. It does not affect the droplet, so it may
+        # differ between runs.
         runs = members.of_curve(rows, lambda name: name not in FOLLOWING)
         runs = runs[~runs["status"].isin(UNFINISHED)]
         return tried_angles(runs), float(runs["processor_seconds"].sum()) / HOUR
@@ -162,7 +165,8 @@ class AngleSearch:
 
 
 def require_angles(text: str, given: Sequence[float], kind: str) -> None:
-    """@throws UserError  unless these are increasing angles between 0 and 45 degrees, of triangular lattices 30"""
+    """@throws UserError  unless these are increasing angles between 0 and 45 degrees, or 30 degrees for triangular
+    lattices"""
     most, why = 30 if kind == "triangular" else 45, ""
     if len(given) < 2 or not all(np.isfinite(given)):
         why = "refine lattice-angle needs its bounds"

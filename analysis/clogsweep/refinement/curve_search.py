@@ -18,24 +18,24 @@ from .driver import HOUR, UNFINISHED, Line, number_text
 from .goals import Goal
 from .membership import Membership, Values
 
-MOST_VALUES = {1: 100, 2: 13}  # of each key, by the number of keys
+MOST_VALUES = {1: 100, 2: 13}  # largest number of values of each key, by the number of keys
 FIRST_VALUES = {1: 7, 2: 4}
 MOST_COMBINATIONS = 500
-SHARE_OF_ROUND = 0.5  # work of a round, divided by that of all earlier rounds
+SHARE_OF_ROUND = 0.5  # work of a round, divided by the work of all earlier rounds
 
 
 class Options(NamedTuple):
     goal: Goal
     budget: float  # core-hours of all runs; may be infinite
-    most_seeds: int  # of one value
+    most_seeds: int  # largest number of seeds of one value
     same_seeds: bool
 
 
 class Known(NamedTuple):
     """The state of the search at one moment."""
 
-    runs: pandas.DataFrame  # sums over the runs of each value, failed ones included
-    curve: Curve | None  # at the candidates; None if no run got anywhere
+    runs: pandas.DataFrame  # sums over the runs of each value, including failed runs
+    curve: Curve | None  # the curve at the candidates; None if no run has covered any distance
 
 
 def combinations(lists: Sequence[Sequence[float]]) -> list[Values]:
@@ -48,7 +48,7 @@ class CurveSearch:
 
     def __init__(self, keys: Sequence[str], lists: Sequence[Sequence[float]], seeds: Sequence[int], max_time: float,
                  options: Options) -> None:
-        """@param lists  values given for each key, increasing; @param seeds  that follow one another: a block
+        """@param lists  values given for each key, increasing; @param seeds  a block of consecutive seeds
         @throws UserError  if there are too many values"""
         self.end = ""
         self.keys, self._options, self._max_time = keys, options, max_time
@@ -143,7 +143,8 @@ class CurveSearch:
         if goal.kind in ("peak", "crossing"):
             words.append(f"how much {goal} takes is known when its place is, after the first round")
         if goal.kind == "curve":
-            # An error e of log lambda takes 1/e^2 clogs at each independent place of the curve: two, or one for each value.
+            # An error e of log lambda takes 1/e^2 clogs at each independent place of the curve. A straight line has two
+            # such places; the roughest curve has one at each value.
             error = math.asinh(goal.precision) / features.normal_deviate(goals.CONFIDENCE)
             smooth, rough = 2 / error**2, len(self._first) / error**2
             words.append(f"{goal} takes about {smooth:.0f} clogs of a curve as smooth as a straight line, {rough:.0f} of one "
@@ -153,7 +154,7 @@ class CurveSearch:
 
 
 def _informing(runs: pandas.DataFrame) -> tuple[pandas.DataFrame, Numbers]:
-    """The values at which runs have moved, and the places of these on the curve."""
+    """The values with runs in which droplets have moved, and their places on the curve."""
     runs = runs[(runs["distance"] > 0) & (runs["time"] > 0)]
     return runs, np.log(np.array(list(runs.index)))
 

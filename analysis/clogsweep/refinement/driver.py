@@ -19,11 +19,11 @@ from .membership import Membership, Values
 HOUR = 3600.0
 UNFINISHED = ("running", "interrupted")
 FAILED, USER_FAULT, INCOMPLETE = 1, 2, 75  # exit codes of clogsweep
-Line = tuple[Values, tuple[int, int] | None]  # values, the first seed and how many follow; None: the seeds of the config
+Line = tuple[Values, tuple[int, int] | None]  # values, and the first seed with the number of seeds; None: the seeds of the config
 
 
 class Search(Protocol):
-    """What determines the rounds: CurveSearch or AngleSearch."""
+    """A search determines the rounds: CurveSearch or AngleSearch."""
 
     keys: Sequence[str]
     candidates: list[Values]
@@ -61,8 +61,8 @@ def store(path: pathlib.Path, text: str) -> None:
 
 
 class Launcher:
-    """Starts clogsweep by other words, such as mpirun -np 64. Forwards a stop signal as SIGUSR1, which mpirun and srun
-    forward while they wait for the ranks; the second one is forwarded unchanged, unless it is a warning."""
+    """Starts clogsweep by a launcher, such as mpirun -np 64. Forwards a stop signal as SIGUSR1, because mpirun and srun
+    pass this on to the ranks and wait for them. Forwards a second stop signal unchanged, unless it is a warning."""
 
     def __init__(self, words: Sequence[object]) -> None:
         self._words = list(map(str, words))
@@ -81,16 +81,17 @@ class Launcher:
         return self._is_warned
 
     def run(self, *arguments: object) -> int:
-        """Runs it with the streams of this process. @return its exit code, 75 if it may have been stopped"""
+        """Runs the launcher with the streams of this process. @return its exit code, or 75 if it may have been
+        stopped"""
         if self.is_warned():
             return INCOMPLETE
-        # In a session of its own: Ctrl-C in a terminal reaches it once, through this process.
+        # The launcher has its own session. So Ctrl-C in a terminal reaches it only once, through this process.
         self._process = subprocess.Popen([*self._words, *map(str, arguments)], start_new_session=True)
-        if self.is_warned():  # while it started
+        if self.is_warned():  # the warning came while it started
             self._process.send_signal(signal.SIGUSR1)
         code = self._process.wait()
         self._process = None
-        # After a warning a launcher may end by the signal, or with a code of its own, even 0.
+        # After a warning a launcher may die of the signal, or end with a code of its own, even 0.
         if self.is_warned() and code not in (FAILED, USER_FAULT):
             return INCOMPLETE
         return 128 - code if code < 0 else code
@@ -98,8 +99,9 @@ class Launcher:
 
 def refine(search: Search, members: Membership, launcher: Launcher, options: Sequence[object], points: pathlib.Path,
            output: pathlib.Path, max_hours: float) -> int:
-    """Runs rounds until the search ends. The points of all rounds are in one file, to which a round's points are
-    added before it starts. So an unfinished round is completed before the next is planned. @param options  of clogsweep. @return one of its exit codes"""
+    """Runs rounds until the search ends. The points of all rounds are in one file; those of a round are added before it
+    starts. So after an interruption the unfinished round is completed before the next one is planned. @param options
+    of clogsweep. @return one of its exit codes"""
     end = time.monotonic() + max_hours * HOUR
     if not (points.exists() and output.exists()):
         store(points, points_text(search.keys, search.first_round()))

@@ -10,8 +10,8 @@ from ..curves.model import Curve
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
-CONFIDENCE = 0.95  # of all intervals
-EVEN_SHARE = 0.1  # of the weight, spread over all places so that none is forgotten
+CONFIDENCE = 0.95  # confidence of all intervals
+EVEN_SHARE = 0.1  # this fraction of the weight is spread over all places, so that none is forgotten
 TRY = "try curve=20%, peak=10%, crossing=10:5% or, for a lattice, critical-angle=0.5"
 
 
@@ -19,7 +19,7 @@ class Goal(NamedTuple):
     """`kind` is curve, peak, crossing or critical-angle, or "" if only a budget ends the search."""
 
     kind: str
-    precision: float = 0.0  # of the curve, or of a place on it; of critical-angle, the width of the bracket [degrees]
+    precision: float = 0.0  # relative precision of lambda, or of the key at a peak or crossing; of critical-angle, the width of the bracket [degrees]
     length: float = 0.0  # lambda to be crossed [sigma]
 
     def __str__(self) -> str:
@@ -68,13 +68,14 @@ def parse_budget(text: str) -> float:
 
 
 def half_width(lower: float, upper: float) -> float:
-    """Half the width of a logarithm's interval, relative to the value."""
+    """Half the width of a quantity's interval, relative to its value. @param lower, upper  ends of the logarithm's
+    interval"""
     return math.sinh(min(upper - lower, 200.0) / 2)  # no overflow where a crossing's interval is infinite
 
 
 def known_precision(curve: Curve, places: Numbers, goal: Goal) -> float:
-    """Precision of the goal's quantity; infinite if it is unknown. For a curve it is the root mean square of its
-    band."""
+    """The precision reached for the goal's quantity; infinite if this is unknown. For a curve it is the root mean
+    square of half its band."""
     if goal.kind == "curve":
         return math.sinh(features.normal_deviate(CONFIDENCE) * math.sqrt(float(np.mean(curve.deviation**2))))
     if goal.kind == "peak":

@@ -27,13 +27,13 @@ class Fit:
     """Clogging lengths and mean speeds, a group for each set of parameters. Nothing is fitted here.
 
     `groups` is a table with a row for each group, and clogfit's columns: the clogging length and its interval in
-    droplet diameters, numbers of clogs by mechanism, doubts, all parameters. `units` names the unit of each. Fewer than
-    three runs have no mean speed.
+    droplet diameters, numbers of clogs by mechanism, doubts, all parameters. `units` names the unit of each. Groups of
+    fewer than three runs have no mean speed.
     """
 
     def __init__(self, told: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
         """@param told  the JSON of clogfit; @param circle_files  see stored.circle_files(). @throws KeyError, TypeError
-        if it is something else"""
+        if `told` is not clogfit's"""
         self.told = told
         self.confidence: float = told["confidence"]
         self.units: dict[str, str] = told["units"]
@@ -42,7 +42,8 @@ class Fit:
 
     @property
     def source(self) -> str:
-        """The source and number of the rows, and the program that fitted them. Files of older programs lack the source."""
+        """The provenance and number of the rows, and the program that fitted them. Files of older programs have no
+        provenance."""
         sweep = self.told.get("sweep", {})
         lines = [stored.source(sweep) if sweep else "", sweep.get("config", "").strip(), f"{self._counted()}, fitted by clogfit {stored.writer(self.told)}"]
         return "\n".join(filter(None, lines))
@@ -53,7 +54,8 @@ class Fit:
 
     @property
     def groups(self) -> pandas.DataFrame:
-        """All results of each group that are one number or word; survival() and `told` have P(r) and incidence."""
+        """The results of each group that are single numbers or words. P(r) and incidences are in survival() and
+        `told`."""
         import pandas
 
         flat = [{name: value for name, value in group.items() if not isinstance(value, list | dict)} for group in self.told["groups"]]
@@ -62,10 +64,11 @@ class Fit:
     def survival(self, group: int) -> pandas.DataFrame:
         """P(r) of a group, by its index in `groups`: the probability of travelling farther than r without a clog.
 
-        A row for each `distance` r at which droplets clogged [sigma], after one for r = 0 with P = 1, and before one for the longest
-        distance if runs went beyond the last clog: `at_risk` runs came so far, `clogs` of them clogged there; `probability` is P just
-        beyond r, with its `standard_error` (Greenwood) and the ends of its interval, `lower` and `upper`, which are NaN where P is 0,
-        and where no droplet clogged. @throws UserError  if there is no such group or no P(r)"""
+        The first row is for r = 0, with P = 1. One row follows for each `distance` r at which droplets clogged [sigma],
+        and one for the longest distance if runs went beyond the last clog. `at_risk` runs came so far, and `clogs` of
+        them clogged there. `probability` is P just beyond r, with its `standard_error` (Greenwood) and the ends of its
+        interval, `lower` and `upper`, which are NaN where P is 0, and where no droplet clogged. @throws UserError  if
+        there is no such group or no P(r)"""
         import pandas
 
         checked.whole("group", group, 0)
@@ -82,14 +85,16 @@ class Fit:
         return pandas.DataFrame(steps)
 
     def curve(self) -> Picture:
-        """Clogging lengths over what the sweep varies; for lattices the lateral displacement per distance. @throws UserError  if there are none"""
-        from .. import style  # slow to load, as all that draws
+        """Draws the clogging lengths against the parameter that the sweep varies; for lattices the lateral displacement
+        per distance. @throws UserError  if there are none"""
+        from .. import style  # slow to load, like all modules that draw
         from ..drawing import curve
 
         return style.Picture(style.figure_of(curve.draw_on, self.known.with_lengths()), self.source)
 
     def speeds(self) -> Picture:
-        """Mean speeds divided by the terminal speed, against the parameter that the sweep varies. @throws UserError  if there are none"""
+        """Draws the mean speeds divided by the terminal speed, against the parameter that the sweep varies.
+        @throws UserError  if there are none"""
         from .. import style
         from ..drawing import lengths
 
@@ -97,9 +102,10 @@ class Fit:
 
     @property
     def summary(self) -> pandas.DataFrame:
-        """The columns of `groups` that vary, lengths and speeds, or the results of a channel or a wall, and doubts."""
+        """A part of `groups`: the parameters that vary, lengths and speeds (or the results in a channel or on a wall),
+        and doubts."""
         known, columns = self.groups, list(self.known.columns)
-        chosen = {self.known.abscissa, *self.known.curve_parameters()}  # automatic values follow from these
+        chosen = {self.known.abscissa, *self.known.curve_parameters()}  # automatic values follow from these, so they are left out
         varies = [name for name in columns if name in chosen and known[name].nunique(dropna=False) > 1]
         told = [name for name in (PASSAGE if self.known.are_passages else LENGTHS) if name in known and not known[name].isna().all()]
         return known[[*varies, *(name for name in told if name not in varies)]]

@@ -20,7 +20,8 @@ def units(lab: str | os.PathLike[str] | Mapping[str, str], *, length: OneOrMore 
     """The answer of `clogfit units` as numbers; a list of them for a file of several droplets.
 
     @param lab  a file, or its lines, such as {"diameter": "3.5 mm", "angle": "28 deg", "tension": "9.6 mN/m", "speed": "7 mm/s"}
-    @param length, time, line_tension, terminal_speed, wall_stiffness  of the model, to convert: "given" has a number, or a list if there are several
+    @param length, time, line_tension, terminal_speed, wall_stiffness  quantities of the model to convert: "given" of
+    the answer has a number for each, or a list if there are several
     @param folder  of the programs
     @throws UserError  for entries that `lab` cannot have; ProgramFailed
     """

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Film:
-    """A film that is written; plays in a notebook. `path` is its file."""
+    """A film in the file `path`. It plays in a notebook."""
 
     def __init__(self, path: pathlib.Path) -> None:
         self.path = path
@@ -39,7 +39,8 @@ class Run:
 
     - `samples`: table of the path; time [t0], distance [sigma], speed [sqrt(sigma g)], energies, shape parameter
     - `polygons`: refined outlines, frames x 2 x points [sigma], at the `times` (frames) [t0]
-    - `obstacles`: circles x 3 (x, y, diameter) [sigma]; `wedges` likewise, docs/reference/files.md
+    - `obstacles`: circles x 3 (x, y, diameter) [sigma]; `wedges`: walls, in the form that docs/reference/files.md
+    describes
     - `row`: parameters and results, by the names of the columns of a sweep; `attributes`: the origin of the file
     """
 
@@ -56,8 +57,8 @@ class Run:
         self.attributes: dict[str, str] = self.trajectory.attributes
 
     def picture(self, outlines: int = 12) -> Picture:
-        """Draws so many moments of the run in one picture. @throws UserError  if there are no outlines"""
-        from ..drawing import way  # slow to load, as all that draws
+        """Draws moments of the run, at most `outlines`, in one picture. @throws UserError  if there are no outlines"""
+        from ..drawing import way  # slow to load, like all modules that draw
         from ..style import Picture
 
         checked.whole("outlines", outlines, 1)
@@ -67,10 +68,10 @@ class Run:
     def film(self, output: str | os.PathLike[str], *, colour: str = "speed", rate: int = 20, most_frames: int = 600, size: str | None = None) -> Film:
         """Writes a film; an existing one is never replaced.
 
-        @param output  its file: .mp4 (needs ffmpeg), .gif, or without an ending either of them
+        @param output  name of the film: .mp4 (needs ffmpeg) or .gif; without an ending, the one that can be made
         @param colour  "speed" of the interface, or "mechanism": the last frame shows how the droplet clogged
-        @param rate  frames a second; @param most_frames  a longer run is thinned
-        @param size  "540p", "1080p" or "2160p", of the frames; 1080p if it is not given, 540p of a .gif
+        @param rate  frames per second; @param most_frames  largest number of frames; a longer run skips some
+        @param size  size of the frames, "540p", "1080p" or "2160p"; by default 1080p, and 540p for a .gif
         @throws UserError  if it cannot be made
         """
         from ..drawing import film

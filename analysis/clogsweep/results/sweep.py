@@ -48,7 +48,7 @@ class Sweep:
         self.path = pathlib.Path(path)
         self._programs = programs
         self._name = ""
-        self._folder: tempfile.TemporaryDirectory[str] | None = None  # of a file that is removed with this object
+        self._folder: tempfile.TemporaryDirectory[str] | None = None  # holds a file that is removed with this object
         with stored.opened(self.path, stored.SWEEP, programs) as file:
             self._records = file["runs"][:]
             self.rows = stored.table_of(file)
@@ -63,7 +63,7 @@ class Sweep:
 
         @param dwell  a droplet that has not moved for this time counts as clogged [t0]
         @param from_distance  distances are counted from here on [sigma]
-        @param confidence  of the intervals, between 0 and 1
+        @param confidence  confidence level of the intervals, between 0 and 1
         @param row_angle  tilt of the rows of user-supplied circles, for the share displaced along them [degrees]
         @param lab  file that describes the laboratory, for its units, too
         @throws ProgramFailed  with the reason of clogfit
@@ -79,7 +79,7 @@ class Sweep:
         """Smooth curves through the clogging lengths, with bands, peaks and crossings, from `clogfit curve --format
         json`.
 
-        @param keys  that they go over, one or two; may be left out if only one varies
+        @param keys  one or two keys over which the curves go; may be left out if only one key varies
         @param crossing  lengths that a curve may cross, in droplet diameters
         @throws UserError  with the reason why there is no curve
         """
@@ -95,10 +95,10 @@ class Sweep:
         """Clogged polygons, replayed until they rest.
 
         @param mechanism  only "wrapped", "squeezed", "hybrid" or "other"; @param tasks  only these
-        @param most  so many at most, the first; @param jobs  runs at a time
+        @param most  largest number of clogs, the first ones; @param jobs  number of simultaneous replays
         @throws UserError  if there are none
         """
-        from ..drawing import clogs  # slow to load, as all that draws
+        from ..drawing import clogs  # slow to load, like all modules that draw
 
         checked.whole("most", most, 1)
         checked.whole("jobs", jobs, 1)
@@ -109,8 +109,9 @@ class Sweep:
         """User-supplied circles, with the places where droplets were released, passed and clogged, and their paths: a
         panel for each of up to six parameter sets.
 
-        @param ways  runs of each panel drawn as lines; @param map  runs of each panel behind its map; all are replayed
-        @param jobs  runs at a time
+        @param ways  number of runs of each panel whose paths are drawn as lines; @param map  number of runs behind the
+        map of each panel; all of them are replayed
+        @param jobs  number of simultaneous replays
         @throws UserError  if the sweep has no user-supplied circles, or those of several devices
         """
         from ..drawing import device
@@ -136,7 +137,8 @@ class Sweep:
             return self.replay(task, pathlib.Path(folder) / f"{self.path.stem}-{task}.h5", interval=interval)
 
     def report(self, output: str | os.PathLike[str], examples: int = 4, *, lab: str | os.PathLike[str] | None = None) -> pathlib.Path:
-        """Writes a page of HTML about the sweep; an earlier one is replaced, nothing else. @param examples  clogs to be shown
+        """Writes a page of HTML about the sweep. It replaces an earlier page, nothing else. @param examples  number of
+        clogs to show
         @param lab  file that describes the laboratory, for its units, too. @return its file.
         @throws UserError"""
         from ..pages import report

@@ -1,4 +1,4 @@
-"""Style of all figures: colours, axes, markers, text beside a picture; and how one is shown and saved."""
+"""Style of all figures: colours, axes, markers, text beside a picture. Also shows and saves pictures."""
 
 from __future__ import annotations
 
@@ -40,30 +40,32 @@ CAUSE_COLOURS = {**MECHANISM_COLOURS, "broken": COLOURS[4]}
 PASSED_COLOUR = "0.62"
 MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
 VIRIDIS = matplotlib.colormaps["viridis"]
-PASSAGES = matplotlib.colormaps["YlOrBr"]  # light for small fractions; lines and markers stay visible on it
+PASSAGES = matplotlib.colormaps["YlOrBr"]  # small fractions are light, so lines and markers stay visible on them
 OBSTACLE = "0.72"
 NOTE_SIZE = 8
 CURVE = "curve "  # the beginning of the name (`gid`) of a curve's artists; its label follows
 DROPLET = "#D55E00"
-# An arrow that rises from a foot at the lower bound; it takes the upper half of a marker's size.
+# An arrow that rises from a foot. The foot is at the lower bound, so the arrow fills the upper half of a marker's
+# square.
 LOWER_BOUND = Path([(-0.25, 0), (0.25, 0), (0, 0), (0, 1), (-0.25, 0.6), (0, 1), (0.25, 0.6)], [1, 2, 1, 2, 1, 2, 2])
 
 
 def new_figure(**options: Any) -> Figure:
-    """Creates a figure without `pyplot`, whose figures stay in memory and belong to a backend: a notebook has already chosen one."""
+    """Creates a figure without `pyplot`. Figures of `pyplot` stay in memory and belong to a backend, which a notebook
+    has already chosen."""
     made = Figure(**options)
     FigureCanvasAgg(made)
     return made
 
 
 def subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], **options: Any) -> tuple[Figure, Any]:
-    """A figure with an automatic layout, and its axes, as `pyplot`'s."""
+    """A figure with an automatic layout, and its axes, as from `pyplot.subplots`."""
     made = new_figure(figsize=figsize, layout="constrained")
     return made, made.subplots(rows, columns, **options)
 
 
 def figure_of(draw: Callable[..., None], *what: Any) -> Figure:
-    """A figure with one drawing. @param draw  called with the axes and what follows here"""
+    """A figure with one drawing. @param draw  is called with the axes and the further arguments"""
     figure, axes = subplots(figsize=(6.4, 4.8))
     with without_warnings():
         draw(axes, *what)
@@ -71,21 +73,21 @@ def figure_of(draw: Callable[..., None], *what: Any) -> Figure:
 
 
 def curve_style(index: int) -> dict[str, Any]:
-    """A different style for each curve: after all colours and markers, lines become dashed, with one more dot each
-    round."""
+    """A different style for each curve. When all colours and markers are used, they are repeated with dashed lines,
+    then with a dot between dashes, two dots and so on."""
     round_, which = divmod(index, len(COLOURS))
     line = (0, (6, 2) + (1, 2) * (round_ - 1)) if round_ > 0 else "-"
     return {"color": COLOURS[which], "marker": MARKERS[which], "linestyle": line}
 
 
 def shades(number: int) -> Sequence[Any]:
-    """Colours of curves in the order of a parameter; of few, neighbours are of different hues."""
+    """Colours of curves in the order of a parameter. If there are few curves, neighbours have different hues."""
     return COLOURS[:number] if number <= len(COLOURS) else VIRIDIS(np.linspace(0, 0.95, number))
 
 
 @contextlib.contextmanager
 def curve(axes: Axes, label: str) -> Iterator[None]:
-    """Names what the block draws, for Picture.curves."""
+    """Gives everything that the block draws the name of a curve, for Picture.curves."""
     before = set(axes.get_children())
     yield
     for artist in axes.get_children():
@@ -94,7 +96,8 @@ def curve(axes: Axes, label: str) -> Iterator[None]:
 
 
 def mark(kind: str, groups: Collection[Group]) -> str | None:
-    """The name (`gid`) of artists that represent groups of a report (report.write()); elsewhere they have no numbers.
+    """The name (`gid`) of artists that represent groups of a report. None elsewhere, because only report.write()
+    numbers groups.
     @param kind  point, curve or legend"""
     numbers = [str(group["number"]) for group in groups if "number" in group]
     return f"{kind}-{','.join(numbers)}" if numbers else None
@@ -126,7 +129,7 @@ def mechanism_entries(groups: Collection[Group], other: str = "other clogs") -> 
 
 def legend_off_curves(axes: Axes, entries: Sequence[tuple[Artist, str]], title: str) -> Legend:
     """Finds a place for the legend where nothing is drawn; if there is none, the ordinate gets longer."""
-    # matplotlib looks for lines only: these are what lies under error bars and bands.
+    # matplotlib avoids lines only, so lines stand for error bars and bands.
     rising: Any = np.geomspace if axes.get_yscale() == "log" else np.linspace
     bars = [bar for drawn in axes.containers if isinstance(drawn, ErrorbarContainer) for part in drawn.lines[2] for bar in part.get_segments() if len(bar)]
     points = [(x, y) for (x, low), (_, high) in bars if low < high for y in [*rising(low, high, 9), math.nan]]
@@ -152,12 +155,13 @@ def legend_off_curves(axes: Axes, entries: Sequence[tuple[Artist, str]], title: 
 
 
 def width_of(legend: Legend) -> float:
-    """In inches."""
+    """The width in inches."""
     return legend.get_window_extent().width / legend.figure.dpi
 
 
 def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs", title: str = "") -> None:
-    """Legend of named curves and of mechanism_entries(). A long one is placed beside the axes, and the figure gets wider, once."""
+    """Legend of named curves and of mechanism_entries(). A long legend is placed beside the axes, and the figure is
+    widened for it only once."""
     entries = journal.legend_entries(axes)
     for mark, name in mechanism_entries(groups, other):
         entries.append((axes.add_line(mark), name))
@@ -168,7 +172,7 @@ def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs
         made = axes.legend(*zip(*entries), title=title, frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
                            loc="upper left", bbox_to_anchor=(1, 1))
         figure = axes.figure
-        if isinstance(figure, Figure):  # not for a part of one, whose width is fixed
+        if isinstance(figure, Figure):  # a part of a figure has a fixed width
             figure.set_figwidth(figure.get_figwidth() + width_of(made) - width_before)
     elif entries:
         made = legend_off_curves(axes, entries, title)
@@ -182,8 +186,8 @@ def logarithmic_margin(values: Collection[float]) -> float:
 
 
 def side_by_side(index: int, num_curves: int, values: Collection[float]) -> float:
-    """Factor on logarithmic abscissae that curves share: moved apart so that their bars can be told apart: by a part of the
-    axis, less where neighbouring values or the frame are near."""
+    """Factor by which the points of a curve are shifted on logarithmic abscissae, so that the bars of curves can be
+    distinguished. The shift is a part of the axis; it is smaller if neighbouring values or the frame are near."""
     ordered = sorted(set(values))
     outermost = max(num_curves - 1, 1) / 2
     nearest = min((b / a for a, b in zip(ordered, ordered[1:])), default=2.0)
@@ -192,7 +196,8 @@ def side_by_side(index: int, num_curves: int, values: Collection[float]) -> floa
 
 
 def far_apart(values: Collection[float], span: float) -> list[float]:
-    """The values whose labels have room side by side on a logarithmic axis. @param span  its last value over its first"""
+    """The values whose labels have room side by side on a logarithmic axis. @param span  last value of the axis divided
+    by the first"""
     kept: list[float] = []
     for value in sorted(set(values)):
         if not kept or math.log(value / kept[-1]) >= 0.08 * math.log(span):
@@ -201,7 +206,8 @@ def far_apart(values: Collection[float], span: float) -> list[float]:
 
 
 def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
-    """Plain numbers, at the values themselves where they are few or within a decade; a label without room is one line lower."""
+    """Labels a logarithmic abscissa with plain numbers: with the values themselves if they are few or within a decade.
+    A label without room is one line lower."""
     axes.set_xscale("log")
     axis = axes.xaxis
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))
@@ -216,14 +222,15 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
         low, high = (min(values), max(values)) if values else axes.get_xlim()
         plain_logarithmic(axis, high / low)
     if values:
-        # Ticks would widen an axis without a margin: artists at the last one would be on the frame.
+        # Ticks would determine the range of an axis and leave no margin, so artists at the last tick would lie on the
+        # frame.
         margin = logarithmic_margin(values)
         axes.set_xlim(min(values) / margin, max(values) * margin)
 
 
 def logarithmic_ordinate(axes: Axes) -> None:
-    """Plain numbers if it has fewer than two decades: at 1, 2 and 5, or at every mark of less than half a decade,
-    because powers of ten would be too few."""
+    """Labels a logarithmic ordinate of fewer than two decades with plain numbers, because powers of ten would be too
+    few: at 1, 2 and 5, or at every tick if it has less than a factor of five."""
     axes.set_yscale("log")
     axis = axes.yaxis
     usual = axis.get_major_formatter()
@@ -240,8 +247,8 @@ def logarithmic_ordinate(axes: Axes) -> None:
 
 
 def plain_logarithmic(axis: Axis, span: float = 1.0) -> None:
-    """Numbers at 1, 2 and 5 of each decade, or only at its beginning. @param span  last number divided by the first, if
-    it may be large"""
+    """Plain numbers at 1, 2 and 5 of each decade, or only at its beginning. @param span  last number divided by the
+    first, if this may be large"""
     axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0) if span < 2000 else (1.0,)))
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
@@ -260,13 +267,14 @@ def label(axes: Axes, along: str, up: str) -> None:
 
 
 def caption(axes: Axes, text: str) -> None:
-    """Above the axes; lines that are wider than these go on below."""
+    """Writes a caption above the axes, and breaks lines that are wider than the axes."""
     widest = 1.1 * axes.get_window_extent().width  # the layout makes axes wider than they are now
     axes.set_title(in_lines(text, fitting(axes.figure, 8, widest)), fontsize=8, color="0.25")
 
 
 def finish(axes: Axes, up: str, shared: str, lines: Sequence[str], groups: Collection[Group] = (), other: str = "other clogs", title: str = "") -> None:
-    """The ordinate's label, grid, legend, caption and notes of a picture of curves. @param groups, other, title  see legend()"""
+    """Adds the ordinate's label, grid, legend, caption and notes to a picture of curves. @param groups, other, title
+    see legend()"""
     axes.set_ylabel(up)
     grid(axes)
     caption(axes, shared)
@@ -276,13 +284,14 @@ def finish(axes: Axes, up: str, shared: str, lines: Sequence[str], groups: Colle
 
 
 def notes(axes: Axes, lines: Sequence[str]) -> None:
-    """Writes the meaning of the marks below the axes and their label."""
+    """Writes notes on the meaning of marks below the label of the abscissa."""
     axes.annotate("\n".join(lines), (0.5, 0), xycoords=axes.xaxis.label, xytext=(0, -4), textcoords="offset points", ha="center", va="top",
                   fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
 
 
 def notes_of_panels(figure: Figure, lines: Sequence[str]) -> None:
-    """What marks mean, once below all panels; lines that are wider than the figure go on below."""
+    """Writes notes on the meaning of marks once for all panels, below them, and breaks lines that are wider than the
+    figure."""
     fits = fitting(figure, NOTE_SIZE, 0.97 * figure.bbox.width)
     figure.supxlabel("\n".join(in_lines(line, fits, " ") for line in lines), fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
 
@@ -293,7 +302,7 @@ def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None
     metadata = {key: printable(value, "\n") for key, value in (metadata or {}).items()}
     with outputs.replaced(f"{output}.png") as fresh:
         figure.savefig(fresh, dpi=dpi, metadata=metadata)
-    # Laid out once.
+    # The layout stays as it is in the .png.
     figure.set_layout_engine("none")
     subject = {"Title": metadata.get("Title"), "Subject": metadata.get("Description")}
     # Journals refuse fonts of type 3, matplotlib's default.
@@ -303,7 +312,7 @@ def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None
 
 @contextlib.contextmanager
 def without_warnings() -> Iterator[None]:
-    """Users cannot fix what matplotlib warns of while it lays out our figures."""
+    """Hides matplotlib's warnings about the layout of our figures, which users cannot fix."""
     logger = logging.getLogger("matplotlib")
     level = logger.level
     with warnings.catch_warnings():
@@ -316,9 +325,9 @@ def without_warnings() -> Iterator[None]:
 
 
 class Picture:
-    """Shows itself in a notebook; `figure` is matplotlib's and may be changed. `source` is the origin of its numbers,
-    saved as Description of the .png and Subject of the .pdf. `caption` is the text that for_journal() removes from the
-    picture."""
+    """A picture, which shows itself in a notebook. `figure` belongs to matplotlib and may be changed. `source` is the
+    origin of the numbers; it is saved as Description of the .png and Subject of the .pdf. `caption` is the text that
+    for_journal() removes from the picture."""
 
     def __init__(self, figure: Figure, source: str = "") -> None:
         self.figure = figure
@@ -328,8 +337,8 @@ class Picture:
 
     @property
     def curves(self) -> dict[str, list[Artist]]:
-        """The artists of each curve (lines, bars, markers, band), by its label in the legend; that of a single curve is
-        empty."""
+        """The artists of each curve (lines, bars, markers, band), by the curve's label in the legend. The label of a
+        single curve is empty."""
         found: dict[str, list[Artist]] = {}
         for artist in self.figure.findobj(lambda artist: (artist.get_gid() or "").startswith(CURVE)):
             found.setdefault(artist.get_gid().removeprefix(CURVE), []).append(artist)
@@ -337,10 +346,11 @@ class Picture:
 
     def for_journal(self, width_cm: float = 8.6, height_cm: float | None = None, *, font_size: float = 8) -> Picture:
         """Lays the picture out for a column of a journal: text of one size, the legend above the axes, no labels that
-        overlap. Call this last, after changes of the figure. Conditions and notes leave the picture for `caption`.
+        overlap. Call this last, after changes of the figure. Conditions and notes are moved from the picture to
+        `caption`.
 
         @param width_cm  of the picture
-        @param height_cm  likewise; without it the height suits the legend
+        @param height_cm  height of the picture; by default it suits the legend
         @param font_size  of all text [pt]
         @return  the same picture
         @throws UserError  if it has several panels

@@ -13,12 +13,12 @@ from matplotlib.transforms import Bbox
 
 from ..tools.errors import UserError
 
-NOTES = "notes"  # the name (`gid`) of what explains marks
+NOTES = "notes"  # the name (`gid`) of notes on the meaning of marks
 INCH = 2.54  # [cm]
 
 
 def in_lines(text: str, fits: Callable[[str], bool], between: str = ", ") -> str:
-    """Lines that fit, broken only between phrases, never within a formula."""
+    """The text in lines that fit. It is broken only between phrases, never within a formula."""
     lines = []
     for line in re.sub(r"\$.*?\$", lambda formula: formula[0].replace(" ", "\0"), text.strip()).split("\n"):
         first, *others = line.split(between)
@@ -33,7 +33,7 @@ def in_lines(text: str, fits: Callable[[str], bool], between: str = ", ") -> str
 
 
 def fitting(figure: FigureBase, size: float, pixels: float) -> Callable[[str], bool]:
-    """Whether a line of text in letters of `size` points fits into this width."""
+    """A function that tells whether a line of text in letters of `size` points fits into this width."""
     def fits(line: str) -> bool:
         text = figure.text(0, 0, line, fontsize=size)
         width = text.get_window_extent(figure.canvas.get_renderer()).width
@@ -44,7 +44,7 @@ def fitting(figure: FigureBase, size: float, pixels: float) -> Callable[[str], b
 
 
 def legend_entries(axes: Axes) -> list[tuple[Artist, str]]:
-    """Artists with a label; those without data, which explain a mark, come last."""
+    """Artists with a label. Artists without data come last, because they only explain a mark."""
     entries = [(artist, label) for artist, label in zip(*axes.get_legend_handles_labels()) if label]
     return sorted(entries, key=lambda entry: isinstance(entry[0], Line2D) and not len(entry[0].get_xdata()))
 
@@ -52,7 +52,7 @@ def legend_entries(axes: Axes) -> list[tuple[Artist, str]]:
 def draw_legend(axes: Axes, size: float) -> float:
     """A legend at the top of the figure, in as many columns as fit. @return its height [pixels]"""
     figure = axes.figure
-    fits = fitting(figure, size, figure.bbox.width - 4 * size / 72 * figure.dpi)  # beside a handle
+    fits = fitting(figure, size, figure.bbox.width - 4 * size / 72 * figure.dpi)  # the width beside a handle
     artists, labels = zip(*((artist, in_lines(label, fits)) for artist, label in legend_entries(axes)))
     earlier = axes.get_legend()
     title = earlier.get_title().get_text() if earlier else ""
@@ -68,7 +68,7 @@ def draw_legend(axes: Axes, size: float) -> float:
 
 
 def hide_overlapping(axis: Axis) -> None:
-    """Hides overlapping labels of ticks, first those of minor ticks."""
+    """Hides labels of ticks that overlap others, first labels of minor ticks."""
     kept: list[Bbox] = []
     low, high = sorted(axis.get_view_interval())
     for label in [*axis.get_majorticklabels(), *axis.get_minorticklabels()]:
@@ -79,7 +79,8 @@ def hide_overlapping(axis: Axis) -> None:
 
 
 def lay_out(figure: Figure, width: float, height: float | None, size: float) -> str:
-    """@param width, height  [cm]; @param size  of letters [pt]. @return the text of caption and notes, which the figure loses. @throws UserError"""
+    """@param width, height  [cm]; @param size  size of letters [pt]. @return the text of caption and notes, which are
+    removed from the figure. @throws UserError"""
     if len(figure.axes) != 1:
         raise UserError(f"cannot lay out a picture of {len(figure.axes)} panels for a column; draw one panel")
     axes, = figure.axes

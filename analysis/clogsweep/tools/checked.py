@@ -8,7 +8,7 @@ from .errors import UserError
 
 
 def whole(name: str, value: Any, least: int) -> None:
-    """@throws UserError  unless it is a whole number that is not smaller"""
+    """@throws UserError  unless the value is a whole number, not smaller than `least`"""
     try:
         is_right = operator.index(value) >= least
     except TypeError:

@@ -25,4 +25,4 @@ class ProgramFailed(Exception):
 
 
 class Damaged(UserError):
-    """A file that is not as it was written; the message names it."""
+    """A file whose content has changed since it was written. The message names the file."""

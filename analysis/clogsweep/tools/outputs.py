@@ -1,4 +1,4 @@
-"""Output files: where one may be written, what it may replace, and that it is complete."""
+"""Output files: checks where one may be written and what it may replace, and writes only complete files."""
 
 import contextlib
 import os
@@ -14,7 +14,8 @@ BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-"
 
 
 def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> None:
-    """Checks a file before minutes of work. An earlier one of its kind is replaced, nothing else.
+    """Checks that a file can be written, before a computation of minutes. It may replace an earlier file of the same
+    kind, nothing else.
 
     @param kind  of BEGINNINGS; @param inputs  files that the command reads
     """
@@ -35,7 +36,7 @@ def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> N
 
 
 def is_of_kind(path: pathlib.Path, kind: str) -> bool:
-    """Whether it begins like files of this kind, or is empty."""
+    """Whether the file begins like files of this kind, or is empty."""
     with open(path, "rb") as file:
         beginning = file.read(len(BEGINNINGS[kind]))
     return not beginning or beginning == BEGINNINGS[kind]
@@ -43,9 +44,10 @@ def is_of_kind(path: pathlib.Path, kind: str) -> bool:
 
 @contextlib.contextmanager
 def replaced(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
-    """Where to write a file that replaces the path when the block ends. If the block fails, an earlier file is kept.
+    """A temporary path to write to. When the block ends, this file replaces `path`. If the block fails, an earlier file
+    is kept.
     @throws UserError  if it cannot be written"""
-    target = pathlib.Path(path).resolve()  # a link is kept, and leads to the new file
+    target = pathlib.Path(path).resolve()  # if `path` is a link, it stays and leads to the new file
     try:
         with tempfile.TemporaryDirectory(prefix=".clogsweep-", dir=target.parent) as folder:
             fresh = pathlib.Path(folder) / target.name
@@ -57,7 +59,7 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
         raise UserError(f"cannot write {path} ({error.strerror or error}); look at the folder and its disk, or give another --output") from error
 
 
-# Endings of pictures and films. Others may be a part of the name, as in gap-0.3.
+# Endings of pictures and films. Anything else after a dot may be a part of the name, as in gap-0.3.
 ENDINGS = (".png", ".pdf", ".mp4", ".gif", ".jpg", ".jpeg", ".svg", ".eps", ".ps", ".tif", ".tiff", ".bmp", ".webp",
            ".avi", ".mov", ".mkv", ".webm", ".mpg", ".mpeg", ".apng")
 

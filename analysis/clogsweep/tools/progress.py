@@ -1,5 +1,5 @@
-"""Progress of a script, on the standard error: one line that is renewed on a terminal, a new line now and then
-elsewhere."""
+"""Progress of a script, on the standard error: on a terminal one line that is renewed, elsewhere a new line now and
+then."""
 
 import sys
 import time
@@ -10,7 +10,7 @@ Item = TypeVar("Item")
 
 
 def readable_duration(seconds: float) -> str:
-    """As clogsweep shows it, because whole minutes would jump."""
+    """A duration as clogsweep shows it, with seconds below ten minutes, because whole minutes would jump."""
     if seconds < 119.5:
         return f"{seconds:.0f} s"
     whole = round(seconds)
@@ -23,7 +23,8 @@ class StatusLine:
         self.begin = self.last = time.monotonic()
 
     def renew(self, text: Callable[[float], str]) -> None:
-        """Shows a text if it is time. @param text  of the seconds since the beginning"""
+        """Shows a text if the last one is old enough. @param text  makes the text from the seconds since the
+        beginning"""
         now = time.monotonic()
         if now - self.last >= (0.2 if self.on_terminal else 10):
             self.last = now
@@ -36,7 +37,7 @@ class StatusLine:
 
 
 def shown(items: Iterable[Item], what: str, total: int) -> Iterator[Item]:
-    """Yields the items and shows after each, if it is time, their number so far and the remaining time."""
+    """Yields the items. Now and then it shows the number of finished items and the remaining time."""
     line = StatusLine()
     for number, item in enumerate(items, start=1):
         yield item

@@ -1,5 +1,5 @@
-"""Numbers as they are printed: counts with their noun, others with as many figures as their uncertainty allows, at
-least three."""
+"""Numbers as text: counts with their noun, other numbers with as many figures as their uncertainty allows, but at least
+three."""
 
 import math
 from typing import TypeGuard
@@ -18,7 +18,7 @@ def exponent(value: float) -> int:
 
 
 def plain(value: float | None, figures: int = LEAST_FIGURES) -> str:
-    """@param value  a dash replaces None and values that are not finite"""
+    """@param value  None, and values that are not finite, become a dash"""
     if not is_number(value):
         return "-"
     rounded = float(f"{value:.{figures - 1}e}")
@@ -28,12 +28,13 @@ def plain(value: float | None, figures: int = LEAST_FIGURES) -> str:
 
 
 def counted(number: int, noun: str) -> str:
-    """Such as 1 run, 2 runs."""
+    """A number and its noun, such as 1 run, 2 runs."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def with_interval(value: float, lower: float, upper: float) -> str:
-    """Such as 223 (102 to 585): two figures of the narrower side of the interval, but at least three of each number."""
+    """Text such as 223 (102 to 585): the narrower side of the interval has two figures, but each number has at least
+    three."""
     side = min(value - lower, upper - value)
     figures = exponent(value) - exponent(side) + 2 if side > 0 else LEAST_FIGURES
     figures = min(max(figures, LEAST_FIGURES), MOST_FIGURES)
@@ -41,7 +42,7 @@ def with_interval(value: float, lower: float, upper: float) -> str:
 
 
 def with_error(value: float | None, error: float | None) -> str:
-    """Such as 0.379 ± 0.012: two figures of the error, at most eight of the value."""
+    """Text such as 0.379 ± 0.012: the error has two figures, the value at most eight."""
     if not is_number(value) or not is_number(error) or error <= 0:
         return plain(value)
     decimals = max(0, 1 - exponent(float(f"{error:.1e}")))

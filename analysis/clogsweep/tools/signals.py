@@ -2,10 +2,10 @@
 
 import signal
 
-WARNINGS = (signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU)  # of batch systems
+WARNINGS = (signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU)  # warnings of batch systems
 
 
 def stop_signals() -> list[signal.Signals]:
-    """Those of clogsweep. Without SIGHUP under nohup, which makes programs ignore it."""
+    """The signals that stop clogsweep. SIGHUP is missing under nohup, which makes programs ignore it."""
     ends = [signal.SIGINT, signal.SIGTERM]
     return [*WARNINGS, *ends] if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN else [*WARNINGS, *ends, signal.SIGHUP]

@@ -6,17 +6,18 @@ from collections.abc import Iterable
 
 
 def escaped(letter: str) -> str:
-    """A byte that is not UTF-8 reaches Python as a lone surrogate."""
+    """A character as an escape. In Python, a byte that is not UTF-8 is a lone surrogate."""
     return f"\\x{ord(letter) - 0xdc00:02x}" if "\udc80" <= letter <= "\udcff" else letter.encode("unicode_escape").decode()
 
 
 def printable(text: object, kept: str = "") -> str:
-    """Control characters, and bytes that are not UTF-8, as escapes. @param kept  such as line breaks"""
+    """The text with escapes for control characters and for bytes that are not UTF-8. @param kept  characters to keep,
+    such as line breaks"""
     return "".join(letter if letter.isprintable() or letter in kept else escaped(letter) for letter in str(text))
 
 
 def literal(text: object) -> str:
-    """The same for matplotlib, which reads text between two dollars as a formula."""
+    """Printable text for matplotlib, which would read text between two dollars as a formula."""
     return printable(text, "\n").replace("$", r"\$")
 
 

@@ -8,8 +8,8 @@
 
 namespace clog::cli {
 
-/// Reads circles from a text file, one per line: x, y and the diameter [sigma], or columns as the first line
-/// names them; cells are separated by commas, semicolons, tabs or blanks. A circle without a diameter gets
+/// Reads circles from a text file, one per line: x, y and the diameter [sigma], or the columns that the first
+/// line names; cells are separated by commas, semicolons, tabs or blanks. A circle without a diameter gets
 /// obstacle-diameter. Lines starting with # are skipped, except `# units=um droplet=200um`, which gives the
 /// units of the following lengths; then every line needs a diameter. @param name  name of the file, followed
 /// by @0.8mm to scale the circles to a droplet of 0.8 mm @throws Error naming the line

@@ -20,7 +20,8 @@ struct Command {
   const char* name;
   int (*call)(int argc, const char* const* argv);
 };
-/// Runs the command named by the first word, as run_program() does. Returns nothing if it names none.
+/// Runs the command named by the first word, as run_program() does. Returns nothing if the word names no
+/// command.
 std::optional<int> run_command(const std::string& program, std::span<const Command> commands, int argc,
                                const char* const* argv);
 

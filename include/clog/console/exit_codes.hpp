@@ -3,7 +3,7 @@
 namespace clog::console {
 
 inline constexpr int exit_success = 0;
-/// The program failed. Also for verify, replay and doctor: damage, different bits, or something to fix.
+/// The program failed, or verify found damage, replay found different bits, or doctor found a problem.
 inline constexpr int exit_internal_fault = 1;
 inline constexpr int exit_user_fault = 2;
 /// Stopped before the end; repeating the command resumes.

@@ -21,8 +21,8 @@ RoundedInterval with_interval(double value, double lower, double upper);
 struct RoundedError {
   std::string value, error;
 };
-/// The error with two figures, the value to the same digit; without an error three figures of the value, at
-/// most eight.
+/// The error with two figures, and the value to the same digit, but with at most eight figures. Without an
+/// error, the value with three figures.
 RoundedError with_error(double value, double error);
 
 }  // namespace clog::console

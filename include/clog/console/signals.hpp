@@ -15,7 +15,7 @@ class Stopped : public std::runtime_error {
 /// Signals that stop a program. A closed terminal sends HUP; batch systems warn by USR1, USR2 and XCPU.
 inline constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
 
-/// Makes them set a flag only. SIGHUP stays ignored under nohup.
+/// From now on these signals only set a flag. SIGHUP stays ignored under nohup.
 void catch_stop_signals();
 bool stop_signalled();
 

@@ -10,7 +10,7 @@ namespace clog::console {
 class StatusLine {
  public:
   enum class Screen { terminal, plain, none };
-  /// The kind of screen that the standard error is.
+  /// The kind of screen on which the standard error appears.
   static Screen standard_error();
 
   StatusLine(std::ostream& out, Screen screen);

@@ -13,11 +13,11 @@ struct Finding {
   std::string remedy = {};  ///< empty if there is no problem
 };
 
-/// Whether a sweep on these ranks, with this `output`, would have problems.
+/// Checks whether a sweep on these ranks, with this `output`, would have problems.
 std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::string& output);
 
-/// Programs under srun without PMIx, or under the mpirun of another MPI, each believe to be alone. @throws
-/// Error if this program is one of them
+/// Under srun without PMIx, or under the mpirun of another MPI, every process would take itself for the only
+/// rank. @throws Error if this seems to be the case
 void refuse_to_be_alone(int num_ranks);
 
 /// The setting that lets ranks use every core of their host. @param mpi  name and version, as

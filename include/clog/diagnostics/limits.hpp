@@ -8,7 +8,8 @@ namespace clog::diagnostics {
 // through control groups (Linux, Documentation/admin-guide/cgroup-v2.rst): the tightest of the process's own
 // group and all enclosing groups counts. Limits of version 1 are ignored.
 
-/// Cores that the control groups grant to all of their processes, as time per period; 0: no limit.
+/// Cores that the control groups grant to all of their processes together: the processor time that they may
+/// use per period, divided by the period; 0: no limit.
 /// @param root  holds proc and sys
 double granted_cores(const std::filesystem::path& root = "/");
 

@@ -9,7 +9,7 @@ namespace clog::diagnostics {
 struct RankFacts {
   int rank = 0;
   std::string host;
-  std::string version;              ///< with what git says of the sources
+  std::string version;              ///< with the output of git describe
   std::string instruction_set;      ///< the widest
   std::vector<int> cores;           ///< that the rank may run on
   double cores_granted = 0;         ///< by control groups, to all of their processes; 0: no limit

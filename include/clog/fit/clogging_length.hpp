@@ -24,7 +24,8 @@ struct Interval {
 void require_confidence(double confidence);
 
 /// The z for which a standard normal number lies between -z and z with the probability `confidence`. z^2 is
-/// chi-squared's quantile for one degree of freedom; for very small `confidence` it underflows, z does not.
+/// chi-squared's quantile for one degree of freedom. For very small `confidence` z^2 underflows, but z does
+/// not.
 double normal_deviate(double confidence);
 
 /// Estimate of the clogging length lambda, the mean distance of an exponential law P(r) = exp(-r/lambda)
@@ -45,7 +46,7 @@ struct CloggingLength {
 /// every run has clogged, 2 S/lambda is chi-squared distributed with exactly 2d degrees of freedom (Epstein
 /// and Sobel 1953). Here runs are censored after a given time and d is as random as S: the next clog might
 /// come just after the runs ended, for which 2d + 2 would be exact, or just before, for which 2d would be.
-/// The number between, 2d + 1, has nearly the nominal coverage (Cox, Biometrika 40, 354 (1953); Lawless,
+/// The number in between, 2d + 1, has nearly the nominal coverage (Cox, Biometrika 40, 354 (1953); Lawless,
 /// Statistical Models and Methods for Lifetime Data, ch. 4). Without clogs there is a one-sided lower bound,
 /// S/log(1/(1 - confidence)), which corresponds to 2d + 2.
 ///
@@ -57,8 +58,8 @@ struct CloggingLength {
 /// @throws std::invalid_argument unless 0 < confidence < 1
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence = 0.95);
 
-/// Half of the chi-squared interval's width divided by the estimate; infinite without clogs. This is the
-/// width if all runs have clogged, which is a little larger than with censored runs.
+/// Half of the chi-squared interval's width divided by the estimate; infinite without clogs. The interval is
+/// the one for a sweep in which all runs have clogged; with censored runs it is a little narrower.
 double relative_half_width(std::int64_t num_clogs, double confidence = 0.95);
 
 /// Least squares of exp(-r/lambda) on P(r) = 1 - N_clog(r)/N at every clog, as published (Cheng et al.,

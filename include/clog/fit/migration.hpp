@@ -16,7 +16,7 @@ struct Migration {
   double standard_error = 0;  ///< from the scatter between runs; NaN for fewer than two
 };
 
-/// Shorter runs do not show where droplets migrate, just as they have no speed [sigma].
+/// Runs that travelled less do not show the direction of migration; they have no mean speed, either [sigma].
 inline constexpr double shortest_migration = 0.5;
 
 /// Ratio of the sums over runs that went at least shortest_migration, (sum of across)/(sum of along), so that

@@ -45,8 +45,8 @@ struct WeibullTest {
 WeibullTest test_exponentiality(std::span<const Observation> runs);
 
 /// Which groups are not exponential: p < 0.05 by Holm's step-down test (Scand. J. Stat. 6, 65 (1979)) of all
-/// groups with ten clogs or more. So one table in twenty of exponential groups has any such group, however
-/// many groups it has. With fewer clogs the p-value is too small to be used.
+/// groups with ten clogs or more. So if all groups are exponential, only one table in twenty marks any group,
+/// however many groups it has. With fewer clogs the p-value is too small to be used.
 std::vector<bool> are_not_exponential(std::span<const WeibullTest> groups);
 
 }  // namespace clog::fit

@@ -15,10 +15,10 @@ struct Scales {
   double gravity = 0;  ///< g_exp [m/s^2]
   double time = 0;     ///< t0 = sqrt(sigma/g_exp) [s]
   double speed = 0;    ///< v_t [m/s]
-  double tension = 0;  ///< of Gamma = 1: interfacial tension of a droplet with this motion [N/m]
+  double tension = 0;  ///< interfacial tension of a droplet that moves like one of Gamma = 1 [N/m]
   double line_tension_experiment = 0;  ///< Gamma_exp
   double line_tension = 0;             ///< Gamma of the model, tension_ratio times Gamma_exp
-  double sag = 0;                      ///< of that droplet on a flat wall [sigma]
+  double sag = 0;                      ///< sag of a droplet of this line tension on a flat wall [sigma]
   double wall_stiffness = 0;           ///< E_w of the soft disk with the same sag
   double terminal_speed = 0;           ///< V_t
   double capillary_number = 0;         ///< Ca = pi/(4 Gamma), at the terminal speed
@@ -27,16 +27,16 @@ struct Scales {
 Scales scales_of(const Laboratory& lab);
 /// Texts of keys, by their names.
 using Texts = std::map<std::string, std::string>;
-/// The laboratory's description, and the terminal speed and line tension (of soft disks wall stiffness) of
-/// its droplet, unless the user has set them.
+/// The laboratory's description, and two properties of its droplet unless the user has set them: the terminal
+/// speed, and the line tension or, for soft disks, the wall stiffness.
 Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings);
 /// A key's text with its numbers in the model's units: `0.2mm,0.3mm` is `0.1,0.15` with a droplet of 2 mm.
 /// @param text  numbers without a unit, and those in sigma, keep their values
 /// @throws Error that names the key, if one of its numbers has another unit than the key can have
 std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales);
 
-/// How far the centroid of a droplet sinks on a flat wall that it does not wet: the two-dimensional equation
-/// of Young and Laplace [sigma]. NaN for Gamma below 1e-3 and above 1e4.
+/// How far the centroid of a droplet sinks on a flat wall that it does not wet, by the two-dimensional
+/// equation of Young and Laplace [sigma]. NaN for Gamma below 1e-3 and above 1e4.
 double sag_on_wall(double line_tension);
 /// Gamma of the droplet with this sag; NaN if there is none.
 double line_tension_of_sag(double sag);

@@ -12,12 +12,13 @@ class Activity {
   /// @param num_ranks  that compute
   explicit Activity(int num_ranks) : num_ranks_(num_ranks) {}
 
-  /// A rank begins, or ends, a task. @param now  time since the session began, never less than before [s]
+  /// Call these when a rank begins or ends a task. @param now  time since the session began, never less than
+  /// before [s]
   void started(double now);
   void ended(double now);
 
-  /// One line of JSON. `idle_seconds` are those of all ranks. `tail_seconds` are the part of them after the
-  /// last start of a task, when ranks without work waited for the last tasks to end.
+  /// One line of JSON. `idle_seconds` are summed over all ranks. `tail_seconds` are the part of this sum
+  /// after the last start of a task, when ranks without work waited for the last tasks to end.
   /// @param start_time  when the session began
   std::string line(const std::string& start_time, double now) const;
 
@@ -25,7 +26,7 @@ class Activity {
   int num_ranks_;
   int num_busy_ = 0;
   double stretch_ = 1;        // [s]
-  std::vector<double> busy_;  // seconds of ranks in each stretch
+  std::vector<double> busy_;  // busy time of all ranks in each stretch [s]
   double last_ = 0;
   double last_start_ = 0;
   double busy_seconds_ = 0;

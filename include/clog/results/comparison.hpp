@@ -30,7 +30,7 @@ struct Comparison {
 };
 struct Comparisons {
   std::vector<std::string>
-      columns;  ///< in a list of either side, with a common value; they name a comparison
+      columns;  ///< that a side lists and that have a common value; they name a comparison
   std::vector<std::string> differing;  ///< columns whose values here and there differ
   std::vector<Comparison> all;
   std::string unit = "sigma";      ///< of lengths: "sigma" or "mm"

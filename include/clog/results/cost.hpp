@@ -34,21 +34,22 @@ struct SweepCost {
 
 /// Estimates the cost of a sweep from a sample of its runs, which is treated as random.
 ///
-/// The remaining time of unfinished runs is estimated from late ends, those after half the shortest time of
-/// an unfinished run, because earlier ends say little about it. The lower limit assumes that late ends are
-/// exponentially distributed; the upper limit, that they come from a mixture of short and long runs and
-/// become rarer with time; the estimate is the geometric mean of both. If no run of a parameter set has
-/// ended, all may last to max-time: this is the upper limit, and for the estimate every order of magnitude of
-/// the remaining time is equally likely. The interval combines the error of each law with that of the sample.
+/// The remaining time of unfinished runs is estimated from late ends only, because earlier ends say little
+/// about it. An end is late if its run has lasted at least half as long as the shortest unfinished run. The
+/// lower limit assumes that late ends are exponentially distributed; the upper limit, that they come from a
+/// mixture of short and long runs and become rarer with time; the estimate is the geometric mean of both. If
+/// no run of a parameter set has ended, all may last to max-time: this is the upper limit, and for the
+/// estimate every order of magnitude of the remaining time is equally likely. The interval combines the error
+/// of each law with that of the sample.
 /// @param sample  of at least one run that has done some work, in some time
 /// @param all_work  of all runs of the sweep, if every run lasts to max-time
 SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int64_t num_runs);
 
 /// Remaining cost of a sweep, from all its runs that have begun. They are not a random sample, because long
 /// runs start first. So each parameter set is estimated separately, as above: the remaining time of its
-/// unfinished runs from its own runs if one of them has ended, otherwise from all runs. A set without a
-/// started run is assumed to cost the same fraction of its bound as the others, with an error as large as
-/// that estimate.
+/// unfinished runs from its own runs if one of them has ended, otherwise from all runs. For a set without a
+/// started run, the estimate is the same fraction of its bound as for the other sets, and the error is as
+/// large as the estimate.
 /// @param begun  at least one that has done some work, in some time
 SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting);
 

@@ -12,8 +12,8 @@
 namespace clog::results {
 
 /// Events of a sweep, found by reading its file repeatedly: a line of JSON for every start, end and
-/// interruption of a task, every new attempt, every round. A task that starts and ends between two reads has
-/// both lines.
+/// interruption of a task, every new attempt, and every round. A task that starts and ends between two reads
+/// has both lines.
 class Events {
  public:
   /// @param path  of the file, for messages

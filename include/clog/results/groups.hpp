@@ -74,7 +74,7 @@ const DoubtText& text_of(Doubt doubt);
 /// The ways in which a run may end, competing risks: the mechanism that holds a clog (`other`: none of them),
 /// or the droplet's break-up.
 enum class Cause { wrapped, squeezed, hybrid, other, broken };
-/// Names in files: the number of runs that it ended, and their length (S divided by that number).
+/// Names in files of the number of runs that the cause ended, and of the length (S divided by this number).
 struct CauseText {
   Cause cause;
   bool is_clog;
@@ -103,25 +103,25 @@ struct Passage {
   double x;  ///< of the line, in the coordinates of the circles [sigma]
   int num_passed;
   int num_stopped;      ///< clogged or broke up before it; others were still on their way
-  fit::Interval share;  ///< of num_passed in both
+  fit::Interval share;  ///< of num_passed divided by num_passed + num_stopped
 };
 
 /// The runs of a sweep that differ in their seed only, and their results.
 struct Group {
   sweep::RunRow first_row;                                 ///< parameters of all runs, except the seed
   double dwell = std::numeric_limits<double>::infinity();  ///< see group_runs() [t0]
-  double dwells_known_from = 0;                            ///< of all its runs, NaN if not of all [t0]
+  double dwells_known_from = 0;  ///< in all its runs; NaN if some runs have no such time [t0]
   fit::CloggingLength clogging;
   double least_squares_length = 0;  ///< by the published, biased method; NaN for fewer than two clogs
   fit::WeibullTest weibull;
-  /// The runs that met an obstacle, each counted from the first one on.
+  /// Clogging length of the runs that met an obstacle, each counted from its first obstacle on.
   fit::CloggingLength clogging_met;
   double contacts_per_length =
       std::numeric_limits<double>::quiet_NaN();  ///< of runs that record them [1/sigma]
   std::vector<fit::SurvivalStep> survival;
   std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
-  /// One entry for each Cause, in their order: the runs that this cause ended count, all others are censored.
-  /// Empty if the mechanism of a clog is unknown.
+  /// One entry for each Cause, in the order of the enum. Runs that this cause ended are events, all others
+  /// are censored. Empty if the mechanism of a clog is unknown.
   struct EndsBy {
     const CauseText* text;
     fit::CloggingLength ends;
@@ -129,10 +129,10 @@ struct Group {
   };
   std::vector<EndsBy> causes;
   fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
-  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, distance over time of all runs together
-  /// v_g/v_t, distance over time of all runs until they ended, clogged ones until their last dwell began,
-  /// however short the distance was. If droplets clog, only the faster runs go far enough to have a mean
-  /// speed of their own.
+  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, total distance divided by total time of the runs
+  /// v_g/v_t, total distance divided by total time of all runs, even of those with a short distance. A run
+  /// counts until its end, a clogged one until its last dwell began. If droplets clog, only the faster runs
+  /// go far enough to have a mean speed of their own.
   fit::MeanSpeed relative_speed_all;
   fit::Migration migration;
   /// Tilt of the rows of posts from the flow towards +y, given by a lattice or by --row-angle; NaN: unknown
@@ -141,7 +141,7 @@ struct Group {
   std::vector<std::uint32_t> seeds;  ///< of the runs that count for the clogging length
   int num_passed = 0;                ///< runs whose droplet reached the exit of the device
   int num_flowing = 0;               ///< runs that max-time ended
-  /// Of num_flowing: runs whose droplet had rested for longer than a free droplet takes to fall ten
+  /// Number of those flowing runs whose droplet had rested for longer than a free droplet takes to fall ten
   /// diameters; and the shortest such rest [t0].
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity();
@@ -170,7 +170,7 @@ std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 /// are excluded, the others count with the distance beyond it (left truncation) @param dwell  a droplet that
 /// rested for longer than this counts as clogged where it first did so [t0]. A droplet that has neither
 /// rested so long nor clogged is censored where its last dwell began, because the full length of that dwell
-/// is unknown. A value of max-time or more changes nothing.
+/// is unknown. A `dwell` of max-time or more has no effect.
 /// @param pooled  columns of max-time and boxes that do not separate groups. Of the runs of one seed in the
 /// same array the one with the largest max-time counts; with other boxes the array is another one @param
 /// lines x of the passages in devices; by default those of the rows of posts [sigma] @throws Error if the
@@ -182,10 +182,10 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
                               std::span<const double> lines = {});
 /// The columns of keys such as `max-time,boxes`. @throws Error for any other key
 std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
-/// Lateral displacement over that of a droplet that follows the rows: 0 in the zigzag mode, 1 in the
+/// Lateral displacement divided by that of a droplet that follows the rows: 0 in the zigzag mode, 1 in the
 /// displacement (bump) mode of deterministic lateral displacement. NaN for rows along the flow.
 fit::Migration share_along_rows(const Group& group);
-/// Whether a droplet of this group can have rested for so long.
+/// Whether a run of this group can last longer than Group::dwell.
 bool is_dwell_possible(const Group& group);
 
 using sweep::Value;

@@ -23,8 +23,8 @@ struct MergedSweep {
 
 /// Merges complete or stopped sweeps, to be written to a new file.
 /// @param maker  provenance of the program that makes the new file, from cli::origin()
-/// @throws Error that names the files and the task, if two rows of a run contradict each other, a file is
-/// damaged or being written, or has other circles under the same name
+/// @throws Error that names the files and the task, if two rows of a run contradict each other, if a file is
+/// damaged or being written, or if two files have different circles under the same name
 MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance& maker);
 
 /// Reads the rows of several files together, also of running sweeps and of files whose config is unreadable.

@@ -25,7 +25,7 @@ class RunList {
 
   /// Adds the seed of a run whose parameter set is known. Returns whether it is.
   bool add_seed(const sweep::RunRow& row);
-  /// Gives every parameter set the smallest unused seeds until it has this number.
+  /// Gives every parameter set the smallest unused seeds until it has `number` seeds.
   void fill_seeds(std::size_t number);
 
   bool empty() const { return sets_.empty(); }

@@ -39,8 +39,8 @@ struct RunCount {
 };
 RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);
 
-/// The row of a task to be replayed. Switches to its instruction set. @throws Error if there is none, it is
-/// not over, or this program would give another result
+/// The row of a task to be replayed. Switches this process to the row's instruction set. @throws Error if
+/// there is none, it is not over, or this program would give another result
 sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& task);
 
 }  // namespace clog::results

@@ -6,8 +6,8 @@
 
 namespace clog::results {
 
-/// The default parameter_values() of a run with this model and preset; for a parameter that may be automatic
-/// the row's value if it is automatic. Empty if the row's parameters are impossible.
+/// The default parameter_values() of a run with this model and preset; for a parameter that has its automatic
+/// value in the row, this value. Empty if the row's parameters are impossible.
 std::vector<Value> usual_parameters(const sweep::RunRow& row);
 
 /// Whether this value is what `auto` gives for the row's other parameters, or what its preset sets.

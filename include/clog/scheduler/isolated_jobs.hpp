@@ -14,8 +14,8 @@ namespace clog::scheduler {
 /// the signal or exit code as its message, and the next one gets a new process.
 ///
 /// A process serves one task after the other, and keeps its obstacle array, until it crashes. It is forked
-/// not by the rank but by a helper that was forked before MPI started: no computing process has MPI, its
-/// threads or its registered memory, nor any file of the sweep. All of them die with the rank.
+/// not by the rank but by a helper that was forked before MPI started, so no computing process has MPI, its
+/// threads, its registered memory, or an open file of the sweep. All of them die with the rank.
 ///
 /// A rank waits for none of them: a process that hangs blocks only its own task, and delays a stop by two
 /// seconds. If the helper dies, the present task is `failed`, and the rank computes the next ones itself.

@@ -31,7 +31,7 @@ class RankTrust {
 
   int num_in_service() const { return num_in_service_; }
   bool may_work(int rank) const { return records_.at(rank).in_service && !is_on_hold(rank); }
-  /// Whether this rank may retry a failed task. Not before every other rank has tried it.
+  /// Whether this rank may retry a failed task: only after every other rank has tried it.
   bool is_next_for(std::int64_t task, int rank) const;
   bool is_trusted(int rank) const;
   /// Tasks that failed on this rank, and neither failed on a trusted one nor succeeded on any.

@@ -26,7 +26,7 @@ struct SweepEvents {
   std::function<Start(std::int64_t task, int rank)> started = [](std::int64_t, int) { return Start(); };
   /// Called from time to time for a running task; the status of its row is `running`.
   std::function<void(const Report&)> progressed = [](const Report&) {};
-  /// Every task that was started ends here once for each attempt; `interrupted` after a stop.
+  /// Called at the end of each attempt of a started task; after a stop the status is `interrupted`.
   std::function<void(const Report&)> ended = [](const Report&) {};
   /// Whether a task that ended as `failed` should be tried again.
   std::function<bool(const sweep::RunRow&)> tries_again = [](const sweep::RunRow&) { return false; };
@@ -36,15 +36,15 @@ struct SweepEvents {
   /// Called when a rank gets no more tasks. The row is that of the last task that failed on it, with rank and
   /// host.
   std::function<void(const sweep::RunRow& failed)> set_aside = [](const sweep::RunRow&) {};
-  /// Called about every 0.1 s; less often while this rank samples an array or releases a droplet (a second,
-  /// in large boxes).
+  /// Called about every 0.1 s; less often while this rank samples an array or releases a droplet, which takes
+  /// a second in large boxes.
   std::function<void()> idle = [] {};
   /// Whether the sweep should stop now. Then running tasks end as interrupted, and no more are handed out.
   std::function<bool()> stop_requested = [] { return false; };
 };
 
-/// Does rank 0 compute? `automatic`: with up to 16 ranks. With more, the gain of one rank is not worth the
-/// delay that its slices add before each worker's next task.
+/// Whether rank 0 computes. `automatic`: only with up to 16 ranks. With more, the gain of one rank is not
+/// worth the delay that its slices add before each worker's next task.
 bool computes(int num_ranks, MasterComputes choice);
 
 /// Rank 0's state of a sweep's tasks and ranks, kept over all rounds: ranks that were set aside stay set

@@ -24,19 +24,20 @@ class TaskOrder {
 
   /// No tasks yet.
   explicit TaskOrder(GroupOf group_of) : number_of_group_(std::move(group_of)) {}
-  /// Tasks of a round; maybe of new groups.
+  /// Adds the tasks of a round, possibly of new groups.
   void add(const std::vector<std::int64_t>& tasks);
 
   bool empty() const { return num_left_ == 0; }
-  /// Hands out a task; there must be one. Takes time for every running group. @param now  time [s], from any
-  /// moment on, the same in all calls
+  /// Hands out a task; there must be one. The cost is proportional to the number of running groups. @param
+  /// now  time [s], from any moment on, the same in all calls
   std::int64_t take(double now);
   void ended(std::int64_t task, double now);
   /// Records that a task that had ended has started again.
   void begun_again(std::int64_t task, double now);
 
  private:
-  /// Smaller: it is handed out earlier. Minus the expected run time, tasks handed out, number of the group.
+  /// Priority of a group, the smallest is next: minus the expected run time, number of tasks handed out,
+  /// number of the group.
   using Turn = std::tuple<double, std::int64_t, std::size_t>;
   struct Group {
     std::vector<std::int64_t> tasks;
@@ -52,7 +53,7 @@ class TaskOrder {
   GroupOf number_of_group_;
   std::int64_t num_left_ = 0;
   std::vector<Group> groups_;
-  // Groups with waiting tasks: those of which none runs, and the numbers of the others.
+  // Groups with waiting tasks: resting_ has those without a running task, running_ the numbers of the others.
   std::set<Turn> resting_;
   std::set<std::size_t> running_;
   std::unordered_map<std::int64_t, double> running_since_;  // by task

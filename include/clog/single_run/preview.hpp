@@ -8,7 +8,7 @@ namespace clog::single_run {
 struct MostCost {
   double time = 0;  ///< [t0]
   double steps = 0;
-  double seconds = 0;  ///< of computing, on this machine
+  double seconds = 0;  ///< computing time on this machine
   double samples = 0;
   double polygons = 0;
   double polygon_bytes = 0;

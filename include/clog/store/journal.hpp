@@ -18,17 +18,17 @@ namespace clog::store {
 
 class Draft;
 
-/// The journal of the table at this path is beside it (for a link, beside its target).
+/// Path of the journal of the table at this path: beside the table (for a link, beside its target).
 std::string journal_path(const std::string& table);
 OutputPath journal_place(const OutputPath& table);
 
 /// The records of a sweep since its table was last published, appended to a file beside the table: finished
 /// rows, and rows of running tasks with their snapshots. A record survives the death of the process once
 /// add() has returned, and a crash of the machine once flush() has returned. Opening the file drops an
-/// incomplete record at its end; a damaged record costs no other. An open journal is locked; the lock
-/// disappears with its process. If somebody removes or replaces the file, the lock no longer protects it:
-/// then nothing is written, neither to it nor to the file that took its place. Closing a journal without
-/// records removes it.
+/// incomplete record at its end; a damaged record does not make others unreadable. An open journal is locked;
+/// the lock disappears with its process. If somebody removes or replaces the file, the lock no longer
+/// protects it: then nothing is written, neither to it nor to the file that took its place. Closing a journal
+/// without records removes it.
 class Journal {
  public:
   using Entry = sweep::Report;
@@ -36,7 +36,7 @@ class Journal {
     std::vector<Entry> entries;       ///< oldest first
     std::int64_t num_unreadable = 0;  ///< damaged records between readable ones
     bool has_torn_end = false;        ///< its writer died while writing a record, or is still writing it
-    std::uint64_t num_bytes = 0;      ///< without a torn end
+    std::uint64_t num_bytes = 0;      ///< excluding a torn end
   };
 
   /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, another kind of
@@ -64,7 +64,8 @@ class Journal {
   /// Appends a record. @throws Error if the disk is full, or the file is no longer the one at the path; so do
   /// flush() and rewrite()
   void add(const sweep::RunRow& row, std::span<const std::byte> snapshot);
-  /// Another thread may call this once begin() has returned, while this one adds records.
+  /// Saves the records to disk. Once begin() has returned, another thread may call this while this one adds
+  /// records.
   void flush();
   /// Writes the header of a new file, and removes an incomplete record at the end; so does the first add().
   void begin();
@@ -88,8 +89,8 @@ class Journal {
   Contents contents_;  ///< contents at opening; num_bytes is kept up to date
   std::uint64_t num_rewritten_bytes_ = 0;
   bool has_begun_ = false;
-  std::unique_ptr<Draft> next_;               ///< the file that is to replace this one
-  std::uint64_t num_copied_ = 0;              ///< bytes of this file that the next one has or does not need
+  std::unique_ptr<Draft> next_;   ///< the file that is to replace this one
+  std::uint64_t num_copied_ = 0;  ///< bytes of this file that the next one already has or does not need
   std::atomic<std::uint64_t> num_whole_ = 0;  ///< bytes of complete records, for the thread of prepare()
 
   std::uint64_t copy_additions();

@@ -44,8 +44,9 @@ struct Column {
   ColumnRole role;
   ValueKind kind;
   std::size_t size;  ///< bytes in a packed row; shorter text is filled up with zeros, longer text is cut
-  const Parameter* parameter;  ///< nullptr unless it holds just this one
-  bool shapes_array;           ///< see Parameter
+  const Parameter*
+      parameter;      ///< the parameter that the column holds; nullptr if there is none or more than one
+  bool shapes_array;  ///< see Parameter
   std::function<Value(const RunRow&)> get;
   /// @throws Error if no row can hold this
   std::function<void(RunRow&, const Value&)> set;

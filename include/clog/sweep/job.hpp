@@ -18,8 +18,9 @@ class Job {
   /// Works for some milliseconds. Returns whether the task is over. Errors of the task end it with a row of
   /// status `failed`; advance() does not throw.
   virtual bool advance() = 0;
-  /// Whether row() and snapshot() have the task's present state. Never waits. A job in another process asks
-  /// that process, and is up to date for one call after advance() has received the answer.
+  /// Whether row() and snapshot() have the task's present state. Never waits. A job that another process
+  /// computes sends a request to this process; after advance() has received the answer, one call returns
+  /// true.
   virtual bool refresh() { return true; }
   /// The task's row; `interrupted` if it is not over.
   virtual RunRow row() const = 0;

@@ -25,10 +25,10 @@ struct Key {
   void apply(RunParameters& run, const std::string& value) const;
 };
 
-/// Every key, in the order in which they are shown. The only such list.
+/// All keys, in the order in which they are shown.
 const std::vector<Key>& keys();
-/// Suggestions for a word that is no key: the key of a paper's symbol (Gamma, w_ob), up to three names that
-/// contain it, or the nearest name. Empty if there is none.
+/// Suggestions for a word that is no key: the key whose symbol in the paper is this word (Gamma, w_ob), up to
+/// three names that contain the word, or the nearest name. Empty if there is none.
 std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names);
 /// @throws Error that names the nearest key
 const Key& find_key(std::string_view name);

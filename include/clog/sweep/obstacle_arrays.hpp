@@ -9,7 +9,7 @@
 
 namespace clog::sweep {
 
-/// Two runs have the same walls if they have the same values of all parameters that shape them.
+/// The values of all parameters that shape a run's walls, as text: runs with equal texts have the same walls.
 std::string array_key(const RunParameters& run);
 
 /// The walls of a sweep's runs, usually obstacle arrays. The last one is kept, because a sweep requests the

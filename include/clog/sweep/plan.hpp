@@ -45,7 +45,7 @@ class Plan {
   /// Whether every group has equally many seeds, and task s num_groups() + g is seed s of group g.
   bool has_equal_seeds() const { return layers_.size() == 1; }
 
-  /// Circles of its tasks.
+  /// The circles of the plan's tasks, by file.
   const CircleFiles& circle_files() const { return circle_files_; }
   /// Lists that were typed like a decimal with a comma, 0,5, one line each.
   const std::vector<std::string>& possible_decimals() const { return possible_decimals_; }

@@ -14,8 +14,8 @@ struct Points {
   std::vector<std::vector<std::string>> rows;
 
   bool empty() const { return keys.empty(); }
-  /// Drops all points, and names the keys of others. @throws Error if there is none, or one is unknown or
-  /// repeated
+  /// Drops all points, and sets the keys of those that will be added. @throws Error if there is none, or one
+  /// is unknown or repeated
   void begin(const std::vector<std::string>& names);
   /// @throws Error that names the point, if it lacks a text for a key, or has one that cannot be read
   void add(const std::vector<std::string>& texts);

@@ -44,7 +44,7 @@ class Settings {
   bool is_given(const std::string& name) const;
   /// The reference is valid until the key's text changes.
   const std::string& text(const std::string& name) const { return entry(name).text; }
-  /// The expanded values of a key; likewise.
+  /// The expanded values of a key; this reference is valid as long.
   const std::vector<std::string>& values(const std::string& name) const { return entry(name).values; }
   /// The scene of all runs; nullptr if they have several.
   const Scene* scene() const;

@@ -52,7 +52,8 @@ Eigen::Array2d SpForces::wedge_force(const Eigen::Array2d& place, const LocalFra
   return force;
 }
 
-/// Only a root, a division and a few sums depend on each other; the processor overlaps the rest.
+/// The chain of operations that wait for each other has only a root, a division and a few sums; the processor
+/// overlaps the others.
 [[gnu::always_inline]] inline Eigen::Array2d SpForces::scaled_force(double scale, const Eigen::Array2d& place,
                                                                     const LocalFrame& frame) const {
   const double stiffness = scale * contact_stiffness(wall_stiffness_, units::droplet_diameter);
@@ -129,7 +130,7 @@ void SpDroplet::integrate(int num_steps) {
   const double d = 0.5 * dt * units::gravity / run_.drag.terminal_speed;
   const double keep = (1 - d) / (1 + d);
   const double gain = dt * h * (keep + 1);
-  const auto half_loss = [&](const Eigen::Array2d& velocity) {  // of the drag in half a step
+  const auto half_loss = [&](const Eigen::Array2d& velocity) {  // energy lost to drag in half a step
     return d * units::droplet_mass * velocity.square().sum();
   };
 

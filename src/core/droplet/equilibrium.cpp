@@ -96,7 +96,7 @@ class Stiffness {
     const VectorXd excess = share * (found - step);
     corrections_.push_back({step, excess / step.dot(step + excess)});
   }
-  /// Updates a solution for the last correction.
+  /// Updates a displacement that solve() gave before the last correction.
   void correct(VectorXd& move) const { corrections_.back().apply_to(move); }
 
  private:
@@ -111,7 +111,7 @@ class Stiffness {
   Eigen::PartialPivLU<MatrixXd> along_, shape_factor_;
 };
 
-/// Forces along the axes of a given state, for states nearby.
+/// Forces and stiffness of states near a given one, along the axes of the given state.
 class ForceField {
  public:
   ForceField(const EquilibriumForces& forces, DropletState state)
@@ -170,9 +170,9 @@ class ForceField {
 /// stiffness (P. Deuflhard's natural monotonicity test): a test on forces would reject nearly every step,
 /// because contacts that open or close dominate the forces. Computing a stiffness costs as much as 80 steps,
 /// so each step, accepted or not, corrects the stiffness for the next step. The stiffness is recomputed where
-/// corrections do not help, and finally within difference_step of the rest. If such steps fail, or lead to a
-/// place without resistance, the search returns to the last computed stiffness and continues without
-/// corrections, with halved steps.
+/// corrections do not help, and once more at the end, within difference_step of the equilibrium. If such
+/// steps fail, or lead to a place without resistance, the search returns to the last computed stiffness and
+/// continues without corrections, with halved steps.
 class Search {
  public:
   Search(const EquilibriumForces& forces, const DropletState& initial)
@@ -209,10 +209,10 @@ class Search {
   bool halves_ = false;
   ArrayXd position_;
   ArrayXd begun_at_;  // where the last stiffness that resists was computed
-  // At the position:
+  // At the present position:
   Axes axes_;
   VectorXd force_;
-  VectorXd move_;  // displacement to the rest, according to the stiffness
+  VectorXd move_;  // displacement to the equilibrium, according to the stiffness
 
   DropletState state() {
     field_.move_to(position_);
@@ -229,7 +229,7 @@ class Search {
     return longest() < move_tolerance && force_.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight_;
   }
 
-  /// Tests rest with the axes of the present place.
+  /// Whether the droplet is at rest, tested with the axes of its present shape.
   bool rests_along_own_axes() {
     find_axes_and_force();
     move_ = stiffness_.solve(force_);

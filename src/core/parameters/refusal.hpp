@@ -26,7 +26,7 @@ void require(bool holds, const char* key, double value, const Words& reason_and_
   if (!holds) refuse(key, value, reason_and_remedy());
 }
 
-/// Rounds down to so many digits.
+/// Rounds down to this number of digits.
 double rounded_down(double value, int digits = 2);
 
 }  // namespace clog

@@ -233,8 +233,8 @@ std::vector<Parameter> droplet_entries() {
             {.column = "wall_stiffness",
              .symbol = "E_w",
              .unit = "g rho sigma^3",
-             .meaning = "E_w, stiffness of contact; auto: the stiffest that is stable with time-step and "
-                        "vertices (dp only)",
+             .meaning = "E_w, stiffness of contact; auto (dp only): the largest stiffness that is stable "
+                        "with time-step and vertices",
              .automatic_in = &polygons,
              .range = {positive, {}},
              .words = {"auto"}}),
@@ -310,19 +310,17 @@ std::vector<Parameter> own_circle_entries() {
                         "array or on the line of the entrance",
              .scope = &own_circles,
              .shapes_array = true}),
-      entry(
-          "length", [](auto& run) -> auto& { return run.obstacles.length; },
-          {.column = "length",
-           .symbol = R"(L_x)",
-           .unit = "sigma",
-           .meaning =
-               "length along the flow after which user-supplied circles repeat; 0: boxes*box. For triangular "
-               "and rhombic lattices: largest period along the flow, adjusted to the lattice like box",
-           .role = numerics,
-           .scope = &lengths,
-           .range = {not_negative, to(1e7, "no droplet travels so far", "use at most 1e7")},
-           .shapes_array = true,
-           .before = 0.0}),
+      entry("length", [](auto& run) -> auto& { return run.obstacles.length; },
+            {.column = "length",
+             .symbol = R"(L_x)",
+             .unit = "sigma",
+             .meaning = "length along the flow after which user-supplied circles repeat; 0: boxes*box. For "
+                        "triangular and rhombic lattices: upper limit of the period along the flow; 0: box",
+             .role = numerics,
+             .scope = &lengths,
+             .range = {not_negative, to(1e7, "no droplet travels so far", "use at most 1e7")},
+             .shapes_array = true,
+             .before = 0.0}),
       entry("side-walls", [](auto& run) -> auto& { return run.obstacles.side_walls; },
             {.column = "side_walls",
              .meaning = "on: straight walls along the flow at y=0 and y=box beside user-supplied circles; "
@@ -462,7 +460,8 @@ std::vector<Parameter> period_entries() {
             {.column = "box",
              .symbol = "L",
              .unit = "sigma",
-             .meaning = "period of the obstacle array across the flow and, with boxes=1, along the flow",
+             .meaning = "period of the obstacle array across the flow and, with boxes=1, along the flow; for "
+                        "lattices an upper limit of the period",
              .role = numerics,
              .scope = &arrays,
              .range = {from(1, "such a box has no room for a droplet",
@@ -472,8 +471,8 @@ std::vector<Parameter> period_entries() {
       entry("boxes", [](auto& run) -> auto& { return run.obstacles.boxes; },
             {.column = "boxes",
              .symbol = R"(n_\mathrm{box})",
-             .meaning = "number of boxes along the flow after which the array repeats; no droplet gets so "
-                        "far in an array of terminal-speed*max-time/box boxes or more",
+             .meaning = "number of boxes along the flow after which the array repeats. With "
+                        "terminal-speed*max-time/box boxes or more, no droplet reaches the repetition",
              .role = numerics,
              .scope = &arrays,
              .range = {from(1, "it is the number of boxes along the flow after which the array repeats",
@@ -617,7 +616,8 @@ std::vector<Parameter> wall_entries() {
   return {
       entry("wall-contact", [](auto& run) -> auto& { return run.dp.wall_contact; },
             {.column = "wall_contact",
-             .meaning = "a wall pushes the nearest point of every edge, or only the vertices (as published)",
+             .meaning = "edge: a wall pushes the nearest point of every edge; vertex: a wall pushes only the "
+                        "vertices, as published",
              .role = numerics,
              .scope = &polygons}),
       entry(
@@ -636,9 +636,9 @@ std::vector<Parameter> wall_entries() {
       entry("wall-tension", [](auto& run) -> auto& { return run.dp.wall_tension; },
             {.column = "wall_tension",
              .symbol = R"(\Gamma_\mathrm{w}/\Gamma)",
-             .meaning = "tension of the interface on walls divided by Gamma: minus the cosine of Young's "
-                        "contact angle; auto: minus the mean cosine of receding-angle and advancing-angle if "
-                        "both are given, otherwise 1",
+             .meaning = "tension of the interface on walls, divided by Gamma; it is minus the cosine of "
+                        "Young's contact angle; auto: minus the mean cosine of receding-angle and "
+                        "advancing-angle if both are given, otherwise 1",
              .scope = &polygons,
              .range = {from(0.1, "below 0.1 the interface on a wall would buckle", "use 0.1..1"),
                        to(1, "it is minus the cosine of the contact angle", "use 0.1..1")},
@@ -711,8 +711,8 @@ std::vector<Parameter> self_contact_entries() {
              .before = name(FilmFriction::off)}),
       entry("gravity", [](auto& run) -> auto& { return run.dp.gravity; },
             {.column = "gravity",
-             .meaning =
-                 "weight and mean drag act on the area, as a pressure, or on the vertices (as published)",
+             .meaning = "area: weight and mean drag act on the area, as a pressure; vertex: they act on the "
+                        "vertices, as published",
              .scope = &polygons}),
   };
 }
@@ -731,8 +731,8 @@ std::vector<Parameter> verdict_entries() {
       entry("clog-detection", [](auto& run) -> auto& { return run.clog_detection; },
             {.column = "clog_detection",
              .meaning = "certified: a droplet that slows down counts as clogged if a stable equilibrium is "
-                        "proved to be near, or if its energy is below clog-energy; threshold: only if its "
-                        "energy is below clog-energy",
+                        "proved to be near, or if its kinetic energy stays below clog-energy; threshold: "
+                        "only if its kinetic energy stays below clog-energy",
              .role = numerics}),
       entry("dwell-length", [](auto& run) -> auto& { return run.dwell_length; },
             {.column = "dwell_length",

@@ -119,7 +119,7 @@ class Contacts {
           std::min({distance(begin), distance(end), distance(nearest_on_segment(wall.centre(), begin, end))},
                    [](const WedgeDistance& a, const WedgeDistance& b) { return a.distance < b.distance; });
       const double overlap = range_ - nearest.distance;
-      constexpr double round_off = 1e-12;  // of a wall along the flow, which supports nothing
+      constexpr double round_off = 1e-12;  // of the normal of a wall along the flow, which supports nothing
       const double upstream = std::abs(nearest.normal[0]) < round_off ? 0 : nearest.normal[0];
       is_touched |= take(i, overlap, overlap * upstream, touched);
     }
@@ -220,7 +220,8 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& a
     const Arc& to = arcs[(i + 1) % arcs.size()];
     if (from.obstacle == to.obstacle) continue;
     if (overlap(contacts.touched()[from.obstacle], contacts.touched()[to.obstacle])) continue;
-    // One side may push only across the flow, or a little downstream; it is a side of the gap even then.
+    // One of the two obstacles must support the droplet. The other one may push across the flow, or a little
+    // downstream, and is a side of the gap all the same.
     const std::vector<Touched>& touched = contacts.touched();
     if (std::max(touched[from.obstacle].support, touched[to.obstacle].support) <= 0) continue;
     // The outward normal of a counter-clockwise contour points downstream where y grows.

@@ -24,10 +24,11 @@ void choose_vertices(RunParameters& run, double obstacle_diameter) {
 
 int num_vertices(const RunParameters& run) { return *run.dp.vertices; }
 
-/// The narrowest passage has the width of an edge at rest.
+/// A passage must be at least as wide as an edge at rest is long.
 double edge_length(const RunParameters& run) { return units::regular_edge_length(*run.dp.vertices); }
 
-/// The regular polygon in which pressure balances line tension and springs, a little smaller than a_0.
+/// The regular polygon in which pressure balances line tension and springs; its area is a little smaller than
+/// a_0.
 Eigen::ArrayXd free_polygon(const RunParameters& run) {
   const int n = *run.dp.vertices;
   const double spring =
@@ -35,7 +36,7 @@ Eigen::ArrayXd free_polygon(const RunParameters& run) {
   const double rest_edge = units::regular_edge_length(n);
   // K_a (a_0 - a) = T dP/da, with T the tension of an edge and dP/da = P/(2a). The correction is small, so
   // the iteration converges at once. If the area is not stiffer than the tension there is no such state, and
-  // the area stays half of a_0.
+  // the result is half of a_0.
   double area = units::rest_area;
   for (int i = 0; i < 50; ++i) {
     const double edge = units::regular_edge_length(n, area);
@@ -104,8 +105,8 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   // exceeded exerts its largest force, whatever the droplet does; the search continues until every wall bears
   // its force.
   constexpr int most_yields = 20;
-  // If all walls can bear their forces, the excess is below the first excess by then
-  // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above even after all yields.
+  // If all walls can bear their forces, the excess after this many yields is below the first excess
+  // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above, even after most_yields.
   constexpr int yields_until_excess_has_fallen = 12;
   const double bearable = 1e-6 * units::droplet_mass * units::gravity / *run.dp.vertices;
   WallTouches touches(run, obstacles);

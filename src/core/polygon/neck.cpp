@@ -11,12 +11,12 @@ namespace {
 /// A part of the droplet is a lobe if a circle of its area is at least this many times as wide as the neck.
 /// What a chord cuts off from a circle has at most half of the area of a circle as wide as the chord.
 constexpr double lobe_width = 2;
-/// A lobe also has at least this fraction of the droplet's area. Otherwise a droplet would only lose a bead:
-/// retracting films end in beads of a thousandth.
+/// A lobe also has at least this fraction of the droplet's area. A smaller part is only a bead: retracting
+/// films end in beads of a thousandth of the area.
 constexpr double lobe_share = 0.02;
 
-/// Cosine of an angle that counts as right: all segments of a bridge with straight sides have the same
-/// length.
+/// Cosine of an angle that counts as right. Without this tolerance round-off would decide which of the
+/// equally long segments across a bridge with straight sides is the shortest.
 constexpr double round_off = 1e-9;
 /// Whether a cosine, or sine, times both lengths is at most the round-off. Avoids square roots.
 bool is_hardly_positive(double value, double squared_lengths) {

@@ -28,7 +28,7 @@ double first_search(const RunParameters& run) {
   // (docs/notes/2026-11-25-searches-with-friction.md).
   constexpr double slow_with_friction = 1e-10;
   const bool has_friction = run.dp.friction > 0 || run.dp.yield_traction > 0;
-  const double coasting = farthest_rest / (relaxation_time(run) * run.drag.terminal_speed);  // over V_t
+  const double coasting = farthest_rest / (relaxation_time(run) * run.drag.terminal_speed);  // divided by V_t
   return std::min(has_friction ? slow_with_friction : slow, coasting * coasting);
 }
 /// After a failed search the next one waits until E_k/E_t has fallen by this factor again,
@@ -219,8 +219,10 @@ void DropletRun::check() {
     status_ = RunStatus::flowing;
   if ((status_ != RunStatus::running || steps_done_ % steps_per_crossing_check == 0) &&
       has_crossed_itself()) {
-    message_ = fmt::format("the interface crossed itself by t={:.6g}; try {}a larger line-tension", time(),
-                           run_.dp.inertia > 1 ? "inertia=1 or " : "");
+    message_ = fmt::format(
+        "the interface crossed itself by t={:.6g}; try a larger line-tension, a larger wall-stiffness or a "
+        "smaller inertia",
+        time());
     status_ = RunStatus::failed;
   }
 }

@@ -36,11 +36,11 @@ namespace {
 /// draws from has three dimensions: the place, and by how much the radius exceeds the smallest one, its
 /// `excess`. Discs of one size are the flat case, excess 0.
 ///
-/// Discs arrive as a Poisson process in squares that may still have room, at first the cells of a grid, in
-/// every round independently in every square. They are made square by square, in order of memory; only those
-/// with room among the points of earlier rounds are then tried in random order. After each round squares
-/// without room are dropped and the others cut into quarters. A square has a range of excesses, which is
-/// halved when it exceeds the square's width. Room means room for the smallest disc of the range, so no
+/// Discs arrive as a Poisson process in squares that may still have room, at first the cells of a grid,
+/// independently in every round and every square. They are made square by square, in order of memory; only
+/// those with room among the points of earlier rounds are then tried in random order. After each round
+/// squares without room are dropped and the others cut into quarters. A square has a range of excesses, which
+/// is halved when it exceeds the square's width. Room means room for the smallest disc of the range, so no
 /// acceptable disc is excluded.
 class SequentialAddition {
  public:

@@ -36,7 +36,8 @@ TEST(SpDroplet, RestsOnAnObstacleAtTheAnalyticSag) {
 }
 
 TEST(SpDroplet, FollowsTheDampedOscillatorToSecondOrder) {
-  // Head-on contact is linear: M x'' = M g - b x' - k x from x = 0 at rest, under-damped here.
+  // Head-on contact is linear: M x'' = M g - b x' - k x, with the disk at rest at x = 0 in the beginning.
+  // Here it is under-damped.
   const double stiffness = 30;
   const double k = 4 * stiffness;
   const double mass = units::droplet_mass;
@@ -62,7 +63,7 @@ TEST(SpDroplet, FollowsTheDampedOscillatorToSecondOrder) {
 }
 
 TEST(SpDroplet, MeetsAnObstacleAtAnyAllowedStepAndSpeed) {
-  // A head-on collision at speed 1 ends at the same resting place for every step.
+  // A head-on collision at speed 1 ends at the same place of rest for every time step.
   for (const double dt : {0.01, 0.05, 0.2}) {
     const ObstacleArray obstacle(20, {{8, 0, 0.15}});
     RunParameters run = free_disk(1, dt);

@@ -12,7 +12,8 @@
 namespace clog {
 namespace {
 
-/// Every pair of edges, p + s u = q + t v solved for s and t: a different formula from the tested one.
+/// Counts the crossings of every pair of edges: solves p + s u = q + t v for s and t, which is not the tested
+/// formula.
 int crossings_of_every_pair(const Eigen::ArrayXd& position) {
   const int n = static_cast<int>(position.size() / 2);
   const auto point = [&](int i) { return Eigen::Array2d(position[i % n], position[n + i % n]); };

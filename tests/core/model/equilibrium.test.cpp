@@ -63,7 +63,8 @@ DropletRun falls_onto(RunParameters run, std::vector<Obstacle> obstacles, double
 const std::vector<Obstacle> narrow_gap{{10, 9.6, 0.15}, {10, 10.4, 0.15}};
 const std::vector<Obstacle> single{{10, 10, 0.15}};
 
-/// The area's centroid; the vertices' mean also moves when the interface slides around itself.
+/// The centroid of the area. The mean of the vertices would also move if only the interface slid around the
+/// droplet.
 Eigen::Array2d centre(const DropletState& state) {
   return state.size() > 1 ? area_centroid(state.position) : state.centre();
 }
@@ -172,8 +173,8 @@ TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
   EXPECT_NEAR(found->position[1], 10, 1e-8);
 }
 
-/// Points that springs tie to their places and to their neighbours; each coordinate has a much stiffer
-/// contact on its upper side. All quantities are in units of a point's weight.
+/// Points tied by springs to their places and to their neighbours. Each coordinate also has an upper bound, a
+/// contact that is much stiffer than the springs. All quantities are in units of a point's weight.
 class PointsWithContacts {
  public:
   static constexpr Eigen::Index num_points = 16;
@@ -193,7 +194,8 @@ class PointsWithContacts {
     }
   }
 
-  /// Solves for one set of contacts after another until the set equals the contacts that touch.
+  /// Solves for the position with a given set of contacts, until this set equals the set of contacts that
+  /// touch.
   Eigen::VectorXd rest() const {
     Eigen::VectorXd position = Eigen::VectorXd::Zero(size);
     for (int attempt = 0; attempt < 100; ++attempt) {
@@ -243,7 +245,7 @@ TEST(Equilibrium, IsFoundThoughContactsOpenAndCloseOnTheWay) {
 }
 
 TEST(Equilibrium, IsFoundAtTheFirstSearchEvenIfItsFirstStepsLeadAstray) {
-  // Half of these searches return to their start, and find the rest with halved steps.
+  // Half of these searches have to return to their start, and find the place of rest with halved steps.
   int num_early = 0;
   for (const std::uint32_t seed : {3u, 7u, 11u, 14u, 16u}) {
     RunParameters run;
@@ -267,7 +269,7 @@ TEST(Equilibrium, IsFoundAtTheFirstSearchEvenIfItsFirstStepsLeadAstray) {
 }
 
 TEST(Equilibrium, TooFarAwayIsRefused) {
-  // The droplet is so soft that it touches both obstacles all the way, and its energy is convex.
+  // The droplet is so soft that it touches both obstacles wherever it is moved here, so its energy is convex.
   const RunParameters run = resolve(soft_disk(2));
   const ObstacleArray obstacles(20, narrow_gap);
   Eigen::ArrayXd position(2);
@@ -286,12 +288,13 @@ TEST(Equilibrium, TooFarAwayIsRefused) {
 TEST(Equilibrium, OnTopOfAnObstacleIsRefused) {
   const RunParameters run = resolve(soft_disk());
   Eigen::ArrayXd position(2);
-  position << 10 - 0.65 + pi / (16 * 5), 10;  // no force remains
+  position << 10 - 0.65 + pi / (16 * 5), 10;  // here the forces balance
   EXPECT_FALSE(
       model_of(run).equilibrium(run, ObstacleArray(20, single), test::state_of(position)).has_value());
 }
 
-/// Near the largest line tension that passes this orifice, about 1.26 with its round tips.
+/// A run at a line tension near the largest one at which a droplet passes this orifice. With its round tips
+/// this is about 1.26.
 DropletRun through_orifice(double line_tension, ClogDetection detection) {
   RunParameters run = robust(line_tension);
   run.clog_detection = detection;

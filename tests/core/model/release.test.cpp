@@ -56,8 +56,8 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
 }
 
 TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
-  // The minimiser cycles with the springs of growth in three of these cases, and with the droplet's own
-  // springs in one; one case needs weaker springs, too.
+  // In three of these cases the minimiser cycles with the springs of growth, in one with the droplet's own
+  // springs. One case also needs weaker springs.
   for (const auto& [vertices, line_tension, seed] :
        {std::tuple{64, 0.1, 141u}, {64, 0.05, 113u}, {64, 0.05, 141u}, {32, 0.1, 76u}, {32, 0.05, 303u}}) {
     SCOPED_TRACE(std::to_string(vertices) + " vertices, seed " + std::to_string(seed));
@@ -72,7 +72,7 @@ TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
 }
 
 TEST(Release, ComesToRestBetweenObstaclesThatNearlyTouch) {
-  for (const std::uint32_t seed : {5u, 19u}) {  // damped motion alone takes forever here
+  for (const std::uint32_t seed : {5u, 19u}) {  // damped motion alone would take forever here
     RunParameters run = in_small_box(1, 0.05);
     run.obstacles.box = 30;
     run = resolve(run);

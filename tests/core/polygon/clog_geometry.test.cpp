@@ -23,8 +23,8 @@ struct Scene {
   ClogGeometry geometry() const { return clog_geometry(position, {obstacles, walls}, range); }
 };
 
-/// An obstacle that touches a disc of diameter 1 around the origin, at this angle seen from the origin
-/// [degrees].
+/// An obstacle that touches a disc of diameter 1 around the origin. The angle is the obstacle's direction
+/// from the origin [degrees].
 Obstacle against_the_disc(double angle) {
   const double distance = 0.5 + radius + 0.5 * range;
   const double t = angle * std::numbers::pi / 180;
@@ -96,7 +96,7 @@ TEST(ClogGeometry, ADiscOnTwoObstaclesIsSqueezed) {
 }
 
 TEST(ClogGeometry, ADiscWedgedAgainstAnObstacleBesideItIsSqueezed) {
-  // The obstacle beside the disc pushes across the flow, or a little downstream.
+  // The second obstacle is beside the disc and pushes it across the flow, or a little downstream.
   for (const double beside : {-90.0, -100.0}) {
     const ClogGeometry geometry = disc_on({beside, 17}).geometry();
     expect_counts(geometry, 0, 1, 2);
@@ -116,15 +116,15 @@ TEST(ClogGeometry, ADropletOnOneObstacleIsHeldByNeither) {
 
 TEST(ClogGeometry, ThereIsNoGapWithinAPost) {
   expect_counts(disc_on({-20, 20}).geometry(), 0, 1, 2);
-  // With the circles between them, they form one post, which is one contact.
+  // With circles between the two obstacles, all of them form one post, which is one contact.
   const ClogGeometry geometry = disc_on({-20, 20, -10, 10, 0}).geometry();
   expect_counts(geometry, 0, 0, 1);
   EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
-  // Between two contacts with the post, the droplet touches another obstacle.
+  // Along the contour, the droplet touches another obstacle between two contacts with the post.
   expect_counts(disc_on({-20, -10, 0, 10, 20, 100}).geometry(), 0, 1, 2);
 }
 
-/// A wall along the flow, on either side; the droplet overlaps it by half the range.
+/// A wall along the flow, on one side of the droplet, which overlaps the wall by half the range.
 Wedge side_wall(double side) { return {.tip = {0, side * (0.5 + 0.5 * range)}, .axis = {0, side}}; }
 
 TEST(ClogGeometry, ADiscBetweenAnObstacleAndASideWallIsSqueezed) {
@@ -146,7 +146,7 @@ TEST(ClogGeometry, ThereIsNoGapBetweenAWallAndAPostThatOverlapsIt) {
     expect_counts(apart.geometry(), 0, 1, 2);
     expect_counts(overlapping.geometry(), 0, 0, 2);
     EXPECT_EQ(overlapping.geometry().mechanism(), ClogMechanism::none);
-    // Another circle joins the post to the wall.
+    // An additional circle joins the post to the wall.
     const Obstacle circle = apart.obstacles[0];
     apart.obstacles.push_back({circle.x + 0.1, circle.y + side * 0.1, 0.2});
     apart.obstacles.push_back({circle.x + 0.15, circle.y + side * 0.25, 0.2});
@@ -186,7 +186,7 @@ TEST(ClogGeometry, ADropletHangsOverAWholePost) {
   for (const double lobe : {0.18, 0.22}) {
     Scene scene = horseshoe(lobe, lobe);
     expect_counts(scene.geometry(), 1, 0, 1);
-    scene.obstacles.push_back({0.1, 0, 0.1});  // ends at 0.2
+    scene.obstacles.push_back({0.1, 0, 0.1});  // its downstream end is at 0.2
     expect_counts(scene.geometry(), lobe > 0.2 ? 1 : 0, 0, 1);
   }
 }
@@ -239,12 +239,12 @@ TEST(ClogGeometry, AHorseshoeWhoseLobesStandInGapsIsHybrid) {
 /// the flow.
 TEST(ClogGeometry, WeighsSupportByTheForceAgainstTheFlow) {
   Scene scene = horseshoe(0.4, 0.4);
-  scene.obstacles.push_back({0.4 + radius, 0.3, radius});  // under one lobe, overlap: the whole range
+  scene.obstacles.push_back({0.4 + radius, 0.3, radius});  // under one lobe; the overlap is the whole range
   const double before = horseshoe(0.4, 0.4).geometry().wrapped_support;
   EXPECT_EQ(before, 1);
-  // The half ring has the overlap range/2 along a width of 2 inner. The lobe's flat end is at the distance of
-  // the radius; its overlap is range - s^2/(2 radius) at s from the middle, 4/3 sqrt(2 radius range) range in
-  // all.
+  // The half ring has the overlap range/2 along a width of 2 inner. The flat end of the lobe is at the
+  // distance `radius` from the obstacle's centre. Its overlap is range - s^2/(2 radius) at a distance s from
+  // the middle, so its integral is 4/3 sqrt(2 radius range) range.
   const double ring = range / 2 * 2 * inner;
   const double flat = 4.0 / 3 * std::sqrt(2 * radius * range) * range;
   EXPECT_NEAR(scene.geometry().wrapped_support, ring / (ring + flat), 0.04);

@@ -56,7 +56,7 @@ DropletState above_the_obstacle(const RunParameters& run, double phase, double a
   return state;
 }
 
-/// Replaces a state by the mean of it and its mirror image, in which vertices `i` and `first - i` are
+/// Replaces a state by the mean of the state and its mirror image, in which vertices `i` and `first - i` are
 /// exchanged.
 void make_symmetric(DropletState& state, int first) {
   const auto n = static_cast<int>(state.size());
@@ -105,8 +105,8 @@ Hanging hang(const RunParameters& run, bool on_an_edge) {
   return hanging;
 }
 
-/// As the droplet slides over the obstacle, its energy has a ripple with a period of one edge, whose extremes
-/// are the two symmetric states. @return the largest force of the ripple divided by the weight
+/// As the droplet slides over the obstacle, its energy has a ripple with a period of one edge. The extremes
+/// of the ripple are the two symmetric states. @return the largest force of the ripple divided by the weight
 double held_by_ripple(const Hanging& vertex, const Hanging& edge) {
   return std::numbers::pi * std::abs(vertex.energy - edge.energy) / vertex.longest_edge /
          (units::droplet_mass * units::gravity);
@@ -140,7 +140,8 @@ TEST_P(MeshHold, IsBoundedByItsColumnAndFallsAsTheSquareOfTheEdge) {
   EXPECT_LT(bound_before, 0.01) << "of 512 vertices";
 }
 
-/// A droplet at rest would be held by its mesh: nothing else can hold two lobes over one obstacle.
+/// A droplet at rest here would be held by its mesh, because nothing else can hold two lobes over one
+/// obstacle.
 TEST_P(MeshHold, LetsADropletSlideOffAsItHasTo) {
   const RunParameters run = GetParam().parameters(GetParam().line_tension, 256);
   const auto obstacle = std::make_shared<const ObstacleArray>(one_obstacle());

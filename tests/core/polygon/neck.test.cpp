@@ -78,7 +78,7 @@ TEST(ThinnestNeck, IsTheBridgeBetweenTwoCircles) {
             << pieces << " pieces, turned by " << angle;
 }
 
-/// No convex shape has a neck, however thin it is and however few vertices it has.
+/// A convex shape has no neck, however thin it is and however few vertices it has.
 TEST(ThinnestNeck, IsNotThereInCirclesAndEllipses) {
   for (const int num_vertices : {32, 128, 129, 512, 2048})
     for (const double across : {0.5, 0.1, 0.01, 0.001})
@@ -94,14 +94,14 @@ TEST(ThinnestNeck, IsTheWidthOfAStadiumIfItsHalvesAreLobes) {
   EXPECT_EQ(thinnest_neck(stadium(0.99 * enough, width, 64)), INFINITY);
 }
 
-/// The smaller circle has 1.8 or 2.2 times the width of the bridge, which is very short.
+/// The diameter of the smaller circle is 1.8 or 2.2 times the width of the bridge, which is very short.
 TEST(ThinnestNeck, JoinsPartsThatAreTwiceAsWide) {
   const double width = 0.2;
   EXPECT_EQ(thinnest_neck(bridged_circles(0.6, 0.9 * width, width, 64, 0.75)), INFINITY);
   EXPECT_NEAR(thinnest_neck(bridged_circles(0.6, 1.1 * width, width, 64, 0.79)), width, 1e-12);
 }
 
-/// The smaller circle has 0.019 or 0.021 of the area of both.
+/// The area of the smaller circle is 0.019 or 0.021 times the area of both circles.
 TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
   const double width = 0.01;
   for (const double share : {0.019, 0.021}) {
@@ -111,9 +111,9 @@ TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
   }
 }
 
-/// The distances from two points at +-a have the product b^2: the oval is 2 sqrt(b^2 - a^2) wide in the
-/// middle for a < b < sqrt(2) a. Edges are chords there, whose distance from the contour is l^2/8 times its
-/// curvature.
+/// On the contour of this oval, the distances from two points at +-a have the product b^2. For a < b <
+/// sqrt(2) a it is 2 sqrt(b^2 - a^2) wide in the middle. There an edge of length l is a chord, whose distance
+/// from the contour is l^2/8 times the contour's curvature.
 TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {
   const double a = 0.5;
   for (const double b : {0.5004, 0.502, 0.51}) {
@@ -148,8 +148,8 @@ TEST(ThinnestNeck, IsLookedForBelowABoundOnly) {
   EXPECT_EQ(thinnest_neck(shape, 0.0999), INFINITY);
 }
 
-/// A film over an obstacle, thickest at its ends, and two lobes with water between them, however close they
-/// are.
+/// A film over an obstacle, which is thickest at its ends, and two lobes with water between them. The water
+/// is no neck, however close the lobes are.
 TEST(ThinnestNeck, IsTheFilmAboveAnObstacleAndNotTheGapBetweenLobes) {
   const double inner = 0.15, film = 0.04, lobe = 0.3, gap = 0.01;
   std::vector<Eigen::Array2d> points;

@@ -70,7 +70,7 @@ TEST(DropletRun, IsTheSameHoweverItIsSliced) {
   expect_identical(at_once, result_of(small_run(), 7));
 }
 
-/// Short enough for a test, long enough for three snapshots.
+/// A run that is short enough for a test and long enough for three snapshots.
 RunParameters long_run(Model model) {
   RunParameters run;
   run.obstacles.box = 20;
@@ -183,8 +183,8 @@ TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
   EXPECT_THROW(resume_in_array(run, bytes), Error);
 }
 
-/// Snapshots with a correct checksum and wrong content, with any value for any number. Either resume()
-/// refuses them, or the run continues to its end without a crash or an endless loop.
+/// Tries snapshots with a correct checksum and wrong content, in which any number has any value. Either
+/// resume() refuses such a snapshot, or the run continues to its end without a crash or an endless loop.
 TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
   RunParameters run = with_friction(soft_among_walls(), 0.02, FilmFriction::off);
   run.dp.vertices = 32;
@@ -217,10 +217,10 @@ TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
       std::memcpy(&bytes[at], before, word);
     }
   const auto numbers_of_shape = static_cast<int>(4 * 32);
-  EXPECT_GT(refused, 3 * numbers_of_shape);  // infinite, not a number, or too large
+  EXPECT_GT(refused, 3 * numbers_of_shape);  // numbers that are infinite, not a number, or too large
 }
 
-/// The time that a droplet rested before it clogged does not depend on how the clog is found.
+/// The time for which a droplet rested before its clog does not depend on how the clog is detected.
 TEST(DropletRun, ItsDwellsDoNotDependOnHowClogsAreFound) {
   RunParameters run = small_run(2);
   run.max_time = 5000;
@@ -278,7 +278,8 @@ TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   EXPECT_EQ(run.result().hold.mechanism, ClogMechanism::squeezed);
   EXPECT_GE(run.result().hold.geometry.num_arcs, 2);
 
-  // Further integration must not free the droplet: the same run with a threshold that it cannot reach.
+  // Further integration must not free the droplet. So the same run continues with a threshold that the
+  // droplet cannot reach.
   RunParameters on = parameters;
   on.clog_energy = 1e-300;
   on.max_time = 2 * run.result().time + 100;
@@ -300,7 +301,7 @@ TEST(DropletRun, KeepsItsContactsShallowAndItsAreaOnTheWay) {
 }
 
 TEST(DropletRun, ADivergedRunIsAResult) {
-  // Unchecked parameters: the step is too long for the contacts of this soft disk.
+  // These parameters have not been checked: the step is too long for the contacts of this soft disk.
   RunParameters parameters = small_run();
   parameters.model = Model::sp;
   parameters.wall_stiffness = 1e9;
@@ -311,7 +312,7 @@ TEST(DropletRun, ADivergedRunIsAResult) {
 }
 
 TEST(DropletRun, ABurstPolygonIsAResultToo) {
-  // Unchecked parameters: a step that would have to be split too often.
+  // These parameters have not been checked: the step would have to be split into too many parts.
   RunParameters parameters = small_run();
   parameters.drag.terminal_speed = 100;
   parameters.time_step = 5;
@@ -339,7 +340,7 @@ TEST(DropletRun, ADropletThatHasNotFallenYetIsNotClogged) {
   parameters.obstacles.gap = 1.2;
   parameters.obstacles.density = {};
   parameters.drag.terminal_speed = 10;
-  parameters.clog_energy = 5e-4;  // the droplet is slower than this at its first checks
+  parameters.clog_energy = 5e-4;  // at its first checks the droplet is still slower than this
   DropletRun run(parameters);
   run.advance(5);
   EXPECT_EQ(run.result().status, RunStatus::running);
@@ -385,7 +386,7 @@ RunParameters falls_onto_a_circle(double line_tension, double offset, int vertic
 }
 
 /// When the liquid hangs on both sides of a thin film over the obstacle, four interfaces of tension Gamma
-/// carry at most all of its weight: below Gamma = pi/16 none holds it. A stiffer droplet also lies on the
+/// have to carry all of its weight, which they cannot below Gamma = pi/16. A stiffer droplet also lies on the
 /// obstacle itself.
 TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
   for (const int vertices : {64, 128, 256}) {
@@ -400,8 +401,8 @@ TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
   }
 }
 
-/// A droplet that breaks up in a head-on collision slips off to one side in an off-centre one, unless it is
-/// softer.
+/// A droplet that would break up in a head-on collision slips off to one side in an off-centre collision.
+/// Only a softer droplet breaks up there.
 TEST(BreakUp, OffCentreADropletHasToBeSofterToBreak) {
   for (const double side : {-1.0, 1.0}) {
     const RunResult passed = result_of(falls_onto_a_circle(0.15, 0.1 * side), 100);
@@ -426,8 +427,9 @@ TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
   EXPECT_EQ(same.kinetic_energy_ratio, broken.kinetic_energy_ratio);
 }
 
-/// The run starts where the neck of a droplet that hangs over an obstacle still gets thinner; its rest is
-/// known. A rest with too thin a neck does not count, and the droplet breaks when its neck gets that thin.
+/// The run starts from a droplet that hangs over an obstacle. Its neck still gets thinner, and its place of
+/// rest is known. If the neck is too thin at rest, the rest does not count as a clog, and the droplet breaks
+/// as soon as its neck gets too thin.
 TEST(BreakUp, ComesBeforeACertifiedClog) {
   RunParameters run;
   run.dp.perimeter_spring = PerimeterSpring::rest;
@@ -451,7 +453,7 @@ TEST(BreakUp, ComesBeforeACertifiedClog) {
   ASSERT_LT(at_rest, now);
   run.max_time = 1000;
   const auto obstacles = std::make_shared<const ObstacleArray>(sample_obstacles(run.obstacles, run.seed));
-  for (const double share : {-0.5, 0.5}) {  // on either side of the neck at rest
+  for (const double share : {-0.5, 0.5}) {  // limits below and above the width of the neck at rest
     run.dp.break_up_neck = at_rest + share * (now - at_rest);
     DropletRun on(run, obstacles, state);
     while (!on.advance(1000)) continue;

@@ -11,9 +11,9 @@ namespace clog {
 namespace {
 
 constexpr double dwell_length = 0.05;
-constexpr double speed = 0.5;  // so that dwells of more than 1 t0 are recorded
+constexpr double speed = 0.5;  // with this speed, dwells of more than 1 t0 are recorded
 
-/// A course with checks once in a unit of time: the droplet rests at each place in turn, for the given time.
+/// A course with one check per unit of time: the droplet rests at each place in turn, for the given time.
 struct Stand {
   double place;
   int time;
@@ -41,7 +41,7 @@ std::vector<double> lengths(const Dwells& dwells) {
 }
 
 TEST(DwellRecord, FindsWhereAndWhenTheDropletStoodAndForHowLong) {
-  // The first dwell begins at the release; one ends where the next begins.
+  // The first dwell begins at the release. Each dwell ends when the next one begins.
   const Dwells dwells = Course({{0, 3}, {1, 20}, {2, 5}, {3, 40}, {4, 7}}).found();
   EXPECT_EQ(lengths(dwells), (std::vector<double>{40, 20, 4}));
   EXPECT_EQ(dwells.longest[0].distance, 3);
@@ -75,7 +75,7 @@ TEST(DwellRecord, CountsTheDwellUnderWayUnlessItIsAClogs) {
 TEST(DwellRecord, SeesADropletThatCreepsAsStandingUntilItHasCrept) {
   DwellRecord record(dwell_length, speed);
   for (int time = 1; time <= 1000; ++time) record.add(time, time / 1024.0);
-  // The droplet is beyond 0.05 after a time of 52, and again after the same time.
+  // The droplet moves by more than 0.05 in a time of 52, again and again.
   EXPECT_EQ(lengths(record.found(1000, false)), std::vector<double>{52});
   EXPECT_EQ(record.found(1000, false).last_distance, 19 * 52 / 1024.0);
 }
@@ -104,7 +104,7 @@ TEST(DwellRecord, AFreeDropletHasNone) {
   EXPECT_EQ(record.found(100, false).known_from, DwellRecord::shortest * dwell_length / speed);
 }
 
-/// For any course and time, the answer is that of a list of all dwells.
+/// For any course and any time, the record gives the same answer as a list of all dwells.
 TEST(DwellRecord, AgreesWithAListOfAllDwells) {
   std::mt19937 random(7);
   std::geometric_distribution<int> draw(0.02);
@@ -115,7 +115,7 @@ TEST(DwellRecord, AgreesWithAListOfAllDwells) {
     for (int i = 0; i < 300; ++i) {
       const double place = 0.1 * i;
       for (int stay = draw(random); stay >= 0; --stay) record.add(++time, place);
-      const double end = time + 1;  // at the next check the droplet is farther, except after the last stay
+      const double end = time + 1;  // the stay ends at the next check, except for the last one
       all.push_back({.length = end - begin, .distance = place, .begin = begin});
       begin = end;
     }

@@ -10,7 +10,7 @@
 namespace clog {
 namespace {
 
-/// Values with mean zero and variance one; `correlation` is that of neighbours (AR(1)).
+/// Values with mean zero and variance one (AR(1)); `correlation` is the correlation of neighbours.
 std::vector<double> correlated_noise(std::size_t size, double correlation, unsigned seed) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
@@ -23,7 +23,7 @@ std::vector<double> correlated_noise(std::size_t size, double correlation, unsig
   return values;
 }
 
-/// Error of the mean of `size` such values: its square is 1/n (1 + 2 sum_k (1 - k/n) c^k).
+/// Error of the mean of n = `size` such values: its square is 1/n (1 + 2 sum_k (1 - k/n) c^k).
 double exact_error(std::size_t size, double correlation) {
   const double n = static_cast<double>(size);
   double sum = 1;
@@ -53,9 +53,9 @@ TEST(TransientLength, FindsWhereAStepEnds) {
   }
 }
 
-/// The best cut of a mean 1 - exp(-t/tau) with noise s balances bias and scatter: where the squared deviation
-/// falls below about the variance of a batch's mean, s^2/5, t = tau log(sqrt(5)/s). Chance shifts it by a few
-/// batches, usually to later times.
+/// A speed with the mean 1 - exp(-t/tau) and noise s is best cut where bias and scatter balance. There the
+/// squared deviation exp(-2 t/tau) equals about the variance s^2/5 of a batch's mean: t = tau log(sqrt(5)/s).
+/// Chance shifts the cut by a few batches, usually to later times.
 TEST(TransientLength, FindsWhereADecayDropsBelowTheNoise) {
   constexpr double tau = 40, noise = 0.05;
   const double expected = tau * std::log(std::sqrt(5.0) / noise);
@@ -103,7 +103,8 @@ TEST(BlockedError, OfWhiteNoiseIsTheErrorOfTheMean) {
   EXPECT_NEAR(sum / 200 * std::sqrt(1000), 1, 0.02);
 }
 
-/// Means of many estimates; unblocked they would be 0.58 and 0.23 of the truth.
+/// Compares the means of many estimates with the truth. Without blocking they would be 0.58 and 0.23 times
+/// the truth.
 TEST(BlockedError, OfCorrelatedValuesCountsTheCorrelation) {
   for (const auto& [correlation, tolerance] : {std::pair{0.5, 0.05}, {0.9, 0.1}}) {
     double sum = 0;

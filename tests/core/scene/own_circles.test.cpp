@@ -28,7 +28,8 @@ RunParameters among(std::vector<Obstacle> circles) {
 }
 
 TEST(OwnCircles, AreKnownByAStandardCheckSum) {
-  // CRC-64/XZ of the 24 bytes "123456789" and 15 zeros, as three numbers; computed bit by bit with Python.
+  // The three numbers have the 24 bytes "123456789" and 15 zeros. Their CRC-64/XZ was computed bit by bit
+  // with Python.
   Obstacle text;
   const char bytes[sizeof text] = "123456789";
   std::memcpy(&text, bytes, sizeof text);
@@ -83,12 +84,12 @@ TEST(OwnCircles, InARowAreOnePostThatMayGrowOutOfAWall) {
   const RunParameters run = resolve(between_walls(row));
   EXPECT_NEAR(run.obstacles.gap, std::hypot(3, 3 - 1.95) - 0.5, 1e-12);
   EXPECT_DOUBLE_EQ(run.obstacles.density.per_area.value(), 2 / 235.0) << "two posts";
-  for (Obstacle& circle : row) circle.y += 0.155;  // the first one's gap at the wall is 0.005
+  for (Obstacle& circle : row) circle.y += 0.155;  // the gap between the first circle and the wall is 0.005
   test::expect_refused(between_walls(row), "at the wall");
 }
 
 TEST(OwnCircles, AreShiftedSoThatTheDropletStartsAnywhere) {
-  // Uniform: of many places the mean of cos(2 pi x/L) is 0 within its standard error of 1/sqrt(2 n).
+  // If n places are uniform, the mean of cos(2 pi x/L) is 0 within its standard error of 1/sqrt(2 n).
   RunParameters run = resolve(among({{5, 5, 0.3}}));
   const ObstacleArray fixed = scene_of(run).walls(run);
   EXPECT_EQ(fixed.obstacles()[0].x, 5);
@@ -117,7 +118,7 @@ TEST(OwnCircles, MayBeAnyLengthAndFindEachOtherOverItsBorder) {
 }
 
 TEST(OwnCircles, StandBetweenWallsWithoutImagesAcross) {
-  // These circles would overlap across the border of a periodic array.
+  // In a periodic array these circles would overlap across the border.
   const RunParameters run = resolve(between_walls({{12, 0.1, 0.3}, {12, 9.9, 0.3}}));
   const ObstacleArray device = scene_of(run).walls(run);
   ASSERT_EQ(device.wedges().size(), 2u);

@@ -36,9 +36,9 @@ DropletRun at_rest_on_a_wall(const RunParameters& run) {
   return droplet;
 }
 
-/// A two-dimensional drop on a wall: Gamma dphi/ds = Gamma kappa_0 + z, z the depth below the apex, phi the
-/// slope's angle, from 0 at the apex to the contact angle at the wall (Young-Laplace), by Runge-Kutta. A wall
-/// that is not wetted has the contact angle pi.
+/// A two-dimensional drop on a wall, from the Young-Laplace equation Gamma dphi/ds = Gamma kappa_0 + z,
+/// integrated by Runge-Kutta. Here z is the depth below the apex and phi the slope's angle, which goes from 0
+/// at the apex to the contact angle at the wall. On a wall that is not wetted the contact angle is pi.
 struct SessileDrop {
   double height = 0, area = 0, half_width = 0, depth_of_centroid = 0;
 };
@@ -96,8 +96,8 @@ TEST_P(OnAWall, ADropletHasTheShapeOfYoungAndLaplace) {
 }
 
 TEST(OnAWall, TheProfileIsThatOfYoungAndLaplaceFromTopToBottom) {
-  // The interface's curvature grows with depth as z/Gamma: slope angle and depth belong together,
-  // Gamma (1 - cos phi) = Gamma kappa_0 z + z^2/2.
+  // The curvature of the interface grows with depth as z/Gamma, so slope angle and depth are related by Gamma
+  // (1 - cos phi) = Gamma kappa_0 z + z^2/2.
   const double line_tension = 0.1;
   const DropletRun run = at_rest_on_a_wall(parameters(line_tension, 512));
   const Eigen::ArrayXd& position = run.droplet().state().position;
@@ -138,7 +138,7 @@ TEST(OnAWall, SagHasItsStiffAndItsSoftLimit) {
   EXPECT_LT(stiff.displacement_of(area_centroid(stiff.droplet().state().position))[0], 0.015);
 }
 
-/// Longest over shortest edge.
+/// The longest edge divided by the shortest.
 double edge_ratio(const DropletState& state) {
   double longest = 0, shortest = 1e9;
   for (Eigen::Index i = 0, j = state.size() - 1; i < state.size(); j = i++) {
@@ -199,10 +199,11 @@ TEST(OnAWall, TheShapeOnAWettedWallHangsNeitherOnTheSpringsNorOnTheVertices) {
   EXPECT_NEAR(size_on_a_wetted_wall(run, 0.3).first / height, 1, 0.01);
 }
 
-/// Two equal caps of circles that touch the rounded tips of an orifice from both sides, and the arcs of the
-/// tips between them. By quarters: with h the distance of a tip's centre from the axis and c that of a cap's
-/// from the orifice, the cap's radius is R = sqrt(c^2 + h^2) - tip_radius; the quarter is the cap's sector
-/// and the triangle of the three centres, less the sector of the tip.
+/// A droplet made of two equal caps of circles, which touch the rounded tips of an orifice from both sides,
+/// and of the arcs of the tips between them. Each quarter is computed alone: let h be the distance of a tip's
+/// centre from the axis, and c the distance of a cap's centre from the orifice. Then the radius of the cap is
+/// R = sqrt(c^2 + h^2) - tip_radius, and the quarter consists of the cap's sector and the triangle of the
+/// three centres, without the sector of the tip.
 double shape_of_two_caps(double orifice, double tip_radius) {
   const double h = orifice / 2 + tip_radius;
   const auto shape = [&](double c) {
@@ -231,7 +232,7 @@ double largest_shape_parameter(RunParameters run, double orifice) {
 TEST(InAChannel, TwoCapsAreOneCircleOnAWideChordAndTwoOnANarrowOne) {
   EXPECT_NEAR(shape_of_two_caps(1 - 1e-9, 0), 1, 1e-6);
   EXPECT_NEAR(shape_of_two_caps(0.1, 0), 2, 0.2);
-  // R = 0.39773, theta = 2.06544 by hand.
+  // Computed by hand with R = 0.39773 and theta = 2.06544.
   EXPECT_NEAR(shape_of_two_caps(0.7, 0), 1.09366, 1e-5);
   EXPECT_GT(shape_of_two_caps(0.7, 0.03), shape_of_two_caps(0.7, 0)) << "the neck is longer";
 }
@@ -261,8 +262,9 @@ TEST(InAChannel, TheLiteralContactLetsTheTipSinkIn) {
   EXPECT_LT(largest_shape_parameter(run, 0.7), shape_of_two_caps(narrowed, tip_radius) - 0.005);
 }
 
-/// Largest Gamma whose two caps on a chord the weight can still push through: (M g)/max dP/dh over all pairs
-/// of caps of the droplet's area that flanks of 45 degrees admit, h the distance of the centroid.
+/// The largest Gamma at which the weight can push a droplet of two caps through a chord: (M g)/max dP/dh,
+/// where P is the perimeter and h the distance of the centroid from the chord. The maximum is over all pairs
+/// of caps with the droplet's area that flanks of 45 degrees admit.
 double largest_line_tension_that_passes(double chord) {
   struct Cap {
     double area, length, moment;  // moment: area times the centroid's distance from the chord
@@ -306,7 +308,8 @@ TEST(InAChannel, ADropletPassesUpToTheLineTensionThatStaticsAllows) {
 }
 
 TEST(InAChannel, ParallelWallsSlowACircleByTheMeanDragOfItsVertices) {
-  // A circle midway: zeta = b_inf (1 + b_0/b_inf mean of d_i^-alpha), d_i to the nearer wall.
+  // A circle midway between the walls has the drag zeta = b_inf (1 + b_0/b_inf mean of d_i^-alpha), where d_i
+  // is the distance of vertex i from the nearer wall.
   RunParameters run = parameters(1, 128);
   run.drag.near_wall = 0.07;
   run.drag.terminal_speed = 0.03;

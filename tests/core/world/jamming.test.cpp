@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(Geometries, LargestDensity,
                                          Geometry{0.2, 0.3, 0.5, 60, 3}));
 
 TEST(LargestDensity, LiesEightToTenStandardDeviationsBelowTheMean) {
-  // The boxes are small enough for fluctuations to matter. 400 seeds give their deviation to 4 %.
+  // In such small boxes fluctuations matter. 400 seeds give their standard deviation to 4 %.
   for (const Geometry& geometry : {Geometry{0.2, 0.3, 0, 10, 400}, Geometry{0.2, 0.3, 0.3, 10, 400},
                                    Geometry{0.2, 0.3, 0.9, 10, 400}, Geometry{0.5, 2.5, 0.79, 30, 400}}) {
     double sum = 0, squares = 0;
@@ -76,7 +76,8 @@ TEST(LargestDensity, LiesEightToTenStandardDeviationsBelowTheMean) {
   }
 }
 
-/// Compares resolve()'s density for a share of the saturated one with counted obstacles of saturated arrays.
+/// Compares the density that resolve() computes for a share of the saturated density with counts of obstacles
+/// in saturated arrays.
 TEST(ShareOfSaturated, IsThatOfTheMeanOfSaturatedArrays) {
   for (const Geometry& geometry :
        {Geometry{0.2, 0.3, 0, 40, 20}, Geometry{0.5, 0.3, 0, 60, 20}, Geometry{0.2, 0.3, 0.5, 40, 20}}) {

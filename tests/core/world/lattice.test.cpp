@@ -89,9 +89,9 @@ TEST(Lattice, HasFourNeighboursAtTheExactGapAcrossItsBox) {
 }
 
 TEST(Lattice, HasTheCellOfCrystallography) {
-  // tan = 1/3: ten cells of the square lattice. The triangular lattice at 30, 0 and 19.1 degrees (tan =
-  // sqrt(3)/5, the cell sqrt(7) by sqrt(21) of graphene) has 2, 2 and 14 posts. The rhombic lattice with a
-  // shift of a third has three columns. Multiples of small cells fill the box.
+  // At tan = 1/3 a period of the square lattice has ten cells. The triangular lattice has 2, 2 and 14 posts
+  // at 30, 0 and 19.1 degrees (tan = sqrt(3)/5, the cell sqrt(7) by sqrt(21) known from graphene). The
+  // rhombic lattice with a shift of a third has three columns. Multiples of small cells fill the box.
   struct Cell {
     LatticeKind kind;
     double tangent, largest_box, length, box;
@@ -135,8 +135,8 @@ TEST(Lattice, HasItsNearestNeighboursAtThePitchAcrossItsPeriod) {
 }
 
 TEST(Lattice, IsTheNearestThatIsPeriodicOfEveryKind) {
-  // The reference searches all of the lattice's vectors along and across the flow for the smallest difference
-  // of the angle.
+  // The reference searches all vectors of lattices along and across the flow for the angle nearest to the
+  // given one.
   for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
     for (const double angle : {0.0, 4.0, -20.0, 27.7}) {
       const auto found = nearest_lattice({.box = 20, .lattice = kind, .pitch = 0.7, .lattice_angle = angle});
@@ -177,8 +177,9 @@ TEST(Lattice, IsTheNearestThatIsPeriodic) {
 }
 
 TEST(Lattice, LeavesTheReleaseToTheSeed) {
-  // The start is uniform in the part of a unit cell where the droplet is free: in the frame of the lattice,
-  // both halves of either coordinate are equally likely. 400 seeds, five standard deviations of a fair coin.
+  // The start is uniform in the part of a unit cell where the droplet touches nothing. So in the frame of the
+  // lattice, both halves of each coordinate are equally likely. The tolerance for 400 seeds is five standard
+  // deviations of a fair coin.
   const double taken = (0.15 + 0.55) / 1.5;
   int num_ahead = 0;
   int num_above = 0;
@@ -218,9 +219,10 @@ TEST(Lattice, StartsAFreeDropletAtTheCentreOfTheBox) {
 }
 
 // A rigid disk that slowly sinks past an obstacle leaves it at a lateral distance b = (sigma + sigma_ob)/2,
-// on the side to which it was pushed. The disk meets the next obstacle of a row that is tilted by t if a sin
-// t < b, and then follows the row (Frechette and Drazer, J. Fluid Mech. 627, 379 (2009)). Rows of the square
-// lattice have tilts t and spacing a, or t - 45 degrees and spacing sqrt(2) a.
+// on the side to which it was pushed. In a row with the tilt t and the spacing a, the disk meets the next
+// obstacle if a sin t < b, and then follows the row (Frechette and Drazer, J. Fluid Mech. 627, 379 (2009)).
+// The square lattice has rows with the tilt t and the spacing a, and rows with the tilt t - 45 degrees and
+// the spacing sqrt(2) a.
 TEST(Lattice, LeadsADiskAlongItsRows) {
   for (const double angle : {-20.0, -8.0, 8.0, 20.0})
     EXPECT_NEAR(slope(lattice_result(DropletRun(lattice_disk(angle)))), std::tan(angle * degree), 0.02)
@@ -285,7 +287,7 @@ TEST(Lattice, LeadsToTheOtherSideInAMirror) {
   EXPECT_NEAR(mirror.lateral, -result.lateral, 1e-6);
   EXPECT_NEAR(mirror.distance, result.distance, 1e-6);
 
-  // The mirror image is the lattice of the opposite tilt, up to a shift.
+  // The mirror image of a lattice is the lattice with the opposite tilt, up to a shift.
   const ObstacleArray opposite = lattice_obstacles(lattice_disk(-13).obstacles, run.seed);
   ASSERT_EQ(opposite.obstacles().size(), mirrored.size());
   EXPECT_EQ(opposite.period().box, array.period().box);

@@ -43,7 +43,8 @@ TEST(SampleObstacles, KeepsTheGapPeriodicImagesIncluded) {
 }
 
 TEST(SampleObstacles, SaturatesAtTheJammingLimitOfRandomSequentialAddition) {
-  // Coverage 0.547069 of discs of diameter gap + sigma_ob; finite boxes scatter by less than 0.001 here.
+  // At the jamming limit, discs of diameter gap + sigma_ob cover 0.547069 of the plane. Finite boxes scatter
+  // by less than 0.001 here.
   double coverage = 0;
   for (const std::uint32_t seed : {1u, 2u, 3u, 4u}) {
     const ObstacleArray array =
@@ -53,7 +54,7 @@ TEST(SampleObstacles, SaturatesAtTheJammingLimitOfRandomSequentialAddition) {
   EXPECT_NEAR(coverage, 0.547069, 0.001);
 }
 
-/// Expects no room for another obstacle of the same diameter and gap, whose sum is 0.7.
+/// Expects no room for another obstacle. The sum of diameter and gap is 0.7.
 void expect_no_room(const ObstacleArray& array) {
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> along(0, array.period().along()), across(0, array.period().across());
@@ -69,7 +70,7 @@ TEST(SampleObstacles, LeavesNoRoomForOneMoreWhenSaturated) {
   expect_no_room(sample_obstacles({.gap = 0.4, .diameter = 0.3, .density = {}, .box = 30}, 4));
 }
 
-/// @param boxes  in a row along the flow, of 10 sigma each
+/// @param boxes  number of boxes in a row along the flow, each of 10 sigma
 ObstacleParameters long_array(int boxes, ObstacleDensity density = {}) {
   return {.gap = 0.4, .diameter = 0.3, .density = density, .box = 10, .boxes = boxes};
 }
@@ -80,7 +81,8 @@ TEST(SampleObstacles, FillsALongArrayAsASquareOne) {
   EXPECT_EQ(array.period().across(), 10);
   EXPECT_GE(brute_force_gap(array), 0.4);
   EXPECT_DOUBLE_EQ(array.smallest_gap(), brute_force_gap(array));
-  // Feder's coverage; the number scatters by 0.2 of the area's root over the spacing, 18 here.
+  // The expected number follows from Feder's coverage. The number scatters by 0.2 times the square root of
+  // the area divided by the spacing, which is 18 here.
   const double expected = 0.547069 * 4000 / (std::numbers::pi / 4 * 0.49);
   EXPECT_NEAR(static_cast<double>(array.obstacles().size()), expected, 5 * 18);
   expect_no_room(array);
@@ -104,7 +106,8 @@ TEST(SampleObstacles, ReachesAGivenDensityExactly) {
 }
 
 TEST(SampleObstacles, TheSmallestGapDoesNotFixTheDensity) {
-  // The published rule, all gaps wider than w_ob, allows both arrays, one of which is ten times as dense.
+  // The published rule is that all gaps are wider than w_ob. It allows both arrays, although one of them is
+  // ten times as dense as the other.
   const ObstacleParameters sparse{.gap = 0.2, .diameter = 0.3, .density = 0.25, .box = 40};
   const ObstacleParameters saturated{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 40};
   const ObstacleArray few = sample_obstacles(sparse, 1), many = sample_obstacles(saturated, 1);
@@ -114,8 +117,9 @@ TEST(SampleObstacles, TheSmallestGapDoesNotFixTheDensity) {
 }
 
 TEST(SampleObstacles, PlacesADilutedArrayUniformly) {
-  // Counts in the four quarters of a box: chi-squared with 3 degrees of freedom, summed over 20 seeds, stays
-  // below the 99.9 % quantile of 60 degrees, 99.6. (Repulsion only makes counts more even.)
+  // The counts in the four quarters of a box give a chi-squared with 3 degrees of freedom. Its sum over 20
+  // seeds stays below 99.6, the 99.9 % quantile for 60 degrees of freedom. (Repulsion only makes counts more
+  // even.)
   double chi2 = 0;
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const ObstacleArray array =
@@ -127,7 +131,7 @@ TEST(SampleObstacles, PlacesADilutedArrayUniformly) {
   EXPECT_LT(chi2, 99.6);
 }
 
-/// FNV hash of all bits, the order of the obstacles included.
+/// FNV hash of all bits; it also depends on the order of the obstacles.
 std::uint64_t digest(const ObstacleArray& array) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const Obstacle& obstacle : array.obstacles())
@@ -137,8 +141,8 @@ std::uint64_t digest(const ObstacleArray& array) {
 }
 
 TEST(SampleObstacles, GivesDiscsOfOneSizeThatNeverChange) {
-  // These digests were recorded with the sampler that adds discs square by square. Renew them only with a
-  // change that alters the course of runs.
+  // These digests were recorded with the sampler that adds discs square by square. Replace them only together
+  // with a change that alters the course of runs.
   EXPECT_EQ(digest(sample_obstacles({.gap = 0.4, .density = {}, .box = 30}, 4)), 0xea87e7a8c4585524u);
   EXPECT_EQ(digest(sample_obstacles({.gap = 0.2, .density = 0.35, .box = 50}, 1)), 0x10fc226cc1015f64u);
   EXPECT_EQ(digest(sample_obstacles({.gap = 1.1, .density = {}, .box = 17.3}, 11)), 0x9241ec7695805bf0u);
@@ -178,7 +182,8 @@ TEST(SampleObstacles, LeavesNoRoomForEvenTheSmallestOfAMixture) {
 }
 
 TEST(SampleObstacles, DrawsTheDiametersOfADilutedMixtureUniformly) {
-  // Ten bins of 4000 diameters: chi-squared with 9 degrees of freedom, below its 99.9 % quantile.
+  // Ten bins with 4000 diameters in all give a chi-squared with 9 degrees of freedom, which stays below its
+  // 99.9 % quantile.
   double counts[10] = {};
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     const ObstacleArray array = sample_obstacles(mixture(0.5, 50, 0.16), seed);
@@ -190,8 +195,8 @@ TEST(SampleObstacles, DrawsTheDiametersOfADilutedMixtureUniformly) {
   EXPECT_LT(chi2, 27.9);
 }
 
-/// The definition of random sequential addition, disc by disc, with random numbers of the standard library:
-/// the first `count` discs that stay.
+/// Random sequential addition by its definition, disc by disc, with random numbers of the standard library.
+/// Returns the first `count` discs that stay.
 ObstacleArray one_by_one(const ObstacleParameters& parameters, std::size_t count, std::uint32_t seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> place(0, parameters.box);
@@ -216,7 +221,7 @@ double mean_diameter(const ObstacleArray& array) {
   return sum / static_cast<double>(array.obstacles().size());
 }
 
-/// Pairs of neighbours with a gap between the surfaces of at most `widest`, per obstacle.
+/// Number of pairs with a gap of at most `widest` between their surfaces, divided by the number of obstacles.
 double close_pairs(const ObstacleArray& array, double widest) {
   int num_pairs = 0;
   const auto& all = array.obstacles();
@@ -230,7 +235,7 @@ double close_pairs(const ObstacleArray& array, double widest) {
 }
 
 TEST(SampleObstacles, PacksLikeDiscsThatArriveOneByOne) {
-  // Near saturation (2.79 per sigma^2), the number of neighbours near the smallest distance.
+  // Compares the numbers of neighbours near the smallest distance, close to saturation (2.79 per sigma^2).
   const ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = 2.25, .box = 6};
   constexpr int num_arrays = 250;
   double difference = 0;
@@ -248,7 +253,7 @@ TEST(SampleObstacles, PacksLikeDiscsThatArriveOneByOne) {
 }
 
 TEST(SampleObstacles, MixesLikeDiscsThatArriveOneByOne) {
-  // Near saturation (4.1 per sigma^2 for this mixture), most large discs find no room.
+  // Close to saturation (4.1 per sigma^2 for this mixture), most large discs find no room.
   const ObstacleParameters parameters = mixture(0.5, 6, 3.2);
   constexpr int num_arrays = 100;
   double difference = 0;
@@ -304,7 +309,7 @@ TEST_P(Gathering, FindsWhatBruteForceFinds) {
   const ObstacleArray array =
       sample_obstacles({.gap = 0.4, .diameter = 0.3, .density = {}, .box = 12.5, .boxes = GetParam()}, 2);
   const Period& period = array.period();
-  // The window crosses the end of the period along the flow and its near side across it.
+  // The window crosses the end of the period along the flow, and the beginning of the period across the flow.
   const ObstacleArray::Window window{period.along() - 1.5, 0.5, -0.6, 2.7, -1.1, 0.9, 0.4};
   std::vector<Obstacle> found;
   array.gather(window, found);
@@ -329,7 +334,8 @@ TEST(ObstacleArray, SeesOverlapsOfMixedSizes) {
 }
 
 TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
-  // A row across the border of the period, a circle that only overlaps the row's end, and a copy.
+  // A row of circles across the border of the period, a circle that only overlaps the row's end, and two
+  // copies of the same circle.
   const ObstacleArray array(
       10, {{9.8, 5, 0.3}, {0, 5, 0.3}, {0.2, 5, 0.3}, {0.6, 5, 0.3}, {5, 5, 0.3}, {5, 5, 0.3}});
   const std::vector<std::uint32_t> posts = array.posts();
@@ -345,7 +351,7 @@ TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
   EXPECT_NEAR(array.smallest_gap(), -0.6, 1e-12) << "of the two copies";
   EXPECT_NEAR(ObstacleArray(10, {{1, 5, 0.3}, {1.2, 5, 0.3}, {1, 5, 0.3}}).smallest_gap(), -0.6, 1e-12)
       << "of two copies in one post";
-  // Circles of one post do not count, however near; a long post meets its own image.
+  // Gaps within a post do not count. But a long post has a gap to its own image.
   EXPECT_NEAR(ObstacleArray(10, {{1, 5, 0.3}, {1.2, 5, 0.3}, {1.4, 5, 0.3}, {1.65, 5, 0.3}, {4, 5, 0.3}})
                   .smallest_gap(),
               1.75, 1e-12);
@@ -353,8 +359,8 @@ TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
 }
 
 TEST(ObstacleArray, FindsPostsAmongAFewCircles) {
-  // The circle that joins the first two is the last of these; then follow a copy of it, and a circle that
-  // only overlaps.
+  // The third circle only overlaps the second. The fourth circle joins the first two; the last one is its
+  // copy.
   const std::vector<Obstacle> circles{
       {1, 1, 0.2}, {1.3, 1, 0.2}, {1.55, 1, 0.2}, {1.15, 1, 0.2}, {1.15, 1, 0.2}};
   EXPECT_EQ(posts_among(circles), (std::vector<int>{0, 0, 1, 0, 0}));

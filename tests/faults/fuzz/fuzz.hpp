@@ -27,7 +27,7 @@ void may_be_refused(Read read) {
   }
 }
 
-/// Ends the process unless the condition holds, as it must for every accepted input.
+/// Ends the process unless the condition holds. It must hold for every accepted input.
 inline void require(bool holds) {
   if (!holds) std::abort();
 }

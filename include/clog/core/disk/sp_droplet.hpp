@@ -8,10 +8,9 @@
 
 namespace clog {
 
-/// Potential energy and force on a soft disk among obstacles, Cheng et al. Eq. 8:
-/// U_w = sum (E_w/2)(1 - 2d/sigma)^2 over obstacles nearer than d = sigma/2, d from the disk's centre to the
-/// obstacle's surface (negative inside), and over wedges. The force stays finite; exactly at an obstacle's
-/// centre it is zero.
+/// Potential energy and force on a soft disk among obstacles, Cheng et al. Eq. 8: U_w = sum (E_w/2)(1 -
+/// 2d/sigma)^2 over obstacles and wedges with d < sigma/2, where d is the distance from the disk's centre to
+/// their surface (negative inside). The force stays finite; exactly at an obstacle's centre it is zero.
 class SpForces {
  public:
   SpForces(const RunParameters& run, const ObstacleArray& obstacles);

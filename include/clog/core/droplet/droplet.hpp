@@ -8,7 +8,7 @@
 
 namespace clog {
 
-/// A polygon with a longer perimeter has burst [sigma]: it is not integrated any further.
+/// Perimeter above which a polygon has burst and is not integrated any further [sigma].
 inline constexpr double burst_perimeter = 1000;
 
 /// A moving droplet: the interface of both models for a run.
@@ -19,8 +19,8 @@ class Droplet {
   /// Integrates the equations of motion over `num_steps` time steps, splitting them if needed.
   virtual void advance(int num_steps) = 0;
 
-  /// Discards everything but the content of save(): contact lists and sums over them are rebuilt. A droplet
-  /// restored from it then moves exactly like this one.
+  /// Rebuilds everything that save() does not write: contact lists and sums over them. After this call, a
+  /// droplet restored from save() moves exactly like this one.
   virtual void start_afresh() = 0;
   void save(ByteWriter& bytes) const;
   /// Restores what save() wrote for a droplet with the same parameters and obstacles.
@@ -39,14 +39,14 @@ class Droplet {
   virtual Eigen::Array2d area_centre() const { return state_.centre(); }
   /// [sqrt(sigma g)]
   virtual Eigen::Array2d centre_velocity() const { return state_.mean_velocity(); }
-  /// Area, perimeter; those of the undeformed disk for the soft disk.
+  /// Area and perimeter; a soft disk returns those of the undeformed disk.
   virtual PolygonShape shape() const = 0;
 
-  /// Starts to add up the work against the drag, which costs a pass over the velocities per step.
+  /// Adds up the work against the drag from now on. This costs a pass over the velocities per step.
   void measure_dissipation() { measures_dissipation_ = true; }
-  /// Since measure_dissipation() [g rho sigma^3]: energy lost to drag, and work of the springs along the
-  /// interface, which have no energy. The trapezoidal rule makes it second order in the time step, like the
-  /// integrator.
+  /// Work since measure_dissipation() [g rho sigma^3]: the energy lost to drag, and the work of the springs
+  /// along the interface, whose force derives from no potential energy. The trapezoidal rule makes it second
+  /// order in the time step, like the integrator.
   struct Work {
     double dissipated = 0;
     double spreading = 0;

@@ -16,13 +16,13 @@ inline constexpr double no_neck = std::numeric_limits<double>::infinity();
 
 /// The parts of a droplet that walls push.
 struct ContactReach {
-  double range;   ///< distance from a wall's surface at which it begins [sigma]
+  double range;   ///< distance from a wall's surface at which contact begins [sigma]
   bool by_edges;  ///< whether walls push edges as well as the points that move
 };
 
 /// The operations and properties of a droplet model; there is one object for each Model. A new model needs a
-/// word of Model, a folder beside `polygon` and `disk` with an object of its own, a line in model.cpp, and
-/// the steps of docs/developer/add-a-model.md.
+/// word of Model, a folder beside `polygon` and `disk` that defines its DropletModel, a line in model.cpp,
+/// and the steps of docs/developer/add-a-model.md.
 struct DropletModel {
   /// Key of the parameter that is the droplet's stiffness.
   const char* stiffness_key;
@@ -30,13 +30,13 @@ struct DropletModel {
   /// Chooses the number of moving points if it is not given. @param obstacle_diameter  of the smallest
   /// obstacle over which the droplet can hang, infinite if there is none [sigma]
   void (*choose_points)(RunParameters& run, double obstacle_diameter);
-  /// The width below which the droplet's points do not resolve a passage [sigma].
+  /// Width below which the droplet's points do not resolve a passage [sigma].
   double (*narrowest)(const RunParameters& run);
-  /// Replaces automatic values by the resulting ones, and refuses values that are then impossible. @param
+  /// Computes the automatic values, and refuses given values that are impossible together with them. @param
   /// sharpest_bend see Scene @throws Error
   void (*resolve)(RunParameters& run, double sharpest_bend);
 
-  // For resolved parameters:
+  // The functions from here on take resolved parameters.
   /// Number of moving points.
   int (*num_points)(const RunParameters& run);
   /// The droplet without walls and weight, around the origin: all x, then all y [sigma].
@@ -47,7 +47,8 @@ struct DropletModel {
   /// A droplet at rest, without weight, near the centre of the box.
   /// @throws Error if there is no room for it, or it does not relax
   DropletState (*release)(const RunParameters& run, const ObstacleArray& obstacles);
-  /// The energy with which a droplet may be released, beyond that of a free droplet [g rho sigma^3].
+  /// Largest energy that a droplet may have at its release, minus the energy of a free droplet [g rho
+  /// sigma^3].
   double (*most_energy_at_release)(const RunParameters& run);
   /// A moving droplet. The obstacles must outlive it.
   std::unique_ptr<Droplet> (*make)(const RunParameters& run, const ObstacleArray& obstacles,

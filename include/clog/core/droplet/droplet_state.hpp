@@ -22,7 +22,8 @@ struct LocalFrame {
   Eigen::Array2d global(const Eigen::Array2d& local) const {
     return image.cast<double>() * period + origin + local;
   }
-  /// Displacement from a place in another frame of the same period, without forming large coordinates.
+  /// Displacement to a local place from a place in another frame of the same period, computed without large
+  /// coordinates.
   Eigen::Array2d displacement(const Eigen::Array2d& local, const LocalFrame& from,
                               const Eigen::Array2d& from_local) const {
     return (image - from.image).cast<double>() * period + (origin - from.origin) + (local - from_local);
@@ -54,10 +55,10 @@ struct Travel {
   double absolute = 0;
   double relative = 0;  ///< to the mean of the points
 };
-/// Upper bound on the distance covered in a time [t0]: twice the distance of the fastest point at its
-/// present speed plus free fall.
+/// Upper bound on the distance that a point of this speed covers in a time [t0]: more than twice the distance
+/// of a fall that begins with this speed.
 inline double possible_way(double speed, double time) { return 2 * time * (speed + units::gravity * time); }
-/// Contact lists extend at most this far ahead [sigma]: anything faster has diverged.
+/// Largest distance by which contact lists allow for motion [sigma]: a droplet that needs more has diverged.
 inline constexpr double widest_skin = 4;
 
 /// Points (the polygon's vertices, or the soft disk's centre) and their velocities. Coordinates are one
@@ -66,7 +67,7 @@ struct DropletState {
   Eigen::ArrayXd position;  ///< 2N, local [sigma]
   Eigen::ArrayXd velocity;  ///< 2N [sqrt(sigma g)]
   LocalFrame frame;
-  std::vector<WallAnchor> anchors;  ///< where walls hold it
+  std::vector<WallAnchor> anchors;  ///< where walls hold the interface
 
   Eigen::Index size() const { return position.size() / 2; }
   auto x() { return position.head(size()); }

@@ -23,7 +23,7 @@ struct Axes {
   /// interface; empty if this motion is tested like any other. A slide by one edge maps the polygon onto
   /// itself with its vertices renumbered, and does not move the droplet. The energy along it has only
   /// ripples, because corners between edges touch obstacles. So the search tests neither force nor stiffness
-  /// along it. This motion is the last to decay, and may be at the top of a ripple now.
+  /// along it. This motion is the last to decay, so the droplet may now be at the top of a ripple.
   Eigen::VectorXd slide;
 };
 
@@ -34,7 +34,7 @@ struct EquilibriumForces {
   /// Forces on all points, all x then all y [g rho sigma^2].
   std::function<void(const DropletState& state, Eigen::ArrayXd& force)> evaluate;
   std::function<Axes(const DropletState& state)> axes;
-  bool have_energy;  ///< if so, the stiffness is symmetric
+  bool have_energy;  ///< whether the forces derive from an energy, so that the stiffness is symmetric
 
   /// @param forces  has update_contacts(state, travel) and evaluate(state, force); must outlive this
   template <class Forces>
@@ -50,11 +50,11 @@ struct EquilibriumForces {
 /// The stable static equilibrium that a nearly stopped droplet approaches; nothing if there is none, or if it
 /// is not certain that the droplet would reach it.
 ///
-/// Newton's method on the forces, down to round-off. The potential energy must be convex at the beginning,
-/// wherever else the search computes the stiffness, and at the end, and all these places must be within
-/// `farthest_rest` of the present one: then both are assumed to be in one basin. A droplet that balances on
-/// an obstacle, that could drift aside freely, or that creeps past a place where there is no equilibrium is
-/// refused.
+/// Newton's method on the forces, down to round-off. The potential energy must be convex at the beginning, at
+/// the end, and wherever the search computes the stiffness in between, and all these places must be within
+/// `farthest_rest` of the initial one. Then the droplet and the equilibrium are assumed to be in the same
+/// basin. A droplet that balances on an obstacle, that could drift aside freely, or that creeps past a place
+/// where there is no equilibrium is refused.
 ///
 /// @param initial  the droplet; its velocities do not count
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial);

@@ -10,7 +10,7 @@
 
 namespace clog {
 
-/// Steps of both methods below on all coordinates, compiled for several instruction sets.
+/// Steps of the two methods below, on all coordinates, compiled for several instruction sets.
 namespace kernel {
 struct ForceSums {
   double largest;                ///< |f_i|
@@ -42,8 +42,8 @@ struct FireResult {
 /// Contact lists are updated once in this number of iterations, before the forces are computed.
 inline constexpr int iterations_per_update = 3;
 
-/// How far points move between an update and the last forces before the next: max_move bounds each
-/// coordinate.
+/// How far points move between an update of the contact lists and the last forces before the next update;
+/// max_move bounds each coordinate.
 inline Travel travel_between_updates(const FireOptions& options) {
   const double farthest = (iterations_per_update - 1) * options.max_move * std::numbers::sqrt2;
   return {.absolute = farthest, .relative = 2 * farthest};
@@ -92,8 +92,8 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   return result;
 }
 
-/// Relaxes by damped motion, like that of a droplet. It is slower than FIRE, but it may settle forces that
-/// derive from no energy; there FIRE, which judges by the work done, may cycle.
+/// Relaxes by damped motion, like that of a droplet. It is slower than FIRE, but may also come to rest under
+/// forces that derive from no energy. Under such forces FIRE, which adapts to the work done, may cycle.
 template <class Forces>
 FireResult settle(Forces& forces, DropletState& state, const FireOptions& options, double damping_rate) {
   const double dt = options.largest_step;

@@ -19,15 +19,16 @@ struct Words<ClogMechanism> {
 /// Geometry of a polygon at rest among obstacles; docs/explanation/clogged.md has the definitions.
 /// The flow is along +x.
 struct ClogGeometry {
-  /// Fraction of the obstacles' upstream support that wrapped ones give; NaN without support.
+  /// Fraction of the obstacles' upstream support that comes from wrapped obstacles; NaN without support.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
   int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
-  /// Gaps: pairs of obstacles, at least one of them supporting, between which the interface faces downstream.
+  /// Gaps: pairs of obstacles between which the interface faces downstream; at least one of them supports the
+  /// droplet.
   int num_gaps = 0;
   int num_arcs = 0;  ///< runs of successive edges in contact with one obstacle, a post or a wall
-  /// Part of the weight that the corners of the polygon can hold at most: of all wrapped obstacles, their
-  /// part of the support times x^2/16, x the longest edge on the obstacle over the radius at which it lies.
-  /// NaN without support.
+  /// Largest part of the weight that the corners of the polygon can hold. Each wrapped obstacle contributes
+  /// its part of the support times x^2/16, with x the length of the longest edge on the obstacle divided by
+  /// the radius at which this edge lies. NaN without support.
   double mesh_hold = std::numeric_limits<double>::quiet_NaN();
 
   /// Hybrid if wrapped obstacles and others each give a third of the support.

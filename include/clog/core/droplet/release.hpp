@@ -25,15 +25,15 @@ DropletState state_at_rest(const Eigen::ArrayXd& droplet, const Eigen::Array2d& 
 /// Number of obstacles whose centre lies inside the polygon.
 int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 
-/// @throws Error that names both
+/// @throws Error that names the reason and the remedy
 [[noreturn]] void refuse_release(const std::string& reason, const std::string& remedy);
 
-/// Largest force component, without weight and springs, with which a droplet may be released: relative to the
-/// weight of one vertex (DP), to its own weight (SP).
+/// Largest component of the force, excluding weight and springs, with which a droplet may be released. It is
+/// divided by the weight of one vertex (DP) or of the disk (SP).
 inline constexpr double release_force_tolerance = 1e-4;
-/// The same tolerance for an interface with springs along it. These have no energy and keep the interface
-/// sliding for ever in a cycle of 1e-3 sigma; no observed force exceeded 0.01. The droplet as a whole stays
-/// in place.
+/// The same tolerance for an interface with springs along it. The force of these springs derives from no
+/// energy and keeps the interface sliding for ever in a cycle of 1e-3 sigma; no observed force exceeded 0.01.
+/// The droplet as a whole stays in place.
 inline constexpr double release_sliding_tolerance = 0.02;
 
 }  // namespace clog

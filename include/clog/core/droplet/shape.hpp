@@ -6,8 +6,9 @@ namespace clog {
 
 /// The interface that walls meet is the polygon refined once by the four-point rule (Dubuc 1986; Dyn, Gregory
 /// and Levin 1987): the middle of an edge becomes the middle of the cubic through its two vertices and their
-/// two neighbours. A chord deviates from the curve through its ends by l^2/8 times the curvature, half of a
-/// refined edge by a quarter of that. The middle is near (q_i + q_(i+1)) + far (q_(i-1) + q_(i+2)).
+/// two neighbours. A chord deviates from the curve through its ends by l^2/8 times the curvature; a refined
+/// edge, half as long, deviates by a quarter of that. The middle is w (q_i + q_(i+1)) + w' (q_(i-1) +
+/// q_(i+2)), with w = refined_near and w' = refined_far.
 inline constexpr double refined_near = 9.0 / 16;
 inline constexpr double refined_far = -1.0 / 16;
 
@@ -37,11 +38,11 @@ bool encloses(const Eigen::ArrayXd& position, double x, double y);
 
 /// Number of pairs of edges without a common vertex that cross each other.
 ///
-/// Edges cross if each has its ends strictly on both sides of the other; edges that only touch do not.
-/// Edges with a common vertex meet only there, unless they lie exactly on top of each other, which rounding
-/// prevents; a contour that folds back farther has other crossings. Without a crossing and with a positive
-/// area the contour winds once around every point inside it: no pocket of it encloses negative area. (The
-/// converse does not hold, a contour may cross itself and wind twice around a part of its area.)
+/// Edges cross if each has its ends strictly on both sides of the other; edges that only touch do not. Edges
+/// with a common vertex meet only there, unless they lie exactly on top of each other, which rounding
+/// prevents. If more than two edges fold back, other edges cross. Without a crossing and with a positive area
+/// the contour winds once around every point inside it: no pocket of it encloses negative area. (The converse
+/// does not hold, a contour may cross itself and wind twice around a part of its area.)
 int num_self_crossings(const Eigen::ArrayXd& position);
 
 /// Point of the segment from `begin` to `end` that is nearest to a point [sigma].

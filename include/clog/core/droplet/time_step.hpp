@@ -6,7 +6,8 @@
 
 namespace clog {
 
-/// A rate that the step has to resolve: a key, and how fast its mode would be [1/t0^2].
+/// A rate that the step has to resolve: the key on which it depends, the value of this key, and the square of
+/// the rate [1/t0^2].
 struct Rate {
   const char* key;
   double value;
@@ -16,12 +17,12 @@ struct Rate {
 /// Time in which the speed of a droplet far from walls follows the forces, S V_t/g [t0].
 double relaxation_time(const RunParameters& run);
 
-/// The step that resolves the drag's relaxation time: a fifth of it, or a tenth if walls or the motion
-/// relative to the mean increase the drag or springs carry tension [t0].
+/// Time step that resolves the drag's relaxation time [t0]: a fifth of this time, or a tenth if springs carry
+/// tension or if the drag is larger near walls or for motion relative to the mean.
 double drag_time_step(const RunParameters& run);
 
-/// Uses this automatic step. @param rates  in addition to that of the drag @throws Error naming the key of
-/// the fastest rate if the step is too small to be useful
+/// Sets the automatic time step. @param rates  that the step resolves in addition to the rate of the drag
+/// @throws Error naming the key of the fastest rate if the step is too small to be useful
 void choose_time_step(RunParameters& run, double time_step, std::vector<Rate> rates);
 
 /// Checks for every model that max-time and the drag's relaxation time are several steps. @throws Error

@@ -34,24 +34,27 @@ inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> w
   return {r - wall.radius, from_centre / r};
 }
 
-/// Place on a wall to which a spring ties the interface. It stays there until the wall's limit is exceeded:
-/// in between the force is static and conservative. It belongs to a droplet's state.
+/// Place on a wall to which a spring ties the interface. The anchor moves only when the wall's limit is
+/// exceeded; until then the friction is static and its force is conservative. Anchors belong to a droplet's
+/// state.
 struct WallAnchor {
   Eigen::Index holder;  ///< what the spring holds: a vertex, or the first (0) or last (1) end of an arc
   WallPlace wall;       ///< to which it is tied
-  double x, y;          ///< place, from the wall's centre; at an arc's end, x is the place along it [sigma]
+  double x, y;          ///< position from the wall's centre; at an arc's end, x is along the wall [sigma]
   double slip = 0;      ///< distance along the wall from the anchor to its holder at the last update [sigma]
-  /// 1: the wall yields, and `slip` gives the spring's force wherever the holder moves. Used only while the
-  /// program searches for an equilibrium; a moving droplet updates its anchors at every step.
+  /// 1: the wall yields, so `slip` determines the spring's force, wherever the holder moves. Used only while
+  /// the program searches for an equilibrium; a moving droplet updates its anchors at every step.
   Eigen::Index yields = 0;
 
   double slip_of_force(double slip_now) const { return yields != 0 ? slip : slip_now; }
 };
 
-/// Anchors by the vertices or ends that they hold. It keeps its memory, so that a step allocates none.
+/// Finds anchors by the vertices or ends that they hold. An object keeps its memory, so that a step allocates
+/// none.
 class KnownAnchors {
  public:
-  /// Takes the anchors out of `anchors`. @param num_holders  find() never finds anchors of other holders
+  /// Takes the anchors out of `anchors`. @param num_holders  find() ignores anchors of holders from this
+  /// number on
   void take(std::vector<WallAnchor>& anchors, Eigen::Index num_holders) {
     std::swap(anchors_, anchors);
     anchors.clear();
@@ -72,7 +75,7 @@ class KnownAnchors {
  private:
   static constexpr std::size_t none = std::size_t(-1);
   std::vector<WallAnchor> anchors_;
-  std::vector<std::size_t> first_, next_;  // of a holder; of the same holder
+  std::vector<std::size_t> first_, next_;  // a holder's first anchor; the next anchor of the same holder
 };
 
 /// What an update of the anchors is for.
@@ -81,15 +84,15 @@ enum class Purpose { motion, equilibrium };
 /// The energy that walls dissipated, and the largest excess of a spring's force.
 struct WallYield {
   double dissipated = 0;  ///< [g rho sigma^3]
-  double excess = 0;      ///< largest difference of a spring's force from what its wall bears [g rho sigma^2]
+  double excess = 0;      ///< largest amount by which a spring's force exceeds its limit [g rho sigma^2]
 
   /// Counts the energy of a spring that its wall has released.
   void forget(const WallAnchor& anchor, double stiffness) {
     dissipated += 0.5 * stiffness * anchor.slip * anchor.slip;
     excess = std::max(excess, stiffness * std::abs(anchor.slip));
   }
-  /// Limits the slip to what the wall bears, `least` to `most`, and returns it. The caller then moves the
-  /// anchor by the difference.
+  /// Limits the slip to the range that the wall bears, `least` to `most`, and returns the limited slip. The
+  /// caller then moves the anchor by the difference.
   double hold(WallAnchor& anchor, double slip, double least, double most, double stiffness, Purpose purpose) {
     const double held = std::clamp(slip, least, most);
     excess = std::max(excess, stiffness * std::abs(held - anchor.slip_of_force(slip)));

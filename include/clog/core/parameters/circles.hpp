@@ -23,7 +23,7 @@ struct Obstacle {
 class OwnCircles {
  public:
   /// @param circles  a radius of 0 stands for half of obstacle-diameter @param source  their origin, for
-  /// messages @param droplet  the diameter for which they were drawn, if the source gives it [m]
+  /// messages @param droplet  diameter of the droplet for which they were drawn, if the source gives it [m]
   explicit OwnCircles(std::vector<Obstacle> circles, std::string source = "",
                       std::optional<double> droplet = {});
   /// Circles known only by their checksum. @throws Error  if the text does not have the form of check_sum()

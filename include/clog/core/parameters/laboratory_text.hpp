@@ -6,8 +6,9 @@
 
 namespace clog {
 
-/// The description of a run's laboratory, `key = value; key = value`, in whose units results are printed. It
-/// changes no run. A result row has only its checksum; a process knows the texts that it has read.
+/// The description of a run's laboratory, `key = value; key = value`. Results are also printed in units of
+/// this laboratory; the runs do not depend on it. A result row has only its checksum; a process knows the
+/// texts that it has read.
 class LaboratoryText {
  public:
   /// @throws Error if nothing in the text is `key = value`

@@ -19,7 +19,7 @@ struct Words<Model> {
   static constexpr Worded<Model> all[] = {{Model::dp, "dp"}, {Model::sp, "sp"}};
 };
 /// Springs of the edges: to the rest length l0 (the paper), to the current mean edge length, or only `along`
-/// the interface: these space the vertices evenly, but carry no tension.
+/// the interface; the last space the vertices evenly, but carry no tension.
 enum class PerimeterSpring { rest, mean, along };
 template <>
 struct Words<PerimeterSpring> {
@@ -38,8 +38,9 @@ template <>
 struct Words<FilmFriction> {
   static constexpr Worded<FilmFriction> all[] = {{FilmFriction::on, "on"}, {FilmFriction::off, "off"}};
 };
-/// Where the droplet's weight and the drag on its mean motion act: shared by the vertices (the paper), or on
-/// the area, as a pressure. Then they have no component along the interface, which would bunch its vertices.
+/// Where the droplet's weight and the drag on its mean motion act: on the vertices in equal parts (the
+/// paper), or on the area, as a pressure. A pressure has no component along the interface, which would bunch
+/// its vertices.
 enum class Gravity { vertex, area };
 template <>
 struct Words<Gravity> {
@@ -96,13 +97,13 @@ struct Words<ClogDetection> {
                                                   {ClogDetection::threshold, "threshold"}};
 };
 
-/// Half a vertex diameter and a vertex diameter of 256 vertices, the published number [sigma].
+/// Half a vertex diameter, and a vertex diameter, for the published number of 256 vertices [sigma].
 inline constexpr double published_contact_range = 0.00614;
 inline constexpr double published_vertex_diameter = 0.01227;
 
-/// The tension changes to that of a wetted wall within this many vertex diameters. Within one, the contact
-/// angle is wrong for any number of vertices, and droplets of 128 are up to 5 % too tall; within two to four
-/// the shapes agree.
+/// The tension changes to that of a wetted wall within this many vertex diameters. If it changes within one
+/// diameter, the contact angle is wrong for any number of vertices, and droplets of 128 vertices are up to 5
+/// % too tall; with two to four diameters the shapes agree.
 inline constexpr double wetting_width = 3;
 
 /// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
@@ -121,15 +122,15 @@ struct DpParameters {
   /// the measured angles, see wall_tension().
   std::optional<double> wall_tension;
   /// Contact angles, of the droplet's fluid, beyond which the end of a wetted arc recedes and advances
-  /// [degrees]; empty: Young's angle, and ends are not held. For springs `along` the interface.
+  /// [degrees]; empty: Young's angle, and ends are not held. Only with springs `along` the interface.
   std::optional<double> receding_angle, advancing_angle;
-  double friction = 0;        ///< mu of walls, where springs carry tension
-  double yield_traction = 0;  ///< tau_y, that a wall bears per length without any push [g rho sigma]
+  double friction = 0;        ///< mu of walls, only if springs carry tension
+  double yield_traction = 0;  ///< tau_y, force per length that a wall bears without any push [g rho sigma]
   SelfContact self_contact = SelfContact::on;
   /// Distance below which the interface repels itself: the thickness of a film between two parts of it
   /// [sigma].
   double self_contact_range = published_vertex_diameter;
-  /// Empty: on with friction and self-contact.
+  /// Empty: on if there is friction and self-contact.
   std::optional<FilmFriction> film_friction;
   Gravity gravity = Gravity::area;
   std::optional<int> vertices;  ///< N_v; empty: automatic
@@ -140,10 +141,11 @@ struct DpParameters {
   double break_up_neck = 0;
 };
 
-/// In a narrower box the droplet would touch its own periodic image [sigma].
+/// Width below which a box is so narrow that the droplet would touch its own periodic image [sigma].
 inline constexpr double narrowest_period = 5;
 
-/// The rectangle after which an array repeats: square boxes in a row along the flow, or a length of its own.
+/// The rectangle after which an array repeats: square boxes in a row along the flow, or one box with a
+/// separate length along the flow.
 struct Period {
   double box = 0;  ///< [sigma]
   int boxes = 1;
@@ -163,7 +165,8 @@ struct Period {
 /// Density of a random array.
 struct ObstacleDensity {
   std::optional<double> per_area;  ///< obstacles per sigma^2
-  std::optional<double> share;     ///< of the mean density of saturated arrays; resolve() makes it per_area
+  std::optional<double>
+      share;  ///< of the mean density of saturated arrays; resolve() converts it to per_area
 
   /// Saturated: obstacles are added until no further one fits.
   ObstacleDensity() = default;
@@ -185,17 +188,17 @@ inline constexpr double published_share_of_saturated = 0.125;
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
 struct ObstacleParameters {
   double gap = 0.2;            ///< w_ob, smallest surface-to-surface distance [sigma]
-  double diameter = 0.3;       ///< sigma_ob, of a mixture the mean of the arriving ones [sigma]
+  double diameter = 0.3;       ///< sigma_ob, of a mixture the mean diameter of the discs that arrive [sigma]
   double diameter_spread = 0;  ///< diameters are uniform in diameter (1 -+ spread)
   /// The density of random arrays; that of a lattice or of user-supplied circles is not kept here.
   ObstacleDensity density = ObstacleDensity::share_of_saturated(published_share_of_saturated);
   double box = 500;  ///< period L across the flow [sigma]
-  int boxes = 1;     ///< period along the flow over that across it
+  int boxes = 1;     ///< period along the flow divided by the period across it
   ObstacleLayout layout = ObstacleLayout::random;
   LatticeKind lattice = LatticeKind::square;
   double pitch = 0;                    ///< of a lattice, instead of its gap; 0: diameter + gap [sigma]
   double lattice_angle = 0;            ///< of the lattice's rows from +x to +y [degrees]
-  std::optional<OwnCircles> own = {};  ///< of layout file; gap and density are then theirs
+  std::optional<OwnCircles> own = {};  ///< of layout file; they determine gap and density
   Release release = Release::centre;
   double length = 0;  ///< period along the flow; 0: boxes times box [sigma]
   // For user-supplied circles, in their coordinates:
@@ -232,8 +235,8 @@ struct DragParameters {
   double terminal_speed = 0.03;         ///< V_t [sqrt(sigma g)]; b_inf = M g / V_t
   double near_wall = 0;                 ///< b_0/b_inf; the soft disk has no near-wall drag
   double near_wall_exponent = 4.0 / 3;  ///< alpha; 4/3 is calibrated in Appendix A of Cheng et al.
-  double near_wall_cutoff = published_contact_range;  ///< d counts as no less [sigma]
-  double relative = 1;  ///< c, drag of motion relative to the centre of mass over b_inf; dp only
+  double near_wall_cutoff = published_contact_range;  ///< a smaller d counts as this one [sigma]
+  double relative = 1;  ///< c, drag of motion relative to the centre of mass, divided by b_inf; dp only
 };
 
 /// Everything that decides the course of one run. Two runs with equal parameters are equal bit for bit.
@@ -247,7 +250,7 @@ struct RunParameters {
   std::optional<double> time_step;  ///< [t0]; empty: automatic
   double max_time = 2e5;            ///< [t0]
   std::optional<LaboratoryText> laboratory = {};
-  double dwell_length = 0.05;  ///< a droplet that advances by less rests [sigma]
+  double dwell_length = 0.05;  ///< a droplet that advances by less counts as resting [sigma]
   double clog_energy = 1e-17;  ///< E_k/E_t below which a droplet counts as clogged
   ClogDetection clog_detection = ClogDetection::certified;
   std::uint32_t seed = 1;

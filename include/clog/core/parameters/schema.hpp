@@ -18,15 +18,16 @@ namespace clog {
 /// The value of a parameter. Unset: an automatic value, or one without a meaning for the run.
 using ParameterValue = std::variant<std::monostate, double, std::int64_t, std::string>;
 
-/// `number_or_share`: a number, or a share of the largest one, as text like `12.5%`. `file`: the key has the
-/// name of a file, the parameter its content. `text`: a description; results have its checksum.
+/// `number_or_share`: a number, or a share of the largest one, as text like `12.5%`. `file`: the key gives
+/// the name of a file, the parameter contains its content. `text`: a description, of which results contain
+/// the checksum.
 enum class ValueKind { number, number_or_share, integer, word, file, text };
 
 /// The purpose of a parameter.
 enum class ParameterRole {
   physics,   ///< of what is modelled
   numerics,  ///< of how it is computed or looked at; results should hardly depend on it
-  ensemble,  ///< which of many equal runs
+  ensemble,  ///< which one of many runs that are equal otherwise
 };
 template <>
 struct Words<ParameterRole> {
@@ -46,8 +47,8 @@ struct ParameterScope {
 /// The end of a parameter's range.
 struct Bound {
   double value;
-  bool is_allowed;     ///< the value itself
-  const char* reason;  ///< against values beyond
+  bool is_allowed;     ///< whether the range includes this value
+  const char* reason;  ///< why values beyond it are refused
   const char* remedy;
 };
 struct ParameterRange {
@@ -66,7 +67,7 @@ struct Parameter {
   ParameterRange range;                ///< of numbers
   bool has_own_column;                 ///< false: the column describes other parameters as well
   bool shapes_array;                   ///< whether two values of it make two obstacle arrays
-  /// The column's value for other runs; usually unset.
+  /// The column's value for runs to which the parameter does not apply; usually unset.
   ParameterValue elsewhere;
   /// The value of all runs in files older than the parameter. Unset: unknown.
   ParameterValue before;
@@ -82,7 +83,8 @@ struct Parameter {
   bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
 };
 
-/// All parameters, in the order of their display and of a plan's axes, on which the numbers of tasks depend.
+/// All parameters, in the order in which they are displayed. A plan's axes have the same order, which
+/// determines the numbers of the tasks.
 std::span<const Parameter> parameter_schema();
 /// @throws std::out_of_range if there is none
 const Parameter& parameter(std::string_view key);

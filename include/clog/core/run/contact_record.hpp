@@ -13,26 +13,27 @@ namespace clog {
 
 /// Obstacles that a droplet has met.
 struct Contacts {
-  /// Number of contacts with a circle, a post of several circles, or a wedge. It counts again after the
-  /// droplet has been farther than ContactRecord::parting away; each period of an array has obstacles of its
-  /// own.
+  /// Number of contacts with a circle, a post of several circles, or a wedge. The same obstacle counts again
+  /// after the droplet has been farther than ContactRecord::parting away; its periodic images count as other
+  /// obstacles.
   std::int64_t number = 0;
-  double first_distance = std::numeric_limits<double>::quiet_NaN();  ///< at the first; NaN: none [sigma]
+  double first_distance =
+      std::numeric_limits<double>::quiet_NaN();  ///< at the first contact; NaN: none [sigma]
 };
 
 /// Detects at the checks of a run which obstacles touch its droplet. A contact that begins and ends between
-/// two checks is missed: the droplet moves by some thousandths of its diameter in that time.
+/// two checks is missed; in this time the droplet moves only by some thousandths of its diameter.
 class ContactRecord {
  public:
-  /// An obstacle farther away counts as left [sigma].
+  /// Distance beyond which an obstacle counts as left [sigma].
   static constexpr double parting = 0.1;
 
   /// @param reach  of the moving points, see DropletModel
   explicit ContactRecord(const ContactReach& reach) : reach_(reach) {}
 
-  /// Call this once per check of a run. @param release  displacement from the place of release of the origin
-  /// of the droplet's frame [sigma] @param distance  displacement of the droplet along the flow since release
-  /// [sigma]
+  /// Call this once per check of a run. @param release  displacement of the origin of the droplet's frame
+  /// from the place of release [sigma] @param distance  displacement of the droplet along the flow since
+  /// release [sigma]
   void add(const DropletState& state, const ObstacleArray& obstacles, const Eigen::Array2d& release,
            double distance);
   const Contacts& found() const { return contacts_; }
@@ -55,7 +56,7 @@ class ContactRecord {
   ContactReach reach_;
   Contacts contacts_;
   std::vector<Place> met_;  // met and not left since: the nearest circle of each obstacle
-  // Circles near the droplet, in its frame, as long as it stays within the window, and their posts.
+  // Circles near the droplet, in its frame, and their posts; valid while the droplet stays within the window.
   std::vector<Obstacle> near_;
   std::vector<int> post_of_;
   std::size_t num_posts_ = 0;
@@ -67,7 +68,7 @@ class ContactRecord {
                    const Eigen::Array2d& upper);
   /// Adds a circle, or a wedge, to the data of its obstacle, and removes it from met_.
   void include(Seen& obstacle, const Place& place, double gap);
-  /// Returns the obstacle to met_ if the droplet touches it, or touched it and has not left it.
+  /// Adds the obstacle to met_ again if the droplet touches it, or touched it and has not left it.
   void count(const Seen& obstacle, double distance);
 };
 

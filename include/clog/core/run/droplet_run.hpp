@@ -31,24 +31,25 @@ struct Words<RunStatus> {
 
 /// E_k/E_t above which the integration has failed: free fall without drag over a whole box stays below it.
 inline constexpr double diverged_energy_ratio = 1e8;
-/// Relative error of the area above which it has failed: compressibility and line tension keep a droplet far
-/// below it.
+/// Relative error of the area above which the integration has failed: compressibility and line tension keep a
+/// droplet far below it.
 inline constexpr double diverged_area_error = 0.5;
 
-/// How far a droplet on a flat wall has sunk since it touched it without weight [sigma]; NaN elsewhere.
+/// How far a droplet on a flat wall has sunk since it touched the wall without weight [sigma]; NaN elsewhere.
 struct Sag {
   double centre = std::numeric_limits<double>::quiet_NaN();  ///< delta_s, of the area's centroid
   double top = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The thinnest neck of a droplet so far, and where it was then [sigma]; NaN without a neck, or without a
-/// search. After the first one the search is only for thinner ones.
+/// search. After the first neck, the program searches only for thinner ones.
 struct ThinnestNeck {
   double width = std::numeric_limits<double>::quiet_NaN();
   double distance = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The results of one run.
+/// The results of one run. If a clog is certified, values with the note "certified: at rest" are those of the
+/// equilibrium.
 struct RunResult {
   RunStatus status = RunStatus::running;
   std::optional<ClogDetection> clogged_by;  ///< how a clog was found; empty unless clogged
@@ -67,7 +68,7 @@ struct RunResult {
   /// Where the centre of mass was released, in the coordinates of user-supplied circles; NaN elsewhere
   /// [sigma].
   Eigen::Array2d release{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-  std::int64_t steps = 0;  ///< integrated steps, sub-steps counted singly
+  std::int64_t steps = 0;  ///< integrated steps; each sub-step counts as one
   std::string message;     ///< why it failed
 };
 
@@ -78,18 +79,18 @@ struct RunResult {
 /// clog-detection=certified it also counts as soon as find_equilibrium() finds where it will rest. A droplet
 /// with a neck thinner than break-up-neck has broken up, however close to rest it is; an equilibrium with
 /// such a neck does not count. If the interface crosses itself although self-contact is on, the run fails.
-/// The course of a run depends on its parameters alone, neither on how advance()
-/// is called nor on how clogs are found.
+/// The course of a run depends on its parameters alone, not on how advance() is called or how clogs are
+/// found.
 class DropletRun {
  public:
   /// Clogs and the end of the run are checked, and r(t) is recorded, once in this number of steps.
   static constexpr int steps_per_check = 64;
-  /// A snapshot is taken once in this number of steps, every quarter of a second for 256 vertices.
+  /// A snapshot is taken once in this number of steps: about every quarter of a second with 256 vertices.
   static constexpr std::int64_t steps_per_snapshot = std::int64_t{4096} * steps_per_check;
 
   /// Released as its scene defines. @param run  resolved parameters, here and below
   explicit DropletRun(const RunParameters& run);
-  /// The same with given walls.
+  /// The same, among given walls.
   DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
   /// @param initial  the droplet at its release @param way  displacement along the flow at which the droplet
   /// has `passed` [sigma]
@@ -97,11 +98,11 @@ class DropletRun {
              double way = std::numeric_limits<double>::infinity());
 
   /// A run restored from a snapshot() continues bit for bit like the original, because the original also
-  /// rebuilds its contact lists there. @param run, obstacles  as in that one @throws Error if the bytes are
-  /// not a snapshot of such a run
+  /// rebuilds its contact lists there. @param run, obstacles  as in the original run @throws Error if the
+  /// bytes are not a snapshot of such a run
   static DropletRun resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
                            std::span<const std::byte> snapshot);
-  /// The last one; empty before the first.
+  /// The last snapshot; empty before the first one.
   const std::vector<std::byte>& snapshot() const { return snapshot_; }
 
   /// Continues for at most `num_checks` intervals of `steps_per_check` steps. Returns whether the run is

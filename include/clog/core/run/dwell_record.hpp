@@ -33,8 +33,9 @@ struct Dwells {
   void keep(const Dwell& dwell);
 };
 
-/// Follows a droplet's distance, and finds its dwells. One begins at the release, another whenever the
-/// droplet is farther than dwell-length from where the last began, which ends that one.
+/// Follows a droplet's distance, and finds its dwells. The first dwell begins at the release. When the
+/// droplet is farther than dwell-length from where the present dwell began, this dwell ends and the next one
+/// begins.
 class DwellRecord {
  public:
   /// Dwells of up to this many times dwell_length/terminal_speed, the time of a free droplet, are not
@@ -47,8 +48,8 @@ class DwellRecord {
   /// Call this once per check of a run. @param displacement  along the flow since release [sigma]
   void add(double time, double displacement);
 
-  /// @param time  of the last check. An unfinished dwell counts with its length so far; that of a clog does
-  /// not count.
+  /// @param time  of the last check. An unfinished dwell counts with its length so far, except in a clogged
+  /// run, where it does not count.
   Dwells found(double time, bool has_clogged) const;
 
   void save(ByteWriter& bytes) const { bytes.put(found_); }

@@ -17,8 +17,8 @@ struct TravelSample {
 struct TravelSpeed {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-  double mean = unknown;       ///< [sqrt(sigma g)]
-  double error = unknown;      ///< standard error of the mean, from the speed's course in this run
+  double mean = unknown;   ///< [sqrt(sigma g)]
+  double error = unknown;  ///< standard error of the mean, from the variation of the speed within this run
   double transient = unknown;  ///< time at which the transient ends [t0]
   double time = unknown;       ///< time over which the mean is taken [t0]
 };
@@ -35,11 +35,11 @@ TravelSpeed travel_speed(std::span<const TravelSample> samples);
 std::optional<std::size_t> transient_length(std::span<const double> values);
 
 /// Standard error of the mean of correlated values, from the scatter of the means of blocks of 1, 2, 4, ...
-/// values (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). Of these estimates, which grow until the
-/// blocks are independent, it is that of the shortest block B with B^3 > 2 n (e_B/e_1)^4, where the remaining
-/// correlation is as small as the scatter of the estimate (Lee et al., Phys. Rev. E 83, 066706 (2011)). NaN
-/// if no block is long enough and shorter than n/2, and for fewer than 200 values, whose errors would be too
-/// small for correlated neighbours.
+/// values (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). These estimates e_B grow until the blocks
+/// are independent. The result is that of the shortest block length B with B^3 > 2 n (e_B/e_1)^4, at which
+/// the remaining correlation is as small as the scatter of the estimate (Lee et al., Phys. Rev. E 83, 066706
+/// (2011)). NaN if no such B is shorter than n/2, and for fewer than 200 values, because the error would be
+/// too small if neighbours are correlated.
 double blocked_error(std::span<const double> values);
 
 }  // namespace clog

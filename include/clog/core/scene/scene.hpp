@@ -11,40 +11,43 @@ enum class Finding { clogging_length, passage, sag };
 
 /// The source of the walls.
 enum class WallsFrom {
-  parameters,  ///< of the obstacles alone; sampling them may take long
+  parameters,  ///< of the obstacles alone; sampling an array may take long
   circles,     ///< that a user gave
-  droplet      ///< which determines their places; making them takes no time
+  droplet      ///< whose parameters determine the places of the walls; making them takes no time
 };
 
 /// Which obstacles a droplet meets, where it starts, and where its path ends. There is one scene for each
-/// ObstacleLayout. A new one needs a word of ObstacleLayout, a file with a scene of its own, a line in
+/// ObstacleLayout. A new one needs a word of ObstacleLayout, a file that defines its Scene, a line in
 /// scene.cpp, and the steps of docs/developer/add-a-scene.md.
 struct Scene {
   Finding finding;
   WallsFrom walls_from;
-  /// Whether an array is random, so that a droplet meets the same obstacles again after a period.
+  /// Whether the array represents a random one; then results are limited by the period, after which a droplet
+  /// meets the same obstacles again.
   bool is_random;
-  /// Key of the parameter for its narrowness; nullptr if there is none.
+  /// Key of the parameter that is the width of the gaps or the orifice; nullptr if there is none.
   const char* gap_key;
 
   /// Refuses impossible combinations before automatic values are known; check_each() has checked each
   /// parameter alone. @throws Error
   void (*check)(const RunParameters& run);
-  /// Replaces values that follow from the others, and refuses those that are then impossible. @throws Error
+  /// Computes the values that follow from others, and refuses values that are impossible together with them.
+  /// @throws Error
   void (*resolve)(RunParameters& run);
   /// Diameter of the sharpest expected bend of the interface [sigma].
   double (*sharpest_bend)(const RunParameters& run);
-  /// Obstacles per area [1/sigma^2]; NaN without obstacles, or if only the array itself could tell.
+  /// Obstacles per area [1/sigma^2]; NaN without obstacles, or if it is unknown before the array is made.
   double (*density)(const ObstacleParameters& obstacles);
 
-  // For resolved parameters:
+  // The functions from here on take resolved parameters.
   ObstacleArray (*walls)(const RunParameters& run);
   /// A droplet at rest. @throws Error if there is no room for it
   DropletState (*release)(const RunParameters& run, const ObstacleArray& walls);
   /// Displacement along the flow after which the droplet has passed [sigma]; infinite if it never has. @param
   /// start place of release of the centre of mass, in the coordinates of the walls [sigma]
   double (*way)(const RunParameters& run, const Eigen::Array2d& start);
-  /// Converts a place of the walls to the coordinates of their file; nullptr without a file [sigma].
+  /// Converts a place from the coordinates of the walls to those of the file of circles [sigma]; nullptr
+  /// without a file.
   Eigen::Array2d (*place_in_file)(const RunParameters& run, const Eigen::Array2d& place) = nullptr;
 };
 

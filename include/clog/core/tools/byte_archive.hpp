@@ -10,8 +10,8 @@
 
 namespace clog {
 
-/// Plain values in sequence with the layout of memory, for bytes that the same program reads on the same kind
-/// of machine.
+/// Writes plain values one after the other, as they are in memory. Only the same program on the same kind of
+/// machine can read them.
 class ByteWriter {
  public:
   template <class T>

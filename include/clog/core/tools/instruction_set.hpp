@@ -8,8 +8,8 @@ namespace clog {
 /// The instruction sets of all kernels that this processor supports, the widest first: of avx512, avx2,
 /// baseline. (On processors other than x86 the names are those of the Highway library.)
 std::vector<std::string> instruction_sets();
-/// The one for droplets made from now on and for their release. Results of two sets differ by round-off
-/// (docs/explanation/numerics.md, "Reproducibility").
+/// The instruction set for droplets made from now on, and for their release. Results of two sets differ by
+/// round-off (docs/explanation/numerics.md, "Reproducibility").
 std::string instruction_set();
 /// Pins it; `auto` selects the widest. Call this before droplets and threads are made. @throws Error if this
 /// processor has no such set

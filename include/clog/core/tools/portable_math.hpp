@@ -3,9 +3,9 @@
 #include <cmath>
 
 /// Functions whose last bit does not depend on the processor. glibc has versions of its double functions with
-/// and without fused multiply-adds and uses what the processor supports; in one result of some thousand their
-/// last bits differ. Of its long double functions it has one version. (std::sqrt, std::hypot and rounding
-/// already give the same bits everywhere.) The functions here are too slow for loops over vertices.
+/// and without fused multiply-adds and uses what the processor supports; in about one of some thousand
+/// results the last bit differs. Its long double functions have only one version. (std::sqrt, std::hypot and
+/// rounding already give the same bits everywhere.) The functions here are too slow for loops over vertices.
 ///
 /// sin, cos and tan are plain arithmetic. The others are instructions of the x87, which another maker's
 /// processor may round differently in the 64th bit; this almost never affects the 53 bits of a double. Use

@@ -6,7 +6,7 @@
 
 namespace clog {
 
-/// The parts of a text between commas, blanks and all; one part if there is no comma.
+/// The parts of a text between commas, including blanks; one part if there is no comma.
 inline std::vector<std::string> split_at_commas(std::string_view text) {
   std::vector<std::string> parts(1);
   for (const char letter : text)

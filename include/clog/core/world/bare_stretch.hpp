@@ -14,9 +14,9 @@ struct Stretch {
   double end = 0;    ///< beyond the period if the stretch goes over its border
 };
 
-/// The widest bare stretch of an array along an axis, if it probably is a mistake in the array's length:
-/// wider than a droplet, and wider than twice the next one plus a droplet. A single circle is an array of its
-/// own and has none.
+/// The widest bare stretch of an array along an axis, if it is so wide that the array's length is probably a
+/// mistake: wider than a droplet, and wider than a droplet plus twice the second widest stretch. Nothing for
+/// a single circle, which may be the unit cell of an array.
 /// @param centre  of a circle along the axis: &Obstacle::x or &Obstacle::y
 /// @param period  of the array along it [sigma]; no circle is wider
 std::optional<Stretch> conspicuous_bare_stretch(std::span<const Obstacle> circles, double Obstacle::*centre,

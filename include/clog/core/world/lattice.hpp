@@ -23,7 +23,7 @@ struct CommensurateLattice {
 
 /// Largest deviation of a lattice's tilt from the requested one [degrees].
 inline constexpr double largest_angle_error = 0.1;
-/// Tilts beyond this one are equal to others by symmetry [degrees].
+/// Largest tilt that symmetry does not make equal to a smaller one [degrees].
 double largest_tilt(LatticeKind kind);
 
 /// The lattice nearest to the angle whose periods are at most `box` and `length` (0: `box`), and at least two

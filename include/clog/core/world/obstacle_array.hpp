@@ -28,8 +28,8 @@ class ObstacleArray {
   /// @throws Error if a centre is not finite or a radius not positive and finite
   ObstacleArray(const Period& period, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges = {});
 
-  /// The same array in another one's binned() memory, which may come from another process. @param memory
-  /// keeps it alive
+  /// An equal array in the memory of another array's binned(), which may belong to another process. @param
+  /// memory  keeps that memory alive
   ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory);
   const BinnedObstacles& binned() const { return binned_; }
   static std::size_t num_cells(const Period& period);
@@ -77,8 +77,8 @@ class ObstacleArray {
 };
 
 /// The post of each of a few circles, numbered from 0 in the order in which posts first appear: like
-/// ObstacleArray::posts(), but only through these circles. A post that is only connected farther away counts
-/// as several.
+/// ObstacleArray::posts(), but only through these circles. A post whose circles are connected only by circles
+/// that are not in the list counts as several posts.
 std::vector<int> posts_among(std::span<const Obstacle> circles);
 
 /// A Poisson-disk sample by random sequential addition. Discs arrive one by one, with a diameter uniform in

@@ -104,7 +104,7 @@ class Search {
   }
 
   /// Bounding circles of groups of vertices: no point of an arc is farther from the midpoint of its ends than
-  /// half of the arc.
+  /// half of its length.
   void list_far() {
     const int num_groups = (c_.n + group_size - 1) / group_size;
     const int stride = num_groups + lanes;

@@ -13,7 +13,7 @@ namespace clog::kernel {
 struct CloseSearch {
   int n;
   const double *x, *y;
-  const double* along;  ///< the contour, from vertex 0 [sigma]
+  const double* along;  ///< distance along the contour from vertex 0 [sigma]
   double longest_edge, reach;
   int exclusion;
   double arc;

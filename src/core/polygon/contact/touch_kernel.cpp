@@ -86,7 +86,7 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     hn::StoreMaskBits(D(), any, bits);
     touches.touching |= static_cast<unsigned>(bits[0]) << i;
 
-    // Sums in the order of the halves; each begins with its own vertex.
+    // Adds up the forces in the order of the halves; of each half, the force on its own vertex comes first.
     const auto if_touches = [](const Half& half, V share) {
       return Vectors{hn::IfThenElseZero(half.touches, hn::Mul(share, half.push.x)),
                      hn::IfThenElseZero(half.touches, hn::Mul(share, half.push.y))};

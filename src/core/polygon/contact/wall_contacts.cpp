@@ -9,8 +9,8 @@
 namespace clog {
 namespace {
 
-// A droplet moves 0.05 sigma in about 1000 steps, so renewals cost nothing. A list of possible nearest
-// obstacles grows with the skin, so its skin is thinner.
+// A droplet moves 0.05 sigma in about 1000 steps, so renewals cost nothing. The list of obstacles that may be
+// nearest grows with its skin, so this skin is thinner.
 constexpr double touching_skin = 0.05;
 constexpr double nearest_skin = 0.02;
 

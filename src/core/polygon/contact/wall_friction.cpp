@@ -46,7 +46,7 @@ WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> t
       continue;
     }
     WallAnchor anchor = *before;
-    before->holder = -1;  // not lost
+    before->holder = -1;  // this contact has not ended
     const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
     const double most = bears / (stiffness_ * at.gradient);
     const double held = yield.hold(anchor, slip, -most, most, stiffness_, purpose);

@@ -10,7 +10,7 @@
 namespace clog {
 namespace {
 
-/// @param longest  possible step
+/// @param longest  longest possible step
 int num_steps(double longest, int steps, double time_step) {
   // The tolerance avoids splitting a step that was chosen as exactly the largest stable one.
   constexpr double tolerance = 1e-9;

@@ -50,9 +50,10 @@ Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
 }
 
 /// The droplet grows with all kinds of contact and evenly spread vertices, whatever its own interface is:
-/// bunched vertices make the interface too stiff for any step, and obstacles slip between distant ones.
-/// Springs along the interface have no energy, so they must be weak for the minimiser; under a large tension
-/// they must be strong, because contact then pulls vertices together at the corners of a squeezed droplet.
+/// bunched vertices make the interface too stiff for any step, and obstacles slip between vertices that are
+/// far apart. Springs along the interface have no energy, so they must be weak for the minimiser; under a
+/// large tension they must be strong, because contact then pulls vertices together at the corners of a
+/// squeezed droplet.
 RunParameters with_growing_interface(RunParameters run) {
   run.dp.inertia = 1;  // the droplet starts at rest
   run.dp.perimeter_spring = PerimeterSpring::along;

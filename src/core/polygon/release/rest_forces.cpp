@@ -40,8 +40,8 @@ void RestForces::look(const DropletState& state, const Travel& travel) {
   wedges_ = wedges_in(state.frame, forces_->wedges());
 }
 
-/// Computes the force as the kick of a droplet at rest, without drag, in a time in which the change of
-/// velocity equals the force.
+/// Computes the force by a kick from rest, without drag, whose time is such that the velocity gained equals
+/// the force.
 void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::StepArrays& a = memory_.arrays();
   memory_.load(state.position, a.position);

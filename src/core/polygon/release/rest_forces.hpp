@@ -35,7 +35,8 @@ class RestForces {
   WettedWalls::Forces wetting_;
   NearContacts near_;
   double way_ = 0;            // displacement for which the contacts are valid [sigma]
-  Eigen::ArrayXd looked_at_;  // vertices at the last look, all x then all y, and room for a whole vector
+  Eigen::ArrayXd looked_at_;  // vertices at the last update of the contacts, all x then all y, and room for a
+                              // whole vector
 
   bool contacts_hold(const Travel& travel) const;
   void look(const DropletState& state, const Travel& travel);

@@ -74,7 +74,7 @@ struct NearestOnHalves {
   HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
   /// The force stiffness (reach - distance), where they touch.
   HWY_INLINE Pair push(M touch, V reach, V stiffness) const {
-    // A point exactly at the centre gets no direction, but no NaN.
+    // For a point exactly at the centre, the direction is 0 and not NaN.
     const V inverse_distance = square_root(hn::Max(distance2, all(1e-300))).inverse;
     const V size = hn::IfThenElseZero(touch, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
     return {hn::Mul(size, dx), hn::Mul(size, dy)};

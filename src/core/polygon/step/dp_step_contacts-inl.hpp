@@ -58,7 +58,7 @@ class EdgePushes {
   /// Pushes edges off their points by stiffness (reach - distance), where they touch. The closest point
   /// divides the force between the edge's two vertices.
   HWY_INLINE Pair add(const NearestPoints& nearest, M touch, V reach, V stiffness) {
-    // A point exactly on the edge gets no direction, but no NaN.
+    // For a point exactly on the edge, the direction is 0 and not NaN.
     const V inverse_distance = square_root(hn::Max(nearest.distance2, all(1e-300))).inverse;
     const V size = hn::IfThenElseZero(touch, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
     const Pair push{hn::Mul(size, nearest.dx), hn::Mul(size, nearest.dy)};
@@ -85,7 +85,7 @@ class EdgePushes {
   }
 };
 
-/// The lanes from the first to the last, twice, and in reverse.
+/// Numbers of the lanes, repeated twice: in ascending order, and in descending order.
 constexpr auto orders = [] {
   std::array<std::array<std::int64_t, std::size_t{2} * lanes>, 2> order{};
   for (int k = 0; k < 2 * lanes; ++k) {
@@ -266,9 +266,9 @@ void push_off_wedges(int n, const WedgePlace* wedges, std::size_t num_wedges, do
   }
 }
 
-/// v^(-4/3) from y = v^(-1/3): a first guess from the bits of a number, which are nearly its logarithm, then
-/// the first terms of (1 - error)^(-1/3), and of the fourth power of that. The guess has an error of at most
-/// 0.103, five terms leave 5e-6, three more none.
+/// v^(-4/3), as the fourth power of y = v^(-1/3). The first guess of y uses the bits of a number, which are
+/// nearly its logarithm; its error is at most 0.103. Five terms of the series of (1 - error)^(-1/3) leave an
+/// error of 5e-6 in y; three terms of the series of (1 - error)^(-4/3) correct the fourth power.
 inline V power_minus_four_thirds(V v) {
   const hn::RebindToSigned<D> bits;
   const V scaled = hn::MulAdd(hn::ConvertTo(D(), hn::BitCast(bits, v)), all(-1.0 / 3),

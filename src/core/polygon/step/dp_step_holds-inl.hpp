@@ -40,8 +40,8 @@ void add_wetted(const WallWindow& window, V span, const StepArrays& a, const Con
   }
 }
 
-/// Edges reach one vertex before the contour and `beyond` vertices after it: adds the forces there to the
-/// vertices of the other end.
+/// Edges push up to one vertex before the contour and `beyond` vertices after it. Adds these forces to the
+/// vertices at the contour's other end.
 HWY_INLINE void fold_ends(const ContourArray& p, int n, int beyond = 2) {
   p[n - 1] += std::exchange(p[-1], 0);
   for (int i = 0; i < beyond; ++i) p[i] += std::exchange(p[n + i], 0);

@@ -32,9 +32,9 @@ struct StepArrays {
   ContourPair tangent;         ///< of the edges
   ContourArray length;         ///< of the edges
   ContourPair push;            ///< kick of the vertices by contact
-  ContourPair wetting;         ///< the part of the kick by wetting that has no energy
+  ContourPair wetting;         ///< part of the kick by wetted walls that derives from no energy
   ContourPair grad_x, grad_y;  ///< 6 a times the gradient of the centroid's x, of its y
-  ContourArray rate;           ///< drag rate of a vertex [1/t0], if it differs
+  ContourArray rate;           ///< drag rate of a vertex [1/t0], if the rates differ
   ContourArray damping, kept;  ///< s and s (1 - h2 r), with the rate; see KickCoefficients
   ContourPair kicked;          ///< w, if keeps_kicked; see KickCoefficients
   ContourPair chord;           ///< between a vertex's neighbours, for an implicit pressure
@@ -68,13 +68,14 @@ struct AreaForce {
 /// w is the velocity kicked by force and own drag, v' the next velocity once c and a are known (see
 /// Coupling). One kick thereby ends a time step and begins the next. q takes the place of the velocity.
 struct KickCoefficients {
-  double closing_ratio;  ///< h1 / half_step: of the half step that ends a time step to that of the forces
+  double closing_ratio;  ///< h1 / half_step: the half step that ends a time step, divided by the half step of
+                         ///< the forces
   double h1, h2;         ///< [t0]
   double weight;         ///< (h1 + h2) / half_step, h1 / half_step where no time step begins
   double half_step;      ///< that of the forces [t0]
   bool keeps_kicked;     ///< whether w is needed afterwards
-  /// For an implicit pressure: K_a half_step^2/(M/N_v), with K_a the area stiffness. The half kick that ends
-  /// a step of another length has the value of the step that begins.
+  /// For an implicit pressure: K_a half_step^2/(M/N_v), with K_a the area stiffness. A half kick that ends a
+  /// step of another length uses the value of the step that begins.
   double softening = 0;
 };
 /// The terms of a kick. Each combination is compiled separately.
@@ -82,10 +83,10 @@ struct KickTerms {
   bool elastic;                     ///< springs that carry tension; otherwise those along the interface
   bool on_area;                     ///< weight and mean drag act on the area; they are then coupled
   bool varying_rate;                ///< drag rates are those of the array; otherwise `rate`
-  bool coupled;                     ///< whether any force depends on all velocities
+  bool coupled;                     ///< whether the force on a vertex depends on the velocities of all
   bool implicit_pressure;           ///< see Coupling
   double rate;                      ///< [1/t0]
-  double relative_rate, area_rate;  ///< at which the mean velocities of vertices and area act [1/t0]
+  double relative_rate, area_rate;  ///< rates of the drag by the mean velocities of vertices and area [1/t0]
 };
 /// Mean velocities, and what they contribute to the velocities of the vertices.
 ///
@@ -99,7 +100,7 @@ struct Coupling {
   double mean_x = 0, mean_y = 0;  ///< of the vertices
   double area_x = 0, area_y = 0;  ///< of the area's centroid
   double c_x = 0, c_y = 0;
-  double a_x = 0, a_y = 0;   ///< with the force on the area, over 6 a
+  double a_x = 0, a_y = 0;   ///< includes the force on the area; divided by 6 a
   double half_pressure = 0;  ///< pressure that the implicit pressure adds, as a kick
 };
 /// Powers, each for M/N_v = 1.
@@ -176,7 +177,7 @@ struct Contact {
 struct NearWalls {
   const WallContacts::Item* items;  ///< circles, by group
   std::size_t num_items;
-  double range;   ///< of the items' reach [sigma]
+  double range;   ///< range that the items' reach includes [sigma]
   bool alike;     ///< whether all circles have this radius
   double radius;  ///< [sigma]
   const WedgePlace* wedges;
@@ -192,7 +193,8 @@ struct NearWallDrag {
 struct Survey {
   double perimeter, shortest;    ///< of the edges [sigma]
   double speed, relative_speed;  ///< of the fastest vertex, and relative to their mean [sqrt(sigma g)]
-  double moved, moved_relative;  ///< farthest from where vertices were, see StepKernel::survey [sigma]
+  double moved, moved_relative;  ///< largest displacement of a vertex from the earlier positions, see
+                                 ///< StepKernel::survey [sigma]
 };
 
 /// One instruction set's versions of the passes.
@@ -202,8 +204,8 @@ struct StepKernel {
   /// @param walls, self  earlier positions of the vertices, all x then all y, `self` relative to their mean;
   /// may be null
   Survey (*survey)(int n, const double* walls, const double* self, const StepArrays& arrays);
-  /// Gap between every edge of every item and its contact range, edges_per_group for each; negative in
-  /// contact [sigma]. Returns the smallest, at most 0.
+  /// Gap between every edge of every item and the contact range of the item's circle, edges_per_group gaps
+  /// for each item; negative in contact [sigma]. Returns the smallest, at most 0.
   double (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
                         const StepArrays& arrays, double* gaps);
   /// The edges of one item with a gap of at most `way`, as bits.
@@ -216,8 +218,8 @@ struct StepKernel {
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
                const Contact& contact, const StepArrays& arrays);
-  /// As push(), on all groups; circles also exert friction. Returns the energy lost to walls, divided by k_t
-  /// [sigma^2].
+  /// Like push(), but on all groups, and with friction of the circles. Returns the energy lost to walls,
+  /// divided by k_t [sigma^2].
   double (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
                           const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
                           const StepArrays& arrays);
@@ -232,7 +234,8 @@ struct StepKernel {
   /// First pass: forces and velocities.
   Coupling (*kick)(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays);
-  /// Between the passes, if requested: powers at the end of a time step, from the w that the kick kept.
+  /// Powers at the end of a time step, from the w that the kick kept. Called between the passes, if
+  /// requested.
   Power (*power)(int n, const KickTerms& terms, const InterfaceKick& interface,
                  const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays);
   /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges there. Sums include the perimeter

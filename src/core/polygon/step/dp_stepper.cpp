@@ -273,7 +273,8 @@ void DpStepper::add_wetting(DropletState& state, double impulse, Droplet::Work* 
   }
 }
 
-/// Walls slip where their limits are exceeded, and hold the vertices by the limiting force.
+/// The interface slips along walls where their limits are exceeded; there the limiting force acts on the
+/// vertices.
 void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
   const std::vector<WallTouch>& touches =
@@ -282,7 +283,7 @@ void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::W
   const WallYield yield = forces_->friction().follow(state, touches, Purpose::motion,
                                                      friction_.touches.known_anchors(), &friction_.force);
   if (work != nullptr) work->dissipated += yield.dissipated;
-  for (const WallAnchor& anchor : state.anchors) {  // the first of two anchors of a vertex adds both forces
+  for (const WallAnchor& anchor : state.anchors) {  // if a vertex has two anchors, the first adds both forces
     const Eigen::Index x = anchor.holder, y = n_ + x;
     a.push.x[x] += impulse * std::exchange(friction_.force[x], 0.0);
     a.push.y[x] += impulse * std::exchange(friction_.force[y], 0.0);

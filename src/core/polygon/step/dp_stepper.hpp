@@ -56,7 +56,7 @@ class DpStepper {
   };
   struct KeptRates {
     double fastest = 0;  // speed of a vertex at the last survey [sqrt(sigma g)]
-    int steps_left = 0;  // with the present rates
+    int steps_left = 0;  // for which the present rates may still be used
     double h1 = 0, h2 = 0;
   };
   /// The step whose last half kick is pending.

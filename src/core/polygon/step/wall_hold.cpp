@@ -118,7 +118,7 @@ void WallHold::Memory::make_room(std::size_t needed, std::size_t num_zeroed) {
   }
 }
 
-/// Zeroes what windows stored for their circles.
+/// Zeroes the forces that windows stored for their circles.
 void WallHold::clear_pushes() {
   for (const kernel::HoldingCircle& circle : all_)
     for (int k = circle.first_window; k < circle.end_window; ++k)
@@ -128,7 +128,8 @@ void WallHold::clear_pushes() {
             kernel::edges_per_group, 0.0);
 }
 
-/// First arrays of the whole contour, of equal length: four for all circles, then those of each circle.
+/// The memory begins with arrays of the whole contour, all of equal length: four for all circles, then those
+/// of each circle.
 void WallHold::arrange_memory() {
   const std::size_t stride =
       (static_cast<std::size_t>(num_groups_) + before + behind) * kernel::edges_per_group;

@@ -27,16 +27,15 @@ class WallHold {
   /// @param film_reach  see kernel::WallGrip
   WallHold(int num_vertices, double range, double film_reach);
 
-  /// Takes over the droplet's anchors. @param vertices  their positions
-  /// Returns half the sum of the squared slips of those anchors that none of these circles can hold
-  /// [sigma^2].
+  /// Takes over the droplet's anchors. @param vertices  positions of its vertices Returns half the sum of the
+  /// squared slips of those anchors that none of these circles can hold [sigma^2].
   double make(const Near& near, const kernel::ContourPair& vertices, DropletState& droplet);
   /// Copies the anchors into the droplet, if make() was called since forget().
   void hand_back(DropletState& droplet) const;
   /// Discards the anchors: the next make() adopts those of its droplet.
   void forget() { has_anchors_ = false; }
   double film_reach() const { return film_reach_; }  ///< [sigma]
-  /// Valid until the next make(), and to be changed by a step.
+  /// Valid until the next make(). A step changes the anchors in it.
   const kernel::HoldingCircles& circles() const { return circles_; }
 
  private:

@@ -21,8 +21,8 @@ double cosine(double degrees) { return portable::cos(degrees * pi / 180); }
 
 /// The angle from one direction to another, by their cross and dot products.
 double turn_between(double cross, double dot) {
-  // Adjacent vertices see a wall under small angles: terms of the arc tangent's series up to 0.3^29/29 =
-  // 2e-17, in a tenth of the time.
+  // For the small angles between adjacent vertices, the series of the arc tangent, with terms up to 0.3^29/29
+  // = 2e-17, takes a tenth of the time.
   constexpr double small = 0.3;
   constexpr int last_power = 27;
   if (!(std::abs(cross) < small * dot)) return portable::atan2(cross, dot);
@@ -42,8 +42,8 @@ double way(const WallPlace& wall, double from, double to) {
 /// @param k  from -size to 2 size - 1
 Index around(Index k, Index size) { return k < 0 ? k + size : k < size ? k : k - size; }
 
-/// Distance beyond the contact, in vertex diameters, up to which a vertex counts as on the wall, so that a
-/// held end is not lost when its vertex hovers or bounces.
+/// Distance beyond the range of contact, in vertex diameters, up to which a vertex counts as on the wall, so
+/// that a held end is not lost when its vertex hovers or bounces.
 constexpr double hovering = 0.25;
 
 }  // namespace
@@ -165,14 +165,14 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
       while (last - k < num && k - last < num && goes_on() && vertex(last + step).share < 1) last += step;
       if (goes_on() && vertex(last + step).share >= 1) continue;
 
-      // u decreases along the contour, so outwards is -u at the last end.
+      // u decreases along the contour, so at an arc's last end -u grows outwards.
       const double outwards = side == 1 ? -1 : 1;
       End end{zone.wall, side, 0, ends.gradients_.size(), 0};
       Beside here = beside(zone.wall, vertices, vertex(k).vertex);
       double sum = zone.wall.wedge >= 0 ? here.on_wedge
                                         : zone.wall.radius * portable::atan2(here.normal[1], here.normal[0]);
       double way_before = 0;
-      Eigen::Array2d carried = here.forward;  // weight so far of u of the present vertex
+      Eigen::Array2d carried = here.forward;  // weight that the present vertex's u has so far
       for (Index j = k;; j += step) {
         const bool is_last = j == last;
         const Index next = around(vertex(j).vertex + step, n);

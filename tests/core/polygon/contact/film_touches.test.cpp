@@ -25,13 +25,13 @@ namespace {
 using namespace test;
 using std::numbers::pi;
 
-/// A contour of arcs around the origin, in alternating directions, each at its own radius; the last arc leads
-/// back to the first far outside.
+/// A contour of arcs around the origin, each with its own radius, in alternating directions. The last arc
+/// leads back to the first one, far outside.
 class Stack {
  public:
   static constexpr double disc = 0.5, range = 0.02, stiffness = 4e4;
   static constexpr int on_arc = 41;
-  /// @param overlaps  of the disc with the first arc, of each arc with the next one [sigma]
+  /// @param overlaps  overlap of the disc with the first arc, then of each arc with the next one [sigma]
   explicit Stack(std::vector<double> overlaps) : contacts_(range, pi * disc / (on_arc - 1)) {
     std::vector<double> radii = {disc - overlaps[0]};
     for (std::size_t k = 1; k < overlaps.size(); ++k) radii.push_back(radii.back() + range - overlaps[k]);
@@ -71,7 +71,7 @@ class Stack {
 };
 
 TEST(FilmTouches, OfAStackBearTogetherWhatTheWallBears) {
-  // Each of the three interfaces bears the normal force that balances its own tension.
+  // The normal force on each of the three interfaces balances this interface's own tension.
   constexpr double first = 8e-3, second = 1e-3, third = 5e-4;
   const double by_wall = Stack::stiffness * first * Stack::on_arc;
   const std::vector<double> alone = Stack({first}).held();
@@ -109,7 +109,7 @@ class Band {
     double friction = 0;
     FilmFriction films = FilmFriction::on;
   };
-  /// @param on_disc  edges on half of the circumference  @param weight  of each rope, by length
+  /// @param on_disc  number of edges on half of the circumference  @param weight  of each rope, per length
   Band(Law law, int on_disc, double weight)
       : law_(law),
         weight_(weight),
@@ -145,7 +145,7 @@ class Band {
     constexpr int loading = 6000, waiting = 16000;
     double lower = 0, upper = 0;
     for (int step = 0; step < loading + waiting; ++step) {
-      // All forces grow in proportion, so that none exceeds what the others bear.
+      // All forces grow in proportion, so that no rope slides before the forces are complete.
       move(pulls, std::min(1.0, static_cast<double>(step) / loading));
       if (step == loading + waiting / 2) lower = state_.position[each_ - 1], upper = state_.position[each_];
     }
@@ -168,8 +168,8 @@ class Band {
   bool is_lower(int i) const { return i < each_; }
   int along(int i) const { return is_lower(i) ? i : n_ - 1 - i; }
   double radius_of(int i) const { return is_lower(i) ? radius : radius + film; }
-  // The upper rope has one edge more, so that its corners meet the lower rope's corners in all phases and do
-  // not interlock.
+  // The upper rope has one edge more. So its corners lie between those of the lower rope at changing
+  // positions, and the ropes do not interlock.
   int edges_of(int i) const { return is_lower(i) ? on_disc_ : on_disc_ + 1; }
   double edge_of(int i) const { return pi * radius_of(i) / edges_of(i); }
 
@@ -222,8 +222,8 @@ class Band {
 };
 
 TEST(BandOverADisc, WithoutWeightSlidesAtExpMuTheta) {
-  // In each rope dT/dtheta = mu T, with its own tension as normal force: T_2 = exp(mu theta) T_1, independent
-  // of the other rope. Friction holds both together like a single rope.
+  // The normal force on each rope comes from the rope's own tension. So dT/dtheta = mu T and T_2 = exp(mu
+  // theta) T_1, independent of the other rope: friction holds each rope as if it were alone.
   constexpr double mu = 0.3;
   const double exact = std::exp(mu * pi);
   const double less = 0.97 * exact, more = 1.03 * exact;
@@ -247,7 +247,7 @@ TEST(BandOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
     Band band({mu}, edges, weight);
     const auto pulls = [&](double radius) {
       const double own =
-          band.hanging() * radius / Band::radius + pi * radius / edges / 2;  // from the disc's side on
+          band.hanging() * radius / Band::radius + pi * radius / edges / 2;  // measured from the disc's side
       const double exact = grip * own + 2 * mu * radius * (1 + grip) / (1 + mu * mu);
       return std::pair(0.0, weight * (share * exact - own));
     };
@@ -260,9 +260,9 @@ TEST(BandOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
 }
 
 TEST(BandOverADisc, IsHeldByCornersAloneIfNothingHoldsItsUpperRope) {
-  // Both ropes bear the weights of the lobes, one of which is heavier. Without friction through the film the
-  // upper rope yields at once, whatever holds the lower rope; the force of its corners falls with the square
-  // of their edge length.
+  // The two ropes together bear the weights of two lobes, one of which is heavier. Without friction through
+  // the film the upper rope yields at once, however the lower rope is held: only its corners hold it, by a
+  // force that falls with the square of the edge length.
   const auto upper_slides = [](Band::Law law, int edges, double imbalance) {
     return Band(law, edges, 0).slides({1, 1 + imbalance, 1, 1 + imbalance}).upper;
   };

@@ -87,10 +87,10 @@ TEST(WallTouches, PushesAddUpToTheContactsForce) {
   EXPECT_GT(wetted, 2 * units::regular_edge_length(64));
 }
 
-/// How well the sum of a held droplet's energy and the dissipated energy is conserved.
+/// How well the sum of the energy of a held droplet and the dissipated energy is conserved.
 struct Balance {
-  double worst = 0;  ///< largest difference of the sum from its first value
-  double rise = 0;   ///< largest rise of the energy alone between two times
+  double worst = 0;  ///< largest difference between the sum and its first value
+  double rise = 0;   ///< largest rise of the energy, without the dissipated energy, between two times
   double anchors = 0, dissipated = 0;
 };
 Balance balance(RunParameters run, const ObstacleArray& wall, const Eigen::ArrayXd& initial,
@@ -170,7 +170,8 @@ TEST(WallAnchors, OfFrictionThroughAFilmBalanceTheEnergyToSecondOrder) {
 }
 
 TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
-  // On an incline no end is torn off, which happens within a step.
+  // On an incline no end of the contact line is torn off. Tearing happens within one step, which would hide
+  // the order.
   RunParameters run = bare_parameters();
   run.dp.perimeter_spring = PerimeterSpring::along;
   run.dp.perimeter_stiffness = 0.3;
@@ -216,7 +217,7 @@ class Rope {
     double before = 0;
     for (int step = 0; step < loading + waiting; ++step) {
       const double share = std::min(1.0, static_cast<double>(step) / loading);
-      // Both pulls grow in proportion, so that neither exceeds what the other bears.
+      // Both pulls grow in proportion, so that the rope does not slide before they are complete.
       move(share * first_pull, share * second_pull, share * weight_);
       if (step == loading + waiting / 2) before = state_.position[n_ - 1];
     }
@@ -231,7 +232,7 @@ class Rope {
   KnownAnchors known_;
   DropletState state_;
 
-  /// One step of 1 with a mass that makes it stable, and a drag that hardly lets the rope swing.
+  /// One step of length 1, with a mass that makes it stable and a drag that hardly lets the rope swing.
   void move(double first_pull, double second_pull, double weight) {
     constexpr double mass = 8 * spring_;
     const double kept = 1 - 2 * pi * 0.35 / n_;
@@ -252,7 +253,7 @@ class Rope {
       if (r >= radius) continue;
       const double push = contact_ * (radius - r);
       force[i] += push * x[i] / r, force[n_ + i] += push * y[i] / r;
-      // An edge lies on the disc if both its ends do.
+      // An edge lies on the disc if its two ends do.
       double wetted = 0;
       if (!touches.empty() && touches.back().vertex == i - 1) {
         touches.back().wetted += edge_ / 2;
@@ -279,7 +280,7 @@ double threshold(const std::function<bool(double)>& slides, double low, double h
   return (low + high) / 2;
 }
 
-/// Errors with 16 and 32 edges on the disc.
+/// Compares the errors with 16 and 32 edges on the disc.
 void expect_convergence(const std::function<double(int)>& error) {
   const double coarse = error(16), fine = error(32);
   std::printf("error of the threshold: %+.4f with 16, %+.4f with 32 edges on half a turn\n", coarse, fine);
@@ -330,7 +331,7 @@ TEST(RopeOverADisc, ThatOnlySticksSlidesAtPiRTau) {
   });
 }
 
-/// An elastic droplet that sinks on a small disc, a little beside its middle.
+/// An elastic droplet that sinks on a small disc, a little beside the disc's middle.
 DropletRun falls_on_disc(double friction, ClogDetection detection, double clog_energy) {
   RunParameters run;
   run.dp.vertices = 128;
@@ -358,8 +359,8 @@ RunResult ended(DropletRun run) {
 }
 
 TEST(WallFriction, HoldsADropletThatHangsOverADisc) {
-  // Without friction the droplet slips off. The certificate and the threshold find the same rest; the search
-  // for it starts once the walls hardly yield any more.
+  // Without friction the droplet slips off. Detection by certificate and by threshold find the same place of
+  // rest. The search for the certificate starts once the walls hardly yield any more.
   constexpr double quiet = 1e-15;
   EXPECT_EQ(ended(falls_on_disc(0, ClogDetection::certified, quiet)).status, RunStatus::passed);
   const RunResult certified = ended(falls_on_disc(0.1, ClogDetection::certified, quiet));

@@ -24,7 +24,8 @@ RunParameters only(void (*switch_on)(RunParameters&), int vertices = 64) {
   return run;
 }
 
-/// Rounding of energies of order one over the step h = 1e-6 leaves 1e-9; curvature h^2 U''' stays below it.
+/// The central difference of an energy of order one with the step h = 1e-6 has a rounding error of about
+/// 1e-9. The truncation error h^2 U''' is smaller.
 constexpr double difference_tolerance = 2e-7;
 
 double free_force_error(const RunParameters& run, double weight = 0) {
@@ -85,7 +86,7 @@ TEST(DpForces, WallContactIsTheGradientOfItsEnergy) {
   const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
   forces.update_contacts(state, {});
   ASSERT_GT(forces.energy(state).wall, 0);
-  EXPECT_LT(force_error(forces, state), 1e-5);  // the contact's stiffness of 1000 scales the rounding
+  EXPECT_LT(force_error(forces, state), 1e-5);  // rounding, times the contact's stiffness of 1000
 }
 
 TEST(DpForces, SelfContactIsTheGradientOfItsEnergy) {
@@ -182,7 +183,7 @@ TEST(DpForces, LaplacePressureOfACircleIsLineTensionOverRadius) {
 }
 
 class ContactLists : public testing::TestWithParam<double> {};
-// From slow, like a sinking droplet, to so fast that a droplet crosses the usual skin between two updates.
+// Speeds from that of a sinking droplet to so fast that a droplet crosses the usual skin between two updates.
 INSTANTIATE_TEST_SUITE_P(Speeds, ContactLists, testing::Values(0.05, 0.8, 5.0));
 
 TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
@@ -200,7 +201,8 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
   const double cutoff = run.drag.near_wall_cutoff;
   const double stiffness = contact_stiffness(*run.wall_stiffness, 2 * range);
   for (int step = 0; step < 2000; ++step) {
-    // Lists are updated every other step, so the checks in between rely on the skin.
+    // Lists are updated every other step only; in the steps between, the forces are right only because of the
+    // skin.
     if (step % 2 == 0) {
       if (state.recentre().any()) forces.forget_contacts();
       forces.update_contacts(state, state.possible_travel(0.2));
@@ -260,7 +262,7 @@ TEST(DpForces, VertexContactIsTheGradientOfItsEnergy) {
   EXPECT_LT(force_error(forces, state), 1e-5);
 }
 
-/// A wedge whose tip, and one whose flank, presses into the droplet.
+/// Two wedges: one presses into the droplet with its tip, the other with its flank.
 ObstacleArray two_wedges(double radius) {
   return ObstacleArray(20, {},
                        {{.tip = {0.02, 0.47}, .axis = {0, 1}, .half_angle = 0.6, .radius = radius},
@@ -294,8 +296,8 @@ TEST(DpForces, WettedWallsPullWithTheGradientOfTheirEnergy) {
 }
 
 TEST(DpForces, WettedWallsNeitherPullAlongTheInterfaceNorAlongTheWall) {
-  // Springs along the interface carry no tension, so the liquid takes what the polygon's edges leave of a
-  // pull along the interface: nothing pushes the droplet as a whole along a flat wall.
+  // Springs along the interface carry no tension. If the polygon's edges carry only a part of a pull along
+  // the interface, the liquid takes the rest; so nothing pushes the droplet as a whole along a flat wall.
   const ObstacleArray wall(20, {}, {{.tip = {0.37, 0}, .axis = {1, 0}, .half_angle = std::numbers::pi / 2}});
   RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 1.3; });
   run.dp.perimeter_spring = PerimeterSpring::along;
@@ -341,7 +343,7 @@ TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {
 }
 
 TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
-  // Coordinates as published would lose 13 of an edge's 16 digits there.
+  // There, coordinates that are not shifted, as published, would lose 13 of the 16 digits of an edge.
   const ObstacleArray array = sample_obstacles({.gap = 0.2, .diameter = 0.3, .density = {}, .box = 25}, 3);
   ReferenceForces near(bare_parameters(256), array);
   ReferenceForces far(bare_parameters(256), array);
@@ -357,7 +359,7 @@ TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
   EXPECT_NEAR(downstream.frame.global({0, 0})[0], 6003, 1e-9);
   EXPECT_LE((force - force_downstream).abs().maxCoeff(), 1e-12 * force.abs().maxCoeff());
 
-  // The same droplet in coordinates that are not shifted.
+  // The same droplet, in coordinates that are not shifted.
   const ObstacleArray nothing = no_obstacles(8000);
   ReferenceForces here(bare_parameters(256), nothing), there(bare_parameters(256), nothing);
   DropletState literal = state_of(state.position, 8000);
@@ -380,7 +382,8 @@ TEST(DpForces, AnObstacleBetweenTwoVerticesIsPushedOffByTheirEdge) {
   }
   const RunParameters run = only([](RunParameters&) {}, 16);
   const double range = units::regular_edge_length(16) / 2;
-  // Its surface lies 0.1 within the contact range below the middle of edge 1, from (-0.5, -1) to (0, -1).
+  // The obstacle is below the middle of edge 1, which goes from (-0.5, -1) to (0, -1); the edge is 0.1 inside
+  // the contact range of its surface.
   const ObstacleArray obstacle(20, {{19.75, 20 - 1 - 0.05 - range + 0.1, 0.05}});
   ReferenceForces forces(run, obstacle);
   forces.set_weight(0);

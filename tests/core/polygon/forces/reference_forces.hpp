@@ -47,11 +47,11 @@ class ReferenceForces : public DpForces {
     if (run_.drag.near_wall > 0) find_wall_distance(state);
   }
 
-  /// Distance of each vertex to the nearest obstacle at the last evaluate(), at least the near-wall drag's
-  /// cutoff [sigma]; empty without near-wall drag.
+  /// Distance of each vertex from the nearest obstacle at the last evaluate(), but at least the cutoff of the
+  /// near-wall drag [sigma]; empty without near-wall drag.
   const Eigen::ArrayXd& wall_distance() const { return wall_distance_; }
-  /// d(X, Y)/d(x_i, y_i) at the last evaluate(), X, Y the area's centroid: dX/dx, dX/dy, dY/dx, dY/dy, each
-  /// of length N_v. Zero with the weight on the vertices.
+  /// d(X, Y)/d(x_i, y_i) at the last evaluate(), where X and Y are the coordinates of the area's centroid:
+  /// dX/dx, dX/dy, dY/dx and dY/dy, each of length N_v. Zero with the weight on the vertices.
   const Eigen::ArrayXd& centroid_gradient() const { return centroid_gradient_; }
 
  private:
@@ -87,7 +87,7 @@ class ReferenceForces : public DpForces {
     Eigen::ArrayXd force = Eigen::ArrayXd::Zero(Eigen::Index{2} * n_);
     for (int i = 0; i < n_; ++i) {
       // The area's gradient is half the chord between the neighbours, turned outwards. Springs along the
-      // interface pull along that chord, so that they do no work on the area.
+      // interface pull along this chord, so that they do no work on the area.
       const Eigen::Array2d chord = vertex(i + 1) - vertex(i - 1);
       const double cosine = std::max(0.0, (edge(i) * edge(i - 1)).sum()) / (length(i) * length(i - 1));
       const double spread =
@@ -133,7 +133,7 @@ class ReferenceForces : public DpForces {
         push_half_edge(force, i, false, centre, item.reach);
       }
     });
-    // Edges need not be tested: they meet a wedge's tip first, which is a circle.
+    // Edges need not be tested against wedges: they meet a wedge's tip first, which is a circle.
     for (const Wedge& wedge : wedges()) {
       const kernel::WedgePlace place = kernel::place_in(state.frame, wedge);
       for (int i = 0; i < n_; ++i) {

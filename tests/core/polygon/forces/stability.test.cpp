@@ -11,8 +11,8 @@ namespace {
 
 using namespace test;
 
-/// Largest omega^2 of small motions about a shape: power iteration on the finite-difference Hessian over the
-/// mass.
+/// Largest omega^2 of small motions about a shape, by power iteration on the Hessian (from finite
+/// differences) divided by the mass.
 double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
                        const ObstacleArray& obstacles = no_obstacles()) {
   const int n = *run.dp.vertices;
@@ -37,7 +37,7 @@ double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
 }
 
 TEST(StiffModes, BoundTheStiffestModeOfTheDroplet) {
-  // A circle, and two lobes with a waist; vertices evenly spread, as the springs keep them.
+  // A circle, and two lobes with a waist; vertices are evenly spread, because springs keep them so.
   for (const Eigen::ArrayXd& position : {regular_polygon(128, units::rest_area), dumbbell(128, 0.2)})
     for (const double line_tension : {0.05, 1.0, 10.0}) {
       RunParameters run = bare_parameters(128);
@@ -64,8 +64,8 @@ TEST(StiffModes, BoundTwoFilmsThatTouch) {
   EXPECT_GT(stiffest, 0.5 * modes.self_contact) << "the film touches itself";
 }
 
-/// A droplet that hangs over a circle around the origin as a horseshoe 0.4 thick: vertices evenly spread,
-/// those inside at a distance `inner` from the centre.
+/// A droplet that hangs over a circle around the origin as a horseshoe of thickness 0.4. Vertices are evenly
+/// spread; those on its inner side are at the distance `inner` from the origin.
 Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
   constexpr double open = 2, thick = 0.4;  // half the angle [rad]; [sigma]
   const double outer = inner + thick;
@@ -92,9 +92,9 @@ Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
 }
 
 TEST(StiffModes, LeaveRoomForAContactThatTurnsWithItsEdges) {
-  // On a round obstacle, half edges that turn dig into it, the more the deeper they are. So the stiffest mode
-  // exceeds the bound of a flat contact, by less than the bounds of all modes together leave below 4. The
-  // overlap is the one that the automatic step allows.
+  // On a round obstacle, half edges that turn dig into the obstacle, and more so the deeper they already are.
+  // So the stiffest mode exceeds the bound for a flat contact, but by less than the margin that the bounds of
+  // all modes together leave below 4. The overlap is the one that the automatic step allows.
   const double radius = 0.15;
   for (const int n : {64, 128, 256, 512}) {
     RunParameters run = bare_parameters(n);
@@ -128,7 +128,7 @@ TEST(StableSteps, AreAsManyAsTheModesNeed) {
   EXPECT_EQ(num(1, largest), 1);
   EXPECT_EQ(num(1, 1.01 * largest), 2);
   EXPECT_EQ(num(1, 5.5 * largest), 6);
-  // There are no more steps than needed.
+  // The number of sub-steps is the smallest that is stable.
   EXPECT_EQ(num(8, largest), 8);
   EXPECT_EQ(num(8, 1.01 * largest), 9);
   EXPECT_EQ(num(8, 1.99 * largest), 16);

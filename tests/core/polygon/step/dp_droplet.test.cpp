@@ -105,7 +105,7 @@ TEST(DpDroplet, WithAreaDragFallsRoundAtTheTerminalSpeed) {
   RunParameters run = robust_polygon(64);
   const ObstacleArray nothing = no_obstacles();
   DpDroplet droplet(run, nothing, state_of(regular_polygon(64, units::rest_area)));
-  droplet.advance(20000);  // the vertices' spread evens out at 0.5/t0
+  droplet.advance(20000);  // the spread of the vertices evens out at a rate of 0.5/t0
   const auto centroid = [&] {
     return droplet.state().frame.global(area_centroid(droplet.state().position))[0];
   };
@@ -130,13 +130,13 @@ TEST(DpDroplet, FallsAtTheTerminalSpeedHoweverItsVerticesAreSpread) {
       state.position[64 + i] = 0.5 * std::sin(angle + crowding * std::sin(angle));
     }
     DpDroplet droplet(run, nothing, state);
-    droplet.advance(500);  // the vertices take ten times as long to even out
+    droplet.advance(500);  // the vertices would need ten times as long to spread evenly
     EXPECT_NEAR(droplet.centre_velocity()[0] / run.drag.terminal_speed, 1, 0.01) << crowding;
   }
 }
 
 TEST(DpDroplet, RelativeDragDampsChangesOfShapeOnly) {
-  // A swinging ellipse loses energy faster; its fall is the same.
+  // Drag on changes of shape makes a swinging ellipse lose energy faster, but does not change its fall.
   const ObstacleArray nothing = no_obstacles();
   const auto after = [&](double relative) {
     RunParameters run = bare_parameters();
@@ -180,7 +180,7 @@ TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
         const double begin = energy();
         double worst = 0;
         double contact = 0;
-        const int times = inertia > 1 ? 20 : 10;  // the heavy droplet takes longer to the obstacle
+        const int times = inertia > 1 ? 20 : 10;  // a droplet of larger inertia takes longer to get there
         for (int i = 0; i < times; ++i) {
           droplet.advance(static_cast<int>(std::lround(0.08 / dt)));
           worst = std::max(worst, std::abs(energy() - begin));
@@ -190,8 +190,8 @@ TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
         EXPECT_GT(droplet.work().dissipated, 0.01);
         return worst;
       };
-      // The error is compared over four halvings, because the step in which a contact begins changes the
-      // error of a single one.
+      // The error is compared over four halvings of the step, because it also depends on the step in which a
+      // contact begins, which disturbs a single halving.
       const double coarse = imbalance(8e-4);
       const double fine = imbalance(5e-5);
       EXPECT_LT(fine, 4e-6);
@@ -224,9 +224,9 @@ TEST(DpDroplet, ConservesEnergyWithoutDragToSecondOrder) {
 }
 
 TEST(DpDroplet, SwingsAtTheFrequencyOfACapillaryMode) {
-  // A small wave r = R + e cos 2 phi on a circle of line density mu = M/P that keeps its area costs the
-  // energy (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R) and moves the mass pi mu R: omega^2 = 3
-  // gamma/(mu R^2).
+  // Let a circle with the line density mu = M/P have a small wave r = R + e cos 2 phi that keeps the area.
+  // The wave costs the energy (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R) and moves the mass pi mu
+  // R, so omega^2 = 3 gamma/(mu R^2).
   RunParameters run = bare_parameters(128);
   run.drag.terminal_speed = no_drag;
   run.dp.perimeter_stiffness = 0;
@@ -253,7 +253,7 @@ TEST(DpDroplet, SwingsAtTheFrequencyOfACapillaryMode) {
     }
     return sum;
   };
-  // A quarter period after the start it passes through zero.
+  // A quarter period after the start, the amplitude passes through zero.
   const double line_density = units::droplet_mass / (2 * std::numbers::pi * radius);
   const double omega = std::sqrt(3.0 / (line_density * radius * radius));
   double before = mode();
@@ -288,7 +288,7 @@ TEST(DpDroplet, FeelsBitIdenticalForcesAnyNumberOfBoxesDownstream) {
 }
 
 TEST(DpDroplet, SplitsTheStepWhenStretchedTooFarForItWithoutDrag) {
-  // Perimeter 6 times the circle's: the area mode has omega dt = 2.1 at this step.
+  // The perimeter is 6 times the circle's, so the area mode has omega dt = 2.1 at this step.
   RunParameters run = bare_parameters(256);
   run.drag.terminal_speed = no_drag;
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));
@@ -303,8 +303,8 @@ TEST(DpDroplet, SplitsTheStepWhenStretchedTooFarForItWithoutDrag) {
 }
 
 TEST(DpDroplet, HasAnImplicitPressureWhenStretchedTooFarForTheStep) {
-  // The same film with drag: no need to split the step, unless the drag leaves changes of shape alone or
-  // differs from vertex to vertex.
+  // The same film with drag. The step need not be split, unless the drag does not act on changes of shape, or
+  // differs between vertices.
   RunParameters run = bare_parameters(256);
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));
   const ObstacleArray nothing = no_obstacles();
@@ -323,7 +323,7 @@ TEST(DpDroplet, HasAnImplicitPressureWhenStretchedTooFarForTheStep) {
 }
 
 TEST(DpDroplet, BlowsUpWhenStretchedAndNotSplit) {
-  // The same film and step with the scheme as published.
+  // The same film and step, with the published scheme.
   RunParameters run = bare_parameters(256);
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));
   const ObstacleArray nothing = no_obstacles();

@@ -21,7 +21,7 @@ namespace {
 
 using namespace test;
 
-/// Distance of the nearest vertex.
+/// Distance of the nearest vertex from a wedge.
 double distance_from(const Wedge& wedge, const DropletState& state) {
   double nearest = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < state.size(); ++i)
@@ -63,7 +63,7 @@ class Step : public testing::TestWithParam<StepCase> {
     run.dp.vertices = vertices;
     run.dp.line_tension = 0.3;
     run.time_step = 1e-3;
-    // Uses the published ranges: contacts are as large as the films and edges that the tests make.
+    // With the published ranges, contacts are as large as the films and edges that the tests make.
     run.dp.contact_range = units::regular_edge_length(vertices) / 2;
     run.dp.self_contact_range = units::regular_edge_length(vertices);
     GetParam().change(run);
@@ -91,8 +91,8 @@ class Step : public testing::TestWithParam<StepCase> {
 };
 
 TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
-  // A droplet with a neck so thin that it touches itself, uneven vertices, an obstacle on the neck and one at
-  // its end, and a wedge on the neck and at the other end.
+  // A droplet with uneven vertices and a neck so thin that it touches itself. One obstacle is on the neck and
+  // one at an end of the droplet; one wedge is on the neck and one at the other end.
   for (const int vertices : {64, 101, 256}) {
     const RunParameters run = parameters(vertices);
     const double diameter = units::regular_edge_length(vertices);
@@ -100,7 +100,7 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
     DropletState initial = state_of(shaken(full_size_dumbbell(vertices, film), 0.002 * film));
     initial.velocity = shaken(Eigen::ArrayXd::Zero(initial.position.size()), 0.03, 7);
     const double end = initial.x().maxCoeff();
-    // A flank of one wedge touches a vertex, and the tip of the other.
+    // One wedge touches a vertex with its flank, the other with its tip.
     const double touching = 0.45 * diameter;
     Eigen::Index left, below;
     initial.x().minCoeff(&left);
@@ -150,7 +150,7 @@ TEST_P(Step, JoinsStepsOfDifferentLengths) {
   for (const int vertices : {64, 101}) {
     const auto [run, initial, walls] = touching_droplet(vertices);
     constexpr double long_step = 1e-3, short_step = 0.3e-3;
-    // Entries have one step each, because the rates of near-wall drag are renewed after each entry.
+    // Each entry makes one step, because the rates of near-wall drag are renewed between entries.
     std::vector<Steps> all;
     for (int k = 0; k < 9; ++k) all.push_back({1, k % 3 == 1 ? short_step : long_step});
     for (const std::string& set : instruction_sets()) {
@@ -171,7 +171,7 @@ TEST_P(Step, JoinsStepsOfDifferentLengths) {
 TEST_P(Step, IsThatOfTheReadableFormWithAnImplicitPressure) {
   for (const int vertices : {64, 101}) {
     auto [run, initial, walls] = touching_droplet(vertices);
-    run.drag.near_wall = 0;  // with it the pressure is never implicit
+    run.drag.near_wall = 0;  // with near-wall drag the pressure is never implicit
     constexpr int num_steps = 3;
     for (const std::string& set : instruction_sets()) {
       use_instruction_set(set);
@@ -221,8 +221,8 @@ TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
 }
 
 TEST_P(Step, MeetsCirclesThatShareEdges) {
-  // Circles all around are so close that most edges touch two of them, also at the contour's ends and with
-  // few vertices.
+  // The circles around the droplet are so close together that most edges touch two of them, also where the
+  // contour begins and ends, and with few vertices.
   std::size_t num_compared = 0;
   for (const int vertices : {16, 30, 64, 101}) {
     RunParameters run = parameters(64);
@@ -272,8 +272,8 @@ Obstacle on_neck(const DropletState& state, double x, double radius, double dist
 }
 
 TEST_P(Step, HoldsAThinNeckThroughItsFilm) {
-  // The neck touches itself, and one circle, or two that are nearer to each other than friction through the
-  // film reaches. The contour begins in a lobe, or in the neck.
+  // The neck touches itself and one circle, or two circles whose distance is within the reach of friction
+  // through the film. The contour begins in a lobe or in the neck.
   int num_held = 0;
   for (const int vertices : {64, 101, 256}) {
     const RunParameters run = parameters(vertices);
@@ -358,7 +358,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return tested.param.name; });
 
 TEST(InstructionSet, DecidesTheForcesOfReleasesToo) {
-  // Other instruction sets add in another order and round less often, so some bits differ.
+  // With another instruction set numbers are added in another order and rounded less often, so some bits
+  // differ.
   RunParameters run;
   run.dp.vertices = 256;
   run.dp.line_tension = 0.3;

@@ -15,9 +15,9 @@ namespace {
 using namespace test;
 
 TEST(ImplicitPressure, LetsACircleBreatheAtTheFrequencyOfNewmarksMethod) {
-  // All vertices at a distance R + u from the centre: M u'' = -K_a A' (A - A_0), A' = 2 A/R. With
-  // omega^2 = K_a A'^2/M the motion from rest is u_n = u_0 cos(n phi), 2 (1 - cos phi) =
-  // (omega dt)^2/(1 + (omega dt)^2); explicit steps are unstable from omega dt = 2 on.
+  // If all vertices are at the distance R + u from the centre, M u'' = -K_a A' (A - A_0) with A' = 2 A/R. Let
+  // omega^2 = K_a A'^2/M. Then implicit steps from rest give u_n = u_0 cos(n phi) with 2 (1 - cos phi) =
+  // (omega dt)^2/(1 + (omega dt)^2). Explicit steps are unstable from omega dt = 2 on.
   constexpr int vertices = 64;
   const ObstacleArray nothing = no_obstacles();
   RunParameters run = bare_parameters(vertices);
@@ -47,7 +47,7 @@ TEST(ImplicitPressure, LetsACircleBreatheAtTheFrequencyOfNewmarksMethod) {
     }
 }
 
-/// A film that falls and contracts, its area mode so stiff that steps of 0.002 need an implicit pressure.
+/// A film that falls and contracts. Its area mode is so stiff that steps of 0.002 need an implicit pressure.
 RunParameters film_parameters(Gravity gravity) {
   RunParameters run = bare_parameters(128);
   run.dp.line_tension = 0.1;

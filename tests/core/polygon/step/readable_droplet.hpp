@@ -33,9 +33,10 @@ class ReadableDroplet {
     state_.velocity += h_over_m * force_ + h * drag(state_.velocity) + h * pressed(state_.velocity);
     state_.position += *run_.time_step * state_.velocity;
     find_forces();
-    // The drag of the second half kick belongs to the end of the kick, so the velocity is found by iteration.
+    // The drag of the second half kick depends on the velocity at the end of the kick, which is found by
+    // iteration.
     const Eigen::ArrayXd kicked = state_.velocity + h_over_m * force_;
-    // Averaging keeps the iteration stable next to a wall.
+    // Under-relaxation keeps the iteration stable next to a wall.
     for (int i = 0; i < 300; ++i)
       state_.velocity +=
           0.4 * (kicked + h * drag(state_.velocity) + h * pressed(state_.velocity) - state_.velocity);
@@ -49,8 +50,8 @@ class ReadableDroplet {
   WallTouches touches_;
   DropletState state_;
   Eigen::ArrayXd force_;
-  Eigen::ArrayXd rate_;  // of the drag on each vertex
-  double fastest_ = 0;   // speed of the fastest vertex at the last look at contacts
+  Eigen::ArrayXd rate_;  // rate of the drag on each vertex
+  double fastest_ = 0;   // speed of the fastest vertex when the contacts were last updated
   int num_evaluations_ = 0, num_kept_ = 0;
 
   /// Finds the forces after the walls that hold the droplet have yielded.
@@ -61,7 +62,7 @@ class ReadableDroplet {
     if (num_evaluations_ % most_steps_per_survey == 0)
       fastest_ =
           std::sqrt((state_.velocity.head(n_).square() + state_.velocity.tail(n_).square()).maxCoeff());
-    // The rates are new at the beginning and at the end of the first step.
+    // The rates of the drag are computed at the beginning and at the end of the first step.
     if (num_evaluations_ > 1 && num_kept_ > 0) {
       --num_kept_;
     } else {

@@ -50,7 +50,7 @@ TEST(ContactLine, ForceIsTheGradientOfTheEnergyWhileTheAnchorsRest) {
 }
 
 TEST(ContactLine, AnEndsGradientIsBounded) {
-  // The bound is that of the stability, for any wetted wall.
+  // The bound on the step follows from stability and holds for any wetted wall.
   const ObstacleArray walls(20, {{0.63, 0.05, 0.15}});
   for (unsigned seed = 1; seed <= 200; ++seed) {
     RunParameters run = bare_parameters();
@@ -69,7 +69,7 @@ TEST(ContactLine, AnEndsGradientIsBounded) {
   }
 }
 
-/// A drop let down on walls beside its place of release.
+/// A drop that is let down on walls beside its place of release.
 DropletRun drop_on(RunParameters run, const std::vector<Obstacle>& circles, const std::vector<Wedge>& wedges,
                    double max_time) {
   run.drag.terminal_speed = 0.1;
@@ -96,7 +96,8 @@ RunParameters sticky(const Angles& angles, int vertices, double line_tension = 1
 
 class OnAnIncline : public testing::TestWithParam<Angles> {
  protected:
-  /// On a wall so steep that the weight along it is so many times what Furmidge's equation allows.
+  /// A drop on a wall whose slope makes the weight along the wall `share` times the weight that Furmidge's
+  /// equation allows.
   static DropletRun drop(double share, int vertices) {
     const Angles angles = GetParam();
     const double along = share * (cosine(angles.receding) - cosine(angles.advancing));
@@ -105,7 +106,7 @@ class OnAnIncline : public testing::TestWithParam<Angles> {
     const Wedge wall{.tip = Eigen::Array2d(10, 10) + 0.5 * into, .axis = into};
     return drop_on(sticky(angles, vertices), {}, {wall}, 60);
   }
-  /// Down the wall.
+  /// Distance down the wall.
   static double way(const DropletRun& run) {
     return run.displacement()[0] * std::sin(slope_) + run.displacement()[1] * std::cos(slope_);
   }
@@ -116,7 +117,8 @@ class OnAnIncline : public testing::TestWithParam<Angles> {
 INSTANTIATE_TEST_SUITE_P(Angles, OnAnIncline, testing::Values(Angles{1, 120, 180}, Angles{0.5, 100, 140}));
 
 TEST_P(OnAnIncline, ADropSticksBelowWhatFurmidgeAllowsAndSlidesAbove) {
-  // a sin(slope) = Gamma (cos receding - cos advancing); a drop that slides is slowed by the rest.
+  // a sin(slope) = Gamma (cos receding - cos advancing); if a drop slides, the drag balances the rest of its
+  // weight.
   const double allowed = cosine(GetParam().receding) - cosine(GetParam().advancing);
   for (const int vertices : {64, 128}) {
     DropletRun held = drop(0.98, vertices);
@@ -143,12 +145,12 @@ struct Disc {
   const char* name;
   double radius, line_tension;
   Angles angles;
-  double tolerance[2];  ///< of the torque, with 64 and 128 vertices
+  double tolerance[2];  ///< tolerance of the torque, with 64 and 128 vertices
 };
 
 class OnADisc : public testing::TestWithParam<Disc> {
  protected:
-  static constexpr double aside = 0.1;  // of the disc's centre, where the drop is let down
+  static constexpr double aside = 0.1;  // where the drop is let down, beside the disc's centre
 
   static DropletRun drop(int vertices) {
     const Disc& disc = GetParam();
@@ -161,8 +163,9 @@ INSTANTIATE_TEST_SUITE_P(Sizes, OnADisc,
                                          Disc{"small", 0.5, 1, {0.5, 30, 150}, {0.03, 0.01}}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// The ends' forces along the wall alone turn the drop around the disc's centre: M g y = R (f_0 - f_1), y its
-/// centroid's offset from the centre. So two lobes of different weight are held over a disc.
+/// Only the forces on the drop's two ends along the wall turn the drop around the disc's centre: M g y = R
+/// (f_0 - f_1), where y is the offset of the drop's centroid from the disc's centre. So two lobes of
+/// different weight are held over a disc.
 TEST_P(OnADisc, CarriesTheTorqueOfADropsWeight) {
   const Disc& disc = GetParam();
   double error[2];

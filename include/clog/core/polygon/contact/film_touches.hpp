@@ -11,8 +11,8 @@ namespace clog {
 
 /// Largest number of films through which a wall holds interfaces.
 inline constexpr double most_films = 3;
-/// How far from the surface of a wall friction through films reaches [sigma].
-/// @param wall_range  at which a wall's contact begins  @param self_range  see SelfContacts
+/// How far from the surface of a wall friction through films reaches [sigma]. @param wall_range  distance at
+/// which a wall's contact begins @param self_range  see SelfContacts
 inline double film_reach(double wall_range, double self_range) {
   return wall_range + most_films * self_range;
 }
@@ -24,10 +24,10 @@ inline constexpr double least_film_push = 1e-9;
 /// which the lower interface pushes it off; the lower interface keeps the rest of the wall's push:
 ///   N_i = max(0, n (P_i + S_i)),
 /// P_i the wall's push on vertex i, S_i that of the droplet's other parts, n the wall's normal. S_i counts
-/// for the nearest of the walls that push the droplet, up to most_films ranges of self-contact from its
-/// contact. At rest N_i balances what the interface's own tension presses on the wall, and over all
-/// interfaces of a stack the N_i add up to the push of the wall, so that it bears no more in all than
-/// Coulomb's law allows.
+/// only for one wall, the nearest of those that push the droplet, and only within film_reach() of its
+/// surface. At rest N_i balances the force with which the interface's own tension presses on the wall. The
+/// N_i of all interfaces of a stack add up to the push of the wall, so that its total friction obeys
+/// Coulomb's law.
 class FilmTouches {
  public:
   /// @param wall_range  distance from a wall's surface at which contact begins [sigma]
@@ -43,8 +43,8 @@ class FilmTouches {
   std::span<const Wedge> wedges_;
   std::vector<WallPlace> walls_;               // that push the droplet
   std::vector<Eigen::Array2d> pushes_;         // of self-contact on each vertex; zero between calls
-  std::vector<int> pushed_;                    // vertices that have one
-  std::vector<int> first_touch_, next_touch_;  // of a vertex; of the same vertex
+  std::vector<int> pushed_;                    // vertices with a push of self-contact
+  std::vector<int> first_touch_, next_touch_;  // a vertex's first touch; the next touch of the same vertex
 
   void find_walls(const std::vector<WallTouch>& touches);
   void find_pushes(const Contour& contour, const SelfContacts& self);

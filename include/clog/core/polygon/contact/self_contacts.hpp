@@ -18,14 +18,14 @@ struct VertexPair {
 
 /// Pairs of a vertex and an edge of the same droplet that may touch.
 ///
-/// Contact is between vertices and edges, so it holds when edges are longer than the vertex diameter. Every
-/// edge within reach pushes by itself, with its own nearest point: then energy and force are continuous
-/// wherever the vertex goes, also in a concave corner, where it is as near to two edges. Edges close along
-/// the contour do not count as contact, or every vertex would touch its neighbours. Close means both: less
-/// than three ranges away along the present contour, and fewer vertices away than make up three ranges at
-/// rest. In a compressed contour the number of vertices decides; it is fixed, so that contacts there do not
-/// depend on when the pairs were made. In a stretched one the length decides, so that long edges cannot cross
-/// in a sharp fold.
+/// Contact is between vertices and edges, so it also works if edges are longer than the vertex diameter.
+/// Every edge within reach pushes by itself, with its own nearest point: then energy and force are continuous
+/// wherever the vertex goes, also in a concave corner, where two edges are equally near. Edges close along
+/// the contour do not count as contact, because otherwise every vertex would touch its neighbours. Close
+/// means both of the following: less than three ranges away along the present contour, and fewer vertices
+/// away than make up three ranges at rest. In a compressed contour the number of vertices decides; it is
+/// fixed, so that contacts there do not depend on when the pairs were made. In a stretched one the length
+/// decides, so that long edges cannot cross in a sharp fold.
 class SelfContacts {
  public:
   struct Pair {
@@ -40,7 +40,7 @@ class SelfContacts {
   /// Renews the length of an edge at rest, for a droplet that grows.
   void set_rest_edge(double length);
 
-  /// Renews the pairs when the shape may change too much on the way to the next update.
+  /// Renews the pairs if the shape may change too much before the next update.
   void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
   /// Whether the pairs stay valid until the next update. Does not change them. @param moved  bound on the
@@ -59,10 +59,10 @@ class SelfContacts {
 
   /// The same pairs for vectors: a group of WallContacts::edges_per_group edges and as many consecutive
   /// vertices. Opposite strands run in opposite directions, so the last of these vertices is paired with the
-  /// first edge; in a strand compressed upon itself it is the first.
+  /// first edge. In a strand that is compressed until it touches itself, the first vertex is paired with it.
   struct Item {
-    int edges;           ///< the first of a group
-    int vertices;        ///< the first; those from N on are the contour's first
+    int edges;           ///< first edge of a group
+    int vertices;        ///< first vertex; numbers from N on stand for the contour's first vertices
     std::uint8_t pairs;  ///< bit b: edge `edges` + b and the b-th vertex
     bool backwards;      ///< are vertices counted from the last?
   };
@@ -75,7 +75,8 @@ class SelfContacts {
   Eigen::ArrayXd reference_;  // positions relative to their mean when the pairs were made
   std::vector<Pair> pairs_;
   std::vector<Item> items_;
-  std::vector<double> along_;    // the contour, from vertex 0; behind the last its whole length
+  std::vector<double>
+      along_;  // distance along the contour from vertex 0; behind the last vertex, the whole length
   std::vector<double> contour_;  // x, y and along_, with the beginning repeated; see kernel::CloseSearch
   std::vector<double> groups_;   // memory of the search
   std::vector<kernel::VertexPair> close_;

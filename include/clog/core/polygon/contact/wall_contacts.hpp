@@ -40,13 +40,14 @@ class WallContacts {
   bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
   double largest_radius() const { return largest_radius_; }
 
-  /// The lists by obstacle: circles in the list of an edge (vertex) of a group of `edges_per_group`.
-  /// Those of edges are sorted by circle, then group; those of vertices by group.
+  /// The lists, sorted by obstacle. Each item is a circle and a group of `edges_per_group` edges (vertices),
+  /// at least one of which lists the circle. Those of edges are sorted by circle, then group; those of
+  /// vertices by group.
   struct Item {
     double x, y;   ///< centre, relative to the state's frame [sigma]
     double reach;  ///< radius + range [sigma]
     int group;
-    std::uint8_t edges;  ///< those that list it, as bits
+    std::uint8_t edges;  ///< edges (vertices) of the group that list the circle, as bits
   };
   static constexpr int edges_per_group = 8;
   const std::vector<Item>& items() const { return items_; }
@@ -64,8 +65,8 @@ class WallContacts {
     Eigen::Array2d least, most;
   };
   std::vector<Bounds> bounds_;        // of the groups of edges
-  Eigen::ArrayXXd distances_;         // of the vertices from the circles nearby, a column for each
-  Eigen::ArrayXd nearest_;            // of the vertices from the nearest
+  Eigen::ArrayXXd distances_;         // of the vertices from the circles nearby, a column for each circle
+  Eigen::ArrayXd nearest_;            // distance of each vertex from its nearest circle
   std::vector<std::size_t> item_of_;  // the latest item of each circle
   std::vector<Item> items_;
   double smallest_radius_ = 0, largest_radius_ = 0;

@@ -10,14 +10,14 @@ namespace clog {
 
 /// k_t/k_c, stiffness of the springs between interface and wall divided by that of the contact, as is usual
 /// for grains (Silbert et al., Phys. Rev. E 64, 051302 (2001)). A vertex then slips by mu k_c/k_t times the
-/// depth of the contact before the limit: 7 % of a vertex diameter for mu = 1.
+/// depth of the contact before its spring reaches the limit: 7 % of a vertex diameter for mu = 1.
 inline constexpr double friction_stiffness_ratio = 2.0 / 7;
 
 /// Dry friction of walls and a yield traction: a spring ties every vertex that a wall pushes to the place
 /// where it first touched (Cundall and Strack, Geotechnique 29, 47 (1979)), U = (k_t/2) |s_i - s*_i|^2, |f_i|
 /// <= mu N_i + tau_y w_i, with s_i the wall's closest point to vertex i, s* the anchor, N_i the wall's normal
-/// force, w_i the wetted length. Beyond this limit the spring pulls its anchor along, so that the force is
-/// the limit.
+/// force, w_i the wetted length. Beyond this limit the spring pulls its anchor along, so that the force stays
+/// at the limit.
 class WallFriction {
  public:
   /// @param stiffness  k_t [g rho sigma]  @param wedges  must outlive this
@@ -33,10 +33,10 @@ class WallFriction {
   void add_forces(const DropletState& state, Eigen::ArrayXd& force) const;
   /// [g rho sigma^3]
   double energy(const DropletState& state) const;
-  /// Moves anchors beyond their limits, adds those of new contacts, and removes those of ended ones. @param
-  /// state the droplet whose anchors are updated @param touches where walls push the droplet now @param known
-  /// working memory; its content has no meaning before and after @param force  if not null, the forces of the
-  /// springs are added to it: all x, then all y [g rho sigma^2]
+  /// Moves anchors whose springs exceed the limit, adds anchors of new contacts, and removes those of ended
+  /// contacts. @param state the droplet whose anchors are updated @param touches where walls push the droplet
+  /// now @param known working memory; its content has no meaning before and after @param force  if not null,
+  /// the forces of the springs are added to it: all x, then all y [g rho sigma^2]
   WallYield follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
                    KnownAnchors& known, Eigen::ArrayXd* force = nullptr) const;
 

@@ -8,8 +8,8 @@
 
 namespace clog {
 
-/// The wall's closest point to a vertex, relative to the wall's centre; it moves along `along` by `gradient`
-/// times as much as the vertex.
+/// The wall's closest point to a vertex, relative to the wall's centre. If the vertex moves along `along`,
+/// this point moves `gradient` times as far.
 struct WallFoot {
   Eigen::Array2d point, along;
   double gradient;

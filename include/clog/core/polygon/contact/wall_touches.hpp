@@ -48,7 +48,8 @@ class WallTouches {
   std::vector<WallPlace> wedges_;
   std::vector<WallTouch> touches_;
   std::vector<double> closed_contour_;
-  // The parts' distance from the wall (x, y), its radius, normal (x, y), and radius divided by distance.
+  // Data of each part: vector from the wall to the vertex (x, y), the wall's radius, normal (x, y), and
+  // radius divided by distance.
   std::array<std::vector<double>, 6> directions_;
   KnownAnchors known_anchors_;
 

@@ -15,7 +15,7 @@ inline constexpr double nearly_rigid_tension = 30;
 /// [sigma]
 int automatic_vertices(const RunParameters& run, double obstacle_diameter);
 
-/// The published range of contact [sigma].
+/// Half a vertex diameter, the published range of contact [sigma].
 double half_vertex_diameter(const DpParameters& dp);
 
 /// The automatic K_l [g rho sigma]: a fraction of Gamma for springs to the rest length; 1 for those to the
@@ -25,17 +25,18 @@ double half_vertex_diameter(const DpParameters& dp);
 double automatic_perimeter_stiffness(const RunParameters& run);
 
 /// Largest expected pressure difference across the interface of a droplet held by obstacles [g rho sigma]:
-/// that of its own curvature, of the sharpest bend (see Scene), and of a column of liquid one diameter tall.
+/// the sum of the pressures of its own curvature, of the sharpest bend (see Scene), and of a column of liquid
+/// one diameter tall.
 double expected_pressure(const RunParameters& run, double sharpest_bend);
 
-/// The automatic K_a [g rho / sigma]: the expected pressure changes the area by two thousandths, but it is at
-/// most the published 1e4. Soft droplets need less, and more would need more steps.
+/// The automatic K_a [g rho / sigma], with which the expected pressure changes the area by two thousandths;
+/// at most the published 1e4. Soft droplets need less than that, and a larger K_a requires more steps.
 double automatic_area_stiffness(const RunParameters& run, double sharpest_bend);
 
 /// DropletModel::resolve of the polygon. The automatic step is at most drag_time_step(). Every stiff mode of
-/// a circle stays within auto_step_margin of its bound (stability.hpp), and the expected pressure overlaps an
-/// automatic contact, whose stiffness depends on the step, by a fiftieth of a vertex diameter. The step is
-/// rounded down to two digits.
+/// a circle stays within auto_step_margin of its bound (stability.hpp), and the expected pressure presses an
+/// obstacle into an automatic contact, whose stiffness depends on the step, by a fiftieth of a vertex
+/// diameter. The step is rounded down to two digits.
 void resolve_polygon(RunParameters& run, double sharpest_bend);
 
 }  // namespace clog

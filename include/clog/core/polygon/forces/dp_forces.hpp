@@ -24,9 +24,9 @@ struct InterfaceTerms {
   double vertex_weight;  ///< M g / N_v along +x
 };
 
-/// Potential energy of a deformable polygon among obstacles, and the data for its negative gradient in the
-/// passes of a step (DpStepper, RestForces). Contacts use lists: update_contacts() must have been called, and
-/// no point may have moved farther than its argument since then.
+/// Potential energy of a deformable polygon among obstacles, and the data from which the passes of a step
+/// (DpStepper, RestForces) compute its negative gradient. Contacts use lists: update_contacts() must have
+/// been called, and no point may have moved farther than its argument since then.
 class DpForces {
  public:
   /// @param run  resolved parameters (see resolve())
@@ -34,7 +34,8 @@ class DpForces {
 
   /// @param travel  bound on the displacement until the next call
   void update_contacts(const DropletState& state, const Travel& travel);
-  /// Whether update_contacts() would leave the lists unchanged. False, too, if only the state can answer.
+  /// Whether update_contacts() would leave the lists unchanged. Also returns false if the answer depends on
+  /// more of the state than these bounds.
   /// @param moved  bound on the displacement of any vertex since walls() were renewed [sigma] @param
   /// moved_relative the same, relative to their mean, since self_contacts() were renewed [sigma]
   bool contacts_hold(double moved, double moved_relative, const Travel& travel) const;
@@ -45,7 +46,7 @@ class DpForces {
   }
   /// Discards the lists of obstacles. Call this when a shift of the frame has changed local coordinates.
   void forget_contacts();
-  /// Also discards the pairs of self-contact, which a shift does not change.
+  /// Also discards the pairs of self-contact, which a shift of the frame does not change.
   void forget_all_contacts();
 
   PotentialEnergy energy(const DropletState& state) const;
@@ -66,14 +67,15 @@ class DpForces {
   const SelfContacts& self_contacts() const { return self_; }
   const std::vector<Wedge>& wedges() const { return obstacles_->wedges(); }
   const WallFriction& friction() const { return friction_; }
-  /// Moves the anchors of friction or of the contact line beyond their limits, see WallFriction::follow().
+  /// Moves the anchors of friction or of the contact line whose springs exceed their limits, see
+  /// WallFriction::follow().
   /// @param circles  all possible contacts
   WallYield let_walls_yield(DropletState& state, WallTouches& touches,
                             std::span<const WallContacts::Item> circles, Purpose purpose) const;
   bool has_anchors() const { return friction_.is_on() || wetted_walls_.hold_ends(); }
   const WettedWalls& wetted_walls() const { return wetted_walls_; }
 
-  /// For the release, where the droplet grows without weight.
+  /// For the release, during which the droplet grows without weight.
   void set_rest_area(double area);
   void set_weight(double weight) { weight_ = weight; }
   double weight() const { return weight_; }
@@ -93,8 +95,8 @@ class DpForces {
   SelfContacts self_;
   WallFriction friction_;
 
-  /// Calls visit(overlap) for every half edge (vertex) and slot or wedge [sigma]; negative where they do not
-  /// touch.
+  /// Calls visit(overlap) for every half edge (or vertex) and every listed circle, and for every vertex and
+  /// wedge [sigma]; the overlap is negative where they do not touch.
   template <class Visit>
   void visit_overlaps(const DropletState& state, Visit visit) const;
 };

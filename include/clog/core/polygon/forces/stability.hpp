@@ -16,7 +16,7 @@ struct StiffModes {
   double spring = 0;   ///< longitudinal zigzag, 4 K_l N_v^2/M
   double wetting =
       0;  ///< a wall's pull or push where the tension changes, 6 |Gamma_wall - Gamma| l N_v/(w^2 M)
-  double pinning = 0;   ///< of the end of a wetted arc
+  double pinning = 0;   ///< spring that holds the end of a wetted arc
   double friction = 0;  ///< springs by which walls hold a vertex along them, k_t N_v/M
 
   /// The sum for a droplet that does not touch itself.
@@ -33,11 +33,11 @@ inline constexpr double max_total_omega_dt2 = 3.0;
 /// The same for a droplet in contact with itself. It is larger, because self-contact is rare, and softer
 /// than StiffModes::self_contact assumes.
 inline constexpr double max_total_with_self_omega_dt2 = 3.9;
-/// The area mode is anharmonic in the perimeter; it gets its own bound. With 1.25, three times as many
-/// droplets without drag diverged (docs/notes/2026-11-26-time-step.md).
+/// The area mode is anharmonic in the perimeter, so it has a bound of its own. With a bound of 1.25, three
+/// times as many droplets without drag diverged (docs/notes/2026-11-26-time-step.md).
 inline constexpr double max_area_omega_dt2 = 1.0;
 
-/// Fraction of every bound that the modes of a circle use with the automatic step.
+/// With the automatic step, the modes of a circle reach this fraction of their bounds.
 inline constexpr double auto_step_margin = 0.8;
 
 /// Stiff modes of a polygon with resolved parameters (see resolve()), for the given perimeter and shortest
@@ -53,9 +53,9 @@ double largest_step_with_implicit_pressure(const StiffModes& modes);
 inline constexpr int most_substeps = 1000;
 
 enum class Pressure {
-  present,  ///< that of the present area
-  /// It follows the area that the droplet would have if its present acceleration lasted for a step
-  /// (docs/explanation/numerics.md): (omega dt)^2 of the area mode is below 1 for every step.
+  present,  ///< the pressure of the present area
+  /// The pressure of the area that the droplet would have if its present acceleration lasted for a step
+  /// (docs/explanation/numerics.md). With it, (omega dt)^2 of the area mode is below 1 for every step.
   implicit
 };
 /// Steps of equal length [t0].

@@ -28,9 +28,11 @@ inline WettedShare wetted_share(double distance, double contact_range, double wi
 }
 
 /// k_p in units of Gamma per vertex diameter, of the springs that hold the ends of wetted arcs. An end then
-/// slips by half a vertex diameter times the difference of the angles' cosines before the limit.
+/// slips by half a vertex diameter times the difference of the angles' cosines before its spring reaches the
+/// limit.
 inline constexpr double pinning_stiffness = 2;
-/// Bound on the squared norm of an end's gradient: fractions of the last vertices, and their distances.
+/// Bound on the squared norm of the gradient of q, which results from the wetted fractions of the last
+/// vertices and from the change of these fractions with the distances of the vertices from the wall.
 inline constexpr double pinning_gradient2 = 1.5;
 
 /// The vertices of a droplet.
@@ -48,7 +50,7 @@ struct VertexPlaces {
 /// their wetted fraction; positive outwards. Where the interface is smooth, the gradient of q is normal to
 /// it, so q does not depend on the positions of vertices. A spring holds it, U = (k_p/2) (q - q*)^2, -Gamma
 /// (cos Y - cos A) <= f <= Gamma (cos R - cos Y), with Y, A, R Young's, the advancing and the receding angle.
-/// Beyond these limits the spring pulls its anchor q* along, so that the force is the limit.
+/// Beyond these limits the spring pulls its anchor q* along, so that the force stays at the limit.
 class ContactLine {
  public:
   /// @param run  resolved parameters  @param wedges  must outlive this
@@ -61,7 +63,7 @@ class ContactLine {
     WallPlace wall;
     Eigen::Index side;                          ///< 0: the arc's first, 1: its last along the contour
     double place;                               ///< q, counted outwards [sigma]
-    std::size_t first_gradient, num_gradients;  ///< of q by vertices, in Ends::gradients
+    std::size_t first_gradient, num_gradients;  ///< of q with respect to vertices, in Ends::gradients
   };
   struct Gradient {
     Eigen::Index vertex;
@@ -76,9 +78,9 @@ class ContactLine {
   void add_forces(std::span<const WallAnchor> anchors, const Ends& ends, Eigen::ArrayXd& force) const;
   /// [g rho sigma^3]
   double energy(std::span<const WallAnchor> anchors, const Ends& ends) const;
-  /// Moves anchors beyond their limits. An end keeps the nearest anchor of its wall and side; new ends get
-  /// one of their own, and anchors of vanished ends are removed. Afterwards there is one anchor for each end,
-  /// in their order.
+  /// Moves anchors whose springs exceed their limits. An end keeps the nearest anchor of its wall and side;
+  /// new ends get one of their own, and anchors of vanished ends are removed. Afterwards there is one anchor
+  /// for each end, in their order.
   WallYield follow(std::vector<WallAnchor>& anchors, const Ends& ends, Purpose purpose) const;
 
  private:
@@ -86,7 +88,8 @@ class ContactLine {
   struct Beside;
   bool is_on_;
   double stiffness_, most_outwards_, most_inwards_;  // k_p, and limits of the force
-  double contact_range_, width_;                     // of the contact and of the share's fall [sigma]
+  double contact_range_,
+      width_;  // range of the contact, and width in which the wetted share falls to 0 [sigma]
   std::span<const Wedge> wedges_;
 
   Beside beside(const WallPlace& wall, const VertexPlaces& vertices, Eigen::Index vertex) const;

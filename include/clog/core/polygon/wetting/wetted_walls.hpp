@@ -13,8 +13,8 @@
 namespace clog {
 
 /// Walls whose tension differs from that of the interface, and walls that hold the ends of wetted arcs. The
-/// tension changes from Gamma, far from a wall, to that of the wetted wall where contact begins, by a smooth
-/// step, so that energy and force are continuous, wide enough for the edges to resolve it.
+/// tension is Gamma far from a wall, and that of the wetted wall where contact begins. It changes by a smooth
+/// step, which keeps energy and force continuous and is wide enough for the edges to resolve.
 class WettedWalls {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this
@@ -36,7 +36,8 @@ class WettedWalls {
     std::vector<int> vertices;  ///< on all others both forces are 0
     ContactLine::Ends ends;     ///< of wetted arcs
 
-    /// The net force of `spreading`. It acts on the liquid: weight on the area is reduced by it.
+    /// The sum of `spreading`. Its reaction acts on the liquid, so it is subtracted from the weight on the
+    /// area.
     Eigen::Array2d net_spreading{0, 0};
 
     explicit Forces(int num_vertices);
@@ -58,10 +59,10 @@ class WettedWalls {
   /// Finds the forces and the ends.
   void find_forces(const VertexPlaces& vertices, const LocalFrame& frame, std::span<const WallAnchor> anchors,
                    Forces& forces) const;
-  /// The same for a moving droplet: anchors move first.
+  /// The same for a moving droplet: first moves its anchors as follow() does.
   WallYield follow_and_find_forces(const VertexPlaces& vertices, const LocalFrame& frame,
                                    std::vector<WallAnchor>& anchors, Forces& forces) const;
-  /// Moves anchors beyond their limits, see ContactLine::follow().
+  /// Moves anchors whose springs exceed their limits, see ContactLine::follow().
   WallYield follow(DropletState& state, Purpose purpose) const;
 
   /// Energies of the difference of tensions, and of the springs that hold ends [g rho sigma^3].
