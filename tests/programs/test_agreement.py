@@ -93,6 +93,11 @@ class Evidence(unittest.TestCase):
         way = np.array([(-2.0, 0.0), (-1.5, 0.9), (-0.8, 0.8), (-0.3, 0.1), (-0.1, 0.4), (0.4, 0.05)], [("h", float), ("speed_ratio", float)])
         self.assertEqual(passages.slowest_before(way), -0.3)
 
+    def test_the_peak_behind_the_orifice_is_not_the_approach_to_the_terminal_speed(self):
+        way = np.array([(-0.3, 0.1), (0.1, 0.6), (0.2, 0.86), (0.3, 0.7), (0.4, 0.3), (0.55, 0.87), (0.9, 0.95)], [("h", float), ("speed_ratio", float)])
+        self.assertEqual(passages.top_behind(way)["speed_ratio"], 0.86)
+        self.assertIsNone(passages.top_behind(way[:5]))
+
     def test_a_mesh_is_as_smooth_as_the_finest_within_a_tenth(self):
         for noise, verdict in [({64: 0.03, 128: 0.0105, 256: 0.0095, 512: 0.01}, AGREES), ({64: 0.023, 128: 0.023, 256: 0.018, 512: 0.018}, IN_KIND),
                                ({64: 0.018, 128: 0.018, 256: 0.018, 512: 0.018}, DOES_NOT), ({64: 0.04, 128: 0.03, 256: 0.02, 512: 0.01}, DOES_NOT)]:

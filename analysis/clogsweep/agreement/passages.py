@@ -5,6 +5,7 @@ import math
 from typing import Any
 
 import numpy as np
+from scipy.signal import find_peaks
 
 from ..paper import channels
 from ..paper.workshop import Workshop
@@ -44,10 +45,11 @@ def slowest_before(way: Any) -> float:
 
 
 def top_behind(way: Any) -> Any:
-    """The moment of largest speed close behind the orifice, where the published droplets overshoot; None if the droplet
-    does not pass."""
+    """The peak of the speed behind the orifice, where the published droplets overshoot, or None if the droplet does not
+    pass. Farther away a slow droplet approaches v_t."""
     behind = way[(way["h"] > 0) & (way["h"] < 0.6)]
-    return behind[np.argmax(behind["speed_ratio"])] if way["h"][-1] > 0.6 else None
+    peaks, found = find_peaks(behind["speed_ratio"], prominence=0)
+    return behind[peaks[np.argmax(found["prominences"])]] if way["h"][-1] > 0.6 and len(peaks) else None
 
 
 def tops_of_speeds(shop: Workshop, orifice: float) -> tuple[list[float], str]:

@@ -10,7 +10,7 @@ from ..reading import programs, stored
 DIAMETER = 0.3  # of the obstacle [sigma]
 FALL = 3  # from the release to the obstacle's centre [sigma]: the obstacle is too far away to displace the release
 BOX = 20
-KEYS = {"vertices": "128", "terminal-speed": "0.03", "break-up-neck": "0.02"}
+KEYS = {"preset": "robust", "vertices": "128", "terminal-speed": "0.03", "break-up-neck": "0.02"}
 TENSIONS = (0.01, 0.6)  # range of the search: from below the tested range of line tensions to droplets that never break
 PRECISION = 0.02
 STEPS = 6  # a sweep divides the range into so many steps

@@ -7,8 +7,9 @@ centre.
 For each offset, droplets of several line tensions fall onto a circle of diameter 0.3 sigma. Repeated sweeps bracket the
 largest line tension at which they break up. KEY=VALUE are keys of clogsweep for all of these sweeps. The vertical line
 through the obstacle divides the droplet into two parts; the symmetry S of a collision is the area of the smaller part
-divided by that of the larger part. The capillary number Ca is weight divided by tension, pi/(4 Gamma). The right panel
-shows which fraction of droplets breaks up, on the assumption that all offsets with contact are equally likely.
+divided by that of the larger part. The capillary number Ca is weight divided by tension, pi/(4 Gamma). The upper axis
+of the picture shows which fraction of collisions breaks a droplet of the curve's line tension, on the assumption that all
+offsets with contact are equally likely.
 """
 
 import argparse
@@ -59,5 +60,5 @@ def body() -> int:
             print(offset, f"{collision.symmetry(offset):.4f}", *(f"{end:.4g}" if end else "" for end in (low, high)), middle, sep=",", flush=True)
     if not any(low and high for low, high in found.values()):
         raise UserError(f"nothing to draw (no offset has a threshold between line tensions of {collision.TENSIONS[0]} and {collision.TENSIONS[1]}); try smaller --offsets")
-    Picture(break_up.draw(found)).save(arguments.output)
+    Picture(break_up.draw(found, ", ".join(f"{key}={value}" for key, value in collisions.keys.items()))).save(arguments.output)
     return 0

@@ -63,5 +63,5 @@ def body() -> int:
         from .. import style  # loads matplotlib, which only a picture needs
         from ..drawing import predicted
 
-        style.Picture(predicted.draw(found, fit["groups"], fit["confidence"])).save(arguments.output)
+        style.Picture(predicted.draw(found, fit["groups"], fit["confidence"], [f"{key}={value}" for key, value in keys.items() if key != "line-tension"])).save(arguments.output)
     return 0

@@ -164,10 +164,10 @@ def overlaps(clog: Clog) -> Numbers:
 
 def title(row: np.void) -> str:
     """Describes in words the droplet and its clog."""
-    wrapped = f"{row['num_wrapped']} wrapped (bears {100 * row['wrapped_support']:.0f} %)" if row["num_wrapped"] > 0 else "none wrapped"
-    return (rf"task {row['task']}: {mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$" "\n"
+    wrapped = f"{row['num_wrapped']} wrapped ({100 * row['wrapped_support']:.0f} % of support)" if row["num_wrapped"] > 0 else "none wrapped"
+    return (rf"{mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$, task {row['task']}" "\n"
             rf"$\Gamma = {row['line_tension']:.4g}$, minimum gap ${row['obstacle_gap']:.4g}\,\sigma$, seed {row['seed']}" "\n"
-            f"{wrapped}, {rounded.counted(row['num_gaps'], 'gap')}, {rounded.counted(row['num_arcs'], 'contact')}")
+            f"{wrapped}, {rounded.counted(row['num_gaps'], 'gap')}, {rounded.counted(row['num_arcs'], 'arc')}")
 
 
 def view_of(clogs: Sequence[Clog]) -> Numbers:

@@ -38,5 +38,5 @@ def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> 
                 axes.plot(places[middle.isna()], points[bound][middle.isna()], marker, color=look["color"], fillstyle="none")
     style.logarithmic_abscissa(axes, table[abscissa].tolist())
     axes.set_xlabel(axis_label(columns[abscissa]))
-    note = "droplets follow the rows at the lower end of a bar and leave them at the upper end; a triangle is a bound"
+    note = "droplets follow the rows at the lower end of a bar and leave them at the upper end" + ("; a triangle is a bound" if table[["lower", "upper"]].isna().any(axis=None) else "")
     style.finish(axes, "critical angle [degrees]", "", [note])

@@ -42,7 +42,7 @@ def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
     moved = f"{lengths.pop():g}" + r"\,\sigma" if len(lengths) == 1 else r"\delta_\mathrm{d}"
     axes.set_xlabel(f"time without having moved by ${moved}$ that counts as clogged $/t_0$")
     everyone = [group for groups in fits for group in groups.members]
-    finish_lengths(axes, fits[-1], everyone, "most went on later, or other clogs")
+    finish_lengths(axes, fits[-1], everyone, "most droplets moved on later, or other clogs")
     add_laboratory(axes, fits[-1])
     return figure
 

@@ -137,8 +137,9 @@ class Film:
     def _draw_legend(self, colour: str) -> Artist:
         shown: list[Artist] = [Line2D([], [], color=style.DROPLET, linewidth=1.5, label="path of the centre")]
         if colour == "mechanism":
-            shown += [Patch(facecolor=face, edgecolor="black", alpha=0.75, label=f"clogged, {name}") for name, face in style.MECHANISM_COLOURS.items()]
-        return self._axes.legend(handles=shown, loc="upper right", fontsize=9, edgecolor="none")
+            shown += [Patch(facecolor=face, edgecolor="black", alpha=0.75, label=f"clogged, {name}") for name, face in style.MECHANISM_COLOURS.items()
+                      if name == self._run.word("mechanism")]
+        return self._axes.legend(handles=shown, loc="upper right", fontsize=9, edgecolor="0.7", framealpha=1)
 
     def _separate(self, inset: list[Artist], still: list[Artist]) -> None:
         """Separates the static from the moving parts. The bar is as long as a droplet is wide, so it moves when the

@@ -124,7 +124,7 @@ def have_speeds(groups: Collection[Group]) -> bool:
 def speed_notes(groups: Collection[Group]) -> list[str]:
     """Notes that explain the points of draw_speeds_on()."""
     if speed_column(groups) == OF_ALL_RUNS:
-        return ["way over time of all runs; bars: standard errors"]
+        return ["distance divided by time, of all runs; bars: standard errors"]
     fewer = any(group["relative_speed_runs"] < group["runs"] for group in groups)
     return ["mean of the runs that went far enough, the fast ones where droplets clog; bars: standard errors"] if fewer else SPEED_NOTES
 

@@ -1,5 +1,6 @@
 """Predicted clogging lengths against line tension: from pairs of obstacles, from single obstacles, and from both, beside measured lengths."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -7,24 +8,26 @@ from matplotlib.figure import Figure
 
 from .. import style
 from ..collisions.prediction import Prediction
-from ..labels import AXES
+from ..labels import AXES, runs_a_point
 from ..tools.hints import Group
 from .lengths import draw_lengths, length_notes
 
 
-def draw(found: Sequence[Prediction], measured: Sequence[Group], confidence: float) -> Figure:
-    """@param measured  groups of a sweep in the same array"""
+def draw(found: Sequence[Prediction], measured: Sequence[Group], confidence: float, shared: Sequence[str]) -> Figure:
+    """@param measured  groups of a sweep in the same array; @param shared  phrases of the caption"""
     figure, axes = style.subplots(figsize=(6.8, 5.0))
     tensions = [one.tension for one in found]
     for label, name, look in (("both", "length", {"color": "0.8", "linewidth": 5}), ("squeezed, by two obstacles", "squeezed", {"color": style.COLOURS[0]}),
                               ("wrapped, by one obstacle", "wrapped", {"color": style.COLOURS[1]})):
-        lengths = np.array([getattr(one, name) for one in found])
-        axes.plot(tensions, np.where(np.isfinite(lengths), lengths, np.nan), marker=".", label=f"predicted: {label}", **look)
-    style.logarithmic_abscissa(axes, tensions)
+        # Where only one of the laws has a length, its line shows both.
+        known = [math.isfinite(max(one.squeezed, one.wrapped) if name == "length" else getattr(one, name)) for one in found]
+        if any(known):
+            axes.plot(tensions, np.where(known, [getattr(one, name) for one in found], np.nan), marker=".", label=f"predicted: {label}", **look)
+    style.logarithmic_abscissa(axes, [*tensions, *(group["line_tension"] for group in measured)])
     if measured:
         draw_lengths(axes, [group["line_tension"] for group in measured], measured, 2, "measured", linestyle="none")
     style.logarithmic_ordinate(axes)
     axes.set_xlabel(AXES["line_tension"])
     notes = length_notes(measured, confidence, [axes]) if measured else []
-    style.finish(axes, AXES["length"], "", [*notes, "no line: no obstacle and no pair holds the droplet"], measured)
+    style.finish(axes, AXES["length"], ", ".join([*shared, *([runs_a_point(measured)] if measured else [])]), [*notes, "no line: no obstacle and no pair holds the droplet"], measured)
     return figure

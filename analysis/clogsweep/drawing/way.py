@@ -59,7 +59,7 @@ def draw_strips(run: trajectory.Trajectory, num_outlines: int) -> Figure:
         draw_outlines(axes, run, [inside[place] for place in trajectory.along_the_way(run.polygons[inside], num_outlines)])
     surroundings.draw_guides(all_axes[0, 0])
     all_axes[0, 0].set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
-    all_axes[-1, 0].set_xlabel(r"$x/\sigma$, along the flow; the way goes on from strip to strip")
+    all_axes[-1, 0].set_xlabel(r"$x/\sigma$, along the flow; the path continues from strip to strip")
     figure.colorbar(time_scale(run), ax=list(all_axes[:, 0]), label=r"$t/t_0$", fraction=0.02, pad=0.01)
     return figure
 
@@ -80,15 +80,17 @@ def draw_on(axes: Axes, run: trajectory.Trajectory, num_outlines: int) -> None:
 
 
 def time_scale(run: trajectory.Trajectory) -> matplotlib.cm.ScalarMappable:
-    return matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, run.times[-1]), cmap=style.VIRIDIS)
+    """Colours of times until the droplet nearly rests."""
+    last = trajectory.along_the_way(run.polygons, 20)[-2:][0]
+    return matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, run.times[last]), cmap=style.VIRIDIS)
 
 
 def draw_outlines(axes: Axes, run: trajectory.Trajectory, frames: Iterable[int], origin: Point = (0.0, 0.0)) -> None:
     """The run's last outline is filled."""
+    colours = time_scale(run)
     for frame in frames:
         x, y = run.polygons[frame] - np.asarray(origin)[:, None]
-        share = run.times[frame] / run.times[-1] if run.times[-1] > 0 else 1.0
         is_last = frame == len(run.polygons) - 1
         axes.fill(
             x, y, facecolor=style.DROPLET if is_last else "none", alpha=0.75 if is_last else 1.0,
-            edgecolor="black" if is_last else style.VIRIDIS(share), linewidth=1.0, zorder=3 if is_last else 2)
+            edgecolor="black" if is_last else colours.to_rgba(run.times[frame]), linewidth=1.0, zorder=3 if is_last else 2)

@@ -11,7 +11,7 @@ from ..reading import fits, stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
 from ..tools.texts import literal
-from . import AXES, INTERFACES, axis_label, is_number, runs_a_point, said, symbol
+from . import AXES, INTERFACES, axis_label, interface_of, is_number, runs_a_point, said, symbol
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
 LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # by obstacle_filling
@@ -160,10 +160,10 @@ class Groups:
         else:
             told += [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
                      and not self._is_automatic(name) and not self._is_of_preset(name) and not (told and self.follows(name, told))]
-        # Words and automatic values that follow from labelled parameters add nothing. A preset includes its parts.
+        # Words and automatic values that follow from labelled parameters add nothing, except the interface. A preset includes its parts.
         rest = [name for name in self.columns if name not in told and name != self.abscissa]
         for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):
-            if not self.follows(name, [self.abscissa, *told]):
+            if name == "preset" and self.varies(name) or not self.follows(name, [self.abscissa, *told]):
                 told.append(name)
         return told
 
@@ -173,7 +173,7 @@ class Groups:
     def said(self, name: str, value: float | str | None) -> str:
         if name == "laboratory" and value in self.laboratories:
             return literal(self.laboratory_label(str(value)))
-        return said(self.columns[name], self.named(name, value))
+        return interface_of(str(value)) if name == "preset" else said(self.columns[name], self.named(name, value))
 
     def named(self, name: str, value: Any) -> Any:
         """A parameter's value. User-supplied circles are stored as a checksum; it is replaced by the name of their

@@ -18,7 +18,7 @@ from ..labels.groups import Groups
 from ..reading import fits, replays, stored
 from ..reading.trajectory import Trajectory
 from ..tools import rounded
-from ..tools.hints import Group
+from ..tools.hints import Group, Numbers
 from ..tools.texts import literal
 from . import report
 
@@ -74,6 +74,11 @@ def run_way(row: np.void, sweep: pathlib.Path, clogrun: pathlib.Path) -> Traject
     return run
 
 
+def draw_clog(axes: Axes, clog: clogs.Clog, view: Numbers) -> None:
+    axes.axis("off")
+    clogs.draw(axes, clog, view)
+
+
 def draw_way(axes: Axes, run: Trajectory) -> None:
     """Draws the droplet's path as wide as the page."""
     way.draw_on(axes, run, 12)
@@ -93,7 +98,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
     clogged = clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep)
     if clogged:
         again = clogs.run_all(clogrun, sweep, report.examples(clogged, 4), 2)
-        rows.append((1.25, [partial(clogs.draw, clog=clog, view=clogs.view_of(again)) for clog in again]))
+        rows.append((1.25, [partial(draw_clog, clog=clog, view=clogs.view_of(again)) for clog in again]))
         run = run_way(min(clogged, key=lambda row: abs(float(row["distance"]) - WAY)), sweep, clogrun)
         rows.append((1.0, [partial(draw_way, run=run)]))
     return rows

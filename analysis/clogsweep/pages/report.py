@@ -45,7 +45,7 @@ def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Grou
         survival_curve.draw(axes, group, colour, groups.said(groups.abscissa, group[groups.abscissa]), begin=begin)
     axes.set_xscale("log")
     axes.set_ylim(0, 1.02)
-    style.label(axes, r"displacement along the flow $r/\sigma$", "probability $P(r)$ of not having clogged")
+    style.label(axes, r"displacement along the flow $r/\sigma$", "$P(r)$, not yet clogged")
     mark_steps(axes)
     style.caption(axes, label or groups.caption())
     style.notes(axes, ["steps: clogs; ticks: censored runs; dashed: exponential of the same length"])

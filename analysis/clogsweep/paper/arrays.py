@@ -130,7 +130,7 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
         drawn += groups
     style.logarithmic_abscissa(axes)
     axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)
-    axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
+    axes.text(0.25, 0.02, " published\n curves separate", ha="left", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
     finish(axes, shop, curves[0][0], drawn, "sag", quantity, ["line_tension"])
     return Plate(drawing, data)
 
@@ -157,7 +157,7 @@ def sag_picture(shop: Workshop) -> Plate:
     circle = np.array([0.5 * np.cos(angle), 0.5 + 0.5 * np.sin(angle)])
     for axes, before, after, sag, title in [
         (panels[0], circle, circle - np.array([[0], [disk_sag]]), disk_sag, rf"soft disk, $E_w = {stiffness:g}$"),
-        (panels[1], outlines[0], outlines[-1], polygon_sag, rf"deformable polygon, $\Gamma = {line_tension:g}$"),
+        (panels[1], outlines[0], outlines[-1], polygon_sag, rf"deformable polygon, $\Gamma = {line_tension:g}$, {interface_of(polygon.word('preset'))}"),
     ]:
         axes.axhspan(-0.3, 0, facecolor=style.OBSTACLE)
         axes.fill(*after, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1.2, label="with weight")
@@ -170,7 +170,7 @@ def sag_picture(shop: Workshop) -> Plate:
         axes.set_xlabel(r"along the wall $/\sigma$")
         style.caption(axes, title)
     panels[0].set_ylabel(r"height above the wall $/\sigma$")
-    panels[1].legend(frameon=False, loc="upper right", fontsize=8)
+    panels[1].legend(frameon=False, loc="lower center", ncols=2, fontsize=8)
     return Plate(drawing, [{"model": "sp", "wall_stiffness": stiffness, "sag": disk_sag},
                            {"model": "dp", "line_tension": line_tension, "sag": polygon_sag}])
 
@@ -290,7 +290,7 @@ def kinetic_energy(shop: Workshop) -> Plate:
     axes.axhline(threshold, color="0.5", linewidth=0.8, linestyle="--")
     axes.text(0.99, threshold * 2, "threshold of a clog", ha="right", fontsize=8, color="0.4", transform=axes.get_yaxis_transform())
     axes.set_yscale("log")
-    style.label(axes, r"time $t/t_0$", r"kinetic energy divided by that at terminal speed $E_k/E_t$")
+    style.label(axes, r"time $t/t_0$", r"kinetic energy / kinetic energy at terminal speed $E_k/E_t$")
     axes.legend(frameon=False)
     row = run.row
     style.caption(axes, rf"$\Gamma = 0.5$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated arrays, $V_t = {row['terminal_speed']:g}$, "
@@ -366,7 +366,7 @@ def displacement(shop: Workshop) -> Plate:
     fastest, = axes.plot(t, row["terminal_speed"] * t, ":", color="0.5", linewidth=1, label="terminal speed $v_t$")
     axes.set_xlim(0, t[1]), axes.set_ylim(bottom=0)
     style.label(axes, r"time $t/t_0$", r"displacement along the flow $r/\sigma$")
-    axes.legend(handles=[fastest, *sorted(ends, key=ends.__getitem__, reverse=True)], labelcolor="linecolor", frameon=False)
+    axes.legend(handles=[fastest, *sorted(ends, key=ends.__getitem__, reverse=True)], frameon=False)
     style.caption(axes, rf"$w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated array, "
                   rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}, {interface_of(run.word('preset'))}")
     return Plate(drawing, data)

@@ -65,7 +65,7 @@ def finish(axes: Axes, ordinate: str, reach: float = 1.6) -> None:
     axes.axvline(0, color="0.8", linewidth=0.8, zorder=0)
     if ordinate == "profile":
         axes.axhline(1, color="0.6", linewidth=0.8, linestyle=":", zorder=0)
-        axes.set_ylim(bottom=0)
+        axes.set_ylim(bottom=-0.03)  # room for the cross of a droplet that stops
     style.grid(axes)
 
 
@@ -111,10 +111,10 @@ def geometry(shop: Workshop) -> Plate:
     surroundings.frame_limits(right, (-1, middle_y - half), (centres[-1, 0] + 1, middle_y + half))
     row = array.row
     style.caption(right, rf"(b) $w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, "
-                  rf"$\Gamma = {row['line_tension']:g}$" "\n" rf"circles: centre, every {np.diff(array.times[:2])[0]:.3g} $t_0$; seed {row['seed']}")
+                  rf"$\Gamma = {row['line_tension']:g}$, {interface_of(array.word('preset'))}" "\n" rf"circles: centre, every {np.diff(array.times[:2])[0]:.3g} $t_0$; seed {row['seed']}")
     for axes in (left, right):
         axes.set_xlabel(r"$x/\sigma$, along the flow")
-    left.set_ylabel(r"$y/\sigma$")
+        axes.set_ylabel(r"$y/\sigma$")
     data = [{"panel": "b", "time": t, "x": c[0], "y": c[1]} for t, c in zip(array.times, centres)]
     return Plate(drawing, data)
 
@@ -157,17 +157,17 @@ def passage(shop: Workshop, orifice: float) -> Trajectory:
 
 @figure("3", "shape and speed through orifices of 0.9 and 0.7 diameters", ["channel"], "3 s")
 def two_orifices(shop: Workshop) -> Plate:
-    drawing, panels = style.subplots(2, 2, figsize=(9.0, 6.8), sharex=True)
+    drawing, panels = style.subplots(2, 2, figsize=(9.0, 6.8))
     data = []
     for line, orifice in enumerate(CALIBRATED):
         run = passage(shop, orifice)
         for place, (column, ordinate) in enumerate([("shape_parameter", "shape"), ("speed_ratio", "profile")]):
             axes = panels[line][place]
-            draw_profile(axes, run, column, line, "simulation" + ending(run))
+            draw_profile(axes, run, column, 1, "simulation" + ending(run))
             finish(axes, ordinate)
+            style.caption(axes, parameters(run, orifice))
             if run.word("status") != "passed":
                 axes.legend(frameon=False)
-        style.caption(panels[line][0], parameters(run, orifice))
         # Draws the most deformed outline in an empty part of the figure.
         inset = panels[line][0].inset_axes([0.68, 0.5, 0.3, 0.47])
         frame = run.frame_at("h", run.row["largest_shape_parameter_at"])
@@ -257,7 +257,7 @@ def meshes(shop: Workshop) -> dict[int, Trajectory]:
 @figure("B1", "speed through an orifice of 0.7 diameters for different numbers of vertices", ["channel"], "4 s")
 def vertices(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(7.2, 5.0))
-    inset = axes.inset_axes([0.74, 0.1, 0.25, 0.36])
+    inset = axes.inset_axes([0.72, 0.1, 0.25, 0.36])
     data = []
     for index, (count, run) in enumerate(meshes(shop).items()):
         for panel in (axes, inset):
@@ -269,7 +269,7 @@ def vertices(shop: Workshop) -> Plate:
     inset.tick_params(labelsize=7)
     axes.legend(frameon=False, fontsize=8, loc="lower left")
     style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, $V_t = 0.032$, {interface_of(run.word('preset'))}"
-                  "\ninset: near the first minimum; a cross ends the curve of a droplet that stops")
+                  "\ninset: near the first minimum")
     return Plate(drawing, data)
 
 

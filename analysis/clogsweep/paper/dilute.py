@@ -73,12 +73,16 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
     found: list[panels.Panel] = []
     data = []
     for family, coarse, fine in kinds:
+        tensions = sorted({group["line_tension"] for group in [*coarse, *fine]})
         curves: list[panels.Curve] = []
         drawn: list[tuple[list[Group], dict[str, Any]]] = [(coarse, {}), (fine, {"linestyle": FINER, "size": 3.5})]
         for groups, options in drawn:
             for gap, curve in by(groups, "obstacle_gap"):
                 label = "_finer" if options else said(shop.columns(family.config)["obstacle_gap"], gap)
-                curves.append((curve, gaps.index(gap), label, options))
+                # A line that passes over line tensions of the other mesh would hide the peak between them.
+                places = [tensions.index(group["line_tension"]) for group in curve]
+                for part in np.split(np.array(curve, dtype=object), np.flatnonzero(np.diff(places) > 1) + 1):
+                    curves.append((list(part), gaps.index(gap), label, options))
                 data += numbers(curve, f"{family.config}, friction {family.friction:g}, gap {gap:g}, {curve[0]['vertices']} vertices",
                                 **of_each(curve, "friction", *HOLDS))
         found.append((f"{family.label}\n{interface_of(coarse[0]['preset'])}", curves))
@@ -137,7 +141,7 @@ def draw_cell(axes: Axes, x: int, y: int, group: Group, norm: LogNorm) -> None:
     ink = "black" if norm(length) > 0.55 else "white"
     exponential = is_exponential(group)
     if exponential is not None:
-        axes.add_patch(Rectangle((x - 0.43, y - 0.43), 0.86, 0.86, fill=False, edgecolor="black" if exponential else ink, linewidth=1.4 if exponential else 1,
+        axes.add_patch(Rectangle((x - 0.43, y - 0.43), 0.86, 0.86, fill=False, edgecolor=ink, linewidth=1.4 if exponential else 1,
                                  linestyle="-" if exponential else ":"))
     text = f"{float(f'{length:.2g}'):g}" if length < 1e5 else f"{length:.1g}"
     axes.text(x, y, ("> " if group["clogs"] == 0 else "") + text, ha="center", va="center", fontsize=7.5, color=ink,
@@ -175,6 +179,6 @@ def lengths_on_a_map(shop: Workshop) -> Plate:
     drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=AXES["length"], shrink=0.8, extend="min")
     drawing.suptitle(describe(shop.columns(MAPS[0].config), every, ["obstacle_density", "preset"]), fontsize=8, color="0.25")
     style.notes_of_panels(drawing, [
-        f"frames where {ENOUGH_CLOGS} runs or more clogged: solid if $P(r)$ is exponential (Weibull's exponent compatible with 1) and $\\lambda$ above a spacing, else dotted",
+        f"frames where {ENOUGH_CLOGS} runs or more clogged: solid if $P(r)$ is exponential (Weibull's exponent compatible with 1) and $\\lambda$ longer than one obstacle spacing, else dotted",
         "hatched, >: lower bound (no run clogged); star: the published $\\lambda = 24\\sigma$, at the density that gives this length here"])
     return Plate(drawing, data)

@@ -90,15 +90,19 @@ def tensions_over_a_post(shop: Workshop) -> Plate:
     left.add_patch(Circle((0, 0), POST[2] / 2, color="0.8"))
     surroundings.frame_limits(left, (-0.4, -0.9), (4.2, 0.9))
     left.set_xlabel(r"$x/\sigma$ from the post, along gravity")
+    left.set_ylabel(r"$y/\sigma$")
     data = []
     for label, run, vertices, dashes in (("both", held, last, "-"), ("the lower one", slides, passing, "--")):
         for interface, part, colour in zip(("lower", "upper"), interfaces(vertices), style.COLOURS):
             angles = np.degrees(np.arctan2(vertices[1, part] - POST[1], POST[0] - vertices[0, part]))
             values = tensions(vertices, run.row)[part] / run.row["line_tension"]
-            right.plot(angles, values, dashes, color=colour, label=f"{interface} interface, friction on {label}")
+            right.plot(angles, values, dashes, color=colour, label=f"{interface}, {label}")
             data += [{"friction on": label, "interface": interface, "angle": angle, "tension": value} for angle, value in zip(angles, values)]
     right.set_xlabel("angle around the post from its top [degrees]")
     right.set_ylabel(r"tension/$\Gamma$")
     style.grid(right)
-    right.legend(frameon=False, fontsize=7)
+    style.legend(right, title="interface, friction on")
+    row = held.row
+    drawing.suptitle(rf"$\Gamma = {row['line_tension']:g}$, $\mu = {row['friction']:g}$, $N_v = {row['vertices']}$, {interface_of(held.word('preset'))}; "
+                     "the lower interface touches the post; left: friction on both", fontsize=9, color="0.25")
     return Plate(drawing, data)

@@ -49,7 +49,7 @@ def draw(shop: Workshop, config: str, panels: Sequence[Panel], without: Collecti
     entries: dict[str, Any] = {}
     for (title, curves), axes in zip(panels, all_axes.flat):
         for groups, index, label, options in curves:
-            shift = style.side_by_side(index, num_colours, tensions)
+            shift = style.side_by_side(index, num_colours, tensions)**1.7  # panels are narrow
             draw_lengths(axes, [group["line_tension"] * shift for group in groups], groups, index, label, **options)
         on_each(axes)
         style.logarithmic_ordinate(axes)
@@ -57,7 +57,7 @@ def draw(shop: Workshop, config: str, panels: Sequence[Panel], without: Collecti
         style.grid(axes)
         axes.set_title(title, fontsize=9)
         explain_gap(axes, tensions, [group for groups, *_ in curves for group in groups])
-        entries |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels())}
+        entries |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels()) if label not in entries or handle.has_yerr}
     for axes in list(all_axes.flat)[len(panels):]:
         axes.axis("off")
     for line in all_axes:

@@ -218,8 +218,8 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
         labelled = far_apart(lower, span)
         axis.set_minor_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}" if value in labelled else ""))
         axis.set_tick_params(which="minor", pad=4 + 1.2 * matplotlib.font_manager.FontProperties(size=matplotlib.rcParams["xtick.labelsize"]).get_size_in_points())
-    elif not values:
-        low, high = axes.get_xlim()
+    else:
+        low, high = (min(values), max(values)) if values else axes.get_xlim()
         plain_logarithmic(axis, high / low)
     if values:
         # Ticks would determine the range of an axis and leave no margin, so artists at the last tick would lie on the
@@ -249,7 +249,7 @@ def logarithmic_ordinate(axes: Axes) -> None:
 def plain_logarithmic(axis: Axis, span: float = 1.0) -> None:
     """Plain numbers at 1, 2 and 5 of each decade, or only at its beginning. @param span  last number divided by the
     first, if this may be large"""
-    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0) if span < 1000 else (1.0,)))
+    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0) if span < 2000 else (1.0,)))
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
