@@ -31,7 +31,7 @@ bool is_key(const std::string& name) {
   return std::ranges::any_of(sweep::keys(), [&](const sweep::Key& key) { return key.name == name; });
 }
 
-/// Collects positional words; its name cannot be typed as an option.
+/// Name of the option that collects surplus words. It contains a blank, so nobody types it as an option.
 constexpr const char* surplus_words = "surplus words";
 
 /// Keys that a newcomer needs, in a useful order.

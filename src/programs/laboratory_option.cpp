@@ -92,7 +92,9 @@ bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, c
 }
 
 /// In millimetres an array stays the same for all droplets; in sigma it would grow with them, which the user
-/// must request. @param texts  as given. @throws Error
+/// must request.
+/// @param texts  as given.
+/// @throws Error
 void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory::Texts& texts) {
   sweep::Settings settings = line.settings();
   if (const auto own = texts.find(sweep::circles_key); own != texts.end())

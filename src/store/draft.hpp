@@ -13,8 +13,8 @@
 /// Files that appear complete: written under a temporary name, saved to disk, then renamed.
 namespace clog::store {
 
-/// Removes the drafts of this path that killed processes left behind. @param mark  beginning of every draft
-/// of this kind
+/// Removes the drafts of this path that killed processes left behind.
+/// @param mark  beginning of every draft of this kind
 void remove_stale_drafts(const OutputPath& place, std::string_view mark);
 
 /// An incomplete file beside its target, under an unused name. It is locked until it is closed or unlock() is

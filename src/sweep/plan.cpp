@@ -24,7 +24,8 @@ namespace {
 constexpr std::int64_t largest_sweep = 100'000'000;
 
 /// Returns what a check of one branch of the settings returns. If the check refuses one value of a list like
-/// 0,3, the message asks whether 0.3 was meant. @param where  beginning of the message
+/// 0,3, the message asks whether 0.3 was meant.
+/// @param where  beginning of the message
 template <class Check>
 auto checked(const Settings& branch, const std::string& where, const Check& check) try {
   return check();

@@ -170,7 +170,8 @@ std::string bare_lanes(std::span<const Obstacle> circles, const ObstacleParamete
       obstacles.own->source(), joined(named), shortest(period));
 }
 
-/// Lengths of a device in other units than its circles make it far too large.
+/// Warns if the circles cover only a small part of the device: its lengths were probably given in other units
+/// than the circles.
 std::string small_part(std::span<const Obstacle> circles, const ObstacleParameters& obstacles) {
   constexpr double small = 0.2;
   const auto [left, right] = std::ranges::minmax(circles, {}, &Obstacle::x);

@@ -5,8 +5,8 @@
 
 namespace clog::fit {
 
-/// Outcome of one run: it went `distance` [sigma] and clogged there, or was still moving when it was last
-/// seen (censored).
+/// Outcome of one run: the droplet went `distance` [sigma] and clogged there, or was still moving when it was
+/// last seen (censored).
 struct Observation {
   double distance;
   bool clogged;

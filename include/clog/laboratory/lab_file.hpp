@@ -21,11 +21,11 @@ struct MeasuredSpeed {
 struct Laboratory {
   Experiment experiment;  ///< terminal_speed 0, interfacial_tension NaN where they are not known
   double thickness = std::numeric_limits<double>::quiet_NaN();  ///< of the cell [m]
-  /// Gamma of the model divided by Gamma_exp. The ratio of the three droplets of Cheng et al. "likely stems
-  /// from the fact that we compare values of the dimensionless line tension in 2D to values of the
-  /// dimensionless surface tension in 3D".
+  /// Gamma of the model divided by Gamma_exp. The default fits the three droplets of Cheng et al., who say
+  /// that the difference between both Gammas "likely stems from the fact that we compare values of the
+  /// dimensionless line tension in 2D to values of the dimensionless surface tension in 3D".
   double tension_ratio = 0.3;
-  std::optional<MeasuredSpeed> measured = {};  ///< from which the terminal speed follows, if it was scaled
+  std::optional<MeasuredSpeed> measured = {};  ///< the speed that was scaled to the terminal speed, if any
   std::string text;                            ///< `key = value; key = value`
 };
 

@@ -25,12 +25,12 @@ struct Comparison {
   std::vector<Value> common;  ///< see Comparisons::columns
   fit::CloggingLength length_here{}, length_there{};
   fit::LengthRatio ratio{};  ///< of the length here to the length there
-  int num_both_clogged = 0;  ///< pairs
-  int num_same_place = 0;    ///< of these, pairs that clogged at the same place
+  int num_both_clogged = 0;  ///< pairs of which both clogged
+  int num_same_place = 0;    ///< pairs of which both clogged, at the same place
 };
 struct Comparisons {
   std::vector<std::string>
-      columns;  ///< that a side lists and that have a common value; they name a comparison
+      columns;  ///< listed columns with a value that both sides have; their values name a comparison
   std::vector<std::string> differing;  ///< columns whose values here and there differ
   std::vector<Comparison> all;
   std::string unit = "sigma";      ///< of lengths: "sigma" or "mm"

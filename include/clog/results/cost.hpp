@@ -8,8 +8,8 @@ namespace clog::results {
 /// The cost of one run so far. Work is counted in steps times vertices.
 struct RunCost {
   std::int64_t parameter_set = 0;
-  double begin_seconds = 0;  ///< sampling of its obstacles, and its release
-  double seconds = 0;        ///< since then
+  double begin_seconds = 0;  ///< time for sampling its obstacles and releasing the droplet
+  double seconds = 0;        ///< time since the release
   double work = 0;           ///< done in these seconds
   double longest_work = 0;   ///< work of the run if it lasts to max-time
   bool is_over = false;

@@ -40,7 +40,8 @@ class Journal {
   };
 
   /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, another kind of
-  /// file, or cannot be written. @param table  gives a new file its mode, owner, group and access list
+  /// file, or cannot be written.
+  /// @param table  gives a new file its mode, owner, group and access list
   explicit Journal(OutputPath place, const OutputPath* table = nullptr);
   Journal(Journal&&) = delete;
   ~Journal();
@@ -75,7 +76,7 @@ class Journal {
   /// Replaces the file by one with only these entries.
   void rewrite(std::span<const Entry* const> entries);
   /// Prepares a file with these entries and the records behind the first `begin` bytes; replace() puts it in
-  /// place. Another thread may call this, as flush().
+  /// place. Another thread may call this, as it may call flush().
   void prepare(std::span<const Entry* const> entries, std::uint64_t begin);
   bool is_prepared() const { return next_ != nullptr; }
   void replace();

@@ -37,8 +37,8 @@ class OutputPath {
   /// Creates a file, to read and write; the descriptor is not open if something exists already. @throws Error
   Descriptor create(mode_t mode) const;
   bool exists() const { return status().has_value(); }
-  /// Whether this open file is still the one here. Somebody may have replaced or removed it meanwhile. @param
-  /// failure if given, why this is unknown
+  /// Whether this open file is still the one here. Somebody may have replaced or removed it meanwhile.
+  /// @param failure  if given, why this is unknown
   bool holds(int descriptor, std::error_code* failure = nullptr) const;
   /// Removes the file, if there is one. Returns why that failed, or nothing.
   std::error_code remove() const;

@@ -66,7 +66,8 @@ struct Column {
 
 /// All columns, in their order in files.
 std::span<const Column> columns();
-/// The column's name of a dwell in Dwells::longest; with `_at` and `_from`, where and when it began.
+/// Name of the column with the length of a dwell of Dwells::longest. With `_at` or `_from` at its end, it is
+/// the name of the column that tells where or when this dwell began.
 std::string dwell_column(std::size_t place);
 /// @throws std::out_of_range if there is none
 const Column& column(std::string_view name);

@@ -20,8 +20,9 @@ struct Key {
   std::string help;            ///< meaning and unit
   const Parameter* parameter;  ///< nullptr: preset
 
-  /// Not for the key obstacles, whose values name files: Plan knows their content. @throws Error, without the
-  /// key's name, if the value cannot be read or is out of the type's range
+  /// Sets the key's parameter to a value. Does nothing for the preset, which acts through other keys, and for
+  /// obstacles, whose values name files: Plan knows their content. @throws Error, without the key's name, if
+  /// the value cannot be read or is out of the type's range
   void apply(RunParameters& run, const std::string& value) const;
 };
 

@@ -26,7 +26,7 @@ struct Shard {
   std::int64_t number = 1;
   std::int64_t of = 1;
 
-  /// From `2/5`. @throws Error, without the option's name
+  /// Reads `2/5`, the second of five parts. @throws Error, without the option's name
   static Shard from(const std::string& text);
   std::string text() const;
   bool is_whole() const { return of == 1; }

@@ -33,7 +33,7 @@ double frequency(const RunParameters& run) {
   return std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
 }
 
-/// The automatic step resolves the contact's period sixty times.
+/// The automatic step is at most a sixtieth of the period with which the disk oscillates on an obstacle.
 void resolve_disk(RunParameters& run, double) {
   if (!run.wall_stiffness)
     throw Error(

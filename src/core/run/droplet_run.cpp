@@ -99,7 +99,7 @@ DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> o
 
 PotentialEnergy DropletRun::potential_energy() const {
   PotentialEnergy energy = droplet_->potential_energy();
-  // Gravity's energy between the place of release and the frame's origin.
+  // The droplet measures heights from its frame's origin, a run from the place of release.
   energy.gravity -= units::droplet_mass * units::gravity * displacement_of({0, 0})[0];
   return energy;
 }
@@ -175,7 +175,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
   }
 }
 
-/// Checks the other members of a snapshot, beside the droplet itself.
+/// Checks what a snapshot contains besides the droplet itself.
 bool DropletRun::is_in_range() const {
   return (start_.abs() < burst_perimeter).all() &&
          clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&
@@ -189,7 +189,7 @@ void DropletRun::check() {
   const PolygonShape shape = droplet_->shape();
   const bool has_diverged = !(energy_ratio < diverged_energy_ratio && shape.perimeter < burst_perimeter &&
                               std::abs(shape.area / units::rest_area - 1) < diverged_area_error);
-  if (has_diverged) {  // also if any of them is not a number
+  if (has_diverged) {  // also if one of these three numbers is NaN
     message_ = fmt::format(
         "diverged at t={:.6g}: E_k/E_t={:.6g}, area={:.6g}, perimeter={:.6g}; try a smaller time-step or "
         "terminal-speed",

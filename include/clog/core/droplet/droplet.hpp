@@ -31,7 +31,7 @@ class Droplet {
   const DropletState& state() const { return state_; }
   /// [g rho sigma^3]
   virtual double kinetic_energy() const = 0;
-  /// Its gravity term is relative to the frame's origin.
+  /// The height in its gravity term is measured from the frame's origin.
   virtual PotentialEnergy potential_energy() const = 0;
   /// Centre of mass: of the area if the weight acts on it, otherwise the vertices' mean [sigma], local.
   virtual Eigen::Array2d centre() const { return state_.centre(); }
@@ -45,8 +45,8 @@ class Droplet {
   /// Adds up the work against the drag from now on. This costs a pass over the velocities per step.
   void measure_dissipation() { measures_dissipation_ = true; }
   /// Work since measure_dissipation() [g rho sigma^3]: the energy lost to drag, and the work of the springs
-  /// along the interface, whose force derives from no potential energy. The trapezoidal rule makes it second
-  /// order in the time step, like the integrator.
+  /// along the interface, whose force derives from no potential energy. Both are sums by the trapezoidal
+  /// rule, which is second order in the time step, like the integrator.
   struct Work {
     double dissipated = 0;
     double spreading = 0;

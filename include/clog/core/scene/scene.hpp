@@ -13,7 +13,7 @@ enum class Finding { clogging_length, passage, sag };
 enum class WallsFrom {
   parameters,  ///< of the obstacles alone; sampling an array may take long
   circles,     ///< that a user gave
-  droplet      ///< whose parameters determine the places of the walls; making them takes no time
+  droplet      ///< whose parameters determine the places of the walls; making the walls takes no time
 };
 
 /// Which obstacles a droplet meets, where it starts, and where its path ends. There is one scene for each
@@ -43,8 +43,8 @@ struct Scene {
   ObstacleArray (*walls)(const RunParameters& run);
   /// A droplet at rest. @throws Error if there is no room for it
   DropletState (*release)(const RunParameters& run, const ObstacleArray& walls);
-  /// Displacement along the flow after which the droplet has passed [sigma]; infinite if it never has. @param
-  /// start place of release of the centre of mass, in the coordinates of the walls [sigma]
+  /// Displacement along the flow after which the droplet has passed [sigma]; infinite if it never has.
+  /// @param start  place of release of the centre of mass, in the coordinates of the walls [sigma]
   double (*way)(const RunParameters& run, const Eigen::Array2d& start);
   /// Converts a place from the coordinates of the walls to those of the file of circles [sigma]; nullptr
   /// without a file.

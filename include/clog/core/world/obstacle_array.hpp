@@ -28,8 +28,8 @@ class ObstacleArray {
   /// @throws Error if a centre is not finite or a radius not positive and finite
   ObstacleArray(const Period& period, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges = {});
 
-  /// An equal array in the memory of another array's binned(), which may belong to another process. @param
-  /// memory  keeps that memory alive
+  /// An equal array in the memory of another array's binned(), which may belong to another process.
+  /// @param memory  keeps that memory alive
   ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory);
   const BinnedObstacles& binned() const { return binned_; }
   static std::size_t num_cells(const Period& period);

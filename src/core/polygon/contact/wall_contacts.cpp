@@ -100,7 +100,8 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
 }
 
 /// Lists the edges of a group that a circle near the group's bounds can touch: an obstacle within range later
-/// is within range + skin now. @param fine  the refined contour, see refined()
+/// is within range + skin now.
+/// @param fine  the refined contour, see refined()
 void WallContacts::list_by_edge(const Eigen::ArrayXd& fine) {
   constexpr double rounding = 1e-12;
   const int n = static_cast<int>(num_points_);

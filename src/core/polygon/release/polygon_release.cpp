@@ -127,8 +127,8 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   FireOptions longer = options;
   longer.max_iterations = 500000;
   bool rests = comes_to_rest(growing, obstacles, forces, options, longer, state);
-  // Then the droplet relaxes with its own interface; springs with a tension of their own start only with the
-  // run.
+  // Then the droplet relaxes with its own interface. Springs that carry tension act only from the start of
+  // the run.
   RunParameters own = run;
   own.dp.inertia = growing.dp.inertia;
   own.dp.receding_angle = growing.dp.receding_angle;

@@ -142,8 +142,9 @@ HWY_INLINE bool push_window(const WallWindow& window, V span, V stiffness, const
   return touches;
 }
 
-/// One coordinate of the windows' forces on the vertices from p on. @param p  forces of edges on their first
-/// vertices; a stride later on their second ones, then on the others
+/// One coordinate of the windows' forces on the vertices from p on.
+/// @param p  the forces of edges on their first vertices; one stride behind these are the forces on the
+/// second vertices, and after another stride those on the two others
 HWY_INLINE V push_on_vertices(const double* p, std::ptrdiff_t stride) {
   const double *end = p + stride, *far = end + stride;
   const V far_before = load(far - lanes), far_here = load(far);

@@ -36,7 +36,7 @@ struct EdgeVectors {
 
 /// The points of edges that are closest to given points, one for each edge.
 struct NearestPoints {
-  V along;   ///< of their edge
+  V along;   ///< distance of the point from the first vertex of its edge
   V dx, dy;  ///< from the points given
   V distance2;
 

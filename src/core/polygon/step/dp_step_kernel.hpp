@@ -126,7 +126,7 @@ inline constexpr int num_window_push_arrays = 6;
 /// Repulsion by circles; see WallPlan.
 struct WallWindows {
   const WallWindow* all;
-  int num_own;  ///< the first of them share no edge with each other
+  int num_own;  ///< number of windows, the first ones, of which no two share an edge
   int num_all;
   /// Groups of vertices that windows may push. Group -1 and the one behind the last belong to the contour's
   /// other end.

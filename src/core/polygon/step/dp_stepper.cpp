@@ -273,7 +273,7 @@ void DpStepper::add_wetting(DropletState& state, double impulse, Droplet::Work* 
   }
 }
 
-/// The interface slips along walls where their limits are exceeded; there the limiting force acts on the
+/// The interface slips along walls where the walls' limits are exceeded; there the limiting force acts on the
 /// vertices.
 void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();

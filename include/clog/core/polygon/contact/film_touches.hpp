@@ -11,8 +11,9 @@ namespace clog {
 
 /// Largest number of films through which a wall holds interfaces.
 inline constexpr double most_films = 3;
-/// How far from the surface of a wall friction through films reaches [sigma]. @param wall_range  distance at
-/// which a wall's contact begins @param self_range  see SelfContacts
+/// How far from the surface of a wall friction through films reaches [sigma].
+/// @param wall_range  distance at which a wall's contact begins
+/// @param self_range  see SelfContacts
 inline double film_reach(double wall_range, double self_range) {
   return wall_range + most_films * self_range;
 }
@@ -31,7 +32,8 @@ inline constexpr double least_film_push = 1e-9;
 class FilmTouches {
  public:
   /// @param wall_range  distance from a wall's surface at which contact begins [sigma]
-  /// @param stiffness  k_c of the self-contact [g rho sigma]  @param wedges  must outlive this
+  /// @param stiffness  k_c of the self-contact [g rho sigma]
+  /// @param wedges  must outlive this
   FilmTouches(double wall_range, double stiffness, std::span<const Wedge> wedges)
       : wall_range_(wall_range), stiffness_(stiffness), wedges_(wedges) {}
 

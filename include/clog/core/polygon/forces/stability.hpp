@@ -66,8 +66,8 @@ struct Steps {
 };
 /// The fewest steps that cover `steps` time steps and keep every bound: at least `steps`, at most
 /// most_substeps times as many. The number is exact up to 2 `steps`; beyond, where shapes are far from the
-/// regular polygons of the bounds, it is a multiple of `steps`. @param most  Pressure::implicit: the pressure
-/// may be implicit if this saves steps
+/// regular polygons of the bounds, it is a multiple of `steps`.
+/// @param most  Pressure::implicit: the pressure may be implicit if this saves steps
 Steps stable_steps(const StiffModes& modes, int steps, double time_step, Pressure most);
 
 }  // namespace clog

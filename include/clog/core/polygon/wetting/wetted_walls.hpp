@@ -71,7 +71,7 @@ class WettedWalls {
 
  private:
   double extra_tension_;  // of a wetted wall [g rho sigma^2]
-  bool spreads_;          // do springs carry no tension?
+  bool spreads_;          // whether springs act only along the interface
   double contact_range_, width_;
   const ObstacleArray* obstacles_;
   WallContacts lists_;
