@@ -40,7 +40,7 @@ constexpr std::string_view usual_keys[] = {
     "box",          "boxes",         "obstacles",        "release",           "terminal-speed", "vertices",
     "model",        "wall-stiffness"};
 
-/// Is this a word like `key=value`?
+/// Whether this is a word like `key=value`.
 bool is_assignment(const std::string& word) {
   const auto equals = word.find('=');
   return equals != std::string::npos && equals > 0 && word[0] != '-' &&

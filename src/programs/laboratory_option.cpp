@@ -91,8 +91,8 @@ bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, c
          });
 }
 
-/// In millimetres an array stays the same for all droplets; in sigma it would grow with them, which the user
-/// must request.
+/// An array whose lengths are given in millimetres is the same for all droplets. In sigma it would grow with
+/// the droplets, which the user must request.
 /// @param texts  as given.
 /// @throws Error
 void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory::Texts& texts) {

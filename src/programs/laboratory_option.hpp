@@ -14,8 +14,8 @@ namespace clog::programs {
 /// droplets
 void use_laboratory(cli::CommandLine& line);
 
-/// use_laboratory() for a file of one or several droplets. Several become points, each with the texts of one
-/// droplet.
+/// use_laboratory() for a file of one or several droplets. Several droplets become points, each with the
+/// texts of one droplet.
 /// @param points  the sweep's points, none or some; each is combined with each droplet
 void use_laboratories(cli::CommandLine& line, sweep::Points& points);
 

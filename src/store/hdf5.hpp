@@ -14,7 +14,7 @@
 
 #include "clog/store/output_path.hpp"
 
-/// Thin ownership of HDF5 identifiers; only src/store includes this.
+/// Classes that own HDF5 identifiers, and functions for files. Only src/store includes this.
 namespace clog::store {
 
 /// Owns one HDF5 identifier and closes it with the function of its kind.

@@ -141,7 +141,8 @@ class Plan::Builder {
                       where, joined(angles, ","), largest_angle_error, box));
   }
 
-  /// The number of groups. It excludes the seeds, which only count for the largest number of runs.
+  /// The number of groups. This number excludes the seeds, which are counted only to check the largest number
+  /// of runs.
   std::int64_t size_of_product(const Settings& branch) {
     auto num_places = std::int64_t{1};
     const std::int64_t num_seeds = std::ssize(*last_seeds_);

@@ -25,8 +25,8 @@ void record_interrupted(const DropletRun& run, RunRow& row) {
   record(result, row);
 }
 
-/// Restores a run from the snapshot, if a run with these parameters can have written it. Otherwise (another
-/// version may have written it) the run restarts, with the same result.
+/// Restores a run from the snapshot, if a run with these parameters can have written it. Otherwise, for
+/// instance if another version has written the snapshot, the run restarts, with the same result.
 /// @param row  of the run, without results
 DropletRun start(const RunParameters& run, RunRow row, std::span<const std::byte> snapshot,
                  ObstacleArrays& arrays) {

@@ -14,9 +14,9 @@
 
 namespace clog::cli {
 
-/// Command line of one program: its own options, and for programs that run droplets every key of the config
-/// file as an option, `--key=value` or `key=value`. Settings come from the defaults, then the --config file,
-/// then the command line.
+/// Command line of one program. It has the program's own options and, in a program that runs droplets, an
+/// option for every key of the config file: `--key=value` or `key=value`. Settings come from the defaults,
+/// then the --config file, then the command line.
 class CommandLine {
  public:
   enum class SweepKeys { none, accepted };

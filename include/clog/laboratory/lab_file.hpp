@@ -9,9 +9,10 @@
 
 namespace clog::laboratory {
 
-/// A terminal speed that was measured with another droplet or at another tilt. It is proportional to
-/// sin(tilt) and to diameter^exponent: the drag of the model is linear, and weight and drag of a flat droplet
-/// between two plates are both proportional to its area, so the exponent is 0 (Taylor and Saffman 1959).
+/// A terminal speed that was measured with another droplet or at another tilt. The speed is proportional to
+/// sin(tilt), because the drag of the model is linear, and to diameter^exponent. The exponent is 0 by
+/// default, because weight and drag of a flat droplet between two plates are both proportional to the
+/// droplet's area (Taylor and Saffman 1959).
 struct MeasuredSpeed {
   double speed = 0, diameter = 0, tilt = 0;  ///< [m/s], [m], [rad]
   double exponent = 0;
@@ -33,7 +34,8 @@ struct Laboratory {
 /// laboratory for each combination of the diameters and the angles that the file lists; angles vary fastest.
 /// @throws Error naming file and key
 std::vector<Laboratory> read_laboratories(const std::string& path);
-/// Reads a file of one laboratory. @throws Error likewise, and if there are several
+/// Reads a file of one laboratory. @throws Error as read_laboratories(), and if there are several
+/// laboratories
 Laboratory read_laboratory(const std::string& path);
 /// How the terminal speed was scaled, in one line; empty if it was measured.
 std::string law_of_speed(const Laboratory& lab);

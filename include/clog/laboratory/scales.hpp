@@ -25,7 +25,7 @@ struct Scales {
   double line_tension_of_cell = 0;     ///< interfacial tension times thickness [N]
 };
 Scales scales_of(const Laboratory& lab);
-/// Texts of keys, by their names.
+/// The text of each key, by the key's name.
 using Texts = std::map<std::string, std::string>;
 /// The laboratory's description, and two properties of its droplet unless the user has set them: the terminal
 /// speed, and the line tension or, for soft disks, the wall stiffness.

@@ -51,7 +51,7 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
 /// Compares each side with the first one: parameter sets with the same values of Comparisons::columns. Runs
 /// of the same seed are pairs.
 /// @param sides  two or more
-/// @param within  see Comparisons; nothing: half an obstacle spacing
+/// @param within  see Comparisons; nullopt: half an obstacle spacing
 /// @throws std::invalid_argument if there are fewer than two sides
 /// @throws Error if they have no value in common, or if it is not clear which parameter sets belong together
 Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within);

@@ -161,8 +161,8 @@ struct Group {
 /// Whether there are user-supplied circles with an entrance or an exit.
 bool is_device(const RunParameters& run);
 
-/// The outcome of an intact run from its release on; in a device from the first obstacle that its droplet
-/// met, and nothing if it met none.
+/// The outcome of an intact run. Its distance counts from the release; in a device it counts from the first
+/// obstacle that the droplet met, and the outcome is nullopt if the droplet met none.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
 /// Groups rows by everything but the seed, in the order of their parameters. Runs count as in

@@ -43,7 +43,7 @@ class SweepState {
 
   /// Tasks that are requested and not over.
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
-  /// How many of these resume from a snapshot.
+  /// How many of tasks_left() resume from a snapshot.
   std::int64_t num_resumed() const;
   /// Runs in the file that are outside this plan; the file keeps them.
   std::int64_t num_beyond() const { return static_cast<std::int64_t>(other_runs_.size()); }

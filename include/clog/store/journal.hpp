@@ -39,8 +39,8 @@ class Journal {
     std::uint64_t num_bytes = 0;      ///< excluding a torn end
   };
 
-  /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, another kind of
-  /// file, or cannot be written.
+  /// Opens or makes the file. @throws Error if the file is open elsewhere, has another version, is another
+  /// kind of file, or cannot be written.
   /// @param table  gives a new file its mode, owner, group and access list
   explicit Journal(OutputPath place, const OutputPath* table = nullptr);
   Journal(Journal&&) = delete;
@@ -48,7 +48,7 @@ class Journal {
 
   /// Whether a sweep has the journal open.
   static bool is_open(const std::string& path);
-  /// Reads the records without changing the file; nothing if there is no file. @throws Error if it cannot be
+  /// Reads the records without changing the file; nullopt if there is no file. @throws Error if it cannot be
   /// read
   static std::optional<Contents> look(const std::string& path);
 
@@ -80,8 +80,8 @@ class Journal {
   void prepare(std::span<const Entry* const> entries, std::uint64_t begin);
   bool is_prepared() const { return next_ != nullptr; }
   void replace();
-  /// Removes the file, unless it is no longer the one at the path; nothing may be added afterwards.
-  /// Returns why that failed, or nothing.
+  /// Removes the file, unless it is no longer the one at the path; nothing may be added afterwards. Returns
+  /// the reason if that failed.
   std::error_code remove();
 
  private:

@@ -48,7 +48,7 @@ struct Column {
       parameter;      ///< the parameter that the column holds; nullptr if there is none or more than one
   bool shapes_array;  ///< see Parameter
   std::function<Value(const RunRow&)> get;
-  /// @throws Error if no row can hold this
+  /// @throws Error if no row can have this value
   std::function<void(RunRow&, const Value&)> set;
   /// Sets the value of a row whose file does not have this column.
   std::function<void(RunRow&)> set_unknown;

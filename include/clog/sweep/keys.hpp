@@ -42,7 +42,7 @@ std::string written(const ParameterValue& value, const Parameter& parameter);
 bool is_same_value(const std::string& a, const std::string& b);
 
 std::vector<std::string> preset_names();
-/// The keys of the interface and of its numerics with their values in a preset; none if there is no such
+/// The keys of the interface and of its numerics with their values in a preset; empty if there is no such
 /// preset.
 std::vector<std::pair<const char*, const char*>> preset_texts(std::string_view name);
 /// The preset whose interface this resolved parameter set has, or `custom`.

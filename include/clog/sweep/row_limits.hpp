@@ -24,7 +24,7 @@ bool has_met_repetition(const RunRow& row);
 std::string possible_repetition(const Plan& plan);
 
 /// Lines about files of circles that leave a conspicuous part of their array bare, or have circles without a
-/// diameter; none for others.
+/// diameter.
 std::vector<std::string> limits_of_circles(const Plan& plan);
 
 /// Known limitations of a plan's results: the lines of the functions above that are not empty.

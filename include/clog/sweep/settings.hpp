@@ -55,8 +55,9 @@ class Settings {
   void set_shard(Shard shard) { shard_ = shard; }
   const Shard& shard() const { return shard_; }
 
-  /// Calls `visit` for each combination of words of each point, with settings that have no points and one
-  /// value for each key of words, so that the runs are the product of the other lists.
+  /// Calls `visit` for each branch of the settings: for each point, and for each combination of the values of
+  /// keys of kind `word`. The settings of a branch have no points and one value for each of these keys, so
+  /// that the branch's runs are the product of the other lists.
   /// @param point  its place; -1 without points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;

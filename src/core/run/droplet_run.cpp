@@ -17,7 +17,7 @@
 namespace clog {
 namespace {
 
-/// A droplet just after its release is slow; before it had time to fall, it looks like a clogged one.
+/// Until it has had time to fall, a released droplet is as slow as a clogged one.
 constexpr double relaxation_times_before_a_clog = 10;
 
 /// E_k/E_t below which the program searches for an equilibrium. The droplet must also be so slow that it
@@ -31,9 +31,9 @@ double first_search(const RunParameters& run) {
   const double coasting = farthest_rest / (relaxation_time(run) * run.drag.terminal_speed);  // divided by V_t
   return std::min(has_friction ? slow_with_friction : slow, coasting * coasting);
 }
-/// After a failed search the next one waits until E_k/E_t has fallen by this factor again,
+/// After a failed search, the next search waits until E_k/E_t has fallen by this factor,
 constexpr double fall_between_searches = 0.1;
-/// or, once it exceeds this multiple of the first search's, until the droplet slows down anew.
+/// or, if E_k/E_t exceeds this multiple of the value of the first search, until the droplet slows down anew.
 constexpr double rise_of_a_moving_droplet = 10;
 
 /// The run looks for crossings of the interface once in this number of steps, which takes less than 1 % of

@@ -61,7 +61,7 @@ CommensurateLattice lattice(const ObstacleParameters& obstacles, int p, int q) {
           portable::atan2(q * tangent_unit(obstacles.lattice), p) / degree};
 }
 
-/// The square lattice of exactly this angle and box, if there is one; then no search is needed.
+/// The square lattice that has exactly this angle and box, if there is one. Then no search is needed.
 std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstacles) {
   const double steps = obstacles.box / obstacles.spacing();
   const auto p = std::lround(steps * portable::cos(obstacles.lattice_angle * degree));

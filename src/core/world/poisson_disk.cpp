@@ -156,8 +156,8 @@ class SequentialAddition {
   int margin_;  // number of cells to the farthest point within the largest distance
   int row_length_;
   bool are_alike_;  // all discs have one size, as usual
-  /// The points, each from its cell's corner. A cell can hold only one, as its diagonal is not longer than
-  /// the smallest distance.
+  /// The points, each relative to the corner of its cell. A cell has at most one point, because its diagonal
+  /// is not longer than the smallest distance between two points.
   std::vector<Point> points_;
   std::vector<float> excess_;
   std::size_t num_points_ = 0;

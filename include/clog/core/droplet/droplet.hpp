@@ -11,7 +11,7 @@ namespace clog {
 /// Perimeter above which a polygon has burst and is not integrated any further [sigma].
 inline constexpr double burst_perimeter = 1000;
 
-/// A moving droplet: the interface of both models for a run.
+/// A moving droplet. A run uses the droplets of both models through this class.
 class Droplet {
  public:
   virtual ~Droplet() = default;
@@ -33,7 +33,8 @@ class Droplet {
   virtual double kinetic_energy() const = 0;
   /// The height in its gravity term is measured from the frame's origin.
   virtual PotentialEnergy potential_energy() const = 0;
-  /// Centre of mass: of the area if the weight acts on it, otherwise the vertices' mean [sigma], local.
+  /// Centre of mass, local [sigma]: the centroid of the area if the weight acts on the area, otherwise the
+  /// mean of the vertices.
   virtual Eigen::Array2d centre() const { return state_.centre(); }
   /// The area's centroid, for any `gravity` [sigma], local.
   virtual Eigen::Array2d area_centre() const { return state_.centre(); }

@@ -31,9 +31,9 @@ int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 /// A droplet may be released if no component of the force on a vertex (DP) or on the disk (SP) exceeds this
 /// fraction of the weight of the vertex or disk. The force excludes this weight and the springs.
 inline constexpr double release_force_tolerance = 1e-4;
-/// The same tolerance for an interface with springs along it. The force of these springs derives from no
-/// energy and keeps the interface sliding for ever in a cycle of 1e-3 sigma; no observed force exceeded 0.01.
-/// The droplet as a whole stays in place.
+/// This tolerance replaces release_force_tolerance for an interface with springs along it. The force of these
+/// springs derives from no energy and keeps the interface sliding for ever in a cycle of 1e-3 sigma; no
+/// observed force exceeded 0.01. The droplet as a whole stays in place.
 inline constexpr double release_sliding_tolerance = 0.02;
 
 }  // namespace clog

@@ -33,7 +33,8 @@ template <>
 struct Words<SelfContact> {
   static constexpr Worded<SelfContact> all[] = {{SelfContact::on, "on"}, {SelfContact::off, "off"}};
 };
-/// Whether wall friction also acts through a closed film on the interface above it.
+/// Whether wall friction acts only on the interface next to the wall, or through closed films also on the
+/// interfaces above the films.
 enum class FilmFriction { off, on };
 template <>
 struct Words<FilmFriction> {

@@ -80,14 +80,14 @@ struct Parameter {
   void (*set)(RunParameters&, const ParameterValue&);
 
   bool applies_to(const RunParameters& run) const { return scope->holds(run); }
-  /// Whether its value follows from the others in such a run, unless it is given.
+  /// Whether the parameter's value follows from other parameters in such a run, unless it is given.
   bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
 };
 
 /// All parameters, in the order in which they are displayed. A plan's axes have the same order, which
 /// determines the numbers of the tasks.
 std::span<const Parameter> parameter_schema();
-/// @throws std::out_of_range if there is none
+/// @throws std::out_of_range if no parameter has this key
 const Parameter& parameter(std::string_view key);
 
 /// Refuses numbers outside their range, and values other than the default that do not apply to the run.

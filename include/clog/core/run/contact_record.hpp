@@ -39,7 +39,7 @@ class ContactRecord {
   const Contacts& found() const { return contacts_; }
 
   void save(ByteWriter& bytes) const;
-  /// @throws Error if save() cannot have written it
+  /// @throws Error if save() cannot have written these bytes
   void restore(ByteReader& bytes);
 
  private:

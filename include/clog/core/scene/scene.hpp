@@ -17,12 +17,12 @@ enum class WallsFrom {
 };
 
 /// Which obstacles a droplet meets, where it starts, and where its path ends. There is one scene for each
-/// ObstacleLayout. A new one needs a word of ObstacleLayout, a file that defines its Scene, a line in
+/// ObstacleLayout. A new scene needs a word of ObstacleLayout, a file that defines its Scene, a line in
 /// scene.cpp, and the steps of docs/developer/add-a-scene.md.
 struct Scene {
   Finding finding;
   WallsFrom walls_from;
-  /// Whether the array represents a random one; then results are limited by the period, after which a droplet
+  /// Whether the array is random. Then the period limits the results, because after one period a droplet
   /// meets the same obstacles again.
   bool is_random;
   /// Key of the parameter that is the width of the gaps or the orifice; nullptr if there is none.
@@ -36,7 +36,8 @@ struct Scene {
   void (*resolve)(RunParameters& run);
   /// Diameter of the sharpest expected bend of the interface [sigma].
   double (*sharpest_bend)(const RunParameters& run);
-  /// Obstacles per area [1/sigma^2]; NaN without obstacles, or if it is unknown before the array is made.
+  /// Obstacles per area [1/sigma^2]; NaN without obstacles, or if the density is unknown before the array is
+  /// made.
   double (*density)(const ObstacleParameters& obstacles);
 
   // The functions from here on take resolved parameters.

@@ -72,7 +72,7 @@ struct NearestOnHalves {
     distance2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
   }
   HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
-  /// The force stiffness (reach - distance), where they touch.
+  /// The force on half edges that touch the circle, stiffness (reach - distance).
   HWY_INLINE Pair push(M touch, V reach, V stiffness) const {
     // For a point exactly at the centre, the direction is 0 and not NaN.
     const V inverse_distance = square_root(hn::Max(distance2, all(1e-300))).inverse;

@@ -24,8 +24,8 @@ inline constexpr double least_film_push = 1e-9;
 /// Friction through closed films. An interface that lies on another one feels the wall through the force by
 /// which the lower interface pushes it off; the lower interface keeps the rest of the wall's push:
 ///   N_i = max(0, n (P_i + S_i)),
-/// P_i the wall's push on vertex i, S_i that of the droplet's other parts, n the wall's normal. S_i counts
-/// only for one wall, the nearest of those that push the droplet, and only within film_reach() of its
+/// P_i the wall's push on vertex i, S_i the push of the droplet's other parts, n the wall's normal. S_i
+/// counts only for one wall, the nearest of those that push the droplet, and only within film_reach() of its
 /// surface. At rest N_i balances the force with which the interface's own tension presses on the wall. The
 /// N_i of all interfaces of a stack add up to the push of the wall, so that its total friction obeys
 /// Coulomb's law.
