@@ -46,7 +46,7 @@ void say_what_is_coarse(const RunParameters& run) {
                  "vertices=128 or more");
 }
 
-/// Refuses keys of results: the row has all results of the run.
+/// Refuses all keys, because the row determines all parameters of the run.
 void refuse_keys(const cli::CommandLine& line) {
   for (const sweep::Key& key : sweep::keys())
     if (line.has(key.name))

@@ -16,7 +16,7 @@ namespace clog::results {
 /// Runs of one or several sweeps, and the settings of a sweep with exactly these runs.
 class RunList {
  public:
-  /// All runs of a plan. @throws Error if another plan has other circles under the same name
+  /// Adds all runs of a plan. @throws Error if another plan has other circles under the same name
   void add(const sweep::Plan& plan);
   /// Adds a run that may be outside the plan, for instance one of an earlier command of the sweep. The run
   /// gets the texts of the plan's first parameter set, with the row's own values where they differ. Returns

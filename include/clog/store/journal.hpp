@@ -18,7 +18,7 @@ namespace clog::store {
 
 class Draft;
 
-/// Path of the journal of the table at this path: beside the table (for a link, beside its target).
+/// Path of a table's journal, which is beside the table (for a link, beside the link's target).
 std::string journal_path(const std::string& table);
 OutputPath journal_place(const OutputPath& table);
 

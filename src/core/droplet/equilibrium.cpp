@@ -63,7 +63,7 @@ class Stiffness {
   explicit Stiffness(bool has_energy) : has_energy_(has_energy) {}
 
   /// Replaces K. Returns whether the shape resists all displacements by more than `bound` and the vertices
-  /// can adapt; otherwise nothing can be solved.
+  /// can adapt; otherwise solve() must not be called.
   bool set(const MatrixXd& k, double bound) {
     const Index n = k.rows() / 2;
     if (!is_definite(0, k.bottomRightCorner(n, n))) return false;

@@ -26,7 +26,9 @@ struct WallPlace {
   }
 };
 
-/// Distance of a point, relative to the wall's centre. @param wedges  those of the scene
+/// Distance of a point from a wall.
+/// @param wedges  those of the scene
+/// @param from_centre  vector from the wall's centre to the point
 inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> wedges,
                                  const Eigen::Array2d& from_centre) {
   if (wall.wedge >= 0) return distance_to(wedges[static_cast<std::size_t>(wall.wedge)], from_centre);

@@ -123,8 +123,9 @@ struct DpParameters {
   /// -cos of the contact angle (Young). 1: a film of water everywhere, as in the paper's figures. Empty: from
   /// the measured angles, see wall_tension().
   std::optional<double> wall_tension;
-  /// Contact angles, of the droplet's fluid, beyond which the end of a wetted arc recedes and advances
-  /// [degrees]; empty: Young's angle, and ends are not held. Only with springs `along` the interface.
+  /// Contact angles of the droplet's fluid, beyond which the end of a wetted arc recedes and advances
+  /// [degrees]. Empty: both are Young's angle, and ends are not held. Angles may be given only with springs
+  /// `along` the interface.
   std::optional<double> receding_angle, advancing_angle;
   double friction = 0;        ///< mu of walls, only if springs carry tension
   double yield_traction = 0;  ///< tau_y, force per length that a wall bears without any push [g rho sigma]
