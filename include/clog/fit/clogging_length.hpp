@@ -36,7 +36,7 @@ struct CloggingLength {
   double total_distance = 0;  ///< S, over all runs, clogged or not [sigma]
   double length = 0;          ///< NaN without clogs [sigma]
   Interval interval{};        ///< by chi-squared; without clogs a lower bound and infinity [sigma]
-  Interval profile{};         ///< by profile likelihood; likewise [sigma]
+  Interval profile{};         ///< by profile likelihood; without clogs like `interval` [sigma]
 };
 
 /// Maximum likelihood for censored exponential data: lambda = S/d, S the sum of all distances and d the

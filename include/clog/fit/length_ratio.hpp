@@ -30,7 +30,7 @@ struct LengthRatio {
   /// Correlation of log lambda on both sides over the pairs, by the jackknife. If it is positive, pairing
   /// helps: the error of the ratio is `gain` times smaller than that of two independent lengths.
   double correlation = 0;  ///< NaN where it is unknown
-  double gain = 0;  ///< ratio of the unpaired to the paired standard error of the same pairs; NaN likewise
+  double gain = 0;  ///< ratio of the unpaired to the paired standard error of the same pairs; NaN if unknown
 };
 
 /// The paired interval is used if pairs certainly help: the correlation is positive (one-sided, 2.5 %), and

@@ -163,7 +163,7 @@ class SequentialAddition {
   std::size_t num_points_ = 0;
   float size_;          // of the squares
   float range_;         // of their excesses
-  int num_layers_ = 1;  // of excesses that a square was cut into
+  int num_layers_ = 1;  // number of layers of excesses into which a square was cut
   std::vector<Square> parts_;
   std::ptrdiff_t num_parts_ = 0;
   std::vector<Square> arriving_, darts_;

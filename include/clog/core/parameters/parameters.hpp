@@ -127,7 +127,7 @@ struct DpParameters {
   /// [degrees]. Empty: both are Young's angle, and ends are not held. Angles may be given only with springs
   /// `along` the interface.
   std::optional<double> receding_angle, advancing_angle;
-  double friction = 0;        ///< mu of walls, only if springs carry tension
+  double friction = 0;        ///< mu of walls; not with springs `along`
   double yield_traction = 0;  ///< tau_y, force per length that a wall bears without any push [g rho sigma]
   SelfContact self_contact = SelfContact::on;
   /// Distance below which the interface repels itself: the thickness of a film between two parts of it

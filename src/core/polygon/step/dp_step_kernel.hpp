@@ -139,7 +139,7 @@ struct HoldingCircle {
   double x, y, radius;  ///< [sigma]
   int first_window, end_window;
   int first_group, end_group;  ///< of vertices that it may push, by itself or through films
-  int end_own_group;           ///< behind the groups that it may push by itself, which come first
+  int end_own_group;           ///< end of the first groups, which the circle may push by itself
   bool wraps;                  ///< whether it pushes vertices -1, n or n + 1, which belong to the other end
   WindowPushArrays pushes;     ///< of this circle
 };
