@@ -31,7 +31,7 @@ bool is_key(const std::string& name) {
   return std::ranges::any_of(sweep::keys(), [&](const sweep::Key& key) { return key.name == name; });
 }
 
-/// Collects positional words; its name cannot be typed as an option.
+/// Name of the option that collects surplus words. It contains a blank, so nobody types it as an option.
 constexpr const char* surplus_words = "surplus words";
 
 /// Keys that a newcomer needs, in a useful order.
@@ -40,7 +40,7 @@ constexpr std::string_view usual_keys[] = {
     "box",          "boxes",         "obstacles",        "release",           "terminal-speed", "vertices",
     "model",        "wall-stiffness"};
 
-/// Is this a word like `key=value`?
+/// Whether this is a word like `key=value`.
 bool is_assignment(const std::string& word) {
   const auto equals = word.find('=');
   return equals != std::string::npos && equals > 0 && word[0] != '-' &&

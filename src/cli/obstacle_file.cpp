@@ -84,8 +84,9 @@ struct Columns {
   std::string unit;                 ///< unit that the header names
 };
 
-/// Stores the column that a cell of the header names. @return whether the reader needs this column @throws
-/// Error if the column occurs twice, or with another unit than the others
+/// Stores the column that a cell of the header names.
+/// @return whether the reader needs this column
+/// @throws Error if the column occurs twice, or with another unit than the others
 bool take_column(Columns& columns, int place, const std::string& cell) {
   const auto [name, unit] = console::column_head(cell);
   int* const column = name == "x"                                            ? &columns.x
@@ -138,7 +139,7 @@ Columns columns_named(std::vector<std::string> cells) {
   return columns;
 }
 
-/// The columns that a comment names, as in files written by NumPy; nothing for other comments.
+/// The columns that a comment names, as in files written by NumPy; nullopt for other comments.
 std::optional<Columns> columns_in(std::string comment) {
   for (char& letter : comment)
     if (std::string_view("#,;\t\"").find(letter) != std::string_view::npos) letter = ' ';

@@ -114,8 +114,9 @@ double least_squares_length(std::span<const Observation> runs) {
     }
     return sum;
   };
-  // Bounds of the fitted length: that of a straight line to a single clog in this number of runs, with a
-  // margin, and a length much smaller than the distance of the first clog.
+  // Bounds of the fitted length. The upper bound is the length that a straight line to a single clog in this
+  // number of runs would give, with a margin; the lower bound is much smaller than the distance of the first
+  // clog.
   const double first = std::max(clogs.front(), 1e-6);
   const double low = std::log(first / (10 * std::log(static_cast<double>(runs.size()) + 2)));
   const double high = std::log(10 * static_cast<double>(runs.size()));

@@ -16,7 +16,7 @@ namespace {
 /// Fraction of the mean distance to which the test raises shorter distances: Weibull's law excludes zero.
 constexpr double shortest_share = 1e-3;
 
-/// An interval that contains the root of a falling function, found by doubling and halving; nothing if there
+/// An interval that contains the root of a falling function, found by doubling and halving; nullopt if there
 /// is no root.
 template <class Function>
 std::optional<std::pair<double, double>> bracket(const Function& falling) {

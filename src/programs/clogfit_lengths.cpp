@@ -21,9 +21,9 @@ constexpr const char* lengths_usage =
 does from a sweep: maximum likelihood for censored distances, chi-squared intervals, survival, doubts.
 
   clogfit lengths distances.csv
-  clogfit lengths distances.csv --lab lab.cfg            in mm and in droplet diameters
+  clogfit lengths distances.csv --lab lab.cfg            lengths in mm and in droplet diameters
   clogfit lengths distances.csv --format csv > table.csv
-  clogfit compare distances.csv sweep.h5 --lab lab.cfg   beside simulated ones
+  clogfit compare distances.csv sweep.h5 --lab lab.cfg   in comparison with simulated distances
 
 The first line of the table names its columns, and each further line is one droplet:
 

@@ -35,7 +35,7 @@ sigma, the gravity g along the plates and the droplet's density rho are 1.
   clogfit units lab.cfg
   clogfit units lab.cfg --length 24 --time 2000          converts from the model to mm and s
   clogfit units lab.cfg --line-tension 0.16,0.2          interfacial tension, or tilt, for each Gamma
-  clogsweep --lab lab.cfg ... ; clogfit sweep.h5         sweeps and fits in both
+  clogsweep --lab lab.cfg ... ; clogfit sweep.h5         prints the results of a sweep in both units
 
 lab.cfg has lines key = value:
 

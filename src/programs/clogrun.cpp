@@ -49,9 +49,10 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
   else
     line.option("file", "replay: file of clogsweep")
         .option("task", "replay: the row's number, column `task`");
-  line.flag("to-rest",
-            "replay: continue until the droplet rests; otherwise the run ends when it is proved to come to "
-            "rest")
+  line.flag(
+          "to-rest",
+          "replay: continue until the droplet rests; otherwise the run ends as soon as it is proved that the "
+          "droplet will come to rest")
       .option("output", "HDF5 file to create")
       .option("lab",
               "file that describes the laboratory, see clogfit units; determines terminal-speed and "
@@ -60,9 +61,11 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
       .option("seed", "short for seeds=N")
       .option("sample-interval", "time between samples [t0]", "1")
       .option("polygon-interval", "also write the polygon, at this interval [t0]")
-      .option("frames", "also make a film of the polygons with this name, which may end in .mp4 or .gif")
+      .option("frames",
+              "also make a film of the polygons; give the film's name, which may end in .mp4 or .gif")
       .option("most-frames",
-              "largest number of frames of a film; a longer film skips frames, or shows only the end (600)")
+              "largest number of frames of the film (600); the film of a longer run skips frames, or shows "
+              "only the end")
       .flag("dry-run", "print the config and an upper bound of the run's duration, run nothing")
       .option("write-obstacles", "array: write the obstacles as a CSV file");
   line.add_commands({"array", "channel", "sag", "replay"});
@@ -75,7 +78,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
   return true;
 }
 
-/// Files that an option writes; all candidates for a film without a suffix.
+/// Files that an option writes. For a film without a suffix, these are both files that it may become.
 std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const std::string& option) {
   if (!line.has(option)) return {};
   const std::filesystem::path name = line.get(option);

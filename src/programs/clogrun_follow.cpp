@@ -16,8 +16,9 @@
 namespace clog::programs {
 namespace {
 
-/// Finds all errors before anything is computed or written. @param config  printed by --dry-run @param begin
-/// computes and writes; not called if there is nothing to run
+/// Finds all errors before anything is computed or written.
+/// @param config  printed by --dry-run
+/// @param begin  computes and writes; not called if there is nothing to run
 int follow_run(const cli::CommandLine& line, const RunParameters& parameters, const std::string& config,
                const std::function<void(const DropletRun&)>& begin) {
   const std::string output = line.get("output");
@@ -45,12 +46,12 @@ void say_what_is_coarse(const RunParameters& run) {
                  "vertices=128 or more");
 }
 
-/// Refuses keys of results: the row has all results of the run.
+/// Refuses all keys, because the row determines all parameters of the run.
 void refuse_keys(const cli::CommandLine& line) {
   for (const sweep::Key& key : sweep::keys())
     if (line.has(key.name))
-      throw Error("clogrun replay takes its parameters from the row, " + key.name +
-                  " contradicts it; leave it out, or use clogrun array");
+      throw Error("clogrun replay takes all parameters from the row; remove " + key.name +
+                  ", or use clogrun array");
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ constexpr const char* doctor_usage =
     R"(clogsweep doctor checks this machine for problems of sweeps, and prints remedies.
 
   clogsweep doctor
-  mpirun -np 4 clogsweep doctor --output results/sweep.h5    the sweep will be started on 4 cores, too
+  mpirun -np 4 clogsweep doctor --output results/sweep.h5    for a sweep that you will start in this way
 
 The exit code is 1 if there is a problem.
 )";

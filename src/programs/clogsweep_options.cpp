@@ -161,11 +161,13 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
               "CSV file with parameter sets in place of lists: the first line names keys, each further line "
               "has their values")
       .option("shard", "run one part of the sweep, e.g. 2/5 for the second of five parts")
-      .option("until-precision",
-              "add seeds until the half-width of lambda's 95 % interval is at most this fraction of lambda, "
-              "e.g. 10%")
+      .option(
+          "until-precision",
+          "add seeds to each parameter set until the half-width of lambda's 95 % interval is at most this "
+          "fraction of lambda, e.g. 10%")
       .option("most-seeds",
-              "largest number of seeds of a parameter set with --until-precision (20 times `seeds`)")
+              "largest number of seeds of a parameter set with --until-precision (20 times the number of "
+              "`seeds`)")
       .option("seeds-per-set",
               "add seeds to every parameter set until it has this number, including seeds in the output file")
       .option("attempts", "number of attempts for a run that fails", "2")

@@ -18,7 +18,7 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
 scheduler::DriverOptions driver_options(const cli::CommandLine& line);
 scheduler::Assignment assignment(const cli::CommandLine& line, const sweep::Settings& settings);
 std::int64_t attempts(const cli::CommandLine& line);
-/// The rule of --until-precision and --most-seeds; nothing if the sweep does not grow.
+/// The rule of --until-precision and --most-seeds; nullopt if the sweep does not grow.
 std::optional<results::GrowingSweep> growing_sweep(const cli::CommandLine& line);
 
 }  // namespace clog::programs

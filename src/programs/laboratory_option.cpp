@@ -91,8 +91,10 @@ bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, c
          });
 }
 
-/// In millimetres an array stays the same for all droplets; in sigma it would grow with them, which the user
-/// must request. @param texts  as given. @throws Error
+/// An array whose lengths are given in millimetres is the same for all droplets. In sigma it would grow with
+/// the droplets, which the user must request.
+/// @param texts  as given.
+/// @throws Error
 void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory::Texts& texts) {
   sweep::Settings settings = line.settings();
   if (const auto own = texts.find(sweep::circles_key); own != texts.end())
@@ -110,8 +112,8 @@ void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory:
       if (!replaced_by_pitch && is_length_without_unit(parameter, *meant_by<ObstacleLayout>(layout), text))
         throw Error(fmt::format(
             "invalid {0}={1} (a number without a unit is in droplet diameters, but {2} has several droplets, "
-            "or another one than the circles are drawn for) write it as in {0}=0.5{3}, or with sigma if it "
-            "is to grow with the droplet",
+            "or a droplet of another size than the circles are drawn for) write it as in {0}=0.5{3}, or with "
+            "sigma if it is to grow with the droplet",
             parameter.key, text, line.get("lab"),
             parameter.unit == std::string_view("sigma") ? "mm" : "/mm^2"));
     }

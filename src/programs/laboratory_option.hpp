@@ -14,19 +14,19 @@ namespace clog::programs {
 /// droplets
 void use_laboratory(cli::CommandLine& line);
 
-/// use_laboratory() for a file of one or several droplets. Several become points, each with the texts of one
-/// droplet.
+/// use_laboratory() for a file of one or several droplets. Several droplets become points, each with the
+/// texts of one droplet.
 /// @param points  the sweep's points, none or some; each is combined with each droplet
 void use_laboratories(cli::CommandLine& line, sweep::Points& points);
 
 /// Gives each group the scale of --lab, or else of its own laboratory. @throws Error
 void set_scales(const cli::CommandLine& line, std::vector<results::Group>& groups);
 
-/// The scale of each laboratory of these rows; none if some row has none, or if --lab applies to all. @throws
-/// Error
+/// The scale of each laboratory of these rows; empty if some row has no laboratory, or if --lab applies to
+/// all rows. @throws Error
 results::Scales scales_of_rows(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
 
-/// The droplet's diameter in mm: that of --lab, or else of the common laboratory of all rows; nothing if
+/// The droplet's diameter in mm: that of --lab, or else of the common laboratory of all rows; nullopt if
 /// neither exists. @throws Error
 std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
 

@@ -27,7 +27,7 @@ namespace {
 
 using sweep::RunRow;
 
-/// Runs that differ in their seed.
+/// Runs that differ only in their seed.
 struct ParameterSet {
   RunRow first;
   std::map<std::uint32_t, const RunRow*> by_seed;
@@ -61,7 +61,8 @@ std::set<Value> values_in(const std::vector<ParameterSet>& sets, const std::stri
   return values;
 }
 
-/// Columns that match the parameter sets of two sides: they vary within a side and have values on both.
+/// Columns that match the parameter sets of two sides: they vary within a side and have a value that occurs
+/// on both sides.
 std::vector<std::string> common_columns(const Side& there, const Side& here,
                                         const std::vector<ParameterSet>& sets_there,
                                         const std::vector<ParameterSet>& sets_here) {

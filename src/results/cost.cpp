@@ -132,7 +132,7 @@ struct Pace {
   }
 };
 
-/// Expected seconds for each outlook, with the standard error of the middle one.
+/// Expected seconds for each outlook, with the standard error of the middle outlook.
 struct Expectation {
   double lowest = 0;
   double middle = 0;

@@ -244,8 +244,8 @@ std::vector<std::string> heads(const std::vector<ResultColumn>& columns) {
   return line;
 }
 
-/// The parameters in which the groups differ. If their droplets differ in size or tilt, these come first;
-/// parameters that follow from them are separate.
+/// The parameters in which the groups differ. If the groups' droplets differ in size or tilt, size and tilt
+/// come first; parameters that follow from these are separate.
 struct ParameterColumns {
   std::vector<ResultColumn> droplets, others, following;
 
@@ -313,7 +313,8 @@ std::string wrapped(const std::vector<std::string>& words) {
   return text;
 }
 
-/// One line across a device: x, how many droplets passed it and of how many, fraction and interval.
+/// Appends the cells for one line across a device: x, the number of droplets that passed the line, the number
+/// of droplets that passed or stopped before it, the fraction and its interval.
 void append_passage(const Passage& passage, std::vector<std::string>& line) {
   const int num_known = passage.num_passed + passage.num_stopped;
   line.push_back(fmt::format("{:.4g}", passage.x));

@@ -125,7 +125,7 @@ std::optional<Ending> counted(const sweep::RunRow& run, Ending ending) {
   return ending;
 }
 
-/// The later of two times; unknown if one of them is.
+/// The later of two times; NaN if one of them is NaN.
 double later(double one, double other) { return std::isnan(one) || one > other ? one : other; }
 
 /// Rounds up to three figures, which people can type.
@@ -318,7 +318,7 @@ Tally tally_of(std::span<const sweep::RunRow* const> runs, double from_distance,
 
 using Runs = std::vector<const sweep::RunRow*>;
 
-/// Runs that differ in their seed, and in columns that are pooled.
+/// Runs that differ only in their seed and in pooled columns.
 std::map<std::vector<Value>, Runs> members_of_groups(std::span<const sweep::RunRow> rows,
                                                      std::span<const sweep::Column* const> pooled) {
   std::map<std::vector<Value>, Runs> members;

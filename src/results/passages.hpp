@@ -13,8 +13,8 @@ struct Arrival {
   bool is_final;  ///< false: the droplet was still moving
 };
 
-/// The fractions of droplets that passed the rows of posts downstream of the entrance, and the exit. @param
-/// lines  x of lines to use instead of the rows of posts; the x of a row is the x of its centres
+/// The fractions of droplets that passed the rows of posts downstream of the entrance, and the exit.
+/// @param lines  x of lines to use instead of the rows of posts; the x of a row is the x of its centres
 std::vector<Passage> passages_of(const RunParameters& device, std::span<const Arrival> arrivals,
                                  std::span<const double> lines, double confidence);
 

@@ -19,9 +19,9 @@ bool SweepState::is_of_its_task(const sweep::RunRow& row) const {
          sweep::identity(row) == sweep::identity(sweep::describe(plan_->task(row.task)));
 }
 
-/// Turns rows of the table, and then records of the journal in its order, into runs. These go to runs_ if
-/// every row belongs to its task, otherwise to the list that this returns. Rows are moved, because a large
-/// sweep has memory for each row just once.
+/// Turns rows of the table, and then records of the journal in its order, into runs. The runs go to runs_ if
+/// every row belongs to its task, otherwise to the list that the function returns. Rows are moved, because a
+/// large sweep has memory for each row just once.
 SweepState::Known SweepState::recognise(std::vector<sweep::RunRow> rows, std::vector<Entry> records,
                                         const sweep::Settings& settings) {
   Known known;

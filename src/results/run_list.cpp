@@ -58,8 +58,8 @@ void set_all(sweep::Settings& settings, const Texts& texts) {
     if (!texts[i].empty()) settings.set(sweep::keys()[i].name, texts[i]);
 }
 
-/// Texts of a plan's first parameter set, changed to those of another run; nothing if the name of a file is
-/// unknown.
+/// Texts of a plan's first parameter set, with the row's values where they differ; nullopt if the name of a
+/// file is unknown.
 std::optional<Texts> texts_of(const sweep::RunRow& row, const sweep::Plan& plan) {
   const sweep::RunRow first = sweep::describe(plan.group(0));
   Texts texts = plan.texts(0);

@@ -17,7 +17,7 @@
 namespace clog::results {
 namespace {
 
-/// Fixed values that identify records of this sweep; nothing if its config is lost.
+/// Fixed values by which records of this sweep are recognised; nullopt if the sweep's config is lost.
 std::optional<FixedValues> fixed_values(const std::string& path, const store::SweepFile& table) try {
   return FixedValues(stored_plan(path, table), stored_settings(path, table.provenance));
 } catch (const Error&) {

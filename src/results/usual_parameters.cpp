@@ -31,7 +31,8 @@ bool are_circles_missing(const RunParameters& run) {
          !(run.obstacles.own && run.obstacles.own->are_known());
 }
 
-/// A key that applies only to user-supplied circles, about which a row of the default layout says nothing.
+/// Whether the column's key applies only to user-supplied circles, so that a row of the default layout lacks
+/// a value.
 bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
   return scene_of(run).walls_from == WallsFrom::circles && column.parameter &&
          column.parameter->applies_to(run) && !column.parameter->applies_to(RunParameters());

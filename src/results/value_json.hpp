@@ -13,7 +13,7 @@ namespace clog::results {
 inline Value finite_value(double number) { return std::isfinite(number) ? Value(number) : Value(); }
 /// @returns null for an unset value and for a number that is not finite
 nlohmann::ordered_json json_of(const sweep::Value& value);
-/// A step of a survival or incidence curve; its number of ends has this name.
+/// A step of a survival or incidence curve. @param name  key of the number of ends
 template <class Step>
 nlohmann::ordered_json step_json(const Step& step, const char* name, int num_ends) {
   return {{"distance", step.distance},
@@ -24,8 +24,8 @@ nlohmann::ordered_json step_json(const Step& step, const char* name, int num_end
           {"lower", step.interval.lower},
           {"upper", step.interval.upper}};
 }
-/// Text for a printed table: four figures; `-` for an unset value. A foreign file's words may contain control
-/// characters.
+/// Text for a printed table: four figures; `-` for an unset value. Escapes control characters, which the
+/// words of a foreign file may contain.
 std::string short_text(const sweep::Value& value);
 /// Text for CSV: all digits; quoted if a word contains a comma or a quote.
 std::string csv_cell(const sweep::Value& value);

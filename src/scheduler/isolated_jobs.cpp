@@ -184,8 +184,8 @@ class IsolatedJobs::Processes {
 
   const Socket& process() const { return process_; }
 
-  /// Kills the process unless it is dead already. Returns how it ended; nothing if the helper, which reports
-  /// this, is dead or stopped: the rank then stops using it.
+  /// Kills the process unless it is dead already. Returns how the process ended; nullopt if the helper, which
+  /// reports this, is dead or stopped. Then the rank stops using the helper.
   std::optional<Ending> bury() {
     process_.close();
     if (process_id_ > 0)

@@ -34,7 +34,7 @@ class Socket {
   void close() { descriptor_ = Descriptor(); }
   /// A message to a process that has died is lost.
   void send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const;
-  /// Waits for a message, without a timeout unless limit_halts() was called. Returns nothing if the other
+  /// Waits for a message, without a timeout unless limit_halts() was called. Returns nullopt if the other
   /// process has died.
   std::optional<Message> receive() const;
   /// Whether there is something to receive, possibly the end.

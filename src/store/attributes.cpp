@@ -20,7 +20,7 @@ constexpr const char* list_name = "checksums";
 
 std::string line_of(const NamedCheckSum& one) { return fmt::format("{:08x} {}\n", one.second, one.first); }
 
-/// A line of the list; nothing if it is malformed.
+/// A line of the list; nullopt if it is malformed.
 std::optional<NamedCheckSum> check_sum_in(const std::string& line) {
   constexpr std::size_t num_digits = 8;
   if (line.size() <= num_digits + 1) return std::nullopt;

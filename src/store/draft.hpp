@@ -13,8 +13,8 @@
 /// Files that appear complete: written under a temporary name, saved to disk, then renamed.
 namespace clog::store {
 
-/// Removes the drafts of this path that killed processes left behind. @param mark  beginning of every draft
-/// of this kind
+/// Removes the drafts of this path that killed processes left behind.
+/// @param mark  beginning of every draft of this kind
 void remove_stale_drafts(const OutputPath& place, std::string_view mark);
 
 /// An incomplete file beside its target, under an unused name. It is locked until it is closed or unlock() is
@@ -39,7 +39,7 @@ class Draft {
   void unlock();
   /// Saves the draft to disk and renames it to the target, with the mode, owner, group and access list of the
   /// file with this OutputPath::stamp(), which it replaces. Returns the stamp of the published file, which
-  /// somebody may have replaced since; nothing if a different file is there, which stays. @throws Error
+  /// somebody may have replaced since; nullopt if a different file is there, which stays. @throws Error
   std::optional<std::string> publish(const std::string& stamp);
   /// The open file, which the caller owns from now on.
   Descriptor take_descriptor() { return std::move(file_); }

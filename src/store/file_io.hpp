@@ -21,7 +21,7 @@ class FileError : public Error {
   FileError(FileAction action, const std::string& path, std::error_code reason);
 };
 
-/// Why the last system call failed: call this at once.
+/// The reason why the last system call failed. Call this directly after the failure.
 inline std::error_code last_error() { return {errno, std::generic_category()}; }
 
 /// @throws FileError if there is a reason
@@ -29,7 +29,7 @@ inline void check(std::error_code reason, FileAction action, const std::string& 
   if (reason) throw FileError(action, path, reason);
 }
 
-/// Saves a file to disk. Returns why that failed, or nothing.
+/// Saves a file to disk. Returns the reason if that failed.
 std::error_code sync(int descriptor);
 
 /// Locks an open file for this process alone, until it is closed. Returns false if another process holds the

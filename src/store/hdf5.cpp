@@ -39,8 +39,8 @@ namespace {
 
 constexpr std::string_view hdf5_mark = "\x89HDF\r\n\x1a\n";
 
-/// Builds a file of the earliest format in memory, because the library does not always survive a full disk,
-/// and passes its bytes to use().
+/// Builds a file of the earliest format in memory and passes its bytes to use(). The library does not write
+/// the file itself, because it does not always survive a full disk.
 void with_file_image(const std::string& path, const std::function<void(hid_t file)>& fill,
                      const std::function<void(std::span<const std::byte> image)>& use) try {
   prepare_library();

@@ -14,7 +14,7 @@
 
 #include "clog/store/output_path.hpp"
 
-/// Thin ownership of HDF5 identifiers; only src/store includes this.
+/// Classes that own HDF5 identifiers, and functions for files. Only src/store includes this.
 namespace clog::store {
 
 /// Owns one HDF5 identifier and closes it with the function of its kind.
@@ -51,8 +51,9 @@ using Group = Handle<H5Gclose>;
 void prepare_library();
 
 /// Checks the memory for a file that the library reads or writes in memory: the library may crash without it.
-/// @param purpose  as in "read sweep.h5" @param size  of the file [bytes] @throws Error if there is not
-/// enough
+/// @param purpose  as in "read sweep.h5"
+/// @param size  of the file [bytes]
+/// @throws Error if there is not enough
 void require_memory_of_file(const std::string& purpose, std::size_t size, int copies = 2);
 
 /// The library failed in memory.
@@ -62,7 +63,9 @@ class LibraryError : public std::runtime_error {
 };
 
 /// Builds a file of the earliest format in memory, writes it as a draft with a seal at its end and publishes
-/// it: see Draft::publish(). @param fill  may throw LibraryError. @throws Error naming the path
+/// it: see Draft::publish().
+/// @param fill  may throw LibraryError.
+/// @throws Error naming the path
 std::optional<std::string> write_whole(const OutputPath& place, const std::string& stamp,
                                        const std::function<void(hid_t file)>& fill);
 
@@ -75,11 +78,11 @@ File open_image(std::vector<std::byte>& image, const std::string& path);
 Space space_of(std::initializer_list<hsize_t> shape);
 /// Chunks of this many rows, with checksums by which other programs detect damage.
 PropertyList checked_chunks(hsize_t num_rows);
-/// Creates and fills a dataset; attributes can be added to the result. @throws LibraryError @param data
-/// nullptr: nothing yet
+/// Creates and fills a dataset; attributes can be added to the result. @throws LibraryError
+/// @param data  nullptr: nothing yet
 Dataset write_dataset(hid_t parent, const std::string& name, hid_t type, hid_t space, const void* data,
                       hid_t properties = H5P_DEFAULT);
-/// Number of elements of a list; nothing for another shape.
+/// Number of elements of a list; nullopt for a dataset of another shape.
 std::optional<hsize_t> length_of(hid_t dataset);
 /// Whether a dataset can hold this number of elements of this size.
 bool can_hold(hid_t dataset, hsize_t number, std::size_t bytes_each);

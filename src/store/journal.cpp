@@ -65,7 +65,7 @@ bool has_header(std::span<const std::byte> bytes, const std::string& path) {
   return size == sizeof header;
 }
 
-/// Header of the record at this place; nothing if there is no valid header.
+/// Header of the record at this place; nullopt if there is no valid header.
 std::optional<RecordHeader> header_at(std::span<const std::byte> bytes, std::size_t place) {
   RecordHeader header;
   if (bytes.size() - place < sizeof header) return std::nullopt;

@@ -10,8 +10,8 @@
 
 namespace clog::store {
 
-/// Descriptions of laboratories in a file of runs: the group /laboratories has a text for each, by its
-/// checksum, which rows refer to.
+/// Descriptions of laboratories in a file of runs: the group /laboratories has a text for each. The name of a
+/// text is its checksum, to which rows refer.
 /// @throws LibraryError
 void write_laboratories(hid_t file, const std::set<std::string>& check_sums);
 /// Adds the texts; appends a sentence to the damage for each damaged one.

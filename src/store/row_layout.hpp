@@ -17,8 +17,8 @@ class RowLayout {
  public:
   /// The layout that this version writes.
   static RowLayout present();
-  /// The layout of a stored table; nothing unless each member is one of our columns and at least `least` of
-  /// them exist.
+  /// The layout of a stored table; nullopt if a member of the table is not one of our columns, or if the
+  /// table has fewer than `least` columns.
   static std::optional<RowLayout> of(hid_t stored, std::size_t least);
 
   hid_t type() const { return type_; }

@@ -85,8 +85,8 @@ CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& labor
   return sums;
 }
 
-/// Attribute with the number of written columns. It tells a damaged table, which lacks some of them, from a
-/// table of an older program.
+/// Attribute with the number of written columns. It distinguishes a damaged table, which lacks some of these
+/// columns, from a table of an older program.
 constexpr const char* num_columns_name = "num_columns";
 
 /// The entry of the list of checksums for all rows together.

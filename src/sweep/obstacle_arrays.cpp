@@ -104,8 +104,8 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
     const NameLock lock(*name);
     if (lock.state() == NameLock::State::impossible) return build(run);
     if (lock.state() == NameLock::State::held) {
-      // The lock keeps others from making one. Waiting processes do not search, which would take the
-      // builder's time.
+      // The lock keeps other processes from building the array. Waiting processes do not search, which would
+      // take the builder's time.
       if (auto memory = SharedMemory::find(*name)) {
         is_waiting_worthwhile_ = true;
         return array_over(std::move(memory));

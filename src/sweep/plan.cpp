@@ -24,7 +24,8 @@ namespace {
 constexpr std::int64_t largest_sweep = 100'000'000;
 
 /// Returns what a check of one branch of the settings returns. If the check refuses one value of a list like
-/// 0,3, the message asks whether 0.3 was meant. @param where  beginning of the message
+/// 0,3, the message asks whether 0.3 was meant.
+/// @param where  beginning of the message
 template <class Check>
 auto checked(const Settings& branch, const std::string& where, const Check& check) try {
   return check();
@@ -140,7 +141,8 @@ class Plan::Builder {
                       where, joined(angles, ","), largest_angle_error, box));
   }
 
-  /// The number of groups. It excludes the seeds, which only count for the largest number of runs.
+  /// The number of groups. This number excludes the seeds, which are counted only to check the largest number
+  /// of runs.
   std::int64_t size_of_product(const Settings& branch) {
     auto num_places = std::int64_t{1};
     const std::int64_t num_seeds = std::ssize(*last_seeds_);

@@ -37,8 +37,8 @@ constexpr double longest_patience = 3.2e9;
 /// Largest number of obstacles, gaps or arcs of a droplet.
 constexpr std::int64_t most_contacts = 1'000'000;
 
-/// Largest fraction of the weight that corners may hold: x^2/16 of an edge as long as the droplet, on a
-/// needle.
+/// Largest fraction of the weight that corners may hold: x^2/16 for an edge as long as the droplet on an
+/// obstacle as thin as a needle.
 constexpr double most_mesh_hold = 1e6;
 
 bool is_number_below(double value, double bound) { return std::isfinite(value) && std::abs(value) <= bound; }

@@ -65,8 +65,8 @@ std::string untested_angle(const DpParameters& dp) {
 }
 
 /// Very thin obstacles slip through the interface, and the droplet encloses them, at its release or later.
-/// This was observed with obstacles up to as thick as an edge is long; it is more frequent among more
-/// obstacles.
+/// This was observed with obstacles whose diameter was at most the length of an edge. It is more frequent
+/// among more obstacles.
 std::string untested_diameter(const RunParameters& run) {
   constexpr double thinnest = 2;  // in units of the edge length, with a margin
   if (scene_of(run).walls_from == WallsFrom::droplet) return "";  // there are no obstacles
@@ -170,7 +170,8 @@ std::string bare_lanes(std::span<const Obstacle> circles, const ObstacleParamete
       obstacles.own->source(), joined(named), shortest(period));
 }
 
-/// Lengths of a device in other units than its circles make it far too large.
+/// Warns if the circles cover only a small part of the device: its lengths were probably given in other units
+/// than the circles.
 std::string small_part(std::span<const Obstacle> circles, const ObstacleParameters& obstacles) {
   constexpr double small = 0.2;
   const auto [left, right] = std::ranges::minmax(circles, {}, &Obstacle::x);

@@ -25,9 +25,9 @@ void record_interrupted(const DropletRun& run, RunRow& row) {
   record(result, row);
 }
 
-/// Restores a run from the snapshot, if a run with these parameters can have written it. Otherwise (another
-/// version may have written it) the run restarts, with the same result. @param row  of the run, without
-/// results
+/// Restores a run from the snapshot, if a run with these parameters can have written it. Otherwise, for
+/// instance if another version has written the snapshot, the run restarts, with the same result.
+/// @param row  of the run, without results
 DropletRun start(const RunParameters& run, RunRow row, std::span<const std::byte> snapshot,
                  ObstacleArrays& arrays) {
   const std::shared_ptr<const ObstacleArray> obstacles = arrays.get(run);

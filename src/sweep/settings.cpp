@@ -17,7 +17,7 @@ bool is_of_channel(const Key& key) {
   return key.parameter && key.parameter->scope->word == std::string_view("channel");
 }
 
-/// Whether the texts of other keys may follow from this one's. See Settings::resolved().
+/// Whether the texts of other keys may follow from the text of this key. See Settings::resolved().
 bool leads(const Key& key) {
   return key.name == "preset" || key.name == circles_key || key.name == layout_key || key.name == "release" ||
          is_of_channel(key);

@@ -12,7 +12,7 @@ namespace clog::sweep {
 
 /// Memory that processes of one user on one machine share, found by its name. It is a memfd, sealed when
 /// complete and visible in /proc: no file is made, and the memory is freed with the last process that holds
-/// it, however that ends.
+/// it, however this process ends.
 class SharedMemory {
  public:
   /// Memory that a process, perhaps this one, holds under the name; nullptr if there is none, or it is not
@@ -46,8 +46,9 @@ class NameLock {
   explicit NameLock(const std::string& name);
 
   State state() const { return state_; }
-  /// Whether a process of another user holds the lock. Any process can take an address, and others would then
-  /// wait in vain. Slow, because it inspects all processes of this user.
+  /// Whether a process of another user holds the lock. Any process can take the address of a lock, and the
+  /// processes that need the lock would then wait in vain. Slow, because it inspects all processes of this
+  /// user.
   bool is_taken_by_another_user() const;
 
  private:

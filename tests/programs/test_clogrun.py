@@ -49,7 +49,7 @@ class Run(ProgramTest):
         self.assertGreaterEqual(rest.time, rows.time[1])
         self.refuse("clogrun", "replay", "s.h5", 77, "--output", "x.h5", words=["no task 77"])
         self.refuse("clogrun", "replay", "s.h5", "--output", "x.h5", words=["missing sweep file or task"])
-        self.refuse("clogrun", "replay", "s.h5", 1, "line-tension=3", "--output", "x.h5", words=["line-tension contradicts it"])
+        self.refuse("clogrun", "replay", "s.h5", 1, "line-tension=3", "--output", "x.h5", words=["remove line-tension"])
         self.refuse("clogrun", "array", "--to-rest", "--output", "x.h5", words=["--to-rest has no meaning for clogrun array"])
 
     def test_a_droplet_in_a_long_array_does_not_meet_the_same_obstacles_again(self):

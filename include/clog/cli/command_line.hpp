@@ -14,29 +14,30 @@
 
 namespace clog::cli {
 
-/// Command line of one program: its own options, and for programs that run droplets every key of the config
-/// file as an option, `--key=value` or `key=value`. Settings come from the defaults, then the --config file,
-/// then the command line.
+/// Command line of one program. It has the program's own options and, in a program that runs droplets, an
+/// option for every key of the config file: `--key=value` or `key=value`. Settings come from the defaults,
+/// then the --config file, then the command line.
 class CommandLine {
  public:
   enum class SweepKeys { none, accepted };
 
-  /// @param program  its name as called, with the command if there is one: `clogsweep merge`
+  /// @param program  the program's name as it was called, followed by the command if there is one, as in
+  /// `clogsweep merge`
   CommandLine(std::string program, std::string usage, SweepKeys sweep_keys = SweepKeys::none);
 
   /// Declares an option without a value; like all declarations, call it before parse().
   CommandLine& flag(const char* name, const char* help);
-  /// Declares an option with a value. @param otherwise  its default
+  /// Declares an option with a value. @param otherwise  the default value; nullptr: none
   CommandLine& option(const char* name, const char* help, const char* otherwise = nullptr);
-  /// Declares an option that may also be given as a word without dashes; such words belong to these options
-  /// in the order of their declarations.
+  /// Declares an option whose value may also be given as a word without dashes. The first such word is the
+  /// value of the option that was declared first, the second word that of the next one, and so on.
   CommandLine& word(const char* name, const char* help);
   /// Declares an option for all further words without dashes.
   CommandLine& words(const char* name, const char* help);
   /// Declares the commands that the first word may name instead of a file; the message about a misspelt word
   /// suggests them.
   void add_commands(std::vector<std::string> names) { commands_ = std::move(names); }
-  /// Declares the message for surplus words, e.g. "one sweep file is read at a time".
+  /// Declares the remedy in the message about surplus words, e.g. "one sweep file is read at a time".
   void explain_surplus_words(std::string remedy) { surplus_remedy_ = std::move(remedy); }
 
   /// Parses the rest of the command line. @throws Error for anything that is not understood
@@ -56,7 +57,9 @@ class CommandLine {
   double get_share(const std::string& option) const;
   /// @throws Error if the option's value is not a number above zero
   double get_positive(const std::string& option) const;
-  /// All values of a list, as for a key: `0.1,0.2` or `log(0.1,1,5)`; none if the option was not given.
+  /// The positive numbers of an option that takes a list. The list has the forms that the list of a key may
+  /// have: `0.1,0.2` or `log(0.1,1,5)`. Empty if the option was not given. @throws Error if a number is not
+  /// above zero
   std::vector<double> get_positives(const std::string& option) const;
   /// The option's value, or its default. @throws Error if it is not a whole number in the range
   std::int64_t get_whole(const std::string& option, std::int64_t otherwise, std::int64_t least,
@@ -64,7 +67,8 @@ class CommandLine {
   const std::string& program() const { return program_; }
   const sweep::Settings& settings() const { return settings_; }
   sweep::Settings& settings() { return settings_; }
-  /// Values with units, by key. Only --lab can convert them; the settings do not contain them.
+  /// The given texts that contain numbers with units, by key. settings() does not contain these texts,
+  /// because only the laboratory of --lab can convert them.
   const std::map<std::string, std::string>& texts_with_units() const { return texts_with_units_; }
   /// The command as it was given, in one line.
   const std::string& text() const { return text_; }

@@ -20,7 +20,7 @@ struct Command {
   const char* name;
   int (*call)(int argc, const char* const* argv);
 };
-/// Runs the command named by the first word, as run_program() does. Returns nothing if the word names no
+/// Runs the command named by the first word, as run_program() does. Returns nullopt if the word names no
 /// command.
 std::optional<int> run_command(const std::string& program, std::span<const Command> commands, int argc,
                                const char* const* argv);
@@ -30,7 +30,8 @@ std::vector<std::string> names_of(std::span<const Command> commands);
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
 /// Parses the line, and prints the answer to --help or --version. Returns whether there is anything else to
-/// do. @param libraries  names and versions, printed after the program's own
+/// do.
+/// @param libraries  names and versions, printed after the program's own
 bool parse_command(CommandLine& line, int argc, const char* const* argv, const NamedTexts& libraries = {});
 
 /// The origin of a file: program, version, `git describe` of its sources, compiler, config, command line,

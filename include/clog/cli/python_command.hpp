@@ -10,9 +10,11 @@ namespace clog::cli {
 /// missing
 std::filesystem::path find_python_module();
 
-/// Replaces this process by `python3 -m clogsweep`; the exit code is the module's. @param name  the name that
-/// the module prints as its own @param module  from find_python_module() @param arguments  a command of the
-/// module, then its arguments @throws Error if Python cannot be run
+/// Replaces this process by `python3 -m clogsweep`, so the exit code is that of the module.
+/// @param name  the name that the module prints as its own
+/// @param module  from find_python_module()
+/// @param arguments  a command of the module, then its arguments
+/// @throws Error if Python cannot be run
 [[noreturn]] void become_python(const std::string& name, const std::filesystem::path& module,
                                 std::vector<std::string> arguments);
 

@@ -19,21 +19,22 @@ struct ColumnHead {
 };
 /// "x [um]", "x (um)", "x/um" and "x_um" all have the name x and the unit um.
 ColumnHead column_head(const std::string& cell);
-/// Metres in a unit of length that a table may have; nothing for any other word.
+/// Number of metres in one unit of length that a table may use, such as mm; nullopt for any other word.
 std::optional<double> metres_of(const std::string& unit);
 
 /// A line of a table.
 struct TableLine {
   int number;                      ///< from 1
-  std::vector<std::string> cells;  ///< without quotes and blanks around them; empty ones count
-  char separator;                  ///< a blank stands for any number of blanks
+  std::vector<std::string> cells;  ///< without quotes and blanks around them; empty cells are kept
+  char separator;                  ///< between the cells; a blank stands for one or more blanks
 };
 
 /// Reads a table line by line. Supports files of spreadsheets, pandas, R and ImageJ: the first line shows
 /// whether semicolons, tabs, commas or blanks separate the cells, unless `sep=;` precedes it; cells may be
 /// quoted. Text that is not UTF-8 is read as Latin-1. Non-breaking blanks count as blanks. Blank lines and
-/// those that begin with # are ignored. @param each  called with each line; path and line number are added to
-/// an Error that it throws @param comment  called with lines that begin with #
+/// those that begin with # are ignored.
+/// @param each  called with each line; path and line number are added to an Error that it throws
+/// @param comment  called with lines that begin with #
 /// @throws Error as read_text(), or for a quote without an end
 void read_table(const std::string& path, const std::function<void(const TableLine& line)>& each,
                 const std::function<void(const std::string& text)>& comment = {});

@@ -14,9 +14,10 @@ class DecimalCommas {
  public:
   /// The number with a decimal point in place of its comma.
   std::string with_point(std::string number);
-  /// @throws Error  if each comma so far may separate thousands. @param path  of the table
+  /// @throws Error if every comma so far may separate thousands, so that the numbers are ambiguous.
+  /// @param path  of the table
   void check(const std::string& path) const;
-  /// @throws Error that names an ambiguous number. @param where  text before it
+  /// @throws Error that names an ambiguous number. @param where  text before the number in the message
   [[noreturn]] static void refuse(std::string_view where, const std::string& number);
 
  private:

@@ -4,7 +4,7 @@
 
 namespace clog::console {
 
-/// A duration in a suitable unit.
+/// A duration as text in a suitable unit: `90 s`, `5 min 07 s`, `2.5 h`.
 std::string readable_duration(double seconds);
 
 }  // namespace clog::console

@@ -15,7 +15,8 @@ std::string plain(double value, int figures = least_figures);
 struct RoundedInterval {
   std::string value, lower, upper;
 };
-/// The interval with two figures of its narrower side; each number has at least three.
+/// A value and the limits of its interval, all three with the same number of figures. This number is at least
+/// three and gives the narrower side of the interval two figures.
 RoundedInterval with_interval(double value, double lower, double upper);
 
 struct RoundedError {

@@ -6,7 +6,7 @@
 
 namespace clog::console {
 
-/// A signal interrupted a wait; the program ends with exit_incomplete.
+/// Thrown when a signal interrupts a wait; the program then ends with exit_incomplete.
 class Stopped : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -15,7 +15,8 @@ class Stopped : public std::runtime_error {
 /// Signals that stop a program. A closed terminal sends HUP; batch systems warn by USR1, USR2 and XCPU.
 inline constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
 
-/// From now on these signals only set a flag. SIGHUP stays ignored under nohup.
+/// From now on these signals only set the flag that stop_signalled() returns. SIGHUP stays ignored under
+/// nohup.
 void catch_stop_signals();
 bool stop_signalled();
 

@@ -6,7 +6,8 @@
 
 namespace clog::console {
 
-/// Reports progress: one line that is renewed on a terminal, a new line now and then elsewhere.
+/// Reports progress. On a terminal, one line is renewed; in a file or a pipe, a new line appears from time to
+/// time.
 class StatusLine {
  public:
   enum class Screen { terminal, plain, none };

@@ -20,9 +20,9 @@ std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::str
 /// rank. @throws Error if this seems to be the case
 void refuse_to_be_alone(int num_ranks);
 
-/// The setting that lets ranks use every core of their host. @param mpi  name and version, as
-/// Communicator::library_version() gives them. Since Open MPI 5, its launcher PRRTE reads variables of other
-/// names.
+/// The setting that lets ranks use every core of their host.
+/// @param mpi  name and version, as Communicator::library_version() gives them. Since Open MPI 5, its
+/// launcher PRRTE reads variables of other names.
 std::string how_to_unbind(const std::string& mpi);
 
 }  // namespace clog::diagnostics

@@ -5,8 +5,8 @@
 namespace clog::diagnostics {
 
 // Resources of the host that this process may use. Containers and batch systems may grant only a part,
-// through control groups (Linux, Documentation/admin-guide/cgroup-v2.rst): the tightest of the process's own
-// group and all enclosing groups counts. Limits of version 1 are ignored.
+// through control groups (Linux, Documentation/admin-guide/cgroup-v2.rst): the tightest limit of the
+// process's own group and all enclosing groups counts. Limits of version 1 are ignored.
 
 /// Cores that the control groups grant to all of their processes together: the processor time that they may
 /// use per period, divided by the period; 0: no limit.

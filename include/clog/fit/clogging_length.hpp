@@ -5,8 +5,8 @@
 
 namespace clog::fit {
 
-/// Outcome of one run: it went `distance` [sigma] and clogged there, or was still moving when it was last
-/// seen (censored).
+/// Outcome of one run: the droplet went `distance` [sigma] and clogged there, or was still moving when it was
+/// last seen (censored).
 struct Observation {
   double distance;
   bool clogged;
@@ -36,7 +36,7 @@ struct CloggingLength {
   double total_distance = 0;  ///< S, over all runs, clogged or not [sigma]
   double length = 0;          ///< NaN without clogs [sigma]
   Interval interval{};        ///< by chi-squared; without clogs a lower bound and infinity [sigma]
-  Interval profile{};         ///< by profile likelihood; likewise [sigma]
+  Interval profile{};         ///< by profile likelihood; without clogs like `interval` [sigma]
 };
 
 /// Maximum likelihood for censored exponential data: lambda = S/d, S the sum of all distances and d the

@@ -8,8 +8,8 @@
 
 namespace clog::fit {
 
-/// Outcome of one run with several causes: it went `distance` [sigma] and ended there by one of them, or was
-/// still moving when it was last seen (censored).
+/// Outcome of a run that several causes may end: the droplet went `distance` [sigma], and one of the causes
+/// ended the run there, or the droplet was still moving when it was last seen (censored).
 struct CompetingEnd {
   double distance;
   std::optional<int> cause;

@@ -27,16 +27,17 @@ struct LengthRatio {
   bool is_paired = false;   ///< whether `interval` is `paired`, and `ratio` is `paired_ratio`
   int num_pairs = 0;
   int num_unlike = 0;  ///< pairs that are not alike
-  /// Correlation of the two logarithms over the pairs. If it is positive, pairing helps: the error of the
-  /// ratio is `gain` times smaller than that of two independent lengths.
+  /// Correlation of log lambda on both sides over the pairs, by the jackknife. If it is positive, pairing
+  /// helps: the error of the ratio is `gain` times smaller than that of two independent lengths.
   double correlation = 0;  ///< NaN where it is unknown
-  double gain = 0;  ///< ratio of the unpaired to the paired standard error of the same pairs; NaN likewise
+  double gain = 0;  ///< ratio of the unpaired to the paired standard error of the same pairs; NaN if unknown
 };
 
 /// The paired interval is used if pairs certainly help: the correlation is positive (one-sided, 2.5 %), and
 /// at least ten pairs are unlike. With fewer, the coverage of the interval is too low
-/// (docs/notes/2026-11-24-paired-intervals.md). @param here, there  all runs, those of pairs included @throws
-/// std::invalid_argument unless 0 < confidence < 1
+/// (docs/notes/2026-11-24-paired-intervals.md).
+/// @param here, there  all runs, those of pairs included
+/// @throws std::invalid_argument unless 0 < confidence < 1
 LengthRatio fit_length_ratio(std::span<const Observation> here, std::span<const Observation> there,
                              std::span<const Pair> pairs, double confidence = 0.95);
 

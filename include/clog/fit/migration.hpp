@@ -16,12 +16,13 @@ struct Migration {
   double standard_error = 0;  ///< from the scatter between runs; NaN for fewer than two
 };
 
-/// Runs that travelled less do not show the direction of migration; they have no mean speed, either [sigma].
+/// Distance that a run must travel to show the direction of migration [sigma]. Runs that travelled less have
+/// no mean speed, either.
 inline constexpr double shortest_migration = 0.5;
 
 /// Ratio of the sums over runs that went at least shortest_migration, (sum of across)/(sum of along), so that
-/// short runs, whose own ratios scatter, have little weight. Its error is the linearised one of a ratio
-/// estimate (Cochran, Sampling Techniques, ch. 6).
+/// short runs, whose own ratios scatter, have little weight. The standard error is the linearised error of a
+/// ratio estimate (Cochran, Sampling Techniques, ch. 6).
 Migration fit_migration(std::span<const Displacement> runs);
 
 }  // namespace clog::fit

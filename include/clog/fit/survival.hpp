@@ -8,7 +8,7 @@
 namespace clog::fit {
 
 /// Interval of a probability P between 0 and 1: P^exp(-+ z s/|log P|), where s^2 is the variance of log P, so
-/// that log(-log P) has the error s/|log P|. NaN otherwise.
+/// that log(-log P) has the error s/|log P|. NaN for any other P.
 Interval log_log_interval(double probability, double log_variance, double confidence);
 
 /// A step of the estimated P(r), the probability to travel farther than r without a clog.
@@ -17,7 +17,7 @@ struct SurvivalStep {
   int num_at_risk;        ///< runs that reached this distance
   int num_clogs;          ///< of these, clogs at this distance
   double probability;     ///< P just beyond this distance
-  double standard_error;  ///< Greenwood's
+  double standard_error;  ///< of `probability`, by Greenwood's formula
   Interval interval;      ///< of P; NaN where P is 0
 };
 /// Kaplan and Meier's product-limit estimate (J. Am. Stat. Assoc. 53, 457 (1958)): it assumes no law, and

@@ -4,7 +4,7 @@
 
 namespace clog::laboratory {
 
-/// A number with its unit, e.g. "3.5 mm" or "7mm/s", in SI units.
+/// Converts a number with its unit, e.g. "3.5 mm" or "7mm/s", to SI units.
 /// @param units  what is measured: "length", "number per area", "time", "speed", "tension", "density" or
 /// "angle" (in radians)
 /// @throws Error naming the units that are understood

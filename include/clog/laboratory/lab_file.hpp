@@ -9,9 +9,10 @@
 
 namespace clog::laboratory {
 
-/// A terminal speed that was measured with another droplet or at another tilt. It is proportional to
-/// sin(tilt) and to diameter^exponent: the drag of the model is linear, and weight and drag of a flat droplet
-/// between two plates are both proportional to its area, so the exponent is 0 (Taylor and Saffman 1959).
+/// A terminal speed that was measured with another droplet or at another tilt. The speed is proportional to
+/// sin(tilt), because the drag of the model is linear, and to diameter^exponent. The exponent is 0 by
+/// default, because weight and drag of a flat droplet between two plates are both proportional to the
+/// droplet's area (Taylor and Saffman 1959).
 struct MeasuredSpeed {
   double speed = 0, diameter = 0, tilt = 0;  ///< [m/s], [m], [rad]
   double exponent = 0;
@@ -19,13 +20,13 @@ struct MeasuredSpeed {
 
 /// An experiment as a lab.cfg describes it.
 struct Laboratory {
-  Experiment experiment;  ///< terminal_speed 0, interfacial_tension NaN where they are not known
+  Experiment experiment;  ///< if not known, terminal_speed is 0 and interfacial_tension NaN
   double thickness = std::numeric_limits<double>::quiet_NaN();  ///< of the cell [m]
-  /// Gamma of the model divided by Gamma_exp. The ratio of the three droplets of Cheng et al. "likely stems
-  /// from the fact that we compare values of the dimensionless line tension in 2D to values of the
-  /// dimensionless surface tension in 3D".
+  /// Gamma of the model divided by Gamma_exp. The default fits the three droplets of Cheng et al., who say
+  /// that the difference between both Gammas "likely stems from the fact that we compare values of the
+  /// dimensionless line tension in 2D to values of the dimensionless surface tension in 3D".
   double tension_ratio = 0.3;
-  std::optional<MeasuredSpeed> measured = {};  ///< from which the terminal speed follows, if it was scaled
+  std::optional<MeasuredSpeed> measured = {};  ///< the speed that was scaled to the terminal speed, if any
   std::string text;                            ///< `key = value; key = value`
 };
 
@@ -33,7 +34,8 @@ struct Laboratory {
 /// laboratory for each combination of the diameters and the angles that the file lists; angles vary fastest.
 /// @throws Error naming file and key
 std::vector<Laboratory> read_laboratories(const std::string& path);
-/// Reads a file of one laboratory. @throws Error likewise, and if there are several
+/// Reads a file of one laboratory. @throws Error as read_laboratories(), and if there are several
+/// laboratories
 Laboratory read_laboratory(const std::string& path);
 /// How the terminal speed was scaled, in one line; empty if it was measured.
 std::string law_of_speed(const Laboratory& lab);

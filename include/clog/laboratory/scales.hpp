@@ -8,8 +8,8 @@
 
 namespace clog::laboratory {
 
-/// The model's units in a laboratory, and its numbers for a droplet there. NaN if the description of the
-/// laboratory is incomplete.
+/// The model's units in a laboratory, and the model's numbers for the droplet of the laboratory. Numbers are
+/// NaN if the description of the laboratory is incomplete.
 struct Scales {
   double length = 0;   ///< sigma [m]
   double gravity = 0;  ///< g_exp [m/s^2]
@@ -25,7 +25,7 @@ struct Scales {
   double line_tension_of_cell = 0;     ///< interfacial tension times thickness [N]
 };
 Scales scales_of(const Laboratory& lab);
-/// Texts of keys, by their names.
+/// The text of each key, by the key's name.
 using Texts = std::map<std::string, std::string>;
 /// The laboratory's description, and two properties of its droplet unless the user has set them: the terminal
 /// speed, and the line tension or, for soft disks, the wall stiffness.
@@ -43,7 +43,8 @@ double line_tension_of_sag(double sag);
 /// E_w = pi/(16 sag), of the soft disk with this sag.
 double wall_stiffness_of_sag(double sag);
 
-/// Gamma of the laboratory's droplet between upright plates, its smallest value; NaN without its tension.
+/// Gamma of the laboratory's droplet between upright plates, where gravity along the plates is strongest and
+/// Gamma smallest; NaN if the interfacial tension is unknown.
 double line_tension_upright(const Laboratory& lab);
 /// Tilt at which a droplet of the laboratory has this Gamma [rad]; NaN if none does.
 double tilt_of(double line_tension, const Laboratory& lab);

@@ -12,8 +12,8 @@ class Activity {
   /// @param num_ranks  that compute
   explicit Activity(int num_ranks) : num_ranks_(num_ranks) {}
 
-  /// Call these when a rank begins or ends a task. @param now  time since the session began, never less than
-  /// before [s]
+  /// Call these when a rank begins or ends a task.
+  /// @param now  time since the session began, never less than before [s]
   void started(double now);
   void ended(double now);
 

@@ -25,12 +25,12 @@ struct Comparison {
   std::vector<Value> common;  ///< see Comparisons::columns
   fit::CloggingLength length_here{}, length_there{};
   fit::LengthRatio ratio{};  ///< of the length here to the length there
-  int num_both_clogged = 0;  ///< pairs
-  int num_same_place = 0;    ///< of these, pairs that clogged at the same place
+  int num_both_clogged = 0;  ///< pairs of which both clogged
+  int num_same_place = 0;    ///< pairs of which both clogged, at the same place
 };
 struct Comparisons {
   std::vector<std::string>
-      columns;  ///< that a side lists and that have a common value; they name a comparison
+      columns;  ///< listed columns with a value that both sides have; their values name a comparison
   std::vector<std::string> differing;  ///< columns whose values here and there differ
   std::vector<Comparison> all;
   std::string unit = "sigma";      ///< of lengths: "sigma" or "mm"
@@ -51,7 +51,7 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
 /// Compares each side with the first one: parameter sets with the same values of Comparisons::columns. Runs
 /// of the same seed are pairs.
 /// @param sides  two or more
-/// @param within  see Comparisons; nothing: half an obstacle spacing
+/// @param within  see Comparisons; nullopt: half an obstacle spacing
 /// @throws std::invalid_argument if there are fewer than two sides
 /// @throws Error if they have no value in common, or if it is not clear which parameter sets belong together
 Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within);

@@ -8,8 +8,8 @@ namespace clog::results {
 /// The cost of one run so far. Work is counted in steps times vertices.
 struct RunCost {
   std::int64_t parameter_set = 0;
-  double begin_seconds = 0;  ///< sampling of its obstacles, and its release
-  double seconds = 0;        ///< since then
+  double begin_seconds = 0;  ///< time for sampling its obstacles and releasing the droplet
+  double seconds = 0;        ///< time since the release
   double work = 0;           ///< done in these seconds
   double longest_work = 0;   ///< work of the run if it lasts to max-time
   bool is_over = false;
@@ -41,7 +41,7 @@ struct SweepCost {
 /// no run of a parameter set has ended, all may last to max-time: this is the upper limit, and for the
 /// estimate every order of magnitude of the remaining time is equally likely. The interval combines the error
 /// of each law with that of the sample.
-/// @param sample  of at least one run that has done some work, in some time
+/// @param sample  not empty; at least one run has done work and taken time
 /// @param all_work  of all runs of the sweep, if every run lasts to max-time
 SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int64_t num_runs);
 
@@ -50,7 +50,7 @@ SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int6
 /// unfinished runs from its own runs if one of them has ended, otherwise from all runs. For a set without a
 /// started run, the estimate is the same fraction of its bound as for the other sets, and the error is as
 /// large as the estimate.
-/// @param begun  at least one that has done some work, in some time
+/// @param begun  not empty; at least one run has done work and taken time
 SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting);
 
 }  // namespace clog::results

@@ -27,18 +27,20 @@ struct DistanceTable {
 
 /// Whether this is the name of a text table, not of a sweep's file.
 bool is_distance_table(const std::string& path);
-/// Reads a table with the columns `distance [UNIT]` and `clogged` (1 or 0, yes or no, true or false); all
-/// others separate groups.
+/// Reads a table with the columns `distance [UNIT]` and `clogged` (1 or 0, yes or no, true or false). Rows
+/// with the same values in all other columns form a group.
 /// @throws Error that names file and line
 DistanceTable read_distances(const std::string& path);
-/// The model's units in each laboratory, by its checksum.
+/// The model's units in each laboratory. The key of the map is the checksum of the laboratory's description
+/// (the text of `lab.cfg`).
 using Scales = std::map<std::string, LaboratoryScale>;
-/// The runs of a sweep; the parameters that vary separate groups. @throws Error as require_lengths()
+/// The runs of a sweep. Runs with the same values of all parameters that vary form a group. @throws Error as
+/// require_lengths()
 /// @param scales  of several laboratories: then distances are in mm, and the droplet's diameter [mm] and the
 /// tilt [degrees] separate groups, too
 DistanceTable distances_of(const Side& side, const Scales& scales = {});
 
-/// Lengths, intervals, doubts and survival of each group, estimated as for a sweep.
+/// Prints lengths, intervals, doubts and survival of each group, estimated as for a sweep.
 /// @param sigma_mm  the droplet's diameter in mm, if it is known: then lengths are given in both units
 std::string lengths_text(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);

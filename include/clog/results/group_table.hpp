@@ -11,8 +11,8 @@ namespace clog::results {
 /// Which of the parameters that all groups share are named above their table.
 enum class SharedParameters { unusual, all };
 
-/// A printed table: one line per group, with the parameters in which groups differ.
-/// If groups have a laboratory, here and below, lengths, speeds and times are also in its units.
+/// A printed table: one line per group, with the parameters in which groups differ. If groups have a
+/// laboratory, this function and the two below also print lengths, speeds and times in laboratory units.
 std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared);
 /// All fields of every group.
 std::string to_csv(const std::vector<Group>& groups);

@@ -110,14 +110,14 @@ struct Passage {
 struct Group {
   sweep::RunRow first_row;                                 ///< parameters of all runs, except the seed
   double dwell = std::numeric_limits<double>::infinity();  ///< see group_runs() [t0]
-  double dwells_known_from = 0;  ///< in all its runs; NaN if some runs have no such time [t0]
+  double dwells_known_from = 0;  ///< Dwells::known_from that holds for all runs; NaN: for no time [t0]
   fit::CloggingLength clogging;
   double least_squares_length = 0;  ///< by the published, biased method; NaN for fewer than two clogs
   fit::WeibullTest weibull;
   /// Clogging length of the runs that met an obstacle, each counted from its first obstacle on.
   fit::CloggingLength clogging_met;
   double contacts_per_length =
-      std::numeric_limits<double>::quiet_NaN();  ///< of runs that record them [1/sigma]
+      std::numeric_limits<double>::quiet_NaN();  ///< over all runs that record contacts [1/sigma]
   std::vector<fit::SurvivalStep> survival;
   std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
   /// One entry for each Cause, in the order of the enum. Runs that this cause ended are events, all others
@@ -161,26 +161,29 @@ struct Group {
 /// Whether there are user-supplied circles with an entrance or an exit.
 bool is_device(const RunParameters& run);
 
-/// The outcome of an intact run from its release on; in a device from the first obstacle that its droplet
-/// met, and nothing if it met none.
+/// The outcome of an intact run. Its distance counts from the release; in a device it counts from the first
+/// obstacle that the droplet met, and the outcome is nullopt if the droplet met none.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
 /// Groups rows by everything but the seed, in the order of their parameters. Runs count as in
-/// observation_of(). @param from_distance  distances are measured from here [sigma]: runs that ended earlier
-/// are excluded, the others count with the distance beyond it (left truncation) @param dwell  a droplet that
-/// rested for longer than this counts as clogged where it first did so [t0]. A droplet that has neither
-/// rested so long nor clogged is censored where its last dwell began, because the full length of that dwell
-/// is unknown. A `dwell` of max-time or more has no effect.
+/// observation_of().
+/// @param from_distance  distances are measured from here [sigma]: runs that ended earlier are excluded, the
+/// others count with the distance beyond it (left truncation)
+/// @param dwell  a droplet that rested for longer than this counts as clogged where it first did so [t0]. A
+/// droplet that has neither rested so long nor clogged is censored where its last dwell began, because the
+/// full length of that dwell is unknown. A `dwell` of max-time or more has no effect.
 /// @param pooled  columns of max-time and boxes that do not separate groups. Of the runs of one seed in the
-/// same array the one with the largest max-time counts; with other boxes the array is another one @param
-/// lines x of the passages in devices; by default those of the rows of posts [sigma] @throws Error if the
-/// rows do not record which droplets rested for so long
+/// same array the one with the largest max-time counts; with different `boxes` the same seed gives different
+/// arrays, so both runs count.
+/// @param lines  x of the passages in devices; by default those of the rows of posts [sigma]
+/// @throws Error if the rows do not record which droplets rested for so long
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
                               double from_distance = 0,
                               double dwell = std::numeric_limits<double>::infinity(),
                               std::span<const sweep::Column* const> pooled = {},
                               std::span<const double> lines = {});
-/// The columns of keys such as `max-time,boxes`. @throws Error for any other key
+/// The columns of a list of keys, which may be max-time, boxes or both: `max-time,boxes`. @throws Error for
+/// any other key
 std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
 /// Lateral displacement divided by that of a droplet that follows the rows: 0 in the zigzag mode, 1 in the
 /// displacement (bump) mode of deterministic lateral displacement. NaN for rows along the flow.

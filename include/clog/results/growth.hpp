@@ -16,13 +16,14 @@ namespace clog::results {
 /// other.
 std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here);
 
-/// The plan's values of fixed keys, which identify rows of other sweeps. Automatic values are not compared:
-/// they may follow from line tensions and gaps that only an earlier plan of the sweep contained.
+/// The plan's values of fixed keys, by which rows of other sweeps are recognised. Automatic values are not
+/// compared: they may follow from line tensions and gaps that only an earlier plan of the sweep contained.
 class FixedValues {
  public:
   FixedValues(const sweep::Plan& plan, sweep::Settings settings);
 
-  /// Names the keys whose value in this row occurs in no task, or the model version, if it differs.
+  /// Names the fixed keys whose value in this row occurs in no task of the plan, or the model version, if the
+  /// row has another one.
   std::string differing_keys(const sweep::RunRow& row) const;
 
  private:

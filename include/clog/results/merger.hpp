@@ -35,9 +35,10 @@ store::SweepFile read_together(const std::vector<std::string>& paths);
 /// settings follow at the end.
 void number_tasks(const sweep::Settings& settings, store::SweepFile& table);
 
-/// Provenance of a file that is made from rows of other files. @param maker  provenance of the program that
-/// makes the file, from cli::origin() @param config  of the new file @param parts  a line for each part, see
-/// part_line()
+/// Provenance of a file that is made from rows of other files.
+/// @param maker  provenance of the program that makes the file, from cli::origin()
+/// @param config  of the new file
+/// @param parts  a line for each part, see part_line()
 store::Provenance joint_provenance(const store::Provenance& maker, const std::string& config,
                                    const std::vector<const store::SweepFile*>& files,
                                    const std::string& parts);

@@ -15,8 +15,7 @@
 
 namespace clog::results {
 
-/// Reports the progress of a sweep: one line that is renewed on a terminal, a new line now and then
-/// elsewhere.
+/// Reports the progress of a sweep on a StatusLine.
 class Progress {
  public:
   using Screen = console::StatusLine::Screen;

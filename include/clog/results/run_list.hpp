@@ -16,11 +16,11 @@ namespace clog::results {
 /// Runs of one or several sweeps, and the settings of a sweep with exactly these runs.
 class RunList {
  public:
-  /// All runs of a plan. @throws Error if another plan has other circles under the same name
+  /// Adds all runs of a plan. @throws Error if another plan has other circles under the same name
   void add(const sweep::Plan& plan);
-  /// Adds a run that may be outside the plan, for instance one of an earlier command of the sweep. It gets
-  /// the texts of the plan's first parameter set, with the row's own numbers in place of theirs. Returns
-  /// whether these texts describe this run.
+  /// Adds a run that may be outside the plan, for instance one of an earlier command of the sweep. The run
+  /// gets the texts of the plan's first parameter set, with the row's own values where they differ. Returns
+  /// whether the resulting texts describe this run.
   bool add(const sweep::Plan& plan, const sweep::RunRow& row);
 
   /// Adds the seed of a run whose parameter set is known. Returns whether it is.
@@ -29,7 +29,8 @@ class RunList {
   void fill_seeds(std::size_t number);
 
   bool empty() const { return sets_.empty(); }
-  /// Returns lists, if the runs are their product, otherwise points; values increase.
+  /// The settings have lists if the runs are the product of these lists, otherwise points. Values and points
+  /// are in increasing order.
   sweep::Settings settings() const;
 
  private:

@@ -12,11 +12,12 @@ namespace clog::results {
 struct Salvage {
   store::SweepFile table;                        ///< with the results that only the journal had
   std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs
-  std::int64_t num_from_journal = 0;             ///< rows of the table
+  std::int64_t num_from_journal = 0;             ///< rows of `table` whose result comes from the journal
   std::vector<std::string> damage;               ///< a sentence each
 };
 
-/// Changes no file. @throws Error if the table is missing, not ours, or completely unreadable
+/// Reads everything that is undamaged. Changes no file. @throws Error if the table is missing, not ours, or
+/// completely unreadable
 Salvage salvage(const std::string& path);
 /// Removes rows that are physically impossible, or repeat a run of an earlier row. Returns a line for each.
 std::vector<std::string> drop_faulty(std::vector<sweep::RunRow>& rows);

@@ -16,14 +16,14 @@ namespace clog::results {
 /// clogs is inverse sampling; the relative width of the interval depends only on this number).
 class SeedRule {
  public:
-  /// @param precision  required half-width of the 95 % interval divided by lambda @param first_seeds,
-  /// most_seeds per parameter set, at first and at most
+  /// @param precision  required half-width of the 95 % interval divided by lambda
+  /// @param first_seeds, most_seeds  per parameter set, at first and at most
   SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds, std::int64_t most_seeds);
 
   /// Tasks of the next round, once all tasks so far are over; empty at the end. Task s num_groups + g is the
   /// s-th seed of parameter set g. A set that is not precise enough gets as many more seeds as its fraction
-  /// of clogs so far requires, but at most as many as it already has. @param has_clogged  whether a finished
-  /// task has clogged
+  /// of clogs so far requires, but at most as many as it already has.
+  /// @param has_clogged  whether a finished task has clogged
   std::vector<std::int64_t> next_round(const std::function<bool(std::int64_t task)>& has_clogged);
 
   std::int64_t num_groups() const { return static_cast<std::int64_t>(num_seeds_.size()); }

@@ -37,8 +37,9 @@ class Condition {
   bool compare(const T& value, const std::vector<T>& others) const;
 };
 
-/// The rows of a file that satisfy all conditions, as a sweep of exactly these runs. @param maker  the
-/// program that makes the file, from cli::origin() @throws Error if no row does, or a word is in no row
+/// The rows of a file that satisfy all conditions, as a sweep of exactly these runs.
+/// @param maker  the program that makes the file, from cli::origin()
+/// @throws Error if no row does, or a word is in no row
 store::SweepFile select(const std::string& path, const std::vector<std::string>& conditions,
                         const store::Provenance& maker);
 

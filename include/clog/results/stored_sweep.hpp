@@ -23,7 +23,7 @@ void set_attribute(store::Provenance& provenance, const std::string& name, const
 /// stored_plan()
 sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance);
 sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file);
-/// Columns of the keys with lists in its config; none if it cannot be read.
+/// Columns of the keys that have lists in the sweep's config; empty if the config cannot be read.
 std::vector<std::string> listed_columns(const store::Provenance& provenance);
 /// Number of runs requested so far: with --until-precision those of the rounds, otherwise all of the plan.
 /// @throws Error, which names the file, if the attribute cannot be parsed
@@ -40,7 +40,7 @@ struct RunCount {
 RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);
 
 /// The row of a task to be replayed. Switches this process to the row's instruction set. @throws Error if
-/// there is none, it is not over, or this program would give another result
+/// there is no such row, if its task is not over, or if this program would give another result
 sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& task);
 
 }  // namespace clog::results

@@ -26,10 +26,12 @@ namespace clog::results {
 /// (sweep::identity), not by its task number.
 class SweepState {
  public:
-  /// Reads the files, and checks that they belong to this sweep. @param num_wanted  number of tasks, from the
-  /// start of the plan, that are requested at first (rounds may request more) @param attempts  number of
-  /// attempts for a failing run, over all sessions @throws Error if the file is not a sweep's, has another
-  /// model version or other settings, or another sweep is writing to it
+  /// Reads the files, and checks that they belong to this sweep.
+  /// @param num_wanted  number of tasks, from the start of the plan, that are requested at first (rounds may
+  /// request more)
+  /// @param attempts  number of attempts for a failing run, over all sessions
+  /// @throws Error if the file is not a sweep's, has another model version or other settings, or another
+  /// sweep is writing to it
   SweepState(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
              store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts);
 
@@ -41,7 +43,7 @@ class SweepState {
 
   /// Tasks that are requested and not over.
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
-  /// How many of these resume from a snapshot.
+  /// How many of tasks_left() resume from a snapshot.
   std::int64_t num_resumed() const;
   /// Runs in the file that are outside this plan; the file keeps them.
   std::int64_t num_beyond() const { return static_cast<std::int64_t>(other_runs_.size()); }

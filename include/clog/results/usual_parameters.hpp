@@ -6,8 +6,9 @@
 
 namespace clog::results {
 
-/// The default parameter_values() of a run with this model and preset; for a parameter that has its automatic
-/// value in the row, this value. Empty if the row's parameters are impossible.
+/// The default parameter_values() of a run with this row's model and preset. For a parameter that may be
+/// automatic, this is the row's value if the row has the automatic value, otherwise unset. Empty if the row's
+/// parameters are impossible.
 std::vector<Value> usual_parameters(const sweep::RunRow& row);
 
 /// Whether this value is what `auto` gives for the row's other parameters, or what its preset sets.

@@ -31,7 +31,8 @@ class Communicator {
   /// Collective: every rank returns rank 0's text or number.
   std::string broadcast(std::string text) const;
   int broadcast(int number) const;
-  /// Collective: rank 0 returns every rank's text, in the order of ranks; the others return nothing.
+  /// Collective: rank 0 returns every rank's text, in the order of ranks; the other ranks return an empty
+  /// list.
   std::vector<std::string> gather(const std::string& text) const;
   /// Collective: returns when all ranks have called it, sleeping meanwhile (MPI's own barrier spins).
   void wait_for_all() const;

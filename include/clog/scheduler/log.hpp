@@ -29,7 +29,7 @@ class Log {
   Log(results::Progress& progress, Level level) : progress_(progress), level_(level) {}
 
   void started(const sweep::RunRow& row, From from);
-  /// Called for a task that has ended, failed or not, or was interrupted.
+  /// Call this when a task has ended, failed or not, or was interrupted.
   void ended(const sweep::RunRow& row);
   void failed(const sweep::RunRow& row, Then then);
   void failure_withdrawn(const sweep::RunRow& row);

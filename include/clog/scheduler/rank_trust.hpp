@@ -8,7 +8,7 @@
 namespace clog::scheduler {
 
 /// Decides whether a failed task or its rank (a broken node) is at fault. A task's result depends on no rank,
-/// so the test is to try it elsewhere:
+/// so the test is to try the task on other ranks:
 ///
 /// - A failure counts against its rank until the rank succeeds with another task, or until the task also
 ///   fails on a trusted rank: then the task is at fault. A rank is trusted if it has succeeded and is not on
@@ -22,7 +22,7 @@ class RankTrust {
  public:
   explicit RankTrust(const std::vector<int>& ranks);
 
-  /// Returns the ranks that this sets aside.
+  /// Records that a task succeeded, or failed. Returns the ranks that are set aside as a result.
   std::vector<int> succeeded(std::int64_t task, int rank);
   std::vector<int> failed(std::int64_t task, int rank);
   /// Releases all ranks on hold that are still in service, when no remaining rank could decide whether rank

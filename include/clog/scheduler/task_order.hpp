@@ -28,8 +28,8 @@ class TaskOrder {
   void add(const std::vector<std::int64_t>& tasks);
 
   bool empty() const { return num_left_ == 0; }
-  /// Hands out a task; there must be one. The cost is proportional to the number of running groups. @param
-  /// now  time [s], from any moment on, the same in all calls
+  /// Hands out a task; there must be one. The cost is proportional to the number of running groups.
+  /// @param now  time [s], from any moment on, the same in all calls
   std::int64_t take(double now);
   void ended(std::int64_t task, double now);
   /// Records that a task that had ended has started again.

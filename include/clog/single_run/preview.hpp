@@ -15,7 +15,7 @@ struct MostCost {
 
   MostCost& operator+=(const MostCost& other);
 };
-/// The config, and the cost as comments, on the standard output. Returns the exit code.
+/// Prints the config, and the cost as comments, on the standard output. Returns the exit code.
 int print_preview(const std::string& config, const MostCost& cost);
 
 }  // namespace clog::single_run

@@ -33,8 +33,9 @@ class RecordedRun {
   const DropletRun& run() const { return run_; }
   /// The run's result; its status is `interrupted` if a signal ended it.
   RunResult result() const;
-  /// Samples, polygons, the obstacles near them, and the row's columns of results. @param row  the columns of
-  /// parameters, see sweep::describe() @param origin  of the trajectory
+  /// Samples, polygons, the obstacles near them, and the row's columns of results.
+  /// @param row  the columns of parameters, see sweep::describe()
+  /// @param origin  of the trajectory
   store::Trajectory trajectory(sweep::RunRow row, store::Provenance origin) const;
   /// Prints two lines about the run's end. Returns the exit code.
   int report() const;

@@ -18,7 +18,7 @@ namespace clog::store {
 
 class Draft;
 
-/// Path of the journal of the table at this path: beside the table (for a link, beside its target).
+/// Path of a table's journal, which is beside the table (for a link, beside the link's target).
 std::string journal_path(const std::string& table);
 OutputPath journal_place(const OutputPath& table);
 
@@ -39,15 +39,16 @@ class Journal {
     std::uint64_t num_bytes = 0;      ///< excluding a torn end
   };
 
-  /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, another kind of
-  /// file, or cannot be written. @param table  gives a new file its mode, owner, group and access list
+  /// Opens or makes the file. @throws Error if the file is open elsewhere, has another version, is another
+  /// kind of file, or cannot be written.
+  /// @param table  gives a new file its mode, owner, group and access list
   explicit Journal(OutputPath place, const OutputPath* table = nullptr);
   Journal(Journal&&) = delete;
   ~Journal();
 
   /// Whether a sweep has the journal open.
   static bool is_open(const std::string& path);
-  /// Reads the records without changing the file; nothing if there is no file. @throws Error if it cannot be
+  /// Reads the records without changing the file; nullopt if there is no file. @throws Error if it cannot be
   /// read
   static std::optional<Contents> look(const std::string& path);
 
@@ -75,12 +76,12 @@ class Journal {
   /// Replaces the file by one with only these entries.
   void rewrite(std::span<const Entry* const> entries);
   /// Prepares a file with these entries and the records behind the first `begin` bytes; replace() puts it in
-  /// place. Another thread may call this, as flush().
+  /// place. Another thread may call this, as it may call flush().
   void prepare(std::span<const Entry* const> entries, std::uint64_t begin);
   bool is_prepared() const { return next_ != nullptr; }
   void replace();
-  /// Removes the file, unless it is no longer the one at the path; nothing may be added afterwards.
-  /// Returns why that failed, or nothing.
+  /// Removes the file, unless it is no longer the one at the path; nothing may be added afterwards. Returns
+  /// the reason if that failed.
   std::error_code remove();
 
  private:

@@ -12,8 +12,8 @@
 namespace clog::store {
 
 /// Tables, trajectories and journals are regular files: opening a pipe would wait, and only regular files can
-/// be locked, read at any place and replaced as a whole. Links are followed; a path to nothing is accepted.
-/// Returns the path.
+/// be locked, read at any place and replaced as a whole. Links are followed. The path of a file that does not
+/// exist yet is accepted. Returns the path.
 /// @throws Error if something else is there
 std::string require_regular(std::string path);
 
@@ -37,15 +37,15 @@ class OutputPath {
   /// Creates a file, to read and write; the descriptor is not open if something exists already. @throws Error
   Descriptor create(mode_t mode) const;
   bool exists() const { return status().has_value(); }
-  /// Whether this open file is still the one here. Somebody may have replaced or removed it meanwhile. @param
-  /// failure if given, why this is unknown
+  /// Whether this open file is still the one here. Somebody may have replaced or removed it meanwhile.
+  /// @param failure  if given, why this is unknown
   bool holds(int descriptor, std::error_code* failure = nullptr) const;
-  /// Removes the file, if there is one. Returns why that failed, or nothing.
+  /// Removes the file, if there is one. Returns the reason if that failed.
   std::error_code remove() const;
-  /// Renames the file at `other`, in the same folder, to this name. It replaces the file with this stamp(),
-  /// or no file if that was removed or the stamp is empty. Returns why that failed, or nothing: `file_exists`
-  /// if a different file is here; both then stay. If the file system can exchange two names at once, a file
-  /// that appears here at the last moment is kept, too.
+  /// Renames the file at `other`, in the same folder, to this name. There it replaces the file with this
+  /// stamp(); if that file was removed, or if the stamp is empty, it replaces no file. Returns the reason if
+  /// that failed: `file_exists` if a different file has this name; then both files stay. If the file system
+  /// can exchange two names at once, a file that appears here at the last moment is kept, too.
   std::error_code replace(const std::string& stamp, const OutputPath& other) const;
   /// Synchronises the folder to disk, so that renames survive a power cut.
   void sync_folder() const;

@@ -28,7 +28,8 @@ void refuse_existing(const std::string& path);
 /// Call this before hours of work. @throws Error if the path exists or no file can be made there
 void refuse_unwritable(const std::string& path);
 
-/// User-supplied circles, and their file; its name is empty if the sweep's last command does not name it.
+/// User-supplied circles, and the name of their file; the name is empty if the sweep's last command does not
+/// give it.
 struct CircleFile {
   std::string name;
   OwnCircles circles;
@@ -60,7 +61,7 @@ struct Rows {
 
 /// Writes a sweep's file in place of the file with this OutputPath::stamp(). At every moment the path names a
 /// complete table, the old or the new, so readers may read it at any time. The new table is on the disk when
-/// this returns. Returns the stamp of the written file, even if somebody has replaced the file since; nothing
+/// this returns. Returns the stamp of the written file, even if somebody has replaced the file since; nullopt
 /// if a different file is there, which stays. @throws Error, and the old file stays
 std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp, const Rows& rows,
                                          const Provenance& provenance,

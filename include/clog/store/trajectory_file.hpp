@@ -27,7 +27,7 @@ struct Trajectory {
   std::vector<TrajectoryColumn> columns;  ///< all of the same size
   std::vector<PolygonFrame> polygons;     ///< may be empty; all of the same size
   std::vector<Obstacle> obstacles;        ///< near the path, in the polygons' coordinates; may be empty
-  std::vector<Wedge> wedges;              ///< the same for wedges
+  std::vector<Wedge> wedges;              ///< near the path, in the same coordinates; may be empty
   sweep::RunRow row;                      ///< what a sweep would have stored for this run
   Provenance provenance;
 };

@@ -48,7 +48,7 @@ struct Column {
       parameter;      ///< the parameter that the column holds; nullptr if there is none or more than one
   bool shapes_array;  ///< see Parameter
   std::function<Value(const RunRow&)> get;
-  /// @throws Error if no row can hold this
+  /// @throws Error if no row can have this value
   std::function<void(RunRow&, const Value&)> set;
   /// Sets the value of a row whose file does not have this column.
   std::function<void(RunRow&)> set_unknown;
@@ -66,7 +66,8 @@ struct Column {
 
 /// All columns, in their order in files.
 std::span<const Column> columns();
-/// The column's name of a dwell in Dwells::longest; with `_at` and `_from`, where and when it began.
+/// Name of the column with the length of a dwell of Dwells::longest. With `_at` or `_from` at its end, it is
+/// the name of the column that tells where or when this dwell began.
 std::string dwell_column(std::size_t place);
 /// @throws std::out_of_range if there is none
 const Column& column(std::string_view name);

@@ -22,7 +22,7 @@ class Job {
   /// computes sends a request to this process; after advance() has received the answer, one call returns
   /// true.
   virtual bool refresh() { return true; }
-  /// The task's row; `interrupted` if it is not over.
+  /// The task's row. As long as the task is not over, the row has the status `interrupted`.
   virtual RunRow row() const = 0;
   /// A snapshot from which another job of this task can resume; empty if there is none yet.
   virtual std::vector<std::byte> snapshot() const { return {}; }

@@ -20,8 +20,9 @@ struct Key {
   std::string help;            ///< meaning and unit
   const Parameter* parameter;  ///< nullptr: preset
 
-  /// Not for the key obstacles, whose values name files: Plan knows their content. @throws Error, without the
-  /// key's name, if the value cannot be read or is out of the type's range
+  /// Sets the key's parameter to a value. Does nothing for the preset, which acts through other keys, and for
+  /// obstacles, whose values name files: Plan knows their content. @throws Error, without the key's name, if
+  /// the value cannot be read or is out of the type's range
   void apply(RunParameters& run, const std::string& value) const;
 };
 
@@ -41,7 +42,7 @@ std::string written(const ParameterValue& value, const Parameter& parameter);
 bool is_same_value(const std::string& a, const std::string& b);
 
 std::vector<std::string> preset_names();
-/// The keys of the interface and of its numerics with their values in a preset; none if there is no such
+/// The keys of the interface and of its numerics with their values in a preset; empty if there is no such
 /// preset.
 std::vector<std::pair<const char*, const char*>> preset_texts(std::string_view name);
 /// The preset whose interface this resolved parameter set has, or `custom`.

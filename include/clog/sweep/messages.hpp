@@ -12,7 +12,7 @@ namespace clog::sweep {
 
 /// The start of a task.
 struct Start {
-  std::vector<std::byte> snapshot;  ///< empty: at its release
+  std::vector<std::byte> snapshot;  ///< empty: the task starts at the release
   std::int64_t attempt = 1;
 };
 

@@ -17,8 +17,8 @@ namespace clog::sweep {
 using GroupOf = std::function<std::int64_t(std::int64_t task)>;
 
 /// The runs of a sweep: a description that yields any task in any order. It is a list of parameter sets,
-/// called groups, each with its seeds. They come from products of the settings' lists, one product for each
-/// point.
+/// called groups, each with its seeds. The parameter sets are the products of the settings' lists, one
+/// product for each point.
 ///
 /// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array:
 /// task s * num_groups() + g is seed s of group g if all groups have equally many seeds.
@@ -47,7 +47,7 @@ class Plan {
 
   /// The circles of the plan's tasks, by file.
   const CircleFiles& circle_files() const { return circle_files_; }
-  /// Lists that were typed like a decimal with a comma, 0,5, one line each.
+  /// One line for each list that looks like a decimal with a comma, such as 0,5.
   const std::vector<std::string>& possible_decimals() const { return possible_decimals_; }
 
  private:

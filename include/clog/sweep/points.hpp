@@ -6,16 +6,16 @@
 
 namespace clog::sweep {
 
-/// Parameter sets, listed one by one: each has texts for these keys, and the texts of the settings for all
-/// others. A text may be a list; that of the key seeds usually is.
+/// Parameter sets, listed one by one: each has its own texts for `keys`, and the texts of the settings for
+/// all other keys. A text may be a list; that of the key seeds usually is.
 struct Points {
   std::vector<std::string> keys;
   /// A text for every key; an empty one stands for the settings' text.
   std::vector<std::vector<std::string>> rows;
 
   bool empty() const { return keys.empty(); }
-  /// Drops all points, and sets the keys of those that will be added. @throws Error if there is none, or one
-  /// is unknown or repeated
+  /// Drops all points, and sets the keys of those that will be added. @throws Error if there is no name, or
+  /// if a name is unknown or repeated
   void begin(const std::vector<std::string>& names);
   /// @throws Error that names the point, if it lacks a text for a key, or has one that cannot be read
   void add(const std::vector<std::string>& texts);
@@ -26,7 +26,7 @@ struct Shard {
   std::int64_t number = 1;
   std::int64_t of = 1;
 
-  /// From `2/5`. @throws Error, without the option's name
+  /// Reads `2/5`, the second of five parts. @throws Error, without the option's name
   static Shard from(const std::string& text);
   std::string text() const;
   bool is_whole() const { return of == 1; }

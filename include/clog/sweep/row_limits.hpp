@@ -24,7 +24,7 @@ bool has_met_repetition(const RunRow& row);
 std::string possible_repetition(const Plan& plan);
 
 /// Lines about files of circles that leave a conspicuous part of their array bare, or have circles without a
-/// diameter; none for others.
+/// diameter.
 std::vector<std::string> limits_of_circles(const Plan& plan);
 
 /// Known limitations of a plan's results: the lines of the functions above that are not empty.
@@ -33,13 +33,15 @@ std::vector<std::string> limits_of_results(const Plan& plan);
 /// Largest share of the droplet's weight that the polygon's corners may carry; beyond it, a clog is
 /// attributed to the corners, not to the obstacles.
 inline constexpr double tolerated_mesh_hold = 0.01;
-/// Largest difference between the weights of two lobes, as a share of the droplet's weight, that the friction
-/// of both interfaces bears on half of a round obstacle: their tensions have a ratio of at most exp(pi mu)
-/// (capstan). Zero if friction does not act on both interfaces.
+/// A wrapped droplet hangs over a round obstacle with a lobe on each side; two parts of its interface, one
+/// above the other with a film between them, lie on half of the obstacle's circumference. The function
+/// returns the largest difference between the weights of the lobes, as a share of the droplet's weight, that
+/// friction bears: the tensions of the two lobes have a ratio of at most exp(pi mu) (capstan). Zero unless
+/// friction acts on both parts of the interface (film-friction=on).
 double weight_borne_by_friction(const DpParameters& dp);
-/// Whether the corners may hold this clog. True if they can bear more than friction; if mesh_hold is unknown,
-/// or friction acts on one interface only, true for every droplet that hangs over obstacles
-/// (docs/explanation/wrapped.md).
+/// Whether the corners may hold this clog. True if they can bear more of the weight than friction does. If
+/// mesh_hold is unknown, or friction acts only on the interface next to the wall, this is true for every
+/// droplet that hangs over obstacles (docs/explanation/wrapped.md).
 bool may_hang_on_mesh(const RunRow& row);
 
 /// Smallest possible centre-to-centre distance of two obstacles; the mean of these if diameters vary [sigma].

@@ -42,7 +42,7 @@ struct RunRow {
 
   RunParameters parameters;                       ///< resolved
   std::set<const Parameter*> unknown_parameters;  ///< which the row's file does not have
-  double obstacle_density = 0;                    ///< of a saturated array the jamming limit, see Scene
+  double obstacle_density = 0;                    ///< see Scene; of a saturated array, the jamming limit
   std::string preset;              ///< the preset with this interface, "custom", or "none" for sp
   std::int64_t model_version = 0;  ///< see parameters.hpp
 

@@ -44,7 +44,7 @@ class Settings {
   bool is_given(const std::string& name) const;
   /// The reference is valid until the key's text changes.
   const std::string& text(const std::string& name) const { return entry(name).text; }
-  /// The expanded values of a key; this reference is valid as long.
+  /// The expanded values of a key. This reference, too, is valid until the key's text changes.
   const std::vector<std::string>& values(const std::string& name) const { return entry(name).values; }
   /// The scene of all runs; nullptr if they have several.
   const Scene* scene() const;
@@ -55,9 +55,10 @@ class Settings {
   void set_shard(Shard shard) { shard_ = shard; }
   const Shard& shard() const { return shard_; }
 
-  /// Calls `visit` for each combination of words of each point, with settings that have no points and one
-  /// value for each key of words, so that the runs are the product of the other lists. @param point  its
-  /// place; -1 without points
+  /// Calls `visit` for each branch of the settings: for each point, and for each combination of the values of
+  /// keys of kind `word`. The settings of a branch have no points and one value for each of these keys, so
+  /// that the branch's runs are the product of the other lists.
+  /// @param point  its place; -1 without points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;
   /// The values() of each key in all branches together.
@@ -106,7 +107,7 @@ class Settings {
 /// Refuses keys that another key, or the scene, leaves without effect, in addition to those of check_each().
 /// @param settings  with one value for each key of words, before parameter sets are made @throws Error
 void refuse_contradictions(const Settings& settings);
-/// A question about a list that may be a decimal below one; empty for any other.
+/// A question about a list that may be a mistyped decimal below one, such as 0,5; empty for any other list.
 std::string possible_decimal(const Key& key, const Settings& settings);
 
 }  // namespace clog::sweep

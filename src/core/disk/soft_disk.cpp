@@ -33,7 +33,7 @@ double frequency(const RunParameters& run) {
   return std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
 }
 
-/// The automatic step resolves the contact's period sixty times.
+/// The automatic step is at most a sixtieth of the period with which the disk oscillates on an obstacle.
 void resolve_disk(RunParameters& run, double) {
   if (!run.wall_stiffness)
     throw Error(
@@ -75,8 +75,8 @@ DropletState release_disk(const RunParameters& run, const ObstacleArray& obstacl
   return state;
 }
 
-/// Upper bound: as many obstacles as fit into the disk's reach, each of which extends at most to the disk's
-/// centre.
+/// Upper bound of the energy: as many obstacles as fit into the disk's reach, each of which extends at most
+/// to the disk's centre.
 double energy_of_overlaps(const RunParameters& run) {
   const double spacing = run.obstacles.smallest_diameter() + run.obstacles.gap;
   const double across = (units::droplet_diameter + run.obstacles.diameter + spacing) / spacing;

@@ -26,9 +26,10 @@ constexpr int most_rejections = 10;   // of steps in a row
 constexpr int most_halvings = 10;
 /// Step of the central differences [sigma]: much smaller than a contact's range, much larger than round-off.
 constexpr double difference_step = 1e-6;
-/// Force on a point divided by its weight; round-off of the contact forces is 1e-10.
+/// Largest force on a point at the equilibrium, divided by the point's weight. The round-off of the contact
+/// forces is 1e-10.
 constexpr double force_tolerance = 1e-7;
-/// Remaining Newton step [sigma].
+/// Largest Newton step that may remain at the equilibrium [sigma].
 constexpr double move_tolerance = 1e-7;
 /// Largest fraction of the remaining distance that an accepted step may leave.
 constexpr double most_left = 0.75;
@@ -62,7 +63,7 @@ class Stiffness {
   explicit Stiffness(bool has_energy) : has_energy_(has_energy) {}
 
   /// Replaces K. Returns whether the shape resists all displacements by more than `bound` and the vertices
-  /// can adapt; otherwise nothing can be solved.
+  /// can adapt; otherwise solve() must not be called.
   bool set(const MatrixXd& k, double bound) {
     const Index n = k.rows() / 2;
     if (!is_definite(0, k.bottomRightCorner(n, n))) return false;
@@ -208,7 +209,7 @@ class Search {
   Stiffness stiffness_;
   bool halves_ = false;
   ArrayXd position_;
-  ArrayXd begun_at_;  // where the last stiffness that resists was computed
+  ArrayXd begun_at_;  // where the last stiffness was computed that resists all displacements
   // At the present position:
   Axes axes_;
   VectorXd force_;

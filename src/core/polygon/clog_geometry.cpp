@@ -135,8 +135,8 @@ class Contacts {
   std::vector<int> of_edge_;
   std::vector<double> deepest_;
 
-  /// Whether the edge touches the obstacle that touched_ gets next. If so, adds the edge's force along the
-  /// flow.
+  /// Whether the edge touches `obstacle`, the next entry of touched_. If so, adds the edge's force along the
+  /// flow to this entry.
   bool take(Eigen::Index edge, double overlap, double push, Touched& obstacle) {
     if (overlap <= 0) return false;
     obstacle.support -= push;

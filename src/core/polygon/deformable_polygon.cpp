@@ -24,7 +24,7 @@ void choose_vertices(RunParameters& run, double obstacle_diameter) {
 
 int num_vertices(const RunParameters& run) { return *run.dp.vertices; }
 
-/// A passage must be at least as wide as an edge at rest is long.
+/// Length of an edge at rest [sigma]. The polygon does not resolve narrower passages.
 double edge_length(const RunParameters& run) { return units::regular_edge_length(*run.dp.vertices); }
 
 /// The regular polygon in which pressure balances line tension and springs; its area is a little smaller than

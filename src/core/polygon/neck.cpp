@@ -140,8 +140,9 @@ struct Run {
     const Array2d away = (low - point).max(point - high).max(0);
     return dot(away, away);
   }
-  /// Whether at some point of it segments from `point` have no acute angle with this edge. @param tolerance
-  /// round-off times the edge's length
+  /// Whether the rectangle contains a point to which the segment from `point` makes no acute angle with
+  /// `edge`.
+  /// @param tolerance  round-off times the edge's length
   bool reaches_behind(const Array2d& point, const Array2d& edge, double tolerance) const {
     const double x = edge[0] > 0 ? low[0] : high[0];
     const double y = edge[1] > 0 ? low[1] : high[1];

@@ -17,7 +17,7 @@
 namespace clog {
 namespace {
 
-/// A droplet just after its release is slow; before it had time to fall, it looks like a clogged one.
+/// Until it has had time to fall, a released droplet is as slow as a clogged one.
 constexpr double relaxation_times_before_a_clog = 10;
 
 /// E_k/E_t below which the program searches for an equilibrium. The droplet must also be so slow that it
@@ -31,9 +31,9 @@ double first_search(const RunParameters& run) {
   const double coasting = farthest_rest / (relaxation_time(run) * run.drag.terminal_speed);  // divided by V_t
   return std::min(has_friction ? slow_with_friction : slow, coasting * coasting);
 }
-/// After a failed search the next one waits until E_k/E_t has fallen by this factor again,
+/// After a failed search, the next search waits until E_k/E_t has fallen by this factor,
 constexpr double fall_between_searches = 0.1;
-/// or, once it exceeds this multiple of the first search's, until the droplet slows down anew.
+/// or, if E_k/E_t exceeds this multiple of the value of the first search, until the droplet slows down anew.
 constexpr double rise_of_a_moving_droplet = 10;
 
 /// The run looks for crossings of the interface once in this number of steps, which takes less than 1 % of
@@ -99,7 +99,7 @@ DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> o
 
 PotentialEnergy DropletRun::potential_energy() const {
   PotentialEnergy energy = droplet_->potential_energy();
-  // Gravity's energy between the place of release and the frame's origin.
+  // The droplet measures heights from its frame's origin, a run from the place of release.
   energy.gravity -= units::droplet_mass * units::gravity * displacement_of({0, 0})[0];
   return energy;
 }
@@ -175,7 +175,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
   }
 }
 
-/// Checks the other members of a snapshot, beside the droplet itself.
+/// Checks what a snapshot contains besides the droplet itself.
 bool DropletRun::is_in_range() const {
   return (start_.abs() < burst_perimeter).all() &&
          clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&
@@ -189,7 +189,7 @@ void DropletRun::check() {
   const PolygonShape shape = droplet_->shape();
   const bool has_diverged = !(energy_ratio < diverged_energy_ratio && shape.perimeter < burst_perimeter &&
                               std::abs(shape.area / units::rest_area - 1) < diverged_area_error);
-  if (has_diverged) {  // also if any of them is not a number
+  if (has_diverged) {  // also if one of these three numbers is NaN
     message_ = fmt::format(
         "diverged at t={:.6g}: E_k/E_t={:.6g}, area={:.6g}, perimeter={:.6g}; try a smaller time-step or "
         "terminal-speed",

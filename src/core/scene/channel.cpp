@@ -20,7 +20,8 @@ namespace clog {
 namespace {
 
 /// The largest h at which the free droplet is upstream of the channel and touches nothing [sigma]; infinite
-/// if it never touches. @param run  resolved
+/// if it never touches.
+/// @param run  resolved
 double last_free_start(const RunParameters& run) {
   const ChannelParameters& channel = run.channel;
   const double droplet_reach = model_of(run).reach(run);

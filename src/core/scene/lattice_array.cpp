@@ -22,7 +22,7 @@ std::string remedy(const ObstacleParameters& obstacles) {
   return text;
 }
 
-/// Replaces periods and angle of a lattice by those of the nearest periodic one.
+/// Replaces periods and angle of a lattice by those of the nearest periodic lattice.
 void find_period(RunParameters& run) {
   ObstacleParameters& obstacles = run.obstacles;
   const double angle = obstacles.lattice_angle;

@@ -61,7 +61,7 @@ CommensurateLattice lattice(const ObstacleParameters& obstacles, int p, int q) {
           portable::atan2(q * tangent_unit(obstacles.lattice), p) / degree};
 }
 
-/// The square lattice of exactly this angle and box, if there is one; then no search is needed.
+/// The square lattice that has exactly this angle and box, if there is one. Then no search is needed.
 std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstacles) {
   const double steps = obstacles.box / obstacles.spacing();
   const auto p = std::lround(steps * portable::cos(obstacles.lattice_angle * degree));
@@ -73,8 +73,8 @@ std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstac
   return fits ? std::optional(fitting) : std::nullopt;
 }
 
-/// Calls visit(lattice) for the lattices with allowed periods that are nearest to the angle for each p, on
-/// both sides of it.
+/// For each p, calls visit(lattice) for those lattices with allowed periods whose tilts are nearest to
+/// lattice_angle on both sides of it.
 template <class Visit>
 void for_each_near(const ObstacleParameters& obstacles, Visit visit) {
   const double spacing = obstacles.spacing();
@@ -178,8 +178,8 @@ CellPlace free_place(const ObstacleParameters& parameters, const IntegerLattice&
   boost::random::uniform_01<double> uniform;
   const double taken = (parameters.diameter / 2 + free_radius) / (parameters.diameter + parameters.gap);
   const double i_x = lattice.i_x, i_y = lattice.i_y, j_x = lattice.j_x, j_y = lattice.j_y;
-  // Distance of the emptiest place from its three obstacles (square: 0.707); excludes corners that random
-  // places almost never hit.
+  // `widest` is the distance of the emptiest place from the three obstacles around it (square: 0.707). The
+  // factor 0.69 excludes free corners that are so small that random places almost never hit them.
   const double third = std::min(std::hypot(i_x - j_x, i_y - j_y), std::hypot(i_x + j_x, i_y + j_y));
   const double widest = std::hypot(i_x, i_y) * std::hypot(j_x, j_y) * third / (2 * (i_x * j_y - i_y * j_x));
   const bool has_free_places = taken < 0.69 * std::numbers::sqrt2 * widest;

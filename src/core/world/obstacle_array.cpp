@@ -28,8 +28,8 @@ struct CellAxis {
   int num_per_edge;  ///< cells
   int number;        ///< cells in the period
 
-  /// The cell's index by floor(), possibly outside the period. The limits keep droplets that diverged within
-  /// int.
+  /// Index of the cell at a place, which may be outside the period. The limits keep the index of a diverged
+  /// droplet within the range of int.
   int index(double place) const {
     return static_cast<int>(std::floor(std::clamp(place * (num_per_edge / edge), -1e9, 1e9)));
   }

@@ -32,12 +32,12 @@ namespace {
 
 /// Random sequential addition of discs with a smallest gap between surfaces, in a period.
 ///
-/// Each arriving disc draws its place and its radius; one without room is discarded. The space it
-/// draws from has three dimensions: the place, and by how much the radius exceeds the smallest one, its
-/// `excess`. Discs of one size are the flat case, excess 0.
+/// Each arriving disc draws its place and its radius; one without room is discarded. The space from which
+/// discs are drawn has three dimensions: the two coordinates of the place, and the `excess`, by which the
+/// radius exceeds the smallest radius. Discs of one size are the flat case, excess 0.
 ///
 /// Discs arrive as a Poisson process in squares that may still have room, at first the cells of a grid,
-/// independently in every round and every square. They are made square by square, in order of memory; only
+/// independently in every round and every square. Discs are made square by square, in order of memory; only
 /// those with room among the points of earlier rounds are then tried in random order. After each round
 /// squares without room are dropped and the others cut into quarters. A square has a range of excesses, which
 /// is halved when it exceeds the square's width. Room means room for the smallest disc of the range, so no
@@ -107,9 +107,10 @@ class SequentialAddition {
   }
 
  private:
-  /// Few darts at first, while most of them have room. Any numbers give the same statistics; these are fast.
-  static constexpr double first_rounds[] = {0.125, 0.25, 0.5, 1, 0.5};  // darts per cell
-  static constexpr double darts_per_square = 1;                         // in later rounds
+  /// Numbers of darts (arriving discs) per cell in the first rounds. They are small, because at first most
+  /// darts have room. Any numbers give the same statistics; these are fast.
+  static constexpr double first_rounds[] = {0.125, 0.25, 0.5, 1, 0.5};
+  static constexpr double darts_per_square = 1;  // in later rounds
   /// Number of a cell in the grid, whose margins repeat the opposite side.
   using Cell = std::int32_t;
   /// A square that may still have room, or a dart: its place from the corner of its cell, and the low end of
@@ -155,14 +156,14 @@ class SequentialAddition {
   int margin_;  // number of cells to the farthest point within the largest distance
   int row_length_;
   bool are_alike_;  // all discs have one size, as usual
-  /// The points, each from its cell's corner. A cell can hold only one, as its diagonal is not longer than
-  /// the smallest distance.
+  /// The points, each relative to the corner of its cell. A cell has at most one point, because its diagonal
+  /// is not longer than the smallest distance between two points.
   std::vector<Point> points_;
   std::vector<float> excess_;
   std::size_t num_points_ = 0;
   float size_;          // of the squares
   float range_;         // of their excesses
-  int num_layers_ = 1;  // of excesses that a square was cut into
+  int num_layers_ = 1;  // number of layers of excesses into which a square was cut
   std::vector<Square> parts_;
   std::ptrdiff_t num_parts_ = 0;
   std::vector<Square> arriving_, darts_;

@@ -10,7 +10,8 @@ namespace clog {
 
 /// Potential energy and force on a soft disk among obstacles, Cheng et al. Eq. 8: U_w = sum (E_w/2)(1 -
 /// 2d/sigma)^2 over obstacles and wedges with d < sigma/2, where d is the distance from the disk's centre to
-/// their surface (negative inside). The force stays finite; exactly at an obstacle's centre it is zero.
+/// the surface of the obstacle or wedge (negative inside). The force stays finite; exactly at an obstacle's
+/// centre it is zero.
 class SpForces {
  public:
   SpForces(const RunParameters& run, const ObstacleArray& obstacles);
@@ -42,8 +43,8 @@ class SpForces {
 };
 
 /// Soft disk: one point of mass M with drag -b_inf v. It has the integrator of DpDroplet, but the loop over
-/// steps keeps the displacement of half a step instead of the velocity, so that a step waits only for one
-/// root, one division and a few sums.
+/// steps keeps the displacement of half a step instead of the velocity, so that the longest chain of
+/// dependent operations in a step is one root, one division and a few sums.
 class SpDroplet final : public Droplet {
  public:
   SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial);

@@ -11,7 +11,7 @@ namespace clog {
 /// Perimeter above which a polygon has burst and is not integrated any further [sigma].
 inline constexpr double burst_perimeter = 1000;
 
-/// A moving droplet: the interface of both models for a run.
+/// A moving droplet. A run uses the droplets of both models through this class.
 class Droplet {
  public:
   virtual ~Droplet() = default;
@@ -31,9 +31,10 @@ class Droplet {
   const DropletState& state() const { return state_; }
   /// [g rho sigma^3]
   virtual double kinetic_energy() const = 0;
-  /// Its gravity term is relative to the frame's origin.
+  /// The height in its gravity term is measured from the frame's origin.
   virtual PotentialEnergy potential_energy() const = 0;
-  /// Centre of mass: of the area if the weight acts on it, otherwise the vertices' mean [sigma], local.
+  /// Centre of mass, local [sigma]: the centroid of the area if the weight acts on the area, otherwise the
+  /// mean of the vertices.
   virtual Eigen::Array2d centre() const { return state_.centre(); }
   /// The area's centroid, for any `gravity` [sigma], local.
   virtual Eigen::Array2d area_centre() const { return state_.centre(); }
@@ -45,8 +46,8 @@ class Droplet {
   /// Adds up the work against the drag from now on. This costs a pass over the velocities per step.
   void measure_dissipation() { measures_dissipation_ = true; }
   /// Work since measure_dissipation() [g rho sigma^3]: the energy lost to drag, and the work of the springs
-  /// along the interface, whose force derives from no potential energy. The trapezoidal rule makes it second
-  /// order in the time step, like the integrator.
+  /// along the interface, whose force derives from no potential energy. Both are sums by the trapezoidal
+  /// rule, which is second order in the time step, like the integrator.
   struct Work {
     double dissipated = 0;
     double spreading = 0;

@@ -14,7 +14,7 @@ namespace clog {
 
 inline constexpr double no_neck = std::numeric_limits<double>::infinity();
 
-/// The parts of a droplet that walls push.
+/// Where and from which distance walls push a droplet.
 struct ContactReach {
   double range;   ///< distance from a wall's surface at which contact begins [sigma]
   bool by_edges;  ///< whether walls push edges as well as the points that move
@@ -27,13 +27,15 @@ struct DropletModel {
   /// Key of the parameter that is the droplet's stiffness.
   const char* stiffness_key;
 
-  /// Chooses the number of moving points if it is not given. @param obstacle_diameter  of the smallest
-  /// obstacle over which the droplet can hang, infinite if there is none [sigma]
+  /// Chooses the number of moving points if it is not given.
+  /// @param obstacle_diameter  of the smallest obstacle over which the droplet can hang, infinite if there is
+  /// none [sigma]
   void (*choose_points)(RunParameters& run, double obstacle_diameter);
   /// Width below which the droplet's points do not resolve a passage [sigma].
   double (*narrowest)(const RunParameters& run);
-  /// Computes the automatic values, and refuses given values that are impossible together with them. @param
-  /// sharpest_bend see Scene @throws Error
+  /// Computes the automatic values, and refuses given values that are impossible together with them.
+  /// @param sharpest_bend  see Scene
+  /// @throws Error
   void (*resolve)(RunParameters& run, double sharpest_bend);
 
   // The functions from here on take resolved parameters.

@@ -23,7 +23,7 @@ struct LocalFrame {
     return image.cast<double>() * period + origin + local;
   }
   /// Displacement to a local place from a place in another frame of the same period, computed without large
-  /// coordinates.
+  /// coordinates, which would lose digits.
   Eigen::Array2d displacement(const Eigen::Array2d& local, const LocalFrame& from,
                               const Eigen::Array2d& from_local) const {
     return (image - from.image).cast<double>() * period + (origin - from.origin) + (local - from_local);
@@ -50,10 +50,10 @@ struct LocalFrame {
   }
 };
 
-/// How far points may move until the next check [sigma].
+/// Bounds on how far any point may move until the next check [sigma].
 struct Travel {
   double absolute = 0;
-  double relative = 0;  ///< to the mean of the points
+  double relative = 0;  ///< displacement relative to the mean of the points
 };
 /// Upper bound on the distance that a point of this speed covers in a time [t0]: more than twice the distance
 /// of a fall that begins with this speed.

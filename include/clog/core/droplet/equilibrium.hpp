@@ -9,7 +9,8 @@
 
 namespace clog {
 
-/// Largest distance of any coordinate of a vertex, or of the soft disk, from its equilibrium [sigma].
+/// An equilibrium counts as the one that the droplet approaches only if no coordinate of a vertex, or of the
+/// soft disk, is farther than this from its equilibrium value [sigma].
 inline constexpr double farthest_rest = 0.03;
 /// Smallest stiffness that an equilibrium must have against any displacement [M g/sigma]: the restoring force
 /// divided by the displacement when the droplet moves as a whole.
@@ -21,9 +22,10 @@ struct Axes {
   Eigen::SparseMatrix<double> directions;  ///< orthonormal columns over all x, then all y
   /// Unit vector, in the tangential coordinates, of the motion in which all vertices slide along the
   /// interface; empty if this motion is tested like any other. A slide by one edge maps the polygon onto
-  /// itself with its vertices renumbered, and does not move the droplet. The energy along it has only
-  /// ripples, because corners between edges touch obstacles. So the search tests neither force nor stiffness
-  /// along it. This motion is the last to decay, so the droplet may now be at the top of a ripple.
+  /// itself with its vertices renumbered, and does not move the droplet. The energy changes along this slide
+  /// only by small ripples, which arise because the corners between edges touch obstacles. The slide is the
+  /// last motion to decay, so the droplet may be at the top of a ripple when the search begins. Therefore the
+  /// search tests neither force nor stiffness along the slide.
   Eigen::VectorXd slide;
 };
 
@@ -47,16 +49,16 @@ struct EquilibriumForces {
   }
 };
 
-/// The stable static equilibrium that a nearly stopped droplet approaches; nothing if there is none, or if it
+/// The stable static equilibrium that a nearly stopped droplet approaches; nullopt if there is none, or if it
 /// is not certain that the droplet would reach it.
 ///
 /// Newton's method on the forces, down to round-off. The potential energy must be convex at the beginning, at
 /// the end, and wherever the search computes the stiffness in between, and all these places must be within
 /// `farthest_rest` of the initial one. Then the droplet and the equilibrium are assumed to be in the same
-/// basin. A droplet that balances on an obstacle, that could drift aside freely, or that creeps past a place
-/// where there is no equilibrium is refused.
+/// basin. So the search returns nullopt for a droplet that balances on an obstacle, that could drift aside
+/// freely, or that creeps past a place where there is no equilibrium.
 ///
-/// @param initial  the droplet; its velocities do not count
+/// @param initial  the droplet; its velocities have no effect
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial);
 
 }  // namespace clog

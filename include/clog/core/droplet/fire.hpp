@@ -92,8 +92,9 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   return result;
 }
 
-/// Relaxes by damped motion, like that of a droplet. It is slower than FIRE, but may also come to rest under
-/// forces that derive from no energy. Under such forces FIRE, which adapts to the work done, may cycle.
+/// Relaxes the droplet by damped motion like that of a run. This is slower than FIRE, but may also bring the
+/// droplet to rest under forces that derive from no energy. Under such forces FIRE, which adapts to the work
+/// done, may cycle.
 template <class Forces>
 FireResult settle(Forces& forces, DropletState& state, const FireOptions& options, double damping_rate) {
   const double dt = options.largest_step;

@@ -22,16 +22,18 @@ struct ClogGeometry {
   /// Fraction of the obstacles' upstream support that comes from wrapped obstacles; NaN without support.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
   int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
-  /// Gaps: pairs of obstacles between which the interface faces downstream; at least one of them supports the
+  /// Number of gaps in front of the droplet. A gap is between two successive arcs (see num_arcs) on different
+  /// obstacles, if the chord from arc to arc faces downstream and at least one of the obstacles supports the
   /// droplet.
   int num_gaps = 0;
-  int num_arcs = 0;  ///< runs of successive edges in contact with one obstacle, a post or a wall
+  int num_arcs = 0;  ///< number of arcs, runs of successive edges that touch one obstacle (post or wall)
   /// Largest part of the weight that the corners of the polygon can hold. Each wrapped obstacle contributes
   /// its part of the support times x^2/16, with x the length of the longest edge on the obstacle divided by
   /// the radius at which this edge lies. NaN without support.
   double mesh_hold = std::numeric_limits<double>::quiet_NaN();
 
-  /// Hybrid if wrapped obstacles and others each give a third of the support.
+  /// Wrapped if wrapped obstacles give at least two thirds of the support, hybrid if they give more than a
+  /// third, otherwise squeezed if there is a gap.
   ClogMechanism mechanism() const;
 };
 

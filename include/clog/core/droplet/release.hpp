@@ -7,8 +7,8 @@
 
 namespace clog {
 
-/// Climbs from the centre of the period to the nearest local maximum of the distance to all obstacles
-/// [sigma].
+/// The emptiest place near the centre of the period [sigma]: the local maximum of clearance() to which a
+/// climb from the centre leads.
 Eigen::Array2d nearest_void(const ObstacleArray& obstacles);
 
 /// Distance from a point of the first period to the nearest surface of an obstacle or a wedge, at most
@@ -28,12 +28,12 @@ int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 /// @throws Error that names the reason and the remedy
 [[noreturn]] void refuse_release(const std::string& reason, const std::string& remedy);
 
-/// Largest component of the force, excluding weight and springs, with which a droplet may be released. It is
-/// divided by the weight of one vertex (DP) or of the disk (SP).
+/// A droplet may be released if no component of the force on a vertex (DP) or on the disk (SP) exceeds this
+/// fraction of the weight of the vertex or disk. The force excludes this weight and the springs.
 inline constexpr double release_force_tolerance = 1e-4;
-/// The same tolerance for an interface with springs along it. The force of these springs derives from no
-/// energy and keeps the interface sliding for ever in a cycle of 1e-3 sigma; no observed force exceeded 0.01.
-/// The droplet as a whole stays in place.
+/// This tolerance replaces release_force_tolerance for an interface with springs along it. The force of these
+/// springs derives from no energy and keeps the interface sliding for ever in a cycle of 1e-3 sigma; no
+/// observed force exceeded 0.01. The droplet as a whole stays in place.
 inline constexpr double release_sliding_tolerance = 0.02;
 
 }  // namespace clog

@@ -12,7 +12,7 @@ namespace clog {
 inline constexpr double refined_near = 9.0 / 16;
 inline constexpr double refined_far = -1.0 / 16;
 
-/// How far a middle may move if no vertex moves by more than 1.
+/// Largest distance that a middle can move if no vertex moves by more than 1.
 inline constexpr double refined_sway = 2 * (refined_near - refined_far);
 
 /// Shape of a closed polygon given as one array, all x then all y, counter-clockwise.
@@ -42,7 +42,7 @@ bool encloses(const Eigen::ArrayXd& position, double x, double y);
 /// with a common vertex meet only there, unless they lie exactly on top of each other, which rounding
 /// prevents. If more than two edges fold back, other edges cross. Without a crossing and with a positive area
 /// the contour winds once around every point inside it: no pocket of it encloses negative area. (The converse
-/// does not hold, a contour may cross itself and wind twice around a part of its area.)
+/// does not hold: a contour may cross itself and wind twice around a part of its area.)
 int num_self_crossings(const Eigen::ArrayXd& position);
 
 /// Point of the segment from `begin` to `end` that is nearest to a point [sigma].

@@ -21,11 +21,13 @@ double relaxation_time(const RunParameters& run);
 /// tension or if the drag is larger near walls or for motion relative to the mean.
 double drag_time_step(const RunParameters& run);
 
-/// Sets the automatic time step. @param rates  that the step resolves in addition to the rate of the drag
-/// @throws Error naming the key of the fastest rate if the step is too small to be useful
+/// Sets the automatic time step to `time_step`.
+/// @param rates  that this step resolves in addition to the rate of the drag
+/// @throws Error if the step is too small to be useful; the message names the key of the fastest rate
 void choose_time_step(RunParameters& run, double time_step, std::vector<Rate> rates);
 
-/// Checks for every model that max-time and the drag's relaxation time are several steps. @throws Error
+/// Checks for every model that max-time is between one and 1e15 time steps, and that a step is no longer than
+/// the drag's relaxation time. @throws Error
 void check_time_step(const RunParameters& run);
 
 }  // namespace clog

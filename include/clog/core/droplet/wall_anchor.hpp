@@ -12,13 +12,13 @@
 
 namespace clog {
 
-/// A wall near a droplet, in its frame: a circle, or a wedge of the scene.
+/// A wall near a droplet, in the droplet's frame: a circle, or a wedge of the scene.
 struct WallPlace {
   double x = 0, y = 0;      ///< centre [sigma]
   double radius = 0;        ///< [sigma]
   Eigen::Index wedge = -1;  ///< number of the wedge; -1: a circle
 
-  /// Whether it is the same wall. Two lists may give a wall's centre with different rounding; centres of
+  /// Whether both are the same wall. Two lists may give a wall's centre with different rounding; centres of
   /// two walls differ by much more.
   bool is(const WallPlace& other) const {
     constexpr double rounding = 1e-6;
@@ -26,7 +26,9 @@ struct WallPlace {
   }
 };
 
-/// Distance of a point, relative to the wall's centre. @param wedges  those of the scene
+/// Distance of a point from a wall.
+/// @param wedges  those of the scene
+/// @param from_centre  vector from the wall's centre to the point
 inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> wedges,
                                  const Eigen::Array2d& from_centre) {
   if (wall.wedge >= 0) return distance_to(wedges[static_cast<std::size_t>(wall.wedge)], from_centre);
@@ -34,14 +36,15 @@ inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> w
   return {r - wall.radius, from_centre / r};
 }
 
-/// Place on a wall to which a spring ties the interface. The anchor moves only when the wall's limit is
-/// exceeded; until then the friction is static and its force is conservative. Anchors belong to a droplet's
-/// state.
+/// Place on a wall to which a spring ties the interface. The anchor moves only when the spring's force
+/// exceeds the wall's limit; until then the friction is static and its force is conservative. Anchors belong
+/// to a droplet's state.
 struct WallAnchor {
   Eigen::Index holder;  ///< what the spring holds: a vertex, or the first (0) or last (1) end of an arc
-  WallPlace wall;       ///< to which it is tied
-  double x, y;          ///< position from the wall's centre; at an arc's end, x is along the wall [sigma]
-  double slip = 0;      ///< distance along the wall from the anchor to its holder at the last update [sigma]
+  WallPlace wall;       ///< to which the spring is tied
+  /// Place relative to the wall's centre; for an arc's end, x is its place along the wall [sigma].
+  double x, y;
+  double slip = 0;  ///< distance along the wall from the anchor to its holder at the last update [sigma]
   /// 1: the wall yields, so `slip` determines the spring's force, wherever the holder moves. Used only while
   /// the program searches for an equilibrium; a moving droplet updates its anchors at every step.
   Eigen::Index yields = 0;
@@ -49,12 +52,12 @@ struct WallAnchor {
   double slip_of_force(double slip_now) const { return yields != 0 ? slip : slip_now; }
 };
 
-/// Finds anchors by the vertices or ends that they hold. An object keeps its memory, so that a step allocates
-/// none.
+/// Finds anchors by the vertices or ends that they hold. The object keeps its memory between steps, so that a
+/// step allocates none.
 class KnownAnchors {
  public:
-  /// Takes the anchors out of `anchors`. @param num_holders  find() ignores anchors of holders from this
-  /// number on
+  /// Takes the anchors out of `anchors`.
+  /// @param num_holders  find() ignores anchors of holders from this number on
   void take(std::vector<WallAnchor>& anchors, Eigen::Index num_holders) {
     std::swap(anchors_, anchors);
     anchors.clear();

@@ -22,8 +22,9 @@ struct Obstacle {
 /// only their checksum.
 class OwnCircles {
  public:
-  /// @param circles  a radius of 0 stands for half of obstacle-diameter @param source  their origin, for
-  /// messages @param droplet  diameter of the droplet for which they were drawn, if the source gives it [m]
+  /// @param circles  a radius of 0 stands for half of obstacle-diameter
+  /// @param source  their origin, for messages
+  /// @param droplet  diameter of the droplet for which they were drawn, if the source gives it [m]
   explicit OwnCircles(std::vector<Obstacle> circles, std::string source = "",
                       std::optional<double> droplet = {});
   /// Circles known only by their checksum. @throws Error  if the text does not have the form of check_sum()
@@ -36,8 +37,9 @@ class OwnCircles {
   bool are_known() const { return circles_ != nullptr; }
   /// @throws Error if only their checksum is known
   const std::vector<Obstacle>& circles() const;
-  /// The circles, each with a radius. @param missing  the radius of those without one [sigma] @throws Error
-  /// if only their checksum is known
+  /// The circles, each with a radius.
+  /// @param missing  the radius of those without one [sigma]
+  /// @throws Error if only their checksum is known
   std::vector<Obstacle> with_radii(double missing) const;
 
   bool operator==(const OwnCircles& other) const { return check_sum_ == other.check_sum_; }

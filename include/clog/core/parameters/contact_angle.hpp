@@ -8,8 +8,9 @@
 
 namespace clog {
 
-/// Gamma_w/Gamma. Default: minus the mean cosine of the receding and the advancing angle, as if the wall
-/// resisted both motions alike; 1 without angles.
+/// Tension of the interface on a wall divided by Gamma. Unless it is given, it is minus the mean of the
+/// cosines of the receding and the advancing angle, which assumes that the wall resists both motions alike;
+/// without angles it is 1.
 inline double wall_tension(const DpParameters& dp) {
   if (dp.wall_tension) return *dp.wall_tension;
   if (!dp.receding_angle || !dp.advancing_angle) return 1;

@@ -18,8 +18,9 @@ template <>
 struct Words<Model> {
   static constexpr Worded<Model> all[] = {{Model::dp, "dp"}, {Model::sp, "sp"}};
 };
-/// Springs of the edges: to the rest length l0 (the paper), to the current mean edge length, or only `along`
-/// the interface; the last space the vertices evenly, but carry no tension.
+/// The springs of the edges: they draw each edge to the rest length l0 (the paper) or to the current mean
+/// edge length, or act only `along` the interface. Springs `along` space the vertices evenly, but carry no
+/// tension.
 enum class PerimeterSpring { rest, mean, along };
 template <>
 struct Words<PerimeterSpring> {
@@ -32,15 +33,16 @@ template <>
 struct Words<SelfContact> {
   static constexpr Worded<SelfContact> all[] = {{SelfContact::on, "on"}, {SelfContact::off, "off"}};
 };
-/// Whether wall friction also acts through a closed film on the interface above it.
+/// Whether wall friction acts only on the interface next to the wall, or through closed films also on the
+/// interfaces above the films.
 enum class FilmFriction { off, on };
 template <>
 struct Words<FilmFriction> {
   static constexpr Worded<FilmFriction> all[] = {{FilmFriction::on, "on"}, {FilmFriction::off, "off"}};
 };
 /// Where the droplet's weight and the drag on its mean motion act: on the vertices in equal parts (the
-/// paper), or on the area, as a pressure. A pressure has no component along the interface, which would bunch
-/// its vertices.
+/// paper), or on the area, as a pressure. A pressure has no component along the interface, so it does not
+/// bunch the vertices.
 enum class Gravity { vertex, area };
 template <>
 struct Words<Gravity> {
@@ -64,9 +66,9 @@ struct Words<ObstacleLayout> {
                                                    {ObstacleLayout::wall, "wall"}};
 };
 /// Lattices by their vectors in units of the pitch, t being the tilt: square, turned by t: (1, 0) and (0, 1);
-/// triangular, turned by t: (1, 0) and (1/2, sqrt(3)/2); rhombic: (1, tan t) and (0, 1), not turned. The last
-/// is the sheared array of deterministic lateral displacement: columns of posts across the flow, each shifted
-/// by tan t (McGrath et al., Lab Chip 14, 4139 (2014)).
+/// triangular, turned by t: (1, 0) and (1/2, sqrt(3)/2); rhombic: (1, tan t) and (0, 1), not turned. The
+/// rhombic lattice is the sheared array of deterministic lateral displacement: columns of posts across the
+/// flow, each shifted by tan t (McGrath et al., Lab Chip 14, 4139 (2014)).
 enum class LatticeKind { square, triangular, rhombic };
 template <>
 struct Words<LatticeKind> {
@@ -121,10 +123,11 @@ struct DpParameters {
   /// -cos of the contact angle (Young). 1: a film of water everywhere, as in the paper's figures. Empty: from
   /// the measured angles, see wall_tension().
   std::optional<double> wall_tension;
-  /// Contact angles, of the droplet's fluid, beyond which the end of a wetted arc recedes and advances
-  /// [degrees]; empty: Young's angle, and ends are not held. Only with springs `along` the interface.
+  /// Contact angles of the droplet's fluid, beyond which the end of a wetted arc recedes and advances
+  /// [degrees]. Empty: both are Young's angle, and ends are not held. Angles may be given only with springs
+  /// `along` the interface.
   std::optional<double> receding_angle, advancing_angle;
-  double friction = 0;        ///< mu of walls, only if springs carry tension
+  double friction = 0;        ///< mu of walls; not with springs `along`
   double yield_traction = 0;  ///< tau_y, force per length that a wall bears without any push [g rho sigma]
   SelfContact self_contact = SelfContact::on;
   /// Distance below which the interface repels itself: the thickness of a film between two parts of it
@@ -149,11 +152,11 @@ inline constexpr double narrowest_period = 5;
 struct Period {
   double box = 0;  ///< [sigma]
   int boxes = 1;
-  double length = 0;  ///< along the flow if it is no multiple of the box, otherwise 0 [sigma]
+  double length = 0;  ///< period along the flow; 0: boxes times box [sigma]
   double beside = 0;  ///< empty space beside the box, so that nothing meets images of the other side [sigma]
 
   Period() = default;
-  // A single box is a period, so the conversion loses nothing.
+  // Implicit: a single box is a period, so the conversion loses nothing.
   Period(double edge, int number = 1) : box(edge), boxes(number) {}
 
   double along() const { return length > 0 ? length : boxes * box; }
@@ -170,7 +173,7 @@ struct ObstacleDensity {
 
   /// Saturated: obstacles are added until no further one fits.
   ObstacleDensity() = default;
-  // The number of obstacles per sigma^2 is the density, so the conversion loses nothing.
+  // Implicit: the number of obstacles per sigma^2 is the density, so the conversion loses nothing.
   ObstacleDensity(double number_per_area) : per_area(number_per_area) {}
   static ObstacleDensity share_of_saturated(double share) {
     ObstacleDensity density;
@@ -188,7 +191,7 @@ inline constexpr double published_share_of_saturated = 0.125;
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
 struct ObstacleParameters {
   double gap = 0.2;            ///< w_ob, smallest surface-to-surface distance [sigma]
-  double diameter = 0.3;       ///< sigma_ob, of a mixture the mean diameter of the discs that arrive [sigma]
+  double diameter = 0.3;       ///< sigma_ob; of a mixture, the mean of the drawn diameters [sigma]
   double diameter_spread = 0;  ///< diameters are uniform in diameter (1 -+ spread)
   /// The density of random arrays; that of a lattice or of user-supplied circles is not kept here.
   ObstacleDensity density = ObstacleDensity::share_of_saturated(published_share_of_saturated);
@@ -198,15 +201,15 @@ struct ObstacleParameters {
   LatticeKind lattice = LatticeKind::square;
   double pitch = 0;                    ///< of a lattice, instead of its gap; 0: diameter + gap [sigma]
   double lattice_angle = 0;            ///< of the lattice's rows from +x to +y [degrees]
-  std::optional<OwnCircles> own = {};  ///< of layout file; they determine gap and density
+  std::optional<OwnCircles> own = {};  ///< circles of layout file, which determine gap and density
   Release release = Release::centre;
   double length = 0;  ///< period along the flow; 0: boxes times box [sigma]
   // For user-supplied circles, in their coordinates:
   SideWalls side_walls = SideWalls::off;  ///< at y = 0 and y = box
   double entrance = 0;                    ///< x of the line on which droplets are released [sigma]
   double entrance_from = 0;               ///< y at which the line begins [sigma]
-  double entrance_to = 0;                 ///< y at which it ends; 0: at the box [sigma]
-  double exit = 0;                        ///< x at which a droplet has passed; 0: nowhere [sigma]
+  double entrance_to = 0;                 ///< y at which it ends; 0: at y = box [sigma]
+  double exit = 0;                        ///< x at which a droplet has passed; 0: there is no exit [sigma]
 
   double smallest_diameter() const { return diameter * (1 - diameter_spread); }
   double spacing() const { return pitch > 0 ? pitch : diameter + gap; }
@@ -239,7 +242,7 @@ struct DragParameters {
   double relative = 1;  ///< c, drag of motion relative to the centre of mass, divided by b_inf; dp only
 };
 
-/// Everything that decides the course of one run. Two runs with equal parameters are equal bit for bit.
+/// Everything that determines the course of one run: two runs with equal parameters are equal bit for bit.
 struct RunParameters {
   Model model = Model::dp;
   DpParameters dp;

@@ -15,19 +15,20 @@
 /// physics.
 namespace clog {
 
-/// The value of a parameter. Unset: an automatic value, or one without a meaning for the run.
+/// The value of a parameter; `std::monostate` (unset) if the value is automatic, or if the parameter has no
+/// meaning for the run.
 using ParameterValue = std::variant<std::monostate, double, std::int64_t, std::string>;
 
-/// `number_or_share`: a number, or a share of the largest one, as text like `12.5%`. `file`: the key gives
-/// the name of a file, the parameter contains its content. `text`: a description, of which results contain
-/// the checksum.
+/// `number_or_share`: a number, or a share of the largest possible number, as text like `12.5%`. `file`: the
+/// key gives the name of a file, the parameter contains its content. `text`: a description, of which results
+/// contain the checksum.
 enum class ValueKind { number, number_or_share, integer, word, file, text };
 
 /// The purpose of a parameter.
 enum class ParameterRole {
-  physics,   ///< of what is modelled
-  numerics,  ///< of how it is computed or looked at; results should hardly depend on it
-  ensemble,  ///< which one of many runs that are equal otherwise
+  physics,   ///< describes what is modelled
+  numerics,  ///< describes how a run is computed or evaluated; results should hardly depend on it
+  ensemble,  ///< selects one of many runs that are otherwise equal
 };
 template <>
 struct Words<ParameterRole> {
@@ -63,30 +64,30 @@ struct Parameter {
   const char* meaning;  ///< one line
   ParameterRole role;
   const ParameterScope* scope;
-  const ParameterScope* automatic_in;  ///< runs in which its value follows from the others unless it is given
+  const ParameterScope* automatic_in;  ///< runs in which it follows from other parameters unless given
   ParameterRange range;                ///< of numbers
   bool has_own_column;                 ///< false: the column describes other parameters as well
-  bool shapes_array;                   ///< whether two values of it make two obstacle arrays
+  bool shapes_array;                   ///< whether different values give different obstacle arrays
   /// The column's value for runs to which the parameter does not apply; usually unset.
   ParameterValue elsewhere;
-  /// The value of all runs in files older than the parameter. Unset: unknown.
+  /// The value that the parameter has for all runs in files older than the parameter; unset if it is unknown.
   ParameterValue before;
 
   ValueKind kind;
-  std::vector<std::string> words;  ///< of a word: all values; of a number: those that mean automatic
+  std::vector<std::string> words;  ///< of a word: all its values; of a number: its words for `automatic`
   ParameterValue (*get)(const RunParameters&);
   /// @throws Error if the value is out of the type's range, or the word is unknown
   void (*set)(RunParameters&, const ParameterValue&);
 
   bool applies_to(const RunParameters& run) const { return scope->holds(run); }
-  /// Whether its value follows from the others in such a run, unless it is given.
+  /// Whether the parameter's value follows from other parameters in such a run, unless it is given.
   bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
 };
 
 /// All parameters, in the order in which they are displayed. A plan's axes have the same order, which
 /// determines the numbers of the tasks.
 std::span<const Parameter> parameter_schema();
-/// @throws std::out_of_range if there is none
+/// @throws std::out_of_range if no parameter has this key
 const Parameter& parameter(std::string_view key);
 
 /// Refuses numbers outside their range, and values other than the default that do not apply to the run.

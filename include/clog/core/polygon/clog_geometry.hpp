@@ -16,9 +16,11 @@ struct Surroundings {
   std::vector<Wedge> walls;
 };
 
-/// Geometry of a droplet at rest among obstacles. @param position  counter-clockwise polygon, all x then all
-/// y [sigma] @param contact_range  distance from an obstacle's surface at which contact begins [sigma] @param
-/// links_per_edge number of the polygon's edges for one edge of the droplet's mesh: 2 if it is refined
+/// Geometry of a droplet at rest among obstacles.
+/// @param position  counter-clockwise polygon, all x then all y [sigma]
+/// @param contact_range  distance from an obstacle's surface at which contact begins [sigma]
+/// @param links_per_edge  number of the polygon's edges for one edge of the droplet's mesh: 2 if it is
+/// refined
 ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& around, double contact_range,
                            int links_per_edge = 1);
 /// The same for a droplet in an array, from its refined interface. @param dp  resolved

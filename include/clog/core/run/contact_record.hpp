@@ -31,15 +31,15 @@ class ContactRecord {
   /// @param reach  of the moving points, see DropletModel
   explicit ContactRecord(const ContactReach& reach) : reach_(reach) {}
 
-  /// Call this once per check of a run. @param release  displacement of the origin of the droplet's frame
-  /// from the place of release [sigma] @param distance  displacement of the droplet along the flow since
-  /// release [sigma]
+  /// Call this once per check of a run.
+  /// @param release  displacement of the origin of the droplet's frame from the place of release [sigma]
+  /// @param distance  displacement of the droplet along the flow since release [sigma]
   void add(const DropletState& state, const ObstacleArray& obstacles, const Eigen::Array2d& release,
            double distance);
   const Contacts& found() const { return contacts_; }
 
   void save(ByteWriter& bytes) const;
-  /// @throws Error if save() cannot have written it
+  /// @throws Error if save() cannot have written these bytes
   void restore(ByteReader& bytes);
 
  private:

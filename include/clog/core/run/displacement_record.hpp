@@ -20,7 +20,7 @@ class DisplacementRecord {
   TravelSpeed travel_speed() const;
 
   void save(ByteWriter& bytes) const;
-  /// @throws Error if save() cannot have written it after a check at this time [t0]
+  /// @throws Error if save() cannot have written these bytes after a check at this time [t0]
   void restore(ByteReader& bytes, double time);
 
  private:

@@ -35,14 +35,15 @@ inline constexpr double diverged_energy_ratio = 1e8;
 /// droplet far below it.
 inline constexpr double diverged_area_error = 0.5;
 
-/// How far a droplet on a flat wall has sunk since it touched the wall without weight [sigma]; NaN elsewhere.
+/// How far a droplet on a flat wall has sunk since it touched the wall without weight [sigma]; NaN in other
+/// scenes.
 struct Sag {
   double centre = std::numeric_limits<double>::quiet_NaN();  ///< delta_s, of the area's centroid
   double top = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The thinnest neck of a droplet so far, and where it was then [sigma]; NaN without a neck, or without a
-/// search. After the first neck, the program searches only for thinner ones.
+/// The thinnest neck of a droplet so far, and where the droplet was then [sigma]; NaN without a neck, or
+/// without a search. After the first neck, the program searches only for thinner ones.
 struct ThinnestNeck {
   double width = std::numeric_limits<double>::quiet_NaN();
   double distance = std::numeric_limits<double>::quiet_NaN();
@@ -88,18 +89,19 @@ class DropletRun {
   /// A snapshot is taken once in this number of steps: about every quarter of a second with 256 vertices.
   static constexpr std::int64_t steps_per_snapshot = std::int64_t{4096} * steps_per_check;
 
-  /// Released as its scene defines. @param run  resolved parameters, here and below
+  /// Releases the droplet as its scene defines. @param run  resolved parameters, here and below
   explicit DropletRun(const RunParameters& run);
   /// The same, among given walls.
   DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
-  /// @param initial  the droplet at its release @param way  displacement along the flow at which the droplet
-  /// has `passed` [sigma]
+  /// @param initial  the droplet at its release
+  /// @param way  displacement along the flow at which the droplet has `passed` [sigma]
   DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
              double way = std::numeric_limits<double>::infinity());
 
   /// A run restored from a snapshot() continues bit for bit like the original, because the original also
-  /// rebuilds its contact lists there. @param run, obstacles  as in the original run @throws Error if the
-  /// bytes are not a snapshot of such a run
+  /// rebuilds its contact lists when it takes the snapshot.
+  /// @param run, obstacles  as in the original run
+  /// @throws Error if the bytes are not a snapshot of such a run
   static DropletRun resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
                            std::span<const std::byte> snapshot);
   /// The last snapshot; empty before the first one.

@@ -22,12 +22,14 @@ struct Dwells {
   /// The longest of all, the longest of those before it, and so on. If there are more than `most`, the
   /// earliest are dropped.
   std::array<Dwell, most> longest;
-  /// first_longer() is known for times from this one on; NaN: for no time [t0].
+  /// first_longer() may be called for times from this one on [t0]; NaN: for no time, because dwells are
+  /// unknown.
   double known_from = std::numeric_limits<double>::quiet_NaN();
   double last_distance = std::numeric_limits<double>::quiet_NaN();  ///< where the last dwell began [sigma]
   double last_begin = std::numeric_limits<double>::quiet_NaN();     ///< and when [t0]
 
-  /// @param time  not less than known_from [t0]; @return nullptr if there was none
+  /// The first dwell longer than `time`; nullptr if there was none.
+  /// @param time  not less than known_from [t0]
   const Dwell* first_longer(double time) const;
   /// @param dwell  later than all before
   void keep(const Dwell& dwell);
@@ -38,8 +40,8 @@ struct Dwells {
 /// begins.
 class DwellRecord {
  public:
-  /// Dwells of up to this many times dwell_length/terminal_speed, the time of a free droplet, are not
-  /// recorded.
+  /// Dwells are recorded only if they are longer than this many times dwell_length/terminal_speed, the time
+  /// in which a free droplet advances by dwell_length.
   static constexpr double shortest = 10;
 
   /// @param dwell_length  [sigma]; @param terminal_speed  [sqrt(sigma g)]
@@ -48,8 +50,8 @@ class DwellRecord {
   /// Call this once per check of a run. @param displacement  along the flow since release [sigma]
   void add(double time, double displacement);
 
-  /// @param time  of the last check. An unfinished dwell counts with its length so far, except in a clogged
-  /// run, where it does not count.
+  /// @param time  of the last check. An unfinished dwell counts with its length so far; in a clogged run it
+  /// does not count.
   Dwells found(double time, bool has_clogged) const;
 
   void save(ByteWriter& bytes) const { bytes.put(found_); }

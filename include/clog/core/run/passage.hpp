@@ -15,8 +15,9 @@ struct Extreme {
 /// The extremes of a passage through a channel.
 struct Passage {
   Extreme largest_shape_parameter;
-  Extreme largest_speed;   ///< along the flow [V_t]
-  Extreme smallest_speed;  ///< the same, without the beginning, when the droplet falls from rest
+  Extreme largest_speed;  ///< along the flow [V_t]
+  /// Along the flow, except at the beginning, when the droplet falls from rest [V_t].
+  Extreme smallest_speed;
 
   /// @param is_falling  whether the droplet has had time to reach its speed
   void add(double place, double shape_parameter, double speed, bool is_falling);

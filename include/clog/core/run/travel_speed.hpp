@@ -24,14 +24,14 @@ struct TravelSpeed {
 };
 
 /// Mean of the speed after its transient, (r(t_e) - r(t_b))/(t_e - t_b), with t_e the last sample's time. All
-/// are NaN for fewer than 50 intervals, or if the transient takes more than half of the time. @param samples
-/// at evenly spaced times
+/// are NaN for fewer than 50 intervals, or if the transient takes more than half of the time.
+/// @param samples  at evenly spaced times
 TravelSpeed travel_speed(std::span<const TravelSample> samples);
 
 /// Number of values at the beginning to exclude from a mean: the multiple of 5 after which the mean of the
 /// rest has the smallest standard error, if means of 5 values are independent (MSER-5: White, Simulation 69,
-/// 323 (1997)). Only the first half is searched; nothing for fewer than 50 values, or if the best is at the
-/// end of that half, because the transient may continue.
+/// 323 (1997)). Only the first half is searched; the result is nullopt for fewer than 50 values, or if the
+/// best number is at the end of that half, because the transient may then continue.
 std::optional<std::size_t> transient_length(std::span<const double> values);
 
 /// Standard error of the mean of correlated values, from the scatter of the means of blocks of 1, 2, 4, ...

@@ -13,16 +13,16 @@ enum class Finding { clogging_length, passage, sag };
 enum class WallsFrom {
   parameters,  ///< of the obstacles alone; sampling an array may take long
   circles,     ///< that a user gave
-  droplet      ///< whose parameters determine the places of the walls; making them takes no time
+  droplet      ///< whose parameters determine the places of the walls; making the walls takes no time
 };
 
 /// Which obstacles a droplet meets, where it starts, and where its path ends. There is one scene for each
-/// ObstacleLayout. A new one needs a word of ObstacleLayout, a file that defines its Scene, a line in
+/// ObstacleLayout. A new scene needs a word of ObstacleLayout, a file that defines its Scene, a line in
 /// scene.cpp, and the steps of docs/developer/add-a-scene.md.
 struct Scene {
   Finding finding;
   WallsFrom walls_from;
-  /// Whether the array represents a random one; then results are limited by the period, after which a droplet
+  /// Whether the array is random. Then the period limits the results, because after one period a droplet
   /// meets the same obstacles again.
   bool is_random;
   /// Key of the parameter that is the width of the gaps or the orifice; nullptr if there is none.
@@ -36,15 +36,16 @@ struct Scene {
   void (*resolve)(RunParameters& run);
   /// Diameter of the sharpest expected bend of the interface [sigma].
   double (*sharpest_bend)(const RunParameters& run);
-  /// Obstacles per area [1/sigma^2]; NaN without obstacles, or if it is unknown before the array is made.
+  /// Obstacles per area [1/sigma^2]; NaN without obstacles, or if the density is unknown before the array is
+  /// made.
   double (*density)(const ObstacleParameters& obstacles);
 
   // The functions from here on take resolved parameters.
   ObstacleArray (*walls)(const RunParameters& run);
   /// A droplet at rest. @throws Error if there is no room for it
   DropletState (*release)(const RunParameters& run, const ObstacleArray& walls);
-  /// Displacement along the flow after which the droplet has passed [sigma]; infinite if it never has. @param
-  /// start place of release of the centre of mass, in the coordinates of the walls [sigma]
+  /// Displacement along the flow after which the droplet has passed [sigma]; infinite if it never has.
+  /// @param start  place of release of the centre of mass, in the coordinates of the walls [sigma]
   double (*way)(const RunParameters& run, const Eigen::Array2d& start);
   /// Converts a place from the coordinates of the walls to those of the file of circles [sigma]; nullptr
   /// without a file.

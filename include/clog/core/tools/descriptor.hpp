@@ -27,8 +27,8 @@ class Descriptor {
   int number_;
 };
 
-/// Repeats a system call that a signal has interrupted. Returns the result of the last one: below 0, see
-/// errno.
+/// Repeats a system call that a signal has interrupted. Returns the result of the last call; if it is below
+/// 0, errno contains the reason.
 template <class Call>
 auto retried(const Call& call) {
   auto result = call();

@@ -11,8 +11,8 @@ std::vector<std::string> instruction_sets();
 /// The instruction set for droplets made from now on, and for their release. Results of two sets differ by
 /// round-off (docs/explanation/numerics.md, "Reproducibility").
 std::string instruction_set();
-/// Pins it; `auto` selects the widest. Call this before droplets and threads are made. @throws Error if this
-/// processor has no such set
+/// Sets instruction_set(); `auto` selects the widest set. Call this before droplets and threads are made.
+/// @throws Error if this processor has no such set
 void use_instruction_set(const std::string& name);
 
 }  // namespace clog

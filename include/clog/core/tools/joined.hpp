@@ -5,7 +5,8 @@
 
 namespace clog {
 
-/// Words in one line. (g++ 12 with -O3 reports fmt::join as a write beyond an array.)
+/// Words in one line, with `between` between them. (g++ 12 with -O3 reports fmt::join as a write beyond an
+/// array.)
 template <class Words>
 std::string joined(const Words& words, std::string_view between = ", ") {
   std::string text;

@@ -26,7 +26,7 @@ constexpr const char* name(Enum value) requires requires {
   return "unknown";
 }
 
-/// The value of a word; nothing if no value has it.
+/// The value that a word means; nullopt if it means none.
 template <class Enum>
 constexpr std::optional<Enum> meant_by(std::string_view word) {
   for (const auto& [one, its_word] : Words<Enum>::all)

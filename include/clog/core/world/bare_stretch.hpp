@@ -11,19 +11,19 @@ namespace clog {
 /// Part of a period that no circle covers [sigma].
 struct Stretch {
   double begin = 0;  ///< within the period
-  double end = 0;    ///< beyond the period if the stretch goes over its border
+  double end = 0;    ///< larger than the period if the stretch continues across the period's border
 };
 
 /// The widest bare stretch of an array along an axis, if it is so wide that the array's length is probably a
-/// mistake: wider than a droplet, and wider than a droplet plus twice the second widest stretch. Nothing for
-/// a single circle, which may be the unit cell of an array.
+/// mistake: wider than a droplet, and wider than a droplet plus twice the second widest stretch. Otherwise
+/// nullopt, as for a single circle, which may be the unit cell of an array.
 /// @param centre  of a circle along the axis: &Obstacle::x or &Obstacle::y
 /// @param period  of the array along it [sigma]; no circle is wider
 std::optional<Stretch> conspicuous_bare_stretch(std::span<const Obstacle> circles, double Obstacle::*centre,
                                                 double period);
 
 /// Bare stretches across the flow that are wider than a droplet, the widest first: droplets sink through them
-/// without a contact. A period without circles has none.
+/// without a contact. Empty for a period without circles.
 /// @param period  of the array across the flow [sigma]
 std::vector<Stretch> bare_lanes(std::span<const Obstacle> circles, double period);
 

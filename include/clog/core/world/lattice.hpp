@@ -23,21 +23,23 @@ struct CommensurateLattice {
 
 /// Largest deviation of a lattice's tilt from the requested one [degrees].
 inline constexpr double largest_angle_error = 0.1;
-/// Largest tilt that symmetry does not make equal to a smaller one [degrees].
+/// Largest allowed tilt [degrees]. For square and triangular lattices, a larger tilt gives the same lattice
+/// as a smaller one.
 double largest_tilt(LatticeKind kind);
 
-/// The lattice nearest to the angle whose periods are at most `box` and `length` (0: `box`), and at least two
-/// spacings and `narrowest_period`; of several equally near, the one with the largest box. Empty if no
-/// lattice has such periods.
+/// The lattice whose tilt is nearest to lattice_angle, among those whose periods are at most `box` and
+/// `length` (0: `box`), and at least two spacings and `narrowest_period`. If several are equally near, this
+/// is the one with the largest box. nullopt if no lattice has such periods.
 std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles);
-/// nearest_lattice(); empty if its tilt is too far from lattice_angle.
+/// nearest_lattice(); nullopt if its tilt is more than largest_angle_error away from lattice_angle.
 std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);
-/// The smallest whole-numbered box that has such a lattice [sigma].
+/// A whole-numbered box, larger than the given one, in which there is a fitting_lattice() [sigma].
 double box_that_fits(const ObstacleParameters& obstacles);
 /// The nearest lattices on both sides of lattice_angle, if there are any.
 std::vector<CommensurateLattice> neighbouring_lattices(const ObstacleParameters& obstacles);
 
-/// Replaces a given pitch by the corresponding gap. @throws Error if there is none
+/// Replaces a given pitch by the corresponding gap. @throws Error if the pitch is not larger than the
+/// diameter
 void use_pitch(ObstacleParameters& obstacles);
 /// Obstacles per area [1/sigma^2].
 double lattice_density(const ObstacleParameters& obstacles);
@@ -49,8 +51,8 @@ std::string tilt_text(LatticeKind kind, const CommensurateLattice& lattice);
 std::string lattice_text(const ObstacleParameters& obstacles);
 
 /// Lattice of spacing diameter + gap. The seed shifts it: the box's centre, where droplets are released, is
-/// uniform in a unit cell among the places where a droplet touches no obstacle; among all places if there is
-/// none.
+/// uniform in a unit cell among the places where a droplet touches no obstacle. If a droplet touches
+/// obstacles everywhere, it is uniform among all places.
 /// @param parameters  resolved: box, length and angle are those of a CommensurateLattice
 ObstacleArray lattice_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
 

@@ -28,8 +28,8 @@ class ObstacleArray {
   /// @throws Error if a centre is not finite or a radius not positive and finite
   ObstacleArray(const Period& period, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges = {});
 
-  /// An equal array in the memory of another array's binned(), which may belong to another process. @param
-  /// memory  keeps that memory alive
+  /// An equal array in the memory of another array's binned(), which may belong to another process.
+  /// @param memory  keeps that memory alive
   ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory);
   const BinnedObstacles& binned() const { return binned_; }
   static std::size_t num_cells(const Period& period);
@@ -83,10 +83,10 @@ std::vector<int> posts_among(std::span<const Obstacle> circles);
 
 /// A Poisson-disk sample by random sequential addition. Discs arrive one by one, with a diameter uniform in
 /// diameter (1 -+ spread) at a uniform place (periodic), and stay if all earlier surfaces are at least `gap`
-/// away; so dense mixtures contain more small discs than arrive. With a density, stops at round(density *
-/// area) obstacles; without, goes on until not even one of the smallest fits ("saturated", the jamming limit:
-/// discs of diameter + gap cover 0.547 of the plane, Feder, J. Theor. Biol. 87, 237 (1980)). Voids are
-/// tracked on a flat quadtree as in Ebeida et al., Comput. Graph. Forum 31, 785 (2012).
+/// away; so in dense mixtures more of the discs are small than of the arriving discs. With a density, stops
+/// at round(density * area) obstacles; without, goes on until not even one of the smallest fits ("saturated",
+/// the jamming limit: discs of diameter + gap cover 0.547 of the plane, Feder, J. Theor. Biol. 87, 237
+/// (1980)). Voids are tracked on a flat quadtree as in Ebeida et al., Comput. Graph. Forum 31, 785 (2012).
 /// @throws Error if the density exceeds what fits; resolve() lets only densities pass that every seed reaches
 ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
 

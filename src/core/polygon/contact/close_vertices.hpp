@@ -21,7 +21,8 @@ struct CloseSearch {
 inline constexpr int close_vertices_beyond = 24;
 
 /// Finds all pairs of vertices within `reach` that are at least `exclusion` vertices, or at least `arc`,
-/// apart along the contour, each once. @param groups  memory
+/// apart along the contour, each once.
+/// @param groups  memory
 void find_close_vertices(const CloseSearch& search, std::vector<double>& groups,
                          std::vector<VertexPair>& pairs);
 

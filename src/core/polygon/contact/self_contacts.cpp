@@ -135,7 +135,8 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
   if (!pairs_.empty()) fill_items(state);
 }
 
-/// Groups of edges, in the order of the contour; the pairs of a group keep their order.
+/// Sorts the pairs by the groups of their edges, in the order of the contour. Pairs of the same group keep
+/// their order.
 void SelfContacts::sort_pairs_by_groups(int n) {
   constexpr int group_size = WallContacts::edges_per_group;
   end_of_group_.assign(static_cast<std::size_t>(n / group_size) + 2, 0);

@@ -9,8 +9,8 @@
 namespace clog {
 namespace {
 
-// A droplet moves 0.05 sigma in about 1000 steps, so renewals cost nothing. The list of obstacles that may be
-// nearest grows with its skin, so this skin is thinner.
+// A droplet moves 0.05 sigma in about 1000 steps, so renewals of the lists cost almost nothing. The list of
+// obstacles that may be nearest to a vertex gets longer with a thicker skin, so its skin is thinner.
 constexpr double touching_skin = 0.05;
 constexpr double nearest_skin = 0.02;
 
@@ -36,7 +36,7 @@ bool WallContacts::hold(double moved, const Travel& travel) const {
 }
 
 void WallContacts::renew(const DropletState& state, const Travel& travel) {
-  // A fast droplet needs more than the usual skin to reach even the next update.
+  // For a fast droplet, lists with the usual skin would not stay valid until the next update.
   const double usual_skin = keep_ == Keep::nearest_to_vertex ? nearest_skin : touching_skin;
   rebuild(state, std::clamp(2 * refined_sway * travel.absolute, usual_skin, widest_skin));
 }
@@ -100,7 +100,8 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
 }
 
 /// Lists the edges of a group that a circle near the group's bounds can touch: an obstacle within range later
-/// is within range + skin now. @param fine  the refined contour, see refined()
+/// is within range + skin now.
+/// @param fine  the refined contour, see refined()
 void WallContacts::list_by_edge(const Eigen::ArrayXd& fine) {
   constexpr double rounding = 1e-12;
   const int n = static_cast<int>(num_points_);

@@ -38,7 +38,7 @@ struct Seed {
 Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
   const int n = *run.dp.vertices;
   const Eigen::Array2d place = nearest_void(obstacles);
-  // A hundredth less, so that the circle touches nothing.
+  // The room is reduced by a hundredth, so that the circle touches nothing.
   const double room = 0.99 * (clearance(obstacles, place[0], place[1], 2 * radius) - *run.dp.contact_range);
   const double smallest_radius = 4 * run.dp.self_contact_range / (2 * std::numbers::pi);
   if (room < smallest_radius)
@@ -127,8 +127,8 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   FireOptions longer = options;
   longer.max_iterations = 500000;
   bool rests = comes_to_rest(growing, obstacles, forces, options, longer, state);
-  // Then the droplet relaxes with its own interface; springs with a tension of their own start only with the
-  // run.
+  // Then the droplet relaxes with its own interface. Springs that carry tension act only from the start of
+  // the run.
   RunParameters own = run;
   own.dp.inertia = growing.dp.inertia;
   own.dp.receding_angle = growing.dp.receding_angle;

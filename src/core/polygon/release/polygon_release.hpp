@@ -7,8 +7,9 @@
 namespace clog {
 
 /// Puts a small circle into the void nearest to the centre and grows it to full size, relaxing it, so that no
-/// obstacle is ever inside (energy minimisation ignores an obstacle that touches no vertex). @param run
-/// resolved @throws Error if there is no room, or the droplet does not relax
+/// obstacle is ever inside (energy minimisation ignores an obstacle that touches no vertex).
+/// @param run  resolved
+/// @throws Error if there is no room, or the droplet does not relax
 DropletState release_polygon(const RunParameters& run, const ObstacleArray& obstacles);
 
 }  // namespace clog

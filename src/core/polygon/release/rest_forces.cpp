@@ -63,8 +63,8 @@ void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   }
 }
 
-/// Adds the forces of wetted walls and friction, which no kick contains, to the velocities. @param force
-/// memory
+/// Adds the forces of wetted walls and friction, which no kick contains, to the velocities.
+/// @param force  memory
 void RestForces::start_from_forces_of_walls(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::StepArrays& a = memory_.arrays();
   const WettedWalls& walls = forces_->wetted_walls();

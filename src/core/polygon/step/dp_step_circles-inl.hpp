@@ -72,7 +72,7 @@ struct NearestOnHalves {
     distance2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
   }
   HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
-  /// The force stiffness (reach - distance), where they touch.
+  /// The force on half edges that touch the circle, stiffness (reach - distance).
   HWY_INLINE Pair push(M touch, V reach, V stiffness) const {
     // For a point exactly at the centre, the direction is 0 and not NaN.
     const V inverse_distance = square_root(hn::Max(distance2, all(1e-300))).inverse;
@@ -142,8 +142,9 @@ HWY_INLINE bool push_window(const WallWindow& window, V span, V stiffness, const
   return touches;
 }
 
-/// One coordinate of the windows' forces on the vertices from p on. @param p  forces of edges on their first
-/// vertices; a stride later on their second ones, then on the others
+/// One coordinate of the windows' forces on the vertices from p on.
+/// @param p  the forces of edges on their first vertices; one stride behind these are the forces on the
+/// second vertices, and after another stride those on the two others
 HWY_INLINE V push_on_vertices(const double* p, std::ptrdiff_t stride) {
   const double *end = p + stride, *far = end + stride;
   const V far_before = load(far - lanes), far_here = load(far);

@@ -36,7 +36,7 @@ struct EdgeVectors {
 
 /// The points of edges that are closest to given points, one for each edge.
 struct NearestPoints {
-  V along;   ///< of their edge
+  V along;   ///< distance of the point from the first vertex of its edge
   V dx, dy;  ///< from the points given
   V distance2;
 
@@ -55,8 +55,8 @@ struct NearestPoints {
 class EdgePushes {
  public:
   HWY_INLINE EdgePushes() : x_(all(0)), y_(all(0)), along_x_(all(0)), along_y_(all(0)) {}
-  /// Pushes edges off their points by stiffness (reach - distance), where they touch. The closest point
-  /// divides the force between the edge's two vertices.
+  /// Pushes edges off the points that they touch, with the force stiffness (reach - distance). The closest
+  /// point divides the force between the edge's two vertices.
   HWY_INLINE Pair add(const NearestPoints& nearest, M touch, V reach, V stiffness) {
     // For a point exactly on the edge, the direction is 0 and not NaN.
     const V inverse_distance = square_root(hn::Max(nearest.distance2, all(1e-300))).inverse;

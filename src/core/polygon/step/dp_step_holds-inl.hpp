@@ -72,9 +72,10 @@ struct CircleAtVertices {
 };
 
 /// Adds one circle's normal forces and friction to the forces on a group. With films, the sum is separate
-/// until all circles have read the forces of self-contact. Returns the work that the wall took. It is
-/// WallFriction::follow() for a vector of vertices; dp_step.test.cpp compares them. @param pushes  whether
-/// the circle touches vertices of the group
+/// until all circles have read the forces of self-contact. Returns the work that the wall took. This function
+/// does for a vector of vertices what WallFriction::follow() does for a vertex; dp_step.test.cpp compares the
+/// two.
+/// @param pushes  whether the circle touches vertices of the group
 template <bool wets, Films films, bool pushes = true>
 HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCircles& walls,
                         const WallGrip& grip, const StepArrays& a) {
@@ -210,8 +211,8 @@ void find_nearest(int num_groups, const HoldingCircles& walls, const StepArrays&
   });
 }
 
-/// Adds normal forces and friction of circles to the forces of self-contact. @param films  of all circles
-/// that push the droplet
+/// Adds normal forces and friction of circles to the forces of self-contact.
+/// @param films  of all circles that push the droplet
 template <bool wets, Films films>
 double hold_with_films(int n, const HoldingCircles& walls, const WallGrip& grip, V span,
                        const StepArrays& a) {

@@ -126,7 +126,7 @@ inline constexpr int num_window_push_arrays = 6;
 /// Repulsion by circles; see WallPlan.
 struct WallWindows {
   const WallWindow* all;
-  int num_own;  ///< the first of them share no edge with each other
+  int num_own;  ///< number of windows, the first ones, of which no two share an edge
   int num_all;
   /// Groups of vertices that windows may push. Group -1 and the one behind the last belong to the contour's
   /// other end.
@@ -139,7 +139,7 @@ struct HoldingCircle {
   double x, y, radius;  ///< [sigma]
   int first_window, end_window;
   int first_group, end_group;  ///< of vertices that it may push, by itself or through films
-  int end_own_group;           ///< behind the groups that it may push by itself, which come first
+  int end_own_group;           ///< end of the first groups, which the circle may push by itself
   bool wraps;                  ///< whether it pushes vertices -1, n or n + 1, which belong to the other end
   WindowPushArrays pushes;     ///< of this circle
 };

@@ -127,8 +127,8 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
   }
   rates_.fastest = now.speed;
   kernel_.clear_pushes(n_, a);  // the lists may name other groups than before
-  // A contact accelerates the vertices in it, by at most half its depth per step, for a few steps. `travel`
-  // does not include this.
+  // A contact accelerates its vertices. For a few steps, they therefore move farther by up to half of the
+  // contact's depth per step, which `travel` does not include.
   constexpr double thrown = 4;
   const double unforeseen =
       0.1 * forces_->vertex_diameter() +
@@ -273,7 +273,7 @@ void DpStepper::add_wetting(DropletState& state, double impulse, Droplet::Work* 
   }
 }
 
-/// The interface slips along walls where their limits are exceeded; there the limiting force acts on the
+/// The interface slips along walls where the walls' limits are exceeded; there the limiting force acts on the
 /// vertices.
 void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();

@@ -26,15 +26,16 @@ inline constexpr double most_steps_per_rate = 4, farthest_way_per_rate = 0.2;
 /// its state.
 class DpStepper {
  public:
-  /// @param run  resolved parameters @param obstacles  must outlive this object @param forces  of the same
-  /// run, whose contact lists are renewed when needed; must outlive this object
+  /// @param run  resolved parameters
+  /// @param obstacles  must outlive this object
+  /// @param forces  of the same run, whose contact lists are renewed when needed; must outlive this object
   DpStepper(const RunParameters& run, const ObstacleArray& obstacles, DpForces& forces);
 
   /// Rebuilds the contact lists of a droplet.
   void start_afresh(const DropletState& state);
   /// Moves a droplet by `num_steps` time steps of the run, in shorter ones if they would be unstable; stops
-  /// if it bursts. Returns the number of steps taken. @param work  if not null, the work of drag and springs
-  /// is added to it
+  /// if it bursts. Returns the number of steps taken.
+  /// @param work  if not null, the work of drag and springs is added to it
   std::int64_t move(DropletState& state, int num_steps, Droplet::Work* work);
   /// The same with these steps, without regard to the run's time step and the bounds of stability. Possible
   /// contacts are surveyed before each entry. An implicit pressure excludes near-wall drag.
@@ -44,19 +45,19 @@ class DpStepper {
   /// Possible contacts of the droplet before the next survey.
   struct Near {
     NearContacts contacts{};
-    WallPlan plan;                             // without holds_circles_
-    WallHold hold;                             // with holds_circles_
+    WallPlan plan;                             // used if holds_circles_ is false
+    WallHold hold;                             // used if holds_circles_ is true
     std::vector<kernel::WedgePlace> wedges{};  // in the droplet's frame
   };
-  /// Friction on vertices, without holds_circles_.
+  /// Friction on vertices; used if holds_circles_ is false.
   struct VertexFriction {
     WallTouches touches;
     Eigen::ArrayXd force;     // all x then all y; zero between steps
-    bool has_pushed = false;  // in the last step
+    bool has_pushed = false;  // whether `force` acted in the last step
   };
   struct KeptRates {
     double fastest = 0;  // speed of a vertex at the last survey [sqrt(sigma g)]
-    int steps_left = 0;  // for which the present rates may still be used
+    int steps_left = 0;  // number of steps for which the present rates may still be used
     double h1 = 0, h2 = 0;
   };
   /// The step whose last half kick is pending.

@@ -16,7 +16,7 @@ kernel::Contact contact_as_kick(const RunParameters& run, const DpForces& forces
 kernel::InterfaceKick interface_kick(const InterfaceTerms& interface, double impulse);
 /// A force on the area as a kick, including the reaction of the springs along the interface.
 kernel::AreaForce area_force(const kernel::Sums& sums, const Eigen::Array2d& kick);
-/// In the coordinates of a droplet.
+/// The wedges in the coordinates of a droplet.
 std::vector<kernel::WedgePlace> wedges_in(const LocalFrame& frame, const std::vector<Wedge>& wedges);
 
 }  // namespace clog

@@ -27,8 +27,9 @@ class WallHold {
   /// @param film_reach  see kernel::WallGrip
   WallHold(int num_vertices, double range, double film_reach);
 
-  /// Takes over the droplet's anchors. @param vertices  positions of its vertices Returns half the sum of the
-  /// squared slips of those anchors that none of these circles can hold [sigma^2].
+  /// Takes over the droplet's anchors. Returns half the sum of the squared slips of those anchors that none
+  /// of these circles can hold [sigma^2].
+  /// @param vertices  positions of the droplet's vertices
   double make(const Near& near, const kernel::ContourPair& vertices, DropletState& droplet);
   /// Copies the anchors into the droplet, if make() was called since forget().
   void hand_back(DropletState& droplet) const;

@@ -62,7 +62,7 @@ struct ContactLine::Beside {
 
 namespace {
 
-/// u of a wedge.
+/// The place u on the surface of a wedge, see Beside.
 double place_on(const Wedge& wedge, const Eigen::Array2d& from_centre) {
   const Eigen::Array2d across_axis{-wedge.axis[1], wedge.axis[0]};
   const double across = (from_centre * across_axis).sum();
@@ -172,7 +172,7 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
       double sum = zone.wall.wedge >= 0 ? here.on_wedge
                                         : zone.wall.radius * portable::atan2(here.normal[1], here.normal[0]);
       double way_before = 0;
-      Eigen::Array2d carried = here.forward;  // weight that the present vertex's u has so far
+      Eigen::Array2d carried = here.forward;  // coefficient of the present vertex's u in `sum`, times forward
       for (Index j = k;; j += step) {
         const bool is_last = j == last;
         const Index next = around(vertex(j).vertex + step, n);

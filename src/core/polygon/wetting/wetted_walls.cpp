@@ -12,7 +12,7 @@
 namespace clog {
 namespace {
 
-/// From vertex i to the next.
+/// The edge from vertex i to the next vertex.
 Eigen::Array2d edge_of(const VertexPlaces& vertices, int i) {
   const int end = i + 1 < vertices.size ? i + 1 : 0;
   return {vertices.x[end] - vertices.x[i], vertices.y[end] - vertices.y[i]};

@@ -23,9 +23,9 @@ struct VertexPair {
 /// wherever the vertex goes, also in a concave corner, where two edges are equally near. Edges close along
 /// the contour do not count as contact, because otherwise every vertex would touch its neighbours. Close
 /// means both of the following: less than three ranges away along the present contour, and fewer vertices
-/// away than make up three ranges at rest. In a compressed contour the number of vertices decides; it is
-/// fixed, so that contacts there do not depend on when the pairs were made. In a stretched one the length
-/// decides, so that long edges cannot cross in a sharp fold.
+/// away than make up three ranges at rest. In a compressed contour the number of vertices decides; this
+/// number is fixed, so that contacts there do not depend on when the pairs were made. In a stretched contour
+/// the length decides, so that long edges cannot cross in a sharp fold.
 class SelfContacts {
  public:
   struct Pair {
@@ -43,8 +43,8 @@ class SelfContacts {
   /// Renews the pairs if the shape may change too much before the next update.
   void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
-  /// Whether the pairs stay valid until the next update. Does not change them. @param moved  bound on the
-  /// displacement of any vertex since renew(), relative to the mean of all [sigma]
+  /// Whether the pairs stay valid until the next update. Does not change them.
+  /// @param moved  bound on the displacement of any vertex since renew(), relative to the mean of all [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
   /// Positions of the vertices at the last renew(), relative to their mean, all x then all y, followed by
@@ -59,7 +59,8 @@ class SelfContacts {
 
   /// The same pairs for vectors: a group of WallContacts::edges_per_group edges and as many consecutive
   /// vertices. Opposite strands run in opposite directions, so the last of these vertices is paired with the
-  /// first edge. In a strand that is compressed until it touches itself, the first vertex is paired with it.
+  /// first edge. In a strand that is compressed until it touches itself, the first vertex is paired with the
+  /// first edge.
   struct Item {
     int edges;           ///< first edge of a group
     int vertices;        ///< first vertex; numbers from N on stand for the contour's first vertices
@@ -76,7 +77,7 @@ class SelfContacts {
   std::vector<Pair> pairs_;
   std::vector<Item> items_;
   std::vector<double>
-      along_;  // distance along the contour from vertex 0; behind the last vertex, the whole length
+      along_;  // distance along the contour from vertex 0; behind the last entry, the length of the contour
   std::vector<double> contour_;  // x, y and along_, with the beginning repeated; see kernel::CloseSearch
   std::vector<double> groups_;   // memory of the search
   std::vector<kernel::VertexPair> close_;

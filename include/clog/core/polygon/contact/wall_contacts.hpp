@@ -27,8 +27,8 @@ class WallContacts {
   void update(const DropletState& state, const Travel& travel);
   /// Discards the lists: positions changed by more than a move (a new frame origin, a rescaled polygon).
   void invalidate() { reference_.resize(0); }
-  /// Whether the lists stay valid until the next update. Does not change them. @param moved  bound on the
-  /// displacement of any vertex since renew() [sigma]
+  /// Whether the lists stay valid until the next update. Does not change them.
+  /// @param moved  bound on the displacement of any vertex since renew() [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
   /// Positions of the vertices at the last renew(), all x then all y, followed by room for a whole vector;
@@ -40,9 +40,9 @@ class WallContacts {
   bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
   double largest_radius() const { return largest_radius_; }
 
-  /// The lists, sorted by obstacle. Each item is a circle and a group of `edges_per_group` edges (vertices),
-  /// at least one of which lists the circle. Those of edges are sorted by circle, then group; those of
-  /// vertices by group.
+  /// The lists by obstacle. Each item is a circle and a group of `edges_per_group` edges (vertices), at least
+  /// one of which lists the circle. Items of edges are sorted by circle, then by group; items of vertices are
+  /// sorted by group.
   struct Item {
     double x, y;   ///< centre, relative to the state's frame [sigma]
     double reach;  ///< radius + range [sigma]

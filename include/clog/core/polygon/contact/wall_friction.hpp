@@ -34,9 +34,11 @@ class WallFriction {
   /// [g rho sigma^3]
   double energy(const DropletState& state) const;
   /// Moves anchors whose springs exceed the limit, adds anchors of new contacts, and removes those of ended
-  /// contacts. @param state the droplet whose anchors are updated @param touches where walls push the droplet
-  /// now @param known working memory; its content has no meaning before and after @param force  if not null,
-  /// the forces of the springs are added to it: all x, then all y [g rho sigma^2]
+  /// contacts.
+  /// @param state  the droplet whose anchors are updated
+  /// @param touches  where walls push the droplet now
+  /// @param known  working memory; its content has no meaning before and after
+  /// @param force  if not null, the forces of the springs are added to it: all x, then all y [g rho sigma^2]
   WallYield follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
                    KnownAnchors& known, Eigen::ArrayXd* force = nullptr) const;
 

@@ -20,8 +20,9 @@ class WallTouches {
   /// @param run  resolved parameters  @param obstacles  must outlive this
   WallTouches(const RunParameters& run, const ObstacleArray& obstacles);
 
-  /// @param circles  all possible contacts @param self  for friction through films @return valid until the
-  /// next call
+  /// @param circles  all possible contacts
+  /// @param self  for friction through films
+  /// @return valid until the next call
   const std::vector<WallTouch>& find(const Contour& contour, const LocalFrame& frame,
                                      std::span<const WallContacts::Item> circles, const SelfContacts& self);
   const std::vector<WallTouch>& find(const DropletState& state, std::span<const WallContacts::Item> circles,

@@ -10,9 +10,9 @@ inline constexpr double nearly_rigid_tension = 30;
 
 /// The automatic N_v. The corners of a polygon that hangs over an obstacle can hold up to x^2/16 of the
 /// weight: x = l/R', where l is the length of the edges on the obstacle, and R' the radius at which they lie.
-/// N_v limits this to half a percent for the longest expected edges, and is between 128 and 1024. @param
-/// obstacle_diameter of the smallest obstacle over which the droplet can hang, infinite if there is none
-/// [sigma]
+/// N_v limits this to half a percent for the longest expected edges, and is between 128 and 1024.
+/// @param obstacle_diameter  of the smallest obstacle over which the droplet can hang, infinite if there is
+/// none [sigma]
 int automatic_vertices(const RunParameters& run, double obstacle_diameter);
 
 /// Half a vertex diameter, the published range of contact [sigma].
@@ -20,8 +20,8 @@ double half_vertex_diameter(const DpParameters& dp);
 
 /// The automatic K_l [g rho sigma]: a fraction of Gamma for springs to the rest length; 1 for those to the
 /// mean length; 0.003/V_t for those along the interface, which even out vertices at a rate of (2 pi)^2 K_l
-/// V_t/M = 0.15/t0. Stiffer springs of the last kind fluttered at weak drag, because their force derives from
-/// no potential energy.
+/// V_t/M = 0.15/t0. Stiffer springs along the interface fluttered at weak drag, because their force derives
+/// from no potential energy.
 double automatic_perimeter_stiffness(const RunParameters& run);
 
 /// Largest expected pressure difference across the interface of a droplet held by obstacles [g rho sigma]:

@@ -36,8 +36,8 @@ class DpForces {
   void update_contacts(const DropletState& state, const Travel& travel);
   /// Whether update_contacts() would leave the lists unchanged. Also returns false if the answer depends on
   /// more of the state than these bounds.
-  /// @param moved  bound on the displacement of any vertex since walls() were renewed [sigma] @param
-  /// moved_relative the same, relative to their mean, since self_contacts() were renewed [sigma]
+  /// @param moved  bound on the displacement of any vertex since walls() were renewed [sigma]
+  /// @param moved_relative  the same, relative to their mean, since self_contacts() were renewed [sigma]
   bool contacts_hold(double moved, double moved_relative, const Travel& travel) const;
   /// Whether there are valid contact lists.
   bool has_contact_lists() const {

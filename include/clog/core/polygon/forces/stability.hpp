@@ -30,8 +30,8 @@ inline constexpr double auto_contact_omega_dt2 = 0.5;
 /// droplets chattered instead of resting.
 inline constexpr double max_contact_omega_dt2 = 1.0;
 inline constexpr double max_total_omega_dt2 = 3.0;
-/// The same for a droplet in contact with itself. It is larger, because self-contact is rare, and softer
-/// than StiffModes::self_contact assumes.
+/// Largest accepted (omega dt)^2 of all modes together for a droplet in contact with itself. This bound is
+/// larger, because self-contact is rare, and softer than StiffModes::self_contact assumes.
 inline constexpr double max_total_with_self_omega_dt2 = 3.9;
 /// The area mode is anharmonic in the perimeter, so it has a bound of its own. With a bound of 1.25, three
 /// times as many droplets without drag diverged (docs/notes/2026-11-26-time-step.md).
@@ -46,7 +46,7 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
 
 /// Largest time step [t0] that keeps every bound above.
 double largest_stable_step(const StiffModes& modes);
-/// The same with an implicit pressure (see Pressure).
+/// Largest time step [t0] if the pressure is implicit (see Pressure).
 double largest_step_with_implicit_pressure(const StiffModes& modes);
 
 /// A droplet that needs more sub-steps for one time step has burst; the run ends at its next check.
@@ -55,7 +55,8 @@ inline constexpr int most_substeps = 1000;
 enum class Pressure {
   present,  ///< the pressure of the present area
   /// The pressure of the area that the droplet would have if its present acceleration lasted for a step
-  /// (docs/explanation/numerics.md). With it, (omega dt)^2 of the area mode is below 1 for every step.
+  /// (docs/explanation/numerics.md). With this pressure, (omega dt)^2 of the area mode is below 1 for every
+  /// step.
   implicit
 };
 /// Steps of equal length [t0].
@@ -66,8 +67,8 @@ struct Steps {
 };
 /// The fewest steps that cover `steps` time steps and keep every bound: at least `steps`, at most
 /// most_substeps times as many. The number is exact up to 2 `steps`; beyond, where shapes are far from the
-/// regular polygons of the bounds, it is a multiple of `steps`. @param most  Pressure::implicit: the pressure
-/// may be implicit if this saves steps
+/// regular polygons of the bounds, it is a multiple of `steps`.
+/// @param most  Pressure::implicit: the pressure may be implicit if this saves steps
 Steps stable_steps(const StiffModes& modes, int steps, double time_step, Pressure most);
 
 }  // namespace clog

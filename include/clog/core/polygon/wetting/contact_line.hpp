@@ -20,8 +20,8 @@ bool has_hysteresis(const DpParameters& dp);
 struct WettedShare {
   double share, slope;
 };
-/// A smooth step from 1 where contact begins to 0 in `width` beyond it, so that energies and forces are
-/// continuous.
+/// The wetted fraction is a smooth step, so that energies and forces are continuous: it is 1 where contact
+/// begins, and 0 farther than `width` beyond this distance.
 inline WettedShare wetted_share(double distance, double contact_range, double width) {
   const double t = std::clamp((contact_range + width - distance) / width, 0.0, 1.0);
   return {t * t * t * (10 + t * (6 * t - 15)), -30 * t * t * (1 - t) * (1 - t) / width};
@@ -31,8 +31,9 @@ inline WettedShare wetted_share(double distance, double contact_range, double wi
 /// slips by half a vertex diameter times the difference of the angles' cosines before its spring reaches the
 /// limit.
 inline constexpr double pinning_stiffness = 2;
-/// Bound on the squared norm of the gradient of q, which results from the wetted fractions of the last
-/// vertices and from the change of these fractions with the distances of the vertices from the wall.
+/// Bound on the squared norm of the gradient of q (see ContactLine), which results from the wetted fractions
+/// of the last vertices and from the change of these fractions with the distances of the vertices from the
+/// wall.
 inline constexpr double pinning_gradient2 = 1.5;
 
 /// The vertices of a droplet.
@@ -48,9 +49,10 @@ struct VertexPlaces {
 /// Contact-angle hysteresis. The end of a wetted arc is at q = u_m + sum share_e (u_e' - u_e) along the wall,
 /// with u the coordinate along the wall, summed over the edges e from a wetted vertex m outwards, share_e
 /// their wetted fraction; positive outwards. Where the interface is smooth, the gradient of q is normal to
-/// it, so q does not depend on the positions of vertices. A spring holds it, U = (k_p/2) (q - q*)^2, -Gamma
-/// (cos Y - cos A) <= f <= Gamma (cos R - cos Y), with Y, A, R Young's, the advancing and the receding angle.
-/// Beyond these limits the spring pulls its anchor q* along, so that the force stays at the limit.
+/// it, so q does not depend on the positions of vertices. A spring with the force f holds q: U = (k_p/2) (q -
+/// q*)^2, -Gamma (cos Y - cos A) <= f <= Gamma (cos R - cos Y), with Y, A, R Young's, the advancing and the
+/// receding angle. Beyond these limits the spring pulls its anchor q* along, so that the force stays at the
+/// limit.
 class ContactLine {
  public:
   /// @param run  resolved parameters  @param wedges  must outlive this
@@ -122,7 +124,7 @@ class ContactLine::Ends {
   friend class ContactLine;
   std::vector<End> all_;
   std::vector<Gradient> gradients_;
-  std::vector<Zone> zones_;  // of which the first are used
+  std::vector<Zone> zones_;  // only the first num_zones_ are in use
   std::size_t num_zones_ = 0;
   struct Match {
     double way;

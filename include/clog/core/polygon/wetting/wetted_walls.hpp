@@ -23,7 +23,7 @@ class WettedWalls {
   bool is_on() const { return extra_tension_ != 0 || line_.is_on(); }
   bool hold_ends() const { return line_.is_on(); }
 
-  /// Lists of the obstacles near the vertices, only for wetted walls; see WallContacts.
+  /// Lists of the obstacles near the vertices, in use only if walls are wetted; see WallContacts.
   WallContacts& lists() { return lists_; }
   const WallContacts& lists() const { return lists_; }
 
@@ -71,7 +71,7 @@ class WettedWalls {
 
  private:
   double extra_tension_;  // of a wetted wall [g rho sigma^2]
-  bool spreads_;          // do springs carry no tension?
+  bool spreads_;          // whether springs act only along the interface
   double contact_range_, width_;
   const ObstacleArray* obstacles_;
   WallContacts lists_;
