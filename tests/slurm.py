@@ -165,7 +165,7 @@ class Slurm(SweepTest):
         """@return the number of the job that an urgent job has preempted"""
         job = self.submit("--nodes=2", "--ntasks-per-node=1", f"--partition={partition}")
         self.wait_for_runs_with_snapshots()
-        urgent = slurm("sbatch", "--parsable", "--partition=urgent", "--nodes=2", "--exclusive", "--output=/dev/null", "--wrap=sleep 5").strip()
+        urgent = slurm("sbatch", "--parsable", "--partition=urgent", "--nodes=2", "--ntasks-per-node=2", "--output=/dev/null", "--wrap=sleep 5").strip()
         self.wait_for_state(urgent, "COMPLETED")
         return job
 
@@ -193,6 +193,8 @@ class Slurm(SweepTest):
 
     def test_a_suspended_job_goes_on(self):
         self.configure("PreemptMode=REQUEUE", "PreemptMode=SUSPEND,GANG")
+        # Slurm suspends a job only if both partitions may share processors.
+        self.configure("PartitionName=requeue Nodes=ALL", "PartitionName=DEFAULT OverSubscribe=FORCE:1\nPartitionName=requeue Nodes=ALL")
         job = self.preempt("requeue")
         self.assertNotEqual(described("job", job)["SuspendTime"], "None")
         self.check_completed(job, restarts=0)
