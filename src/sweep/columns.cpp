@@ -191,7 +191,8 @@ Column filling_column() {
 Column density_column() {
   Column column = member(
       "obstacle_density", &RunRow::obstacle_density, ColumnRole::parameter, "1/sigma^2",
-      "obstacles per area; in saturated arrays the jamming limit 0.6966/(w_ob+sigma_ob)^2, NaN for mixtures");
+      "obstacles per area; in saturated arrays the jamming limit 0.6966/(w_ob+sigma_ob)^2, or NaN if their "
+      "obstacles have different diameters");
   column.symbol = parameter("obstacle-density").symbol;
   column.shapes_array = true;
   column.set = [](RunRow& row, const Value& value) {
@@ -237,7 +238,8 @@ std::vector<Column> make_columns() {
   using enum ColumnRole;
   std::vector<Column> all = {
       member("task", &RunRow::task, circumstance, "", "number of the task in its sweep")};
-  // Parameters that decide which others apply come first.
+  // The columns `model` and `obstacle_filling` come first, because they decide which other parameters a run
+  // has.
   for (const Parameter& one : parameter_schema()) {
     if (one.has_own_column) all.push_back(parameter_column(one));
     if (one.key == std::string_view("model")) all.push_back(filling_column());
@@ -245,10 +247,11 @@ std::vector<Column> make_columns() {
   all.push_back(density_column());
   const std::vector<Column> others = {
       // Allows any word: presets of another version may have other names.
-      member("preset", &RunRow::preset, parameter, "",
-             "preset with these values of the interface's keys; custom: no preset has these values; none: "
-             "soft disk",
-             16),
+      member(
+          "preset", &RunRow::preset, parameter, "",
+          "preset with the run's values of the interface's keys; custom: no preset has these values; none: "
+          "soft disk",
+          16),
       member("model_version", &RunRow::model_version, parameter, "",
              "version of the model; versions give different results for the same parameters"),
       member("status", &RunRow::status, result, "",
@@ -285,8 +288,8 @@ std::vector<Column> make_columns() {
       member("shape_parameter", &RunRow::shape_parameter, result, "",
              "A = perimeter^2/(4 pi area) at the end; 1 for a circle"),
       member("mechanism", &RunRow::mechanism, result, "",
-             "wrapped, squeezed or hybrid (docs/explanation/clogged.md); none: not clogged, or no touched "
-             "obstacle makes a gap; empty: unknown",
+             "wrapped, squeezed or hybrid (docs/explanation/clogged.md); none: not clogged, or clogged by "
+             "another mechanism; empty: unknown",
              16),
       member("wrapped_support", &RunRow::wrapped_support, result, "",
              "fraction of the upstream support that wrapped obstacles give; NaN unless the droplet is a "
@@ -315,9 +318,9 @@ std::vector<Column> make_columns() {
       member("smallest_relative_speed_at", &RunRow::smallest_relative_speed_at, result, "sigma",
              "h at which the droplet had this speed"),
       member("sag", &RunRow::sag, result, "sigma",
-             "delta_s, how far the centroid of a droplet on a flat wall has sunk; NaN elsewhere"),
+             "delta_s, how far the centroid of a droplet on a flat wall has sunk; NaN for other runs"),
       member("top_sag", &RunRow::top_sag, result, "sigma",
-             "how far the highest point of a droplet on a flat wall has sunk; NaN elsewhere"),
+             "how far the highest point of a droplet on a flat wall has sunk; NaN for other runs"),
       number_in(
           "thinnest_neck", [](auto& row) -> auto& { return row.neck.width; }, "sigma",
           "smallest width of a neck between two lobes during the run (docs/explanation/wrapped.md); NaN: no "
@@ -327,9 +330,9 @@ std::vector<Column> make_columns() {
           "distance at which the droplet had this neck"),
       member("release_x", &RunRow::release_x, result, "sigma",
              "place of release of the centre of mass in the coordinates of user-supplied circles, possibly a "
-             "little outside the array; NaN elsewhere"),
+             "little outside their array; NaN for other obstacles"),
       member("release_y", &RunRow::release_y, result, "sigma",
-             "place of release across the flow, in the same coordinates; NaN elsewhere"),
+             "place of release across the flow, in the same coordinates; NaN for other obstacles"),
       member("steps", &RunRow::steps, result, "",
              "number of integrated steps; each sub-step counts as one step"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",

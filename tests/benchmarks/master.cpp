@@ -1,12 +1,13 @@
-/// Measures how busy a master is with a thousand workers whose tasks take a second. Its work depends on the
-/// messages alone: it gets a thousand rows a second, and answers each with a task. Here a few workers send as
-/// many rows, because their tasks sleep for less than a second. Everything else is as in clogsweep: the
-/// scheduler, MPI, the table of runs on the disk.
+/// Measures how busy the master (rank 0) is with a thousand workers whose tasks take a second each. The work
+/// of the master depends only on the messages: it receives a thousand rows per second, and answers each with
+/// a new task. Here a few workers send as many rows, because their tasks only sleep, for less than a second.
+/// Everything else is as in clogsweep: the scheduler, MPI, the table of runs on the disk.
 ///   tests/mpirun.sh 5 bench_master [tasks per second] [seconds]
 /// With 0 tasks per second every worker sleeps in one long task; this measures the cost of waiting.
 ///   bench_master rows 1000000
-/// Measures the memory of a row of soft disks, the longest time for which the master is busy with the table
-/// and its journal and does not answer, and the times for a stop and a restart of the sweep.
+/// Measures the memory per row in a sweep of soft disks, the longest time for which the master does not
+/// answer because it is busy with the table and its journal, and the times for a stop and a restart of the
+/// sweep.
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -57,7 +58,7 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// Sleeps, in slices like those in which a run computes.
+/// A job that sleeps instead of computing, in slices like those of a run.
 class SleepingJob final : public sweep::Job {
  public:
   SleepingJob(const sweep::Plan& plan, std::int64_t task, double seconds)

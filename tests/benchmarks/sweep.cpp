@@ -1,6 +1,6 @@
 /// Measures the cost of runs of real sweeps: per vertex and step, and from release to verdict. For
-/// comparison, it measures the two passes of a step without contacts on the same core. No real step can be
-/// faster. Slices of the run and of this bare step alternate.
+/// comparison, it measures on the same core a bare step, that is the two passes (kick and drift) of a step
+/// without contacts. No real step can be faster. Slices of the run and of the bare step alternate.
 
 #include <algorithm>
 #include <cmath>

@@ -86,7 +86,8 @@ int main(int argc, char** argv) {
   for (int sample = 0; sample < 101; ++sample) {
     std::vector<double> lengths = resample(recorded, num_seeds, engine);
     const auto num_tasks = static_cast<std::int64_t>(lengths.size());
-    // No order can take less time than this, although workers are seldom all busy to the end.
+    // A lower bound for every order of the tasks. It is seldom reached, because workers are seldom all busy
+    // to the end.
     const double least = std::max(std::accumulate(lengths.begin(), lengths.end(), 0.0) / num_workers,
                                   *std::max_element(lengths.begin(), lengths.end()));
     planned.push_back(finish_time(lengths, num_workers, order_of(num_tasks)) / least);

@@ -3,10 +3,10 @@
 
     compare.py --clogfit build/release/bin/clogfit sweep.h5 [sweep.h5 ...]
 
-Runs are the same if both clogged within 0.02 sigma of each other, or neither did. Prints a row per preset, gap and line
-tension, with a cell per number of vertices: the number of same runs, the median distance between the two clogs of a
-seed [sigma], and lambda with its 95 % interval by clogfit [sigma]. The last rows have the sums, and the time that the
-runs took.
+Two runs count as the same if both clogged within 0.02 sigma of each other, or neither clogged. Prints a row per preset,
+gap and line tension, with a cell per number of vertices: the number of same runs, the median distance between the two
+clogs of a seed [sigma], and lambda with its 95 % interval by clogfit [sigma]. The last rows have the sums, and the time
+that the runs took.
 """
 
 import argparse
@@ -25,7 +25,7 @@ def fits(clogfit, path):
 
 
 def compared(runs, finest):
-    """Every run beside the run of the same seed with the most vertices."""
+    """Joins every run with the run of the same seed that has the most vertices."""
     both = runs.set_index("seed").join(finest.set_index("seed"), rsuffix="_finest", how="inner")
     both["both_clog"] = (both.status == "clogged") & (both.status_finest == "clogged")
     both["apart"] = (both.distance - both.distance_finest).abs()

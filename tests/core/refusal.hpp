@@ -20,7 +20,7 @@ inline std::string refusal_of(const RunParameters& run) {
   return "";
 }
 
-/// Expects one line with these words.
+/// Expects that resolve() refuses these parameters with a message of one line that contains the words.
 inline void expect_refused(const RunParameters& run, std::string_view words) {
   const std::string message = refusal_of(run);
   EXPECT_NE(message.find(words), std::string::npos) << words << "\nis not in\n" << message;

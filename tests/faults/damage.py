@@ -9,7 +9,7 @@ def overwrite(chance, content, places):
 
 
 def put_a_number(chance, content, places):
-    """Changes a number as a wrong offset, size or count would change it."""
+    """Overwrites some bytes with a number that could be read as a wrong offset, size or count."""
     width = chance.choice([1, 2, 4, 8])
     number = chance.choice([*NUMBERS, len(content), chance.randrange(2 * len(content))]) % 256**width
     begin = chance.choice(places) // width * width

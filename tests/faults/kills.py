@@ -72,7 +72,8 @@ class Faults:
 
     @staticmethod
     def wait(case, process, sent):
-        """A process that was not killed ends by itself, with a code of docs/reference/exit-codes.md."""
+        """Waits for the end of a process. If it was not killed, it must end by itself, with a code of
+        docs/reference/exit-codes.md."""
         is_killed = any(number == signal.SIGKILL for _, number in sent)
         try:
             code = process.wait(timeout=PATIENCE) if is_killed else wait_for(process.pid, process.wait)

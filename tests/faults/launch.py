@@ -44,7 +44,8 @@ def run(case, name, *arguments, prepare=None, ranks=None, exit_codes=EXIT_CODES,
     """Runs one of the programs in the case's folder, records forbidden behaviour, and returns its outcome.
 
     @param prepare  called in the new process before the program begins
-    @param streams  stdin, stdout, stderr as subprocess has them; nothing, and pipes that are read
+    @param streams  stdin, stdout and stderr as for `subprocess.Popen`; by default stdin is empty, and the outputs are
+    read
     """
     streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams}
     process = subprocess.Popen(command(name, *arguments, ranks=ranks), cwd=case.folder, preexec_fn=prepare,

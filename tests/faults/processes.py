@@ -57,8 +57,8 @@ def is_alive(pid):
 
 
 class Limits:
-    """Distinguishes processes that hang from processes that a busy machine slows down: among these, at least one always
-    has work."""
+    """Distinguishes processes that hang from processes that a busy machine slows down. Of slow processes at least one
+    always has work; hanging ones all wait, or use too much processor time."""
 
     def __init__(self):
         self.idle_seconds = 0

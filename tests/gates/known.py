@@ -6,7 +6,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# If nothing else tells what changed, this number of last commits is looked at: as many as a push may bring.
+# If nothing else tells what changed, the files of this number of last commits count as changed: a push may bring so
+# many.
 LAST_COMMITS = 10
 
 

@@ -41,8 +41,8 @@ def type_of(column):
 
 
 def columns(schema):
-    """Columns with the name and value of a key share a paragraph; columns whose meanings differ only in numbers share
-    an entry."""
+    """The list of columns. One paragraph names all columns that have the name and the value of a key. Other columns
+    have entries; columns whose meanings differ only in numbers share one."""
     key_of = {(key.get("column"), key.get("meaning")): key["key"] for key in schema["keys"]}
     named, rows = [], {}
     for column in schema["columns"]:

@@ -28,7 +28,8 @@ WRITTEN = {
 
 
 def first(root, file, pattern):
-    """The newest release comes first in the changelog."""
+    """The first match of a pattern in a file, which in the changelog is that of the newest release; None if there is
+    none."""
     found = re.search(pattern, (root / file).read_text(), re.MULTILINE)
     return found.group(1) if found else None
 

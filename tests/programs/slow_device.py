@@ -1,4 +1,4 @@
-"""Devices of a user, in runs that take long."""
+"""Tests devices of a user in runs that take long."""
 
 import unittest
 

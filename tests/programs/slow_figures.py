@@ -1,4 +1,4 @@
-"""All figures of the article, small."""
+"""Draws all figures of the article from small sweeps."""
 
 import unittest
 

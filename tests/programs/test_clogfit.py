@@ -92,7 +92,8 @@ class Fit(ProgramTest):
         told = self.succeed("clogfit", "sweep.h5", "--pool", "max-time").stdout
         self.assertIn("4 runs repeat droplets of longer runs and do not count (--pool)\n", told)
         self.assertIn("groups that differ only in max-time are joined (--pool)\n", told)
-        # With another number of boxes the array is another one.
+        # With another number of boxes the same seed gives another array, so these runs repeat no droplets and all
+        # count.
         self.succeed("clogsweep", "merge", "short.h5", "wide.h5", "--output", "boxes.h5")
         group, = json.loads(self.succeed("clogfit", "boxes.h5", "--format", "json", "--pool=boxes,max-time").stdout)["groups"]
         self.assertEqual((group["runs"], group["repeated"]), (8, 0))
@@ -503,7 +504,8 @@ class Fit(ProgramTest):
 
     def test_own_circles_have_a_share_along_the_rows_that_are_stated(self):
         disks = ["model=sp", "wall-stiffness=10", "max-time=1500"]
-        # A rhombic lattice with a shift of a quarter has these posts: 2 x 4 columns of 8.
+        # These are the posts of a rhombic lattice whose columns are shifted by a quarter of the pitch: 8 columns of 8
+        # posts.
         posts = [(1.5 * i + 0.1, (1.5 * (j + i / 4)) % 12) for i in range(8) for j in range(8)]
         self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x, y in posts))
         self.succeed("clogsweep", *disks, "obstacles=posts.csv", "box=12", "seeds=1..3", "release=anywhere", "--output", "sweep.h5")

@@ -112,7 +112,7 @@ class Run(ProgramTest):
         travelled = centroid_x(polygons[-1]) - centroid_x(polygons[0])
         self.assertAlmostEqual(travelled, samples["distance"][-1], places=10)
         self.assertGreater(len(obstacles), 5)
-        # Vertices may be inside the contact range of obstacles by some hundredths of an edge, which is 0.05 long.
+        # Contact is soft: vertices may be inside an obstacle by some hundredths of an edge, which is 0.05 long.
         for x, y in polygons.transpose(0, 2, 1).reshape(-1, 2):
             gaps = np.hypot(obstacles[:, 0] - x, obstacles[:, 1] - y) - obstacles[:, 2] / 2
             self.assertGreater(gaps.min(), -0.002)
@@ -213,8 +213,8 @@ class Run(ProgramTest):
         self.assertEqual(table(self.folder / "creep.h5").status[0], "flowing")
 
     def test_a_droplet_at_rest_is_certified_although_its_walls_yield_many_times(self):
-        # Friction acts on both interfaces of the droplet. The kinetic energy falls by a factor of 10 in 330 t0, so the
-        # search is shortly before 2400 t0.
+        # Friction acts on both parts of the interface that lie over an obstacle. The kinetic energy falls by a factor
+        # of 10 in 330 t0, and the search for a rest begins shortly before max-time.
         done = self.succeed("clogrun", "array", "preset=elastic", "friction=0.2", "line-tension=0.1", "vertices=256", "obstacle-gap=0.3",
                             "obstacle-density=saturated", "box=40", "seeds=1", "max-time=2400", "--output", "rest.h5")
         self.assertIn("clogged after r = 1.328", done.stdout)

@@ -373,7 +373,7 @@ class Isolated(ProgramTest):
         sweep = ["seeds=1", "max-time=2e4", "--report-seconds=0.1"]
         process = self.start(*sweep)
         computing = self.computing_process(process)
-        # Before its first snapshot the run would begin again.
+        # Waits for the first snapshot, because without a snapshot the resumed run would begin again.
         self.wait_for(lambda: table(self.folder / "s.h5").steps.gt(STEPS_PER_SNAPSHOT).any())
         os.kill(computing, signal.SIGSTOP)
         time.sleep(0.5)  # in this time the rank requests reports

@@ -124,7 +124,7 @@ class Failing(ProgramTest):
 
 
 class Parameters(ProgramTest):
-    """The line above the table of clogfit and of clogsweep status."""
+    """Tests lines of configs, and the line of parameters above the tables of clogfit and clogsweep status."""
 
     def test_a_line_of_a_config_that_is_no_setting_is_named(self):
         # The first line once made Boost loop for ever, because Boost replaces names between percent signs in its

@@ -154,7 +154,8 @@ class Devices(Walls):
         group, = json.loads(self.succeed("clogfit", "s.h5", "--dwell", 1000, "--format", "json").stdout)["groups"]
         self.assertEqual((group["clogs"], group["flowing"]), (1, 0))
         self.assertNotIn("at rest", self.succeed("clogfit", "s.h5", "--dwell", 1000).stdout)
-        # The droplet rests from the beginning to max-time, 1000 t0. The advice must be a shorter time.
+        # The droplet rests from the beginning to max-time, 1000 t0. The --dwell that clogfit suggests must be shorter
+        # than this.
         self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=9.44", "entrance-from=4.9", "entrance-to=5.1",
                      "line-tension=1", "vertices=64", "max-time=1000", "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "t.h5")
         self.assertIn("--dwell=900 counts it as clogged", self.succeed("clogfit", "t.h5").stdout)

@@ -199,7 +199,7 @@ class Access(SweepTest):
 
 class LinksOfOthers(SweepTest):
     """Tests that links are followed as with fs.protected_symlinks: in a folder where everybody may make links, only the
-    user's own links."""
+    user's own links are followed."""
 
     def open_folder(self):
         folder = self.folder / "open"

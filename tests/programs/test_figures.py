@@ -132,7 +132,8 @@ class Parts(unittest.TestCase):
             self.assertGreater(np.abs(np.diff(colours, axis=0)).max(axis=1).min(), 0.3)
 
     def test_a_legend_stays_off_error_bars(self):
-        # The bars fill everything except the lower right, or everything. Above the points alone there would be room.
+        # The error bars fill the axes except for the lower right, or entirely. The points alone would leave room for
+        # the legend above them.
         for lowest in (6, 0):
             axes = style.new_figure().subplots()
             right = np.arange(12) > 8
@@ -461,8 +462,8 @@ class Pictures(Analysis):
     def test_edges_marked_as_touching_are_those_that_the_program_counts(self):
         # One post leaves gaps at both side walls that are narrower than the droplet.
         self.write("post.csv", "3,0.9,1\n")
-        # The edges are uneven, so their chords touch at other places than the interface. Contact is tested at the
-        # surface and off it.
+        # The edges differ in length, so straight edges touch at other places than the curved interface. Contact is
+        # tested at the surface, and at a distance from it (contact-range).
         for name, points_per_vertex, keys in [
             ("surface", 2, ["preset=elastic", "vertices=32", "line-tension=0.3,1", "box=20"]),
             ("off", 2, ["contact-range=half-vertex", "vertices=32", "line-tension=1", "box=20"]),

@@ -367,7 +367,7 @@ class Refine(RefineTest):
                 self.assertEqual(self.run_refine("line-tension", *SWEEP, GOAL, "--output", "s.h5", launcher=["bash", "-c", words]).returncode, code)
 
 
-# A search that takes a core three seconds: droplets follow the rows up to about 19 degrees.
+# This search takes three seconds on one core. In its lattice droplets follow the rows up to about 19 degrees.
 LATTICE = ["obstacle-layout=lattice", "obstacle-gap=2", "obstacle-diameter=1", "vertices=64", "terminal-speed=0.1", "box=100", "seeds=1"]
 
 

@@ -83,7 +83,7 @@ class Channels(Analysis):
         row = rows[1]
         self.succeed("clogrun", "channel", *CHANNEL, "line-tension=0.6", "--sample-interval", 0.001, "--output", "r.h5")
         with h5py.File(self.folder / "r.h5") as file:
-            samples = file["trajectory"][1:]  # the row takes account of samples at checks, not at the release
+            samples = file["trajectory"][1:]  # the row's results come from the checks, not from the release
         largest = np.argmax(samples["shape_parameter"])
         self.assertEqual(row.largest_shape_parameter, samples["shape_parameter"][largest])
         self.assertEqual(row.largest_shape_parameter_at, samples["h"][largest])
@@ -277,7 +277,7 @@ class OwnCircles(ProgramTest):
         self.refuse("clogsweep", *OWN, "--output", "s.h5", words=["posts.csv"])
 
     def test_seeds_release_it_anywhere(self):
-        # No lane is free.
+        # No lane of this array is free of posts.
         (self.folder / "dense.csv").write_text("x,y,diameter\n" + "".join(f"{3 * i % 10},{1.25 * i + 0.6},0.5\n" for i in range(8)))
         keys = ["obstacles=dense.csv", *OWN[1:-1], "line-tension=0.1", "max-time=400", "release=anywhere"]
         self.succeed("clogsweep", *keys, "seeds=1..4", "--output", "s.h5")
@@ -297,7 +297,7 @@ class OwnCircles(ProgramTest):
         first, second = read_rows(self.folder / "s.h5")
         self.assertNotEqual(first.obstacles, second.obstacles)
         names = {key: name for key, (name, _) in self.circles("s.h5").items()}
-        self.assertEqual(names, {first.obstacles: "posts.csv", second.obstacles: ""})  # first: the last command's run
+        self.assertEqual(names, {first.obstacles: "posts.csv", second.obstacles: ""})  # only the last file's name is known
         self.succeed("clogsweep", "replay", "s.h5", 1)
         self.succeed("clogsweep", "verify", "s.h5")
 

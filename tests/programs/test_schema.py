@@ -75,7 +75,7 @@ class EveryKey(Sweeps):
                 if key["role"] != "ensemble":
                     if key["key"] == "laboratory":  # the laboratory lists droplets of two sizes
                         self.assertEqual((groups.abscissa, groups.values("diameter_mm")), ("diameter_mm", {1, 2}))
-                    elif key["kind"] == "file":  # each file has a curve, because files make no axis
+                    elif key["kind"] == "file":  # files cannot be values of an axis, so each file has a curve
                         self.assertEqual([len(members) for _, members in groups.curves()], [1, 1])
                     else:
                         self.assertEqual(groups.abscissa, key["column"])

@@ -68,7 +68,7 @@ class Units(ProgramTest):
         self.assertIsNone(given["angle_degrees"][0])
         self.assertAlmostEqual(given["angle_degrees"][1], 24.0, delta=0.5)
         self.assertEqual(clogsweep.units(self.folder / lab, length=[2, 3], folder=BIN)["given"]["length_mm"], [7.0, 10.5])
-        # Between upright plates this droplet has Gamma = 0.0815, the smallest of all tilts.
+        # Between upright plates this droplet has Gamma = 0.0815, the smallest value at any tilt.
         told = self.succeed("clogfit", "units", lab, "--line-tension", "0.05,0.2").stdout
         self.assertRegex(told, r"(?m)^or tilt with this tension +none: even upright, Gamma is 0\.0815 +Gamma = 0\.0500$")
         self.assertRegex(told, r"(?m)^or tilt with this tension +2\d\.\d deg +Gamma = 0\.200$")

@@ -137,7 +137,7 @@ TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
   const auto column = std::ranges::find_if(group_columns(), [&](const sweep::Column* one) {
     return one->parameter && one->parameter->key == std::string(parameter.key);
   });
-  if (column == group_columns().end()) return;  // another column has the value
+  if (column == group_columns().end()) return;  // another column holds the parameter's value
   EXPECT_NE(separating_value(**column, sides[0].front()), separating_value(**column, sides[1].front()));
   const Comparisons found =
       compare({{"one", sides[0], {"line_tension"}}, {"other", sides[1], {"line_tension"}}}, 0.95, {});
@@ -149,8 +149,8 @@ TEST_P(EveryKey, MakesTwoArraysIfItShapesThem) {
   EXPECT_EQ(sweep::array_key(runs[0]) != sweep::array_key(runs[1]), GetParam().shapes_array);
 }
 
-/// The possible places of release in a device depend on the droplet's reach, so a run must not reuse the
-/// walls of the run before.
+/// ObstacleArrays keeps the walls of the last run. In a device with side walls they depend on the droplet's
+/// reach, because it limits where droplets may start. So a run of another droplet must get its own walls.
 TEST_P(EveryKey, LeavesTheNextRunOfADeviceItsOwnWalls) {
   sweep::Settings settings;
   settings.attach("one.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.3}}));

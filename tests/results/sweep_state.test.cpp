@@ -372,7 +372,7 @@ TEST_F(SweepStateTest, RefusesAJournalOfRunsWithOtherSettings) {
   };
   sweep::Settings settings = settings_;
   settings.set("line-tension", "0.7");
-  left_by(settings, model_version);  // runs of a larger plan of this sweep
+  left_by(settings, model_version);  // the run belongs to a larger plan of this sweep
   EXPECT_EQ(open().num_beyond(), 1);
   std::filesystem::remove(journal);
   settings.set("max-time", "17");

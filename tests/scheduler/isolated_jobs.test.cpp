@@ -1,5 +1,5 @@
-/// Tasks that crash their process, under the scheduler on any number of ranks. Exits with 1 on
-/// the first fault.
+/// Tests tasks that crash their process, under the scheduler on any number of ranks. Exits with 1 on the
+/// first fault.
 
 #include "clog/scheduler/isolated_jobs.hpp"
 
@@ -23,7 +23,7 @@ namespace {
 
 using namespace clog;
 
-/// By task, the way in which it crashes, and the words in its row.
+/// For each task that crashes: the signal (0: it exits with code 3), and the words in its row.
 const std::map<std::int64_t, std::pair<int, std::string>> crashes = {
     {3, {SIGSEGV, "its process was ended by SIGSEGV (Segmentation fault)"}},
     {8, {SIGFPE, "its process was ended by SIGFPE (Floating point exception)"}},
@@ -167,7 +167,7 @@ void a_stopped_task_goes_on_from_its_snapshot(const scheduler::Communicator& ran
 }
 
 void hanging_tasks_block_nobody(const scheduler::Communicator& ranks, const sweep::JobFactory& make_job) {
-  // Every rank has one hanging task, on which a report is always due.
+  // Every rank computes one task that hangs. Reports are so frequent that each rank always waits for one.
   std::vector<std::int64_t> tasks(ranks.size());
   std::iota(tasks.begin(), tasks.end(), first_hanging_task);
   const std::vector<std::byte> snapshot(3);

@@ -1,5 +1,4 @@
-/// The scheduler on any number of ranks, with synthetic tasks. Exits with 1 on the first
-/// fault.
+/// Tests the scheduler on any number of ranks, with synthetic tasks. Exits with 1 on the first fault.
 
 #include "clog/scheduler/scheduler.hpp"
 

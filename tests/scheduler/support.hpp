@@ -13,7 +13,8 @@
 #include "clog/sweep/job.hpp"
 #include "order_of.hpp"
 
-/// For programs that test the scheduler under mpirun, where every rank has to exit when one finds a fault.
+/// Helpers for programs that test the scheduler under mpirun. When one rank finds a fault, all ranks have to
+/// exit.
 
 namespace clog {
 

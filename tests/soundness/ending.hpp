@@ -8,7 +8,7 @@
 
 namespace clog::soundness {
 
-/// The state at the end of the given time, of a droplet that has not clogged.
+/// What a droplet that has not clogged does at the end of its run.
 enum class Ending {
   moving,      ///< travels: the mean speed of its centre is above `slowest_travel` V_t
   decaying,    ///< has stopped, and its kinetic energy is falling
@@ -17,19 +17,20 @@ enum class Ending {
 };
 const char* name(Ending ending);
 
-/// Judges the end of a run, measured over a window of time. The ending is the first of these that holds:
-/// moving      mean_speed > slowest_travel
-/// decaying    fall > least_fall, and the last quarter of the window is not above the third
-/// chattering  coherence < least_coherence: the vertices' way is much shorter than their speed would take
-/// them steady      all others
+/// Judges the end of a run from measurements over a window of time. The ending is the first of these whose
+/// condition holds:
+///   moving      mean_speed > slowest_travel
+///   decaying    fall > least_fall, and the last quarter of the window is not above the third
+///   chattering  coherence < least_coherence: vertices come much less far than at their speed they could
+///   steady      none of the above
 struct Tail {
-  double mean_speed = 0;  ///< distance between the first and last place of the centre over the time [V_t]
+  double mean_speed = 0;  ///< distance of the centre's last place from its first, divided by the time [V_t]
   double level = 0;       ///< median of log10(E_k/E_t) in the last quarter
   double fall = 0;        ///< fall of the median of log10(E_k/E_t) from the first quarter to the last
   double last_fall = 0;   ///< the same from the third quarter to the last
   double band = 0;        ///< log10(E_k/E_t) in the last quarter, 95 % quantile minus 5 % quantile
-  double coherence =
-      0;  ///< way of the vertices between two samples, divided by the way that follows from E_k
+  /// Path of the vertices between two samples, divided by the path that follows from E_k.
+  double coherence = 0;
 
   Ending ending() const;
 };
@@ -38,7 +39,7 @@ inline constexpr double slowest_travel = 0.01;
 inline constexpr double least_fall = 0.1;
 inline constexpr double least_coherence = 0.3;
 
-/// Collects the samples from which a Tail is computed.
+/// Collects the samples from which a Tail is computed, near the end of a run.
 class TailRecorder {
  public:
   explicit TailRecorder(double terminal_speed) : terminal_speed_(terminal_speed) {}

@@ -9,8 +9,8 @@ namespace clog::soundness {
 struct Findings {
   int crossings = 0;      ///< see num_self_crossings()
   int enclosed = 0;       ///< obstacles whose centre lies inside the droplet
-  double overlap = 0;     ///< depth of an obstacle's surface inside the interface [vertex diameters, at least
-                          ///< those of 128 vertices]
+  double overlap = 0;     ///< depth of an obstacle's surface inside the interface [vertex diameters; on
+                          ///< meshes finer than 128 vertices those of 128 vertices]
   double area_error = 0;  ///< |area/rest area - 1|
   double edge_ratio = 1;  ///< longest over shortest edge
   double perimeter = 0;   ///< in units of the circle's

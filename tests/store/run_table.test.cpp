@@ -304,7 +304,8 @@ TEST_F(RunTableTest, LosesNoAttributeByADamagedListOfChecksums) {
       std::string damaged = content;
       damaged[byte] = static_cast<char>(damaged[byte] ^ (1 << bit));
       write_text("damaged.h5", damaged);
-      // A flipped bit between digits and name, or in the case of a digit, does not change what is read.
+      // What is read stays the same if the flipped bit is between digits and name, or only turns the
+      // lower-case letter of a hexadecimal digit into upper case.
       try {
         EXPECT_EQ(read_sweep(path("damaged.h5")).provenance, read_sweep(path()).provenance)
             << byte << ' ' << bit;

@@ -1,7 +1,7 @@
 """Decides which differences are clear, and formats numbers for the table.
 
 Lengths differ *clearly* if their confidence intervals do not overlap, speeds if they differ by more than two standard
-errors of the difference. A curve with R^2 of LEAST_LINEARITY or more is a straight line.
+errors of the difference. A curve counts as a straight line if a linear fit has an R^2 of LEAST_LINEARITY or more.
 """
 
 import math
@@ -59,8 +59,8 @@ def falls(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bo
 
 
 def trend(is_as_published: bool, is_opposite: bool) -> str:
-    """The verdict on a curve, or on two points. Clear differences may be as published, opposite to these, both, or
-    absent."""
+    """The verdict on a curve, or on two points. Clear differences may be as published, opposite to the published ones,
+    of both kinds at different points, or absent."""
     return (IN_KIND if is_opposite else AGREES) if is_as_published else DOES_NOT if is_opposite else NOT_KNOWN
 
 

@@ -38,8 +38,8 @@ class Scales(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """The conditions of a passage, except for those of the droplet. Each field has the name of a column, and with
-    hyphens that of a key."""
+    """The conditions of a passage, except for those of the droplet. The name of a field is that of a column and, with
+    hyphens for underscores, that of a key."""
 
     orifice: float
     wedge_angle: float

@@ -2,8 +2,8 @@
 
 Close to a line tension at which the droplet clogs, Delta_v has several minima, each about a percent of Gamma wide. The
 search begins on a coarse grid and descends from its best points by the simplex method. It brackets the line tension at
-which droplets clog, and descends again from several line tensions below it, each twice as far away as the one before.
-It ends with Gauss-Newton steps until these and another simplex gain nothing.
+which droplets clog, and descends again from several line tensions below this bracket, each twice as far away from the
+bracket as the one before. It ends with Gauss-Newton steps until these and another simplex gain nothing.
 """
 
 import itertools
@@ -112,8 +112,8 @@ class Search:
         return self.attempt(found.x * scale), found.success
 
     def linearise_over(self, place: Numbers, step: Numbers) -> Linearised | None:
-        """Finite differences over a step. None if the droplet clogs a step away, or if the frames do not determine
-        both."""
+        """Finite differences over a step. None if the droplet clogs a step away, or if the frames do not determine both
+        line tension and drag."""
         below = np.maximum(place - step, [-math.inf, 0])
         beside = [(place[0] + step[0], place[1]), (below[0], place[1]), (place[0], place[1] + step[1]), (place[0], below[1])]
         here, stiffer, softer, slower, faster = every = self.attempts([place, *beside])

@@ -16,7 +16,8 @@ INTERRUPTED = 75
 
 
 class Progress:
-    """Several threads may report simulations."""
+    """Shows how close the best simulations are so far, by the worst of the trials. Several threads may report
+    simulations."""
 
     def __init__(self, num_trials: int) -> None:
         self.best = [(math.inf, 0.0, 0.0)] * num_trials  # Delta_v, Gamma, b_0/b_inf

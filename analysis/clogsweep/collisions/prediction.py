@@ -1,5 +1,5 @@
-"""Predicts clogging lengths from droplets that fall onto one or two obstacles. They show which obstacles hold a
-droplet; then such obstacles are counted in an array.
+"""Predicts clogging lengths from droplets that fall onto one or two obstacles. The simulations show which obstacles
+hold a droplet; then such obstacles are counted in an array.
 
 docs/explanation/predicted.md has the law and its limits.
 """

@@ -9,8 +9,9 @@ posts.csv lists the posts in micrometres, and the droplet's diameter. posts.png 
 look at it before you run anything. An outline that contains everything else becomes the edge of the device; without
 such an outline the edge is a box around the posts. Lines that meet are joined into outlines. Flat outlines and lines
 along the sides become walls; other lines are red in the picture. Round posts become circles. Posts of other shapes,
-such as triangles, are red, too. Then posts.csv is written only with --as-rows, which replaces each such post by rows of
-overlapping circles along its outline, or with --as-circles, which replaces it by a circle of the same area.
+such as triangles, are red, too. If there are such posts, posts.csv is written only with --as-rows, which replaces each
+such post by rows of overlapping circles along its outline, or with --as-circles, which replaces it by a circle of the
+same area.
 """
 
 import argparse

@@ -3,9 +3,9 @@
     python3 -m clogsweep compare robust.h5 elastic.h5                # robust-compare.png, robust-compare.pdf
     python3 -m clogsweep compare sweep.h5 --by friction
 
-Every number comes from clogfit compare, and its options are the same; `clogfit compare --picture NAME` draws this, too.
-Bars are its confidence intervals. The interval of a filled marker comes from pairs of runs with the same seed, that of
-a hollow marker from the numbers of clogs alone.
+Every number comes from clogfit compare, which has the same options; `clogfit compare --picture NAME` draws the same
+picture. Bars are confidence intervals. The interval of a filled marker comes from pairs of runs with the same seed,
+that of a hollow marker from the numbers of clogs alone.
 """
 
 import json

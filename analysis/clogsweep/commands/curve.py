@@ -6,11 +6,11 @@ Prints values between the points, the peak, and where the curve crosses a given 
     clogfit curve sweep.h5 --key line-tension,friction --format csv > surface.csv
     clogfit curve monday.h5 tuesday.h5           # several files as one sweep
 
-The runs of a point that together travelled a distance S and clogged d times count as a Poisson variable d with exposure
-S. So points without a clog inform the curve, too, as lower bounds. log lambda is a Gaussian process over the logarithm
-of the key. The other physical keys separate curves. A curve needs four values of the key, three of them with clogs;
-points in no curve are listed with the reason. The formats csv and json contain the whole curve, at 97 values of the key
-(25 x 25 with two keys), and the curve of each mechanism; peaks is a CSV table of the peaks alone.
+If the runs of a point together travelled a distance S and clogged d times, d is a Poisson variable with exposure S. So
+points without a clog inform the curve, too, as lower bounds. log lambda is a Gaussian process over the logarithm of the
+key. The other physical keys separate curves. A curve needs four values of the key, three of them with clogs; points in
+no curve are listed with the reason. The formats csv and json contain the whole curve, at 97 values of the key (25 x 25
+with two keys), and the curve of each mechanism; peaks is a CSV table of the peaks alone.
 
 Runs of the same seed met the same obstacles at every value of a key that does not change the array. Then the errors of
 the points are correlated, but the band assumes that they are independent. Different seeds at each value avoid this.

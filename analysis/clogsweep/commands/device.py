@@ -3,11 +3,11 @@
     clogsweep obstacles=posts.csv box=8 length=20 side-walls=on release=entrance exit=20 seeds=1..20 --output sweep.h5
     python3 -m clogsweep device sweep.h5                 # sweep-device.png, sweep-device.pdf
 
-Each parameter set, such as each line tension, has a panel. There are at most six panels; clogsweep select makes a sweep
-of the other parameter sets. The lines are paths of replayed runs (clogrun), from the shortest to the longest. The
-colour of a place shows in which fraction of the replayed runs the droplet passed over it. The strip below shows the
-fraction of the droplets that passed each place along the flow. All lengths are in droplet diameters; coordinates are
-those of the file of circles.
+Each parameter set, such as each line tension, has a panel. There are at most six panels; to draw other parameter sets,
+make a sweep of them with clogsweep select. The lines are paths of replayed runs (clogrun), from the shortest to the
+longest. The colour of a place shows in which fraction of the replayed runs the droplet passed over it. The strip below
+shows the fraction of the droplets that passed each place along the flow. All lengths are in droplet diameters;
+coordinates are those of the file of circles.
 """
 
 import argparse

@@ -21,7 +21,7 @@ from . import command_line
 def body() -> int:
     parser = command_line.Parser(__doc__)
     parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
-    command_line.add_output(parser, "name of the files; their endings are given", ".pvd", required=True)
+    command_line.add_output(parser, "name of the files; .pvd and other endings are added", ".pvd", required=True)
     arguments = parser.parse_args()
     command_line.tell(vtk.export(trajectory.read(arguments.run), arguments.output))
     return 0

@@ -6,10 +6,10 @@
 
 KEY=VALUE are keys of clogsweep. One droplet falls onto each pair of obstacles, for all gaps and directions. Others fall
 onto a single obstacle, to find the offset from which on it no longer holds a wrapped droplet. This takes half a minute
-for a stiff line tension. Then the obstacles and pairs of the array are counted. The command prints lengths as CSV, with
+for a large line tension. Then the obstacles and pairs of the array are counted. The command prints lengths as CSV, with
 the reasons to doubt them: soft (line tension below 1: clogs on three obstacles and more are not predicted), crowded
 (length below 4 sigma: the prediction is too long, because other obstacles come between). docs/explanation/predicted.md
-says how far it holds.
+says where the predictions hold.
 """
 
 import argparse

@@ -6,8 +6,9 @@
         line-tension=0.03,3 friction=0.01,0.3 --budget 10h -- srun
     python3 -m clogsweep refine lattice-angle --config lattice.cfg --output lattice.h5 --until critical-angle=0.5
 
-The words after -- start clogsweep; without them it runs on one core. The points of a round are stored beside the output
-(OUTPUT.refine-*.csv) before it starts. The same command resumes a stopped search; exit codes are those of clogsweep.
+The words after -- start clogsweep; without these words clogsweep runs on one core. The points of a round are stored
+beside the output (OUTPUT.refine-*.csv) before it starts. The same command resumes a stopped search; exit codes are
+those of clogsweep.
 """
 
 import argparse
@@ -169,8 +170,8 @@ def body() -> int:
 
     with tempfile.TemporaryDirectory(prefix="clogsweep-refine-") as temporary:
         folder = pathlib.Path(temporary)
-        # Searches with the same settings and first round share their files, whatever their goal, because the same
-        # rounds belong to them.
+        # Searches with the same settings and the same first round share their files, even if their goals differ,
+        # because they can use the same rounds.
         content = config + driver.points_text(keys, search.first_round()) + _circles(values["obstacles"])
         name = "refine-" + hashlib.sha256(content.encode(errors="surrogateescape")).hexdigest()[:8]
         beside = folder / name if arguments.dry_run else arguments.output.with_name(f"{arguments.output.name}.{name}")

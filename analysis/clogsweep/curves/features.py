@@ -18,7 +18,8 @@ FIRST_JITTER = 1e-10  # times the largest variance: added to the diagonal, so th
 class Peak:
     """The peak of a curve. `place` and its interval hold the logarithm of each key; lengths [sigma].
 
-    `probability_inside` is the fraction of curves drawn from the posterior whose peak is not at a border of the places.
+    `probability_inside` is the fraction of curves drawn from the posterior whose peak is not at an end of the range of
+    places.
     """
 
     place: Numbers
@@ -129,7 +130,8 @@ def find_crossings(curve: Curve, x: Numbers, length: float, confidence: float) -
     for i in np.flatnonzero((above[:-1] < 0) != (above[1:] < 0)):
         is_upward = bool(above[i] < 0)
         before, after = (above + half, above - half) if is_upward else (above - half, above + half)
-        outside_before = np.flatnonzero((before[:i + 1] < 0) == is_upward)  # places up to the crossing where the whole band is on the side that the curve leaves
+        # Places before the crossing at which the whole band is still on the side from which the curve comes.
+        outside_before = np.flatnonzero((before[:i + 1] < 0) == is_upward)
         outside_after = np.flatnonzero((after[i + 1:] >= 0) == is_upward) + i + 1
         crossings.append(Crossing(zero(above, i), zero(before, outside_before[-1]) if outside_before.size else -np.inf,
                                   zero(after, outside_after[0] - 1) if outside_after.size else np.inf, is_upward))

@@ -1,7 +1,7 @@
 """log lambda as a Gaussian process over the logarithms of one or two keys.
 
-Runs that travelled the distance S together and clogged d times are a Poisson count d with exposure S: with
-f = log lambda, log L = -d f - S exp(-f), which is concave in f (Lawless, Statistical Models and Methods for Lifetime Data,
+If runs together travelled the distance S and clogged d times, d is a Poisson count with exposure S. With f = log
+lambda, log L = -d f - S exp(-f), which is concave in f (Lawless, Statistical Models and Methods for Lifetime Data,
 chapter 4). The kernel is a product of Matern's with smoothness 5/2, one for each key. The posterior is Laplace's
 approximation (Rasmussen and Williams, Gaussian Processes for Machine Learning, algorithms 3.1 and 3.2), averaged over
 amplitudes and correlation lengths by the marginal likelihood.

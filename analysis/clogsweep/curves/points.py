@@ -148,8 +148,8 @@ def told(value: Any) -> str:
 
 
 def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Excluded]]:
-    """The groups of each curve that can be shown, and all others with the reason. `shared` contains only parameters in
-    which the curves differ."""
+    """The groups of each curve that can be shown, and all others with the reason. Of the parameters that the groups of
+    a curve share, `shared` contains only those in which the curves differ."""
     excluded, useful = [], []
     for index, group in enumerate(fit["groups"]):
         if not (group["total_distance"] or 0) > 0:

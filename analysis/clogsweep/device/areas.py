@@ -48,7 +48,7 @@ def union(shapes: list[Any], tolerance: float | None = None) -> Any:
 
 
 def add(drawing: Drawing, area: Any) -> None:
-    """The outlines and holes of an area of shapely."""
+    """Adds the outlines and holes of an area of shapely to the drawing."""
     for part in getattr(area, "geoms", [area]):
         if part.geom_type == "Polygon" and not part.is_empty:
             drawing.outlines.append(np.asarray(part.exterior.coords)[:-1])

@@ -38,9 +38,9 @@ class Rows:
 
 
 def as_rows(device: Device, corner: float) -> Rows:
-    """With rows of circles in place of each outline that is not round. @param corner  radius to which corners are
-    rounded; in a post that is too thin for it, nearly half of the post's width. @throws UserError  if an outline
-    crosses itself"""
+    """The posts of the device, with rows of circles in place of each outline that is not round. @param corner  radius
+    to which corners are rounded; in a post that is too thin for it, nearly half of the post's width. @throws UserError
+    if an outline crosses itself"""
     geometry = shapely("geometry")
     frame = geometry.box(0, 0, device.length, device.width)
     circles, posts = [device.circles], [np.arange(len(device.circles))]

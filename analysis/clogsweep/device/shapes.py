@@ -263,7 +263,8 @@ def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tup
 
 
 def is_within(line: Numbers, edges: Numbers) -> bool:
-    """Whether a line is within the drawn edge. One beside it, such as a dimension line, is no wall."""
+    """Whether a line is within the drawn edge of the device. A line beside the edge, such as a dimension line, is no
+    wall."""
     return bool((line >= edges.min(axis=0) - NEAR).all() and (line <= edges.max(axis=0) + NEAR).all())
 
 

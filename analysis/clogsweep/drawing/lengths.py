@@ -112,8 +112,8 @@ def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], in
 
 
 def speed_column(groups: Iterable[Group]) -> str:
-    """The column with the mean speed. Only runs that went far enough have a speed, and fast runs more often do; so the
-    speed of all runs is preferred. Files without dwells have no such column."""
+    """The column with the mean speed. The mean of the runs that went far enough to have a speed is too high, because
+    these are mostly the fast runs. So the speed of all runs is preferred; files without dwells have no such column."""
     return OF_ALL_RUNS if any(group.get(OF_ALL_RUNS) is not None for group in groups) else "relative_speed"
 
 

@@ -65,8 +65,8 @@ def drawn_columns(groups: Groups) -> dict[str, str]:
 
 
 def draw_curves(axes: Axes, groups: Groups, column: str) -> None:
-    """Draws one point for each droplet. A cross means that the droplet clogged in a channel, a hollow marker that it
-    was in progress at the end."""
+    """Draws one point for each droplet. A cross means that the droplet clogged in a channel, a hollow marker that the
+    run ended before the droplet passed or rested."""
     kind = kind_of(groups)
     markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}
     for index, (label, members) in enumerate(groups.curves()):

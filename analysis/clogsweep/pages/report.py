@@ -239,7 +239,8 @@ def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.Data
 def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     """Clogs to show: the typical one of every mechanism, and others, evenly from the least to the most deformed.
 
-    Clogs of droplets that travelled a diameter or more come first: clogs at the release represent its void, not the array.
+    Clogs of droplets that travelled a diameter or more come first: clogs at the release depend on the void there, not
+    on the array.
 
     @param clogs_of_sweep  rows as clogs.of_polygons() gives them
     """

@@ -111,8 +111,8 @@ MAPS = [Family("map-robust", "no friction, no corner pinning"), Family("map-fric
 
 
 def is_exponential(group: Group) -> bool | None:
-    """Whether P(r) is exponential: the shape of a Weibull law is compatible with 1, and lambda exceeds the release
-    void. None if there are too few clogs to decide."""
+    """Whether P(r) is exponential: the shape of a Weibull law is compatible with 1, and lambda is longer than the void
+    of the release. None if there are too few clogs to decide."""
     if group["clogs"] < ENOUGH_CLOGS or group["weibull_p_value"] is None:
         return None
     return group["weibull_p_value"] >= 0.05 and "below_spacing" not in style.doubts(group)

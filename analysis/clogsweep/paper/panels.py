@@ -22,8 +22,8 @@ Panel = tuple[str, Sequence[Curve]]
 
 
 def explain_gap(axes: Axes, tensions: Sequence[float], groups: Sequence[Group]) -> None:
-    """Marks the line tensions below those of this panel, which were run for other panels only. @param tensions  of all
-    panels, ascending"""
+    """Marks the range of line tensions below those of this panel: they were run for other panels only. @param tensions
+    of all panels, ascending"""
     first = min(group["line_tension"] for group in groups)
     if first == tensions[0]:
         return

@@ -38,7 +38,7 @@ def limit_reading() -> None:
 
 
 def read_in_child(path: str) -> tuple[Records, np.void]:
-    """HDF5 may crash or never end on damage. @throws Damaged; UserError"""
+    """Reads in a child process, because HDF5 may crash or never end on damaged files. @throws Damaged; UserError"""
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), limit_reading) as child:
         try:
             return child.submit(read_samples, path).result()

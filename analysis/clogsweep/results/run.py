@@ -96,7 +96,7 @@ class Run:
         return self.picture().png() if len(self.times) > 0 else None
 
     def fit(self) -> NoReturn:
-        """There is none. @throws UserError"""
+        """Only sweeps have a fit. @throws UserError"""
         raise UserError("a run has no fit; give a sweep")
 
     def __repr__(self) -> str:

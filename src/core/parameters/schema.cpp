@@ -306,8 +306,8 @@ std::vector<Parameter> own_circle_entries() {
       entry("release", [](auto& run) -> auto& { return run.obstacles.release; },
             {.column = "release",
              .meaning = "where droplets start among user-supplied circles; centre: near the centre of the "
-                        "array; anywhere, entrance: near a place that the seed determines, in the whole "
-                        "array or on the line of the entrance",
+                        "array; anywhere: near a place in the array, entrance: near a place on the line of "
+                        "the entrance; the seed determines this place",
              .scope = &own_circles,
              .shapes_array = true}),
       entry("length", [](auto& run) -> auto& { return run.obstacles.length; },

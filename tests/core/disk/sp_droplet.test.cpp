@@ -100,7 +100,7 @@ TEST(SpDroplet, ForceStaysFiniteInsideAnObstacle) {
   forces.update_contacts(centre, {});
   forces.evaluate(centre, force);
   EXPECT_EQ(force[0], 0);
-  DropletState inside = disk_at(0.05, 0);  // d = -0.1: 2 E_w (1 + 0.2)
+  DropletState inside = disk_at(0.05, 0);  // d = -0.1, so the force is 2 E_w (1 + 0.2)
   forces.evaluate(inside, force);
   EXPECT_NEAR(force[0], 2 * 2 * 1.2, 1e-12);
 }

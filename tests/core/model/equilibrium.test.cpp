@@ -245,7 +245,8 @@ TEST(Equilibrium, IsFoundThoughContactsOpenAndCloseOnTheWay) {
 }
 
 TEST(Equilibrium, IsFoundAtTheFirstSearchEvenIfItsFirstStepsLeadAstray) {
-  // Half of these searches have to return to their start, and find the place of rest with halved steps.
+  // Half of these searches go astray at first. They return to their start, and find the place of rest with
+  // halved steps.
   int num_early = 0;
   for (const std::uint32_t seed : {3u, 7u, 11u, 14u, 16u}) {
     RunParameters run;
@@ -293,8 +294,8 @@ TEST(Equilibrium, OnTopOfAnObstacleIsRefused) {
       model_of(run).equilibrium(run, ObstacleArray(20, single), test::state_of(position)).has_value());
 }
 
-/// A run at a line tension near the largest one at which a droplet passes this orifice. With its round tips
-/// this is about 1.26.
+/// A run through an orifice with round tips. Droplets pass it up to a line tension of about 1.26; the tests
+/// use line tensions close to this limit.
 DropletRun through_orifice(double line_tension, ClogDetection detection) {
   RunParameters run = robust(line_tension);
   run.clog_detection = detection;

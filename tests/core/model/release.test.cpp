@@ -24,7 +24,7 @@ RunParameters in_small_box(double line_tension, double gap) {
   run.dp.line_tension = line_tension;
   run.obstacles.gap = gap;
   run.obstacles.box = 12;
-  run.obstacles.density = {};  // saturated, so that the droplet touches
+  run.obstacles.density = {};  // saturated, so that the droplet touches obstacles
   return run;
 }
 
@@ -56,8 +56,9 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
 }
 
 TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
-  // In three of these cases the minimiser cycles with the springs of growth, in one with the droplet's own
-  // springs. One case also needs weaker springs.
+  // Springs along the interface have no energy, so the minimiser may follow a cycle for ever. It does so with
+  // the springs with which the droplet grows in three of these cases, and with the springs of the run in one.
+  // One case also needs weaker springs.
   for (const auto& [vertices, line_tension, seed] :
        {std::tuple{64, 0.1, 141u}, {64, 0.05, 113u}, {64, 0.05, 141u}, {32, 0.1, 76u}, {32, 0.05, 303u}}) {
     SCOPED_TRACE(std::to_string(vertices) + " vertices, seed " + std::to_string(seed));
@@ -100,7 +101,7 @@ TEST(Release, MovesOffAnObstacleInTheMiddle) {
 }
 
 TEST(Release, RefusesWhereThereIsNoVoid) {
-  // A wall of touching circles covers the middle of the box.
+  // Overlapping circles cover the whole box.
   std::vector<Obstacle> carpet;
   for (double x = 0; x < 12; x += 0.1)
     for (double y = 0; y < 12; y += 0.1) carpet.push_back({x, y, 0.08});
@@ -126,7 +127,8 @@ TEST(Release, LeavesASoftDiskWithoutForce) {
 }
 
 TEST(Release, TheLiteralPlacementEnclosesObstacles) {
-  // A full-sized polygon relaxed at the box's centre does not feel obstacles inside it.
+  // The literal placement relaxes a full-sized polygon at the centre of the box. Obstacles inside the polygon
+  // do not push its interface, so they stay inside.
   int num_runs_with_obstacles_inside = 0;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     const RunParameters run = test::bare_parameters(64);

@@ -65,7 +65,8 @@ TEST_P(EveryParameter, GivesBackWhatIsSet) {
   if (parameter.kind == ValueKind::file) other = OwnCircles({{1, 2, 3}}).check_sum();
   if (parameter.kind == ValueKind::text) other = LaboratoryText("angle = 1 deg").check_sum();
   if (parameter.kind == ValueKind::word)
-    // The words of an automatic parameter begin with `auto`, which get() never returns.
+    // The search begins with the last word, because the first word of an automatic parameter is `auto`, which
+    // get() never returns.
     other = *std::find_if(parameter.words.rbegin(), parameter.words.rend(),
                           [&](const auto& word) { return ParameterValue(word) != value; });
   ASSERT_NE(other, value);

@@ -1,4 +1,4 @@
-/// What the corners of a polygon can hold: two lobes that hang over one obstacle.
+/// Tests how much the corners of a polygon can hold of a droplet whose two lobes hang over one obstacle.
 
 #include <gtest/gtest.h>
 

@@ -33,7 +33,7 @@ class Passage {
     const Eigen::Array2d release = frame.global({0, 0}) - start_;
     record_.add(state_, obstacles_, release, x);
   }
-  /// Moves the droplet in steps as short as its way between two checks of a run.
+  /// Moves the droplet in steps as short as the path of a droplet between two checks of a run.
   void move_by_steps_to(double x) {
     constexpr double step = 0.002;
     while (x_ + step < x) move_to(x_ + step);

@@ -89,7 +89,8 @@ DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> 
                             snapshot);
 }
 
-/// A soft droplet among walls, with no force that holds it.
+/// A soft droplet among obstacles that have neither friction nor contact angles, so nothing holds the
+/// droplet.
 RunParameters soft_among_walls() {
   RunParameters run;
   run.obstacles.box = 20;
@@ -183,8 +184,9 @@ TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
   EXPECT_THROW(resume_in_array(run, bytes), Error);
 }
 
-/// Tries snapshots with a correct checksum and wrong content, in which any number has any value. Either
-/// resume() refuses such a snapshot, or the run continues to its end without a crash or an endless loop.
+/// Tries snapshots with a correct checksum and wrong content: each number in turn is replaced by several
+/// unlikely values. Either resume() refuses such a snapshot, or the run continues to its end without a crash
+/// or an endless loop.
 TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
   RunParameters run = with_friction(soft_among_walls(), 0.02, FilmFriction::off);
   run.dp.vertices = 32;
@@ -217,7 +219,7 @@ TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
       std::memcpy(&bytes[at], before, word);
     }
   const auto numbers_of_shape = static_cast<int>(4 * 32);
-  EXPECT_GT(refused, 3 * numbers_of_shape);  // numbers that are infinite, not a number, or too large
+  EXPECT_GT(refused, 3 * numbers_of_shape);  // for each number: infinity, NaN and -1e300
 }
 
 /// The time for which a droplet rested before its clog does not depend on how the clog is detected.
@@ -278,8 +280,8 @@ TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   EXPECT_EQ(run.result().hold.mechanism, ClogMechanism::squeezed);
   EXPECT_GE(run.result().hold.geometry.num_arcs, 2);
 
-  // Further integration must not free the droplet. So the same run continues with a threshold that the
-  // droplet cannot reach.
+  // Further integration must not free the droplet. To test this, the run is repeated with a threshold for
+  // clogs that the droplet cannot reach, so the run does not end at the clog.
   RunParameters on = parameters;
   on.clog_energy = 1e-300;
   on.max_time = 2 * run.result().time + 100;

@@ -13,7 +13,8 @@ namespace {
 constexpr double dwell_length = 0.05;
 constexpr double speed = 0.5;  // with this speed, dwells of more than 1 t0 are recorded
 
-/// A course with one check per unit of time: the droplet rests at each place in turn, for the given time.
+/// A part of a droplet's course: the droplet rests at a place for a time. The run has one check per unit of
+/// time.
 struct Stand {
   double place;
   int time;

@@ -90,7 +90,8 @@ TEST_P(OnAWall, ADropletHasTheShapeOfYoungAndLaplace) {
   EXPECT_NEAR((y.maxCoeff() - y.minCoeff()) / 2, exact.half_width, 0.003);
   const double centroid = area_centroid(position)[0];
   EXPECT_NEAR(centroid - x.minCoeff(), exact.depth_of_centroid, 0.003);
-  // The sag: the centroid was half a diameter above the wall.
+  // The sag is the distance by which the centroid has sunk. In a circle it was half a diameter above the
+  // wall.
   const double sag = run.displacement_of(area_centroid(position))[0];
   EXPECT_NEAR(sag, 0.5 - (exact.height - exact.depth_of_centroid), 0.003);
 }

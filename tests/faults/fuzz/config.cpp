@@ -1,4 +1,5 @@
-/// The config as it is stored with a sweep and sent to its ranks, and the plan that follows from it.
+/// Fuzz target that reads a config, in the form that is stored with a sweep and sent to its ranks, and plans
+/// the sweep.
 
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"

@@ -1,4 +1,4 @@
-/// The config file that --config names.
+/// Fuzz target that reads a config file, as --config does.
 
 #include "clog/cli/command_line.hpp"
 #include "fuzz.hpp"

@@ -1,4 +1,4 @@
-/// The journal beside a sweep's table.
+/// Fuzz target that reads the journal of a sweep.
 
 #include "clog/store/journal.hpp"
 

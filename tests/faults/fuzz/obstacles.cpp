@@ -1,4 +1,4 @@
-/// Files of user-supplied circles.
+/// Fuzz target that reads files of user-supplied circles.
 
 #include "clog/cli/obstacle_file.hpp"
 #include "clog/core/run/resolve.hpp"

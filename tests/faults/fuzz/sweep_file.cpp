@@ -1,4 +1,4 @@
-/// The table of a sweep.
+/// Fuzz target that reads the file of a sweep.
 
 #include "clog/store/run_table.hpp"
 #include "fuzz.hpp"

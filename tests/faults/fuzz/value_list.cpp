@@ -1,4 +1,5 @@
-/// Lists of values, as on the command line. The first byte chooses the kind.
+/// Fuzz target that reads lists of values, as on the command line. The first byte selects the kind of the
+/// values.
 
 #include "clog/sweep/value_list.hpp"
 

@@ -1,4 +1,4 @@
-/// Friction of walls through closed films: docs/explanation/model.md.
+/// Tests friction of walls that acts through closed films of oil (docs/explanation/model.md).
 
 #include "clog/core/polygon/contact/film_touches.hpp"
 
@@ -47,7 +47,8 @@ class Stack {
     contacts_.update(state_, {});
   }
 
-  /// The largest friction of each arc, divided by mu. @param wall  the disc, or a wall of the same curvature
+  /// The largest friction that can hold each arc, divided by mu. @param wall  the disc, or a wall of the same
+  /// curvature
   std::vector<double> held(const WallPlace& wall = {0, 0, disc}, std::span<const Wedge> wedges = {}) {
     std::vector<WallTouch> touches;
     for (int i = 0; i < num_; ++i) {
@@ -246,8 +247,8 @@ TEST(BandOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
   const auto slides = [&](double share) {
     Band band({mu}, edges, weight);
     const auto pulls = [&](double radius) {
-      const double own =
-          band.hanging() * radius / Band::radius + pi * radius / edges / 2;  // measured from the disc's side
+      // The overhang, measured from the side of the disc.
+      const double own = band.hanging() * radius / Band::radius + pi * radius / edges / 2;
       const double exact = grip * own + 2 * mu * radius * (1 + grip) / (1 + mu * mu);
       return std::pair(0.0, weight * (share * exact - own));
     };

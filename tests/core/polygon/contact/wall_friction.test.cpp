@@ -166,12 +166,12 @@ TEST(WallAnchors, OfFrictionThroughAFilmBalanceTheEnergyToSecondOrder) {
   run.dp.film_friction = FilmFriction::on;
   const double film = 0.9 * run.dp.self_contact_range;
   expect_balance(run, ObstacleArray(20, {{0.15 + *run.dp.contact_range + film / 2, 0.1, 0.15}}), 0.5,
-                 lobes_side_by_side(film), 1e-5);  // the film's contact is stiffer
+                 lobes_side_by_side(film), 1e-5);  // a larger tolerance: the film's contact is stiffer
 }
 
 TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
-  // On an incline no end of the contact line is torn off. Tearing happens within one step, which would hide
-  // the order.
+  // On an incline no end of a wetted arc is torn off its anchor. This would happen within a single step, so
+  // its error would hide the second order.
   RunParameters run = bare_parameters();
   run.dp.perimeter_spring = PerimeterSpring::along;
   run.dp.perimeter_stiffness = 0.3;
@@ -289,7 +289,7 @@ void expect_convergence(const std::function<double(int)>& error) {
 }
 
 TEST(RopeOverADisc, WithoutWeightSlidesAtExpMuTheta) {
-  // A light capstan: T_2 = exp(mu theta) T_1.
+  // The capstan equation for a rope without weight: T_2 = exp(mu theta) T_1.
   const double mu = 0.5;
   const double exact = std::exp(mu * pi);
   expect_convergence([&](int edges) {
@@ -359,8 +359,9 @@ RunResult ended(DropletRun run) {
 }
 
 TEST(WallFriction, HoldsADropletThatHangsOverADisc) {
-  // Without friction the droplet slips off. Detection by certificate and by threshold find the same place of
-  // rest. The search for the certificate starts once the walls hardly yield any more.
+  // Without friction the droplet slips off. With friction, clog-detection=certified and threshold find the
+  // same place of rest. The certified detection is faster, because its search for an equilibrium starts as
+  // soon as the walls hardly yield any more.
   constexpr double quiet = 1e-15;
   EXPECT_EQ(ended(falls_on_disc(0, ClogDetection::certified, quiet)).status, RunStatus::passed);
   const RunResult certified = ended(falls_on_disc(0.1, ClogDetection::certified, quiet));

@@ -79,8 +79,8 @@ TEST(DpForces, WeightOnTheAreaSumsToTheWholeWeight) {
 }
 
 TEST(DpForces, WallContactIsTheGradientOfItsEnergy) {
-  const ObstacleArray wall(20,
-                           {{0.65, 0.05, 0.15}, {19.4, 0.1, 0.15}});  // the second one is an image at -0.6
+  // The periodic image of the second obstacle, at x = -0.6, touches the droplet.
+  const ObstacleArray wall(20, {{0.65, 0.05, 0.15}, {19.4, 0.1, 0.15}});
   ReferenceForces forces(only([](RunParameters&) {}), wall);
   forces.set_weight(0);
   const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
@@ -183,7 +183,8 @@ TEST(DpForces, LaplacePressureOfACircleIsLineTensionOverRadius) {
 }
 
 class ContactLists : public testing::TestWithParam<double> {};
-// Speeds from that of a sinking droplet to so fast that a droplet crosses the usual skin between two updates.
+// The speeds range from that of a sinking droplet to one at which a droplet crosses the usual skin, the
+// margin of the contact lists, between two updates.
 INSTANTIATE_TEST_SUITE_P(Speeds, ContactLists, testing::Values(0.05, 0.8, 5.0));
 
 TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
@@ -296,8 +297,9 @@ TEST(DpForces, WettedWallsPullWithTheGradientOfTheirEnergy) {
 }
 
 TEST(DpForces, WettedWallsNeitherPullAlongTheInterfaceNorAlongTheWall) {
-  // Springs along the interface carry no tension. If the polygon's edges carry only a part of a pull along
-  // the interface, the liquid takes the rest; so nothing pushes the droplet as a whole along a flat wall.
+  // A wetted wall changes the tension along the interface. The springs along the interface do not balance
+  // this change. The edges of the polygon carry a part of it, and the liquid takes the rest, so nothing
+  // pushes the droplet as a whole along a flat wall.
   const ObstacleArray wall(20, {}, {{.tip = {0.37, 0}, .axis = {1, 0}, .half_angle = std::numbers::pi / 2}});
   RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 1.3; });
   run.dp.perimeter_spring = PerimeterSpring::along;
@@ -343,7 +345,8 @@ TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {
 }
 
 TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
-  // There, coordinates that are not shifted, as published, would lose 13 of the 16 digits of an edge.
+  // So far downstream, coordinates that are not shifted, as in the published method, would lose five to six
+  // of the 16 digits of an edge.
   const ObstacleArray array = sample_obstacles({.gap = 0.2, .diameter = 0.3, .density = {}, .box = 25}, 3);
   ReferenceForces near(bare_parameters(256), array);
   ReferenceForces far(bare_parameters(256), array);

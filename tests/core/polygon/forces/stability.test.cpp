@@ -92,9 +92,10 @@ Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
 }
 
 TEST(StiffModes, LeaveRoomForAContactThatTurnsWithItsEdges) {
-  // On a round obstacle, half edges that turn dig into the obstacle, and more so the deeper they already are.
-  // So the stiffest mode exceeds the bound for a flat contact, but by less than the margin that the bounds of
-  // all modes together leave below 4. The overlap is the one that the automatic step allows.
+  // On a round obstacle, half edges dig deeper into the obstacle when they turn, the more so the deeper they
+  // already are. This makes the stiffest mode stiffer than the bound for a flat contact. The excess must be
+  // smaller than the margin that the bounds of all modes together leave below 4, the limit of stability. The
+  // overlap is the one that the automatic step allows.
   const double radius = 0.15;
   for (const int n : {64, 128, 256, 512}) {
     RunParameters run = bare_parameters(n);

@@ -180,7 +180,7 @@ TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
         const double begin = energy();
         double worst = 0;
         double contact = 0;
-        const int times = inertia > 1 ? 20 : 10;  // a droplet of larger inertia takes longer to get there
+        const int times = inertia > 1 ? 20 : 10;  // larger inertia delays the collision
         for (int i = 0; i < times; ++i) {
           droplet.advance(static_cast<int>(std::lround(0.08 / dt)));
           worst = std::max(worst, std::abs(energy() - begin));

@@ -30,7 +30,7 @@ double distance_from(const Wedge& wedge, const DropletState& state) {
   return nearest;
 }
 
-/// Compares the anchors in any order.
+/// Compares the anchors, whose order does not matter.
 void expect_same_anchors(const DropletState& state, const DropletState& expected) {
   ASSERT_EQ(state.anchors.size(), expected.anchors.size());
   for (const WallAnchor& one : expected.anchors) {
@@ -63,7 +63,7 @@ class Step : public testing::TestWithParam<StepCase> {
     run.dp.vertices = vertices;
     run.dp.line_tension = 0.3;
     run.time_step = 1e-3;
-    // With the published ranges, contacts are as large as the films and edges that the tests make.
+    // The films and edges that the tests make suit the published ranges of contacts.
     run.dp.contact_range = units::regular_edge_length(vertices) / 2;
     run.dp.self_contact_range = units::regular_edge_length(vertices);
     GetParam().change(run);

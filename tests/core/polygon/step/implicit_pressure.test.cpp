@@ -1,5 +1,5 @@
-/// Steps with an implicit pressure against exact solutions and against short steps without one.
-/// dp_step.test.cpp compares each step with the documentation.
+/// Compares steps with an implicit pressure with exact solutions, and with short steps whose pressure is
+/// explicit. dp_step.test.cpp compares each step with the documentation.
 
 #include <gtest/gtest.h>
 

@@ -62,7 +62,8 @@ class ReadableDroplet {
     if (num_evaluations_ % most_steps_per_survey == 0)
       fastest_ =
           std::sqrt((state_.velocity.head(n_).square() + state_.velocity.tail(n_).square()).maxCoeff());
-    // The rates of the drag are computed at the beginning and at the end of the first step.
+    // The rates of the drag are computed at the beginning and at the end of the first step. Later they are
+    // kept for some steps.
     if (num_evaluations_ > 1 && num_kept_ > 0) {
       --num_kept_;
     } else {
