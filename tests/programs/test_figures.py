@@ -100,7 +100,7 @@ class Parts(unittest.TestCase):
             axes, = arrays.displacement(None).figure.axes
         legend = axes.get_legend()
         self.assertEqual([text.get_text() for text in legend.get_texts()][1:], [rf"$\Gamma = {number}$" for number in (0.2, 0.5, 0.1)])
-        self.assertEqual([text.get_color() for text in legend.get_texts()[1:]], [style.COLOURS[index] for index in (1, 2, 0)])
+        self.assertEqual([line.get_color() for line in legend.get_lines()[1:]], [style.COLOURS[index] for index in (1, 2, 0)])
 
     def test_clogs_of_figure_5_have_one_scale_with_a_bar(self):
         circle = np.array([np.cos(np.linspace(0, 6, 40)), np.sin(np.linspace(0, 6, 40))]) / 2
