@@ -164,8 +164,9 @@ void Journal::open_and_lock(const OutputPath* table) {
               "); check the file system, or give another --output");
 }
 
-/// The first write removes an incomplete end and writes the header of a new file, so a sweep that reads the
-/// records and refuses them leaves the file unchanged.
+/// Prepares the file for writing: writes a missing header, and cuts off an incomplete record at the end. A
+/// file with records is prepared only at the first write, so a sweep that reads the records and refuses them
+/// leaves the file unchanged.
 void Journal::begin() {
   if (has_begun_) return;
   if (contents_.num_bytes < sizeof(FileHeader)) {

@@ -37,7 +37,8 @@ class Lengths(ProgramTest):
         self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
         told = self.lengths("aml.csv")
         maintained, not_maintained = told["groups"]
-        # exp(coef(survreg(Surv(time, status) ~ 1, dist="exponential"))); 1/scale with dist="weibull", and the p-value of both likelihoods
+        # From R: length, exp(coef(survreg(Surv(time, status) ~ 1, dist="exponential"))); shape, 1/scale with dist="weibull"; p_value of the
+        # likelihood-ratio test of these two fits
         for group, name, runs, clogs, length, shape, p_value in [(maintained, "Maintained", 11, 7, 60.4285714279, 1.0318542417, 0.910781681452),
                                                                  (not_maintained, "Nonmaintained", 12, 11, 23.1818181818, 1.57362854769, 0.090487586318)]:
             self.assertEqual((group["x"], group["runs"], group["clogs"], group["doubts"]), (name, runs, clogs, None))

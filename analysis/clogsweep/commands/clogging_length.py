@@ -6,7 +6,7 @@ lattices it draws the lateral displacement per distance against the angle of the
     clogfit sweep.h5 --format json | python3 -m clogsweep clogging-length /dev/stdin --output clogging-length     # points only
 
 Every length comes from clogfit. Bars are its confidence intervals; smooth lines with bands are the curves of clogfit
-curve, which need the sweep itself. Markers show the mechanism of most clogs. A hollow marker means a doubt, which the
+curve, which need the sweep itself. Each marker shows the most frequent mechanism of its clogs. A hollow marker means a doubt, which the
 picture explains. A triangle pointing up is a lower bound, because no run clogged.
 """
 

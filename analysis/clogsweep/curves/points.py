@@ -20,10 +20,10 @@ from ..tools.errors import UserError
 from ..tools.hints import Column, Group, Numbers, Records
 from ..tools.texts import did_you_mean
 
-FEWEST_VALUES = 4  # a curve needs so many values of the key: with two or three its shape would come from the prior
-FEWEST_CLOGGING = 3  # so many of these values need clogs: lower bounds alone do not determine a shape
+FEWEST_VALUES = 4  # a curve needs at least this many values of the key: with two or three its shape would come from the prior
+FEWEST_CLOGGING = 3  # at least this many of these values need clogs: lower bounds alone do not determine a shape
 MOST_KEYS = 2
-SAME_SHARE = 6  # densities in units of the saturated density are compared to so many digits
+SAME_SHARE = 6  # significant digits to which densities, in units of the saturated density, must agree
 
 Fit = dict[str, Any]  # clogfit's JSON
 

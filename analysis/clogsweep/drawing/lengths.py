@@ -73,7 +73,7 @@ def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: 
 
 def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
                  size: float = 5.5, unit: str = "") -> None:
-    """Draws clogging lengths with clogfit's intervals. A marker shows the mechanism of most clogs and is hollow if the
+    """Draws clogging lengths with clogfit's intervals. A marker shows the most frequent mechanism of its clogs and is hollow if the
     length is in doubt (HOLLOW_MARKERS). If no run clogged, an arrow begins at the lower bound. @param linestyle  None:
     that of `index`; @param size  of markers [pt]; @param unit  end of the names of clogfit's columns: "_mm", or "" for
     sigma"""

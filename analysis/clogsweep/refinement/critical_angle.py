@@ -102,7 +102,7 @@ class AngleSearch:
         return [(values, None) for values in self.candidates]
 
     def _within(self, lower: float, upper: float, tried: Sequence[float]) -> list[float]:
-        """Up to three lattices near the quarters of the bracket that have not been tried."""
+        """Up to three angles that have not been tried yet: the angles of the lattices nearest to the quarters of the bracket."""
         nearest = [self._lattice(lower + part * (upper - lower) / 4) for part in (1, 2, 3)]
         rounded = {round(angle, DECIMALS) for angle in nearest if angle is not None and lower < angle < upper}
         return sorted(rounded - {round(angle, DECIMALS) for angle in tried})

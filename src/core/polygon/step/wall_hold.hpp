@@ -11,9 +11,9 @@
 
 namespace clog {
 
-/// Repulsion and friction of circles until the next make(): the anchors of a droplet (see WallFriction),
-/// arranged by circle and by groups of vertices. After make() the anchors are here; hand_back() copies them
-/// into the droplet.
+/// The friction anchors of a droplet (see WallFriction) and the circles that may push it, arranged by circle
+/// and by groups of vertices for the step. make() takes the anchors over from the droplet, and the lists are
+/// valid until the next make(); hand_back() copies the anchors into the droplet.
 class WallHold {
  public:
   /// Possible contacts of the contour until the next make().
