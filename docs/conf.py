@@ -109,7 +109,9 @@ class ForTerminals(SphinxPostTransform):
 
 def in_fields(app, what, name, thing, options, lines):
     """Our @param, @return and @throws as Sphinx writes them; several may stand in one line."""
-    text = re.sub(r"[;.]? *@param +([\w, ]+?)  ", lambda found: "\n\n:param " + found[1] + ": ", "\n".join(lines))
+    text = "\n".join(lines)
+    text = re.sub(r"^.*@(?:param|return).*(?:\n[^\s@].*)*", lambda field: field[0].replace("\n", " "), text, flags=re.MULTILINE)
+    text = re.sub(r"[;.]? *@param +([\w, ]+?)  ", lambda found: "\n\n:param " + found[1] + ": ", text)
     text = re.sub(r"[;.]? *@return +", "\n\n:return: ", text)
     text = re.sub(r"[;.]? *@throws +(.+)", "\n\n**Throws** \\1", text)
     lines[:] = text.split("\n")

@@ -40,7 +40,7 @@ class Run:
     - `samples`: table of the path; time [t0], distance [sigma], speed [sqrt(sigma g)], energies, shape parameter
     - `polygons`: refined outlines, frames x 2 x points [sigma], at the `times` (frames) [t0]
     - `obstacles`: circles x 3 (x, y, diameter) [sigma]; `wedges`: walls, in the form that docs/reference/files.md
-    describes
+      describes
     - `row`: parameters and results, by the names of the columns of a sweep; `attributes`: the origin of the file
     """
 
