@@ -160,10 +160,10 @@ class Groups:
         else:
             told += [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
                      and not self._is_automatic(name) and not self._is_of_preset(name) and not (told and self.follows(name, told))]
-        # Words and automatic values that follow from labelled parameters add nothing, except an interface (soft disks have none). A preset includes its parts.
+        # Words and automatic values that follow from labelled parameters add nothing, except an interface of a preset. A preset includes its parts.
         rest = [name for name in self.columns if name not in told and name != self.abscissa]
         for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):
-            if name == "preset" and len(self.values(name) - {"none"}) > 1 or not self.follows(name, [self.abscissa, *told]):
+            if name == "preset" and len(self.values(name) & INTERFACES.keys()) > 1 or not self.follows(name, [self.abscissa, *told]):
                 told.append(name)
         return told
 
