@@ -45,7 +45,7 @@ def options() -> command_line.Parser:
     parser.add_argument("profiles", nargs="*", help="CSV files, or files written by clogrun channel, one per trial; and KEY=VALUE")
     for name, meaning in QUANTITIES.items():
         parser.add_argument(f"--{name}", help=meaning)
-    parser.add_argument("--other", help="diameter and angle of another experiment, for which Gamma is scaled")
+    parser.add_argument("--other", help="diameter and angle of another experiment, to which Gamma is scaled")
     command_line.add_format(parser)
     programs.add_option(parser)
     return parser
@@ -86,8 +86,8 @@ def refuse_other_channel(file: str, stored: Channel | None, simulated: Channel, 
     """Refuses keys that contradict the channel stored with a simulated passage. A measured passage needs the channel as
     keys, because Gamma depends on it."""
     if stored is None and "orifice" not in names:
-        raise UserError("missing orifice (the line tension that is found depends on the channel) give its width in droplet diameters, "
-                        "e.g. orifice=0.8, and wedge-angle, tip-radius unless they are those of --help")
+        raise UserError("missing orifice (the fitted line tension depends on the channel); give its width in droplet diameters, e.g. orifice=0.8, "
+                        "and wedge-angle and tip-radius if they differ from the defaults of clogrun channel")
     for name, was, given in zip(Channel._fields, stored or (), simulated):
         key = name.replace("_", "-")
         if not math.isclose(was, given, rel_tol=1e-12):
@@ -116,7 +116,7 @@ def print_table(files: Sequence[str], found: Sequence[Calibration], mean: dict[s
     if len(found) > 1:
         print("\nmean of {} trials and their standard deviation: Gamma* = {:.3g} +- {:.2g}, b_0*/b_inf = {:.3g} +- {:.2g}".format(len(found), *mean.values()))
     else:
-        print("\none trial: errors are from the scatter of its frames")
+        print("\none trial: the errors come from the scatter of its frames")
 
 
 def body() -> int:
