@@ -97,7 +97,7 @@ int clogfit(int argc, const char* const* argv) {
       .option("confidence", "confidence level of the intervals", "0.95")
       .flag("all-parameters", "also list parameters that have their defaults in all runs")
       .option("from-distance",
-              "count distances from this distance on; runs that ended before it are excluded [sigma]")
+              "count paths only from this distance on; runs that ended before it are excluded [sigma]")
       .option("lab",
               "file that describes the laboratory, see clogfit units; the table then has lengths, speeds and "
               "times in laboratory units, too")

@@ -29,7 +29,7 @@ constexpr const char* compare_usage =
   clogfit compare robust.h5 elastic.h5 --picture ratio.png
   clogfit compare own.csv sweep.h5 --lab lab.cfg      measured distances (see clogfit lengths) and simulated ones
 
-Every file is compared with the first file. With --by KEY, every value of KEY is compared with its smallest value. All
+Every file is compared with the first file. With --by KEY, every value of KEY is compared with the smallest value. All
 other parameters are the same on both sides of a comparison. Two runs of the same seed form a pair: they met the same
 obstacles. If the two lengths are correlated, the interval of their ratio comes from the pairs and is narrower than for
 two independent lengths. The interval comes from the numbers of clogs if fewer than ten pairs differ, if the correlation
@@ -82,9 +82,10 @@ int clogfit_compare(int argc, const char* const* argv) {
   cli::CommandLine line("clogfit compare", compare_usage);
   line.words("file", "sweep files")
       .option("by", "key whose values are compared with each other")
-      .option("within",
-              "clogs of a pair within this distance are at the same place (half of obstacle diameter plus "
-              "gap) [sigma]")
+      .option(
+          "within",
+          "clogs of a pair within this distance are at the same place (half the sum of obstacle diameter and "
+          "gap) [sigma]")
       .option("format", "text, csv or json", "text")
       .option("picture", "draw a picture with this name, as .png and .pdf")
       .option(
