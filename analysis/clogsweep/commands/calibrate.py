@@ -1,20 +1,20 @@
-"""Finds the line tension Gamma and the near-wall drag b_0/b_inf of the simulated droplet that passes a
-channel most like a measured one: those that minimise Delta_v, the relative root-mean-square deviation of the speeds.
-One file per trial.
+"""Finds the line tension Gamma and the near-wall drag b_0/b_inf with which a simulated droplet passes a channel most
+like a measured droplet, that is, with the smallest relative root-mean-square deviation Delta_v of the speeds. Each
+trial is one file.
 
   clogfit calibrate trial1.csv trial2.csv orifice=0.7 terminal-speed=0.032
   clogfit calibrate channel.h5 orifice=0.7 terminal-speed=0.032
   clogfit calibrate trial*.csv orifice=0.4 --diameter 3.5mm --speed 7mm/s --angle 28deg
   ... --tension 10mN/m --other "1.98mm 8.5deg"
 
-A profile is a CSV file with the header h [sigma], v [v_t], A or, with --diameter and --speed, in laboratory units such
-as h [mm], v [mm/s], A; or what clogrun channel has written. With --angle the terminal speed V_t follows from the laboratory's
-quantities.
+A profile is a file of clogrun channel, or a CSV file with the header h [sigma], v [v_t], A. With --diameter and --speed
+the CSV file may have laboratory units, such as h [mm], v [mm/s], A. With --angle the terminal speed V_t follows from
+the laboratory's quantities.
 
 Keys of the droplet and its channel (clogrun channel --help) are given as KEY=VALUE or as options.
 
-Errors (+-) come from the scatter of a trial's frames about the best run, treated as independent noise. They exclude
-errors of the model or its mesh, so without noise they are too small.
+Errors (+-) come from the scatter of a trial's frames about the best run, as if the frames were independent. The errors
+exclude those of the model and its mesh, so without noise they are too small.
 """
 
 import argparse
@@ -52,7 +52,7 @@ def options() -> command_line.Parser:
 
 
 def split(words: Sequence[str]) -> tuple[list[str], list[str]]:
-    """@return words for the parser, and keys for clogrun channel, in any order and also as options"""
+    """Separates the keys of clogrun channel, which may stand anywhere and may be options. @return words for the parser, keys"""
     own: list[str] = []
     keys: list[str] = []
     rest = iter(words)

@@ -3,7 +3,7 @@
     clogsweep --output sweep.h5 line-tension=0.2,0.3,1 seeds=1..10
     python3 -m clogsweep clogs sweep.h5                  # sweep-clogs.png, sweep-clogs.pdf
 
-Replays the clogged rows until they rest (clogrun), because no table contains outlines. The flow is to the right.
+clogrun replays the clogged runs until the droplets rest, because no table contains outlines. The flow is to the right.
 Touched obstacles are blue, arcs of contact red, the droplet's convex hull dashed. Titles give the mechanism and the
 distance, the number of wrapped obstacles and which fraction of the support they bear, and the numbers of gaps and
 contacts.
