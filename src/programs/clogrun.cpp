@@ -65,7 +65,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
               "also make a film of the polygons; give the film's name, which may end in .mp4 or .gif")
       .option("most-frames",
               "largest number of frames of the film (600); the film of a longer run skips frames, or shows "
-              "only the end")
+              "only the end if the droplet would move too far between frames")
       .flag("dry-run", "print the config and an upper bound of the run's duration, run nothing")
       .option("write-obstacles", "array: write the obstacles as a CSV file");
   line.add_commands({"array", "channel", "sag", "replay"});
