@@ -7,7 +7,8 @@ lattices it draws the lateral displacement per distance against the angle of the
 
 Every length and its confidence interval (the bar) come from clogfit. Smooth lines with bands are the curves of clogfit
 curve; they are drawn only from a sweep file. Each marker shows the most frequent mechanism of its clogs. A hollow
-marker means a doubt, which the picture explains. A triangle pointing up is a lower bound, because no run clogged.
+marker means a doubt, which the picture explains. An arrow pointing up starts at a lower bound:
+no run clogged.
 """
 
 import argparse
