@@ -27,7 +27,7 @@ def output(*command, **options):
 
 
 def copy_of_tree(folder):
-    """Copies the files that git tracks, with their uncommitted changes."""
+    """Copies all files that git does not ignore, with uncommitted changes, and applies the patch."""
     for name in output("git", "ls-files", "--cached", "--others", "--exclude-standard", cwd=ROOT).splitlines():
         if (ROOT / name).is_file():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)

@@ -81,7 +81,7 @@ struct NearestOnHalves {
   }
 };
 
-/// Both halves of edges and a circle.
+/// The point nearest to a circle's centre on each of the two halves of edges.
 struct HalvesAtCircle {
   NearestOnHalves first, second;
   HWY_INLINE HalvesAtCircle(const RefinedEdgeVectors& e, V x, V y, V span)
