@@ -22,11 +22,11 @@ struct ClogGeometry {
   /// Fraction of the obstacles' upstream support that comes from wrapped obstacles; NaN without support.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
   int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
-  /// Number of gaps in front of the droplet. A gap is between two successive arcs (see num_arcs) on different
-  /// obstacles, if the chord from arc to arc faces downstream and at least one of the obstacles supports the
-  /// droplet.
+  /// Number of gaps in front of the droplet. Two successive arcs (see num_arcs) on different obstacles have a
+  /// gap between them if the chord from arc to arc faces downstream and at least one of the two obstacles
+  /// supports the droplet.
   int num_gaps = 0;
-  int num_arcs = 0;  ///< number of arcs, runs of successive edges that touch one obstacle (post or wall)
+  int num_arcs = 0;  ///< number of arcs; an arc is a chain of edges that touch one obstacle (post or wall)
   /// Largest part of the weight that the corners of the polygon can hold. Each wrapped obstacle contributes
   /// its part of the support times x^2/16, with x the length of the longest edge on the obstacle divided by
   /// the radius at which this edge lies. NaN without support.

@@ -10,9 +10,9 @@
 
 #include "clog/core/parameters/parameters.hpp"
 
-/// Every parameter of a run, described once. Keys, their checks, columns, groups, labels and documentation
-/// follow from here: a new parameter is a member of RunParameters, an entry of parameter_schema(), and its
-/// physics.
+/// The schema describes every parameter of a run once. Keys, their checks, columns, groups, labels and
+/// documentation derive from this description. A new parameter needs a member of RunParameters, an entry of
+/// parameter_schema(), and its physics.
 namespace clog {
 
 /// The value of a parameter; `std::monostate` (unset) if the value is automatic, or if the parameter has no
@@ -64,17 +64,19 @@ struct Parameter {
   const char* meaning;  ///< one line
   ParameterRole role;
   const ParameterScope* scope;
-  const ParameterScope* automatic_in;  ///< runs in which it follows from other parameters unless given
-  ParameterRange range;                ///< of numbers
-  bool has_own_column;                 ///< false: the column describes other parameters as well
-  bool shapes_array;                   ///< whether different values give different obstacle arrays
+  const ParameterScope*
+      automatic_in;      ///< runs in which the value, unless given, follows from other parameters
+  ParameterRange range;  ///< of numbers
+  bool has_own_column;   ///< false: the column describes other parameters as well
+  bool shapes_array;     ///< whether different values give different obstacle arrays
   /// The column's value for runs to which the parameter does not apply; usually unset.
   ParameterValue elsewhere;
   /// The value that the parameter has for all runs in files older than the parameter; unset if it is unknown.
   ParameterValue before;
 
   ValueKind kind;
-  std::vector<std::string> words;  ///< of a word: all its values; of a number: its words for `automatic`
+  std::vector<std::string>
+      words;  ///< all values of a word; for a number, the words that select an automatic value
   ParameterValue (*get)(const RunParameters&);
   /// @throws Error if the value is out of the type's range, or the word is unknown
   void (*set)(RunParameters&, const ParameterValue&);

@@ -22,13 +22,13 @@ struct Contacts {
 };
 
 /// Detects at the checks of a run which obstacles touch its droplet. A contact that begins and ends between
-/// two checks is missed; in this time the droplet moves only by some thousandths of its diameter.
+/// two checks is missed; the droplet moves only by some thousandths of its diameter between two checks.
 class ContactRecord {
  public:
   /// Distance beyond which an obstacle counts as left [sigma].
   static constexpr double parting = 0.1;
 
-  /// @param reach  of the moving points, see DropletModel
+  /// @param reach  see DropletModel::contact_reach
   explicit ContactRecord(const ContactReach& reach) : reach_(reach) {}
 
   /// Call this once per check of a run.
@@ -55,8 +55,9 @@ class ContactRecord {
   };
   ContactReach reach_;
   Contacts contacts_;
-  std::vector<Place> met_;  // met and not left since: the nearest circle of each obstacle
-  // Circles near the droplet, in its frame, and their posts; valid while the droplet stays within the window.
+  std::vector<Place> met_;  // the nearest circle of each obstacle that the droplet has met and not left since
+  // Circles near the droplet, in its frame, and their posts; valid while the droplet stays between lower_ and
+  // upper_.
   std::vector<Obstacle> near_;
   std::vector<int> post_of_;
   std::size_t num_posts_ = 0;
@@ -68,7 +69,7 @@ class ContactRecord {
                    const Eigen::Array2d& upper);
   /// Adds a circle, or a wedge, to the data of its obstacle, and removes it from met_.
   void include(Seen& obstacle, const Place& place, double gap);
-  /// Adds the obstacle to met_ again if the droplet touches it, or touched it and has not left it.
+  /// Adds the obstacle to met_ again if the droplet touches it, or has touched it and not left it since.
   void count(const Seen& obstacle, double distance);
 };
 

@@ -29,7 +29,8 @@ struct Words<RunStatus> {
       {RunStatus::failed, "failed"}};
 };
 
-/// E_k/E_t above which the integration has failed: free fall without drag over a whole box stays below it.
+/// E_k/E_t above which the integration has failed: a free fall without drag over a whole box stays below this
+/// ratio.
 inline constexpr double diverged_energy_ratio = 1e8;
 /// Relative error of the area above which the integration has failed: compressibility and line tension keep a
 /// droplet far below it.
@@ -86,7 +87,8 @@ class DropletRun {
  public:
   /// Clogs and the end of the run are checked, and r(t) is recorded, once in this number of steps.
   static constexpr int steps_per_check = 64;
-  /// A snapshot is taken once in this number of steps: about every quarter of a second with 256 vertices.
+  /// A snapshot is taken once in this number of steps, which take about a quarter of a second with 256
+  /// vertices.
   static constexpr std::int64_t steps_per_snapshot = std::int64_t{4096} * steps_per_check;
 
   /// Releases the droplet as its scene defines. @param run  resolved parameters, here and below
@@ -94,7 +96,7 @@ class DropletRun {
   /// The same, among given walls.
   DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
   /// @param initial  the droplet at its release
-  /// @param way  displacement along the flow at which the droplet has `passed` [sigma]
+  /// @param way  displacement along the flow after which the droplet has `passed` [sigma]
   DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
              double way = std::numeric_limits<double>::infinity());
 
@@ -143,7 +145,7 @@ class DropletRun {
   RunStatus status_ = RunStatus::running;
   std::optional<ClogDetection> clogged_by_;
   double next_search_;                // E_k/E_t below which the run searches for an equilibrium
-  std::unique_ptr<Droplet> at_rest_;  // of a certified clog
+  std::unique_ptr<Droplet> at_rest_;  // the droplet at rest, if the clog is certified
   std::string message_;
   DisplacementRecord record_;
   DwellRecord dwells_;

@@ -22,8 +22,7 @@ struct Dwells {
   /// The longest of all, the longest of those before it, and so on. If there are more than `most`, the
   /// earliest are dropped.
   std::array<Dwell, most> longest;
-  /// first_longer() may be called for times from this one on [t0]; NaN: for no time, because dwells are
-  /// unknown.
+  /// Smallest time for which first_longer() may be called [t0]; NaN if the dwells are unknown.
   double known_from = std::numeric_limits<double>::quiet_NaN();
   double last_distance = std::numeric_limits<double>::quiet_NaN();  ///< where the last dwell began [sigma]
   double last_begin = std::numeric_limits<double>::quiet_NaN();     ///< and when [t0]
@@ -31,7 +30,7 @@ struct Dwells {
   /// The first dwell longer than `time`; nullptr if there was none.
   /// @param time  not less than known_from [t0]
   const Dwell* first_longer(double time) const;
-  /// @param dwell  later than all before
+  /// @param dwell  must be later than all dwells that were kept before
   void keep(const Dwell& dwell);
 };
 
@@ -50,8 +49,8 @@ class DwellRecord {
   /// Call this once per check of a run. @param displacement  along the flow since release [sigma]
   void add(double time, double displacement);
 
-  /// @param time  of the last check. An unfinished dwell counts with its length so far; in a clogged run it
-  /// does not count.
+  /// @param time  time of the last check [t0]. The unfinished dwell counts with its length so far, except in
+  /// a clogged run.
   Dwells found(double time, bool has_clogged) const;
 
   void save(ByteWriter& bytes) const { bytes.put(found_); }

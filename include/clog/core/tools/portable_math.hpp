@@ -7,9 +7,9 @@
 /// results the last bit differs. Its long double functions have only one version. (std::sqrt, std::hypot and
 /// rounding already give the same bits everywhere.) The functions here are too slow for loops over vertices.
 ///
-/// sin, cos and tan are plain arithmetic. The others are instructions of the x87, which a processor of
-/// another manufacturer may round differently in the 64th bit; this almost never affects the 53 bits of a
-/// double. Use these others for values that are rounded or compared afterwards.
+/// sin, cos and tan are plain arithmetic. The other functions are instructions of the x87, which a processor
+/// of another manufacturer may round differently in the 64th bit. This almost never affects the 53 bits of a
+/// double. Use these other functions only for values that are rounded or compared afterwards.
 namespace clog::portable {
 
 using Wide = long double;

@@ -15,9 +15,9 @@ double saturated_density(double diameter, double gap);
 /// density of saturated arrays of these diameters and this gap, for any box.
 std::optional<double> wanted_density(const ObstacleParameters& obstacles);
 
-/// The largest density of a random array that every seed can reach [1/sigma^2]: eight standard deviations
-/// below the mean number of obstacles of saturated arrays of this box. In small boxes, where this number is
-/// almost zero, this is the smallest possible density of a saturated array.
+/// The largest density of a random array that every seed can reach [1/sigma^2]. It is eight standard
+/// deviations below the mean of saturated arrays of this box. In small boxes, where that would be almost
+/// zero, it is the smallest possible density of a saturated array.
 /// @param obstacles  of random layout
 double largest_density(const ObstacleParameters& obstacles);
 

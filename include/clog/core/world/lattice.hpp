@@ -33,7 +33,8 @@ double largest_tilt(LatticeKind kind);
 std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles);
 /// nearest_lattice(); nullopt if its tilt is more than largest_angle_error away from lattice_angle.
 std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);
-/// A whole-numbered box, larger than the given one, in which there is a fitting_lattice() [sigma].
+/// A box with a whole-numbered width, larger than the given one, in which there is a fitting_lattice()
+/// [sigma].
 double box_that_fits(const ObstacleParameters& obstacles);
 /// The nearest lattices on both sides of lattice_angle, if there are any.
 std::vector<CommensurateLattice> neighbouring_lattices(const ObstacleParameters& obstacles);
@@ -50,9 +51,9 @@ std::string tilt_text(LatticeKind kind, const CommensurateLattice& lattice);
 /// Pitch, row spacing, tilt and period, in words. @param obstacles  resolved
 std::string lattice_text(const ObstacleParameters& obstacles);
 
-/// Lattice of spacing diameter + gap. The seed shifts it: the box's centre, where droplets are released, is
-/// uniform in a unit cell among the places where a droplet touches no obstacle. If a droplet touches
-/// obstacles everywhere, it is uniform among all places.
+/// A lattice of spacing diameter + gap, which the seed shifts. After the shift, the box's centre, where
+/// droplets are released, is at a uniformly distributed place of the unit cell. Places where a droplet
+/// touches an obstacle are excluded, unless a droplet touches obstacles everywhere.
 /// @param parameters  resolved: box, length and angle are those of a CommensurateLattice
 ObstacleArray lattice_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
 

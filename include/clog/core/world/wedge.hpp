@@ -15,9 +15,9 @@ struct Angle {
       : radians(in_radians), cos(portable::cos(in_radians)), sin(portable::sin(in_radians)) {}
 };
 
-/// Infinite convex wall: all points within `half_angle` of the axis, seen from the tip, rounded by a circle
-/// at the tip. Half a plane for half_angle = pi/2. A narrow channel is two of them, tip to tip (Cheng et al.,
-/// Fig. 1).
+/// Infinite convex wall: all points that, seen from the tip, lie within `half_angle` of the axis. A circle
+/// rounds the tip. With half_angle = pi/2 the wall is a half-plane. Two wedges, tip to tip, form a narrow
+/// channel (Cheng et al., Fig. 1).
 struct Wedge {
   Eigen::Array2d tip{0, 0};                 ///< place in the box [sigma]; wedges have no periodic images
   Eigen::Array2d axis{1, 0};                ///< unit vector from the tip into the wall

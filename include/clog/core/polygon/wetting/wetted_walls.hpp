@@ -13,8 +13,8 @@
 namespace clog {
 
 /// Walls whose tension differs from that of the interface, and walls that hold the ends of wetted arcs. The
-/// tension is Gamma far from a wall, and that of the wetted wall where contact begins. It changes by a smooth
-/// step, which keeps energy and force continuous and is wide enough for the edges to resolve.
+/// tension is Gamma far from a wall, and that of the wetted wall where contact begins. In between, it changes
+/// by a smooth step, which keeps energy and force continuous and is wide enough for the edges to resolve.
 class WettedWalls {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this
@@ -30,14 +30,14 @@ class WettedWalls {
   /// Forces on the vertices, and memory to find them. All x, then all y [g rho sigma^2].
   struct Forces {
     Eigen::ArrayXd gradient;  ///< minus the gradient of the energy
-    /// Cancels the part of `gradient` along the interface if springs carry no tension (`along`), otherwise 0.
-    /// These forces derive from no energy.
+    /// If springs carry no tension (`along`), these forces cancel the component of `gradient` along the
+    /// interface; otherwise they are 0. They derive from no energy.
     Eigen::ArrayXd spreading;
-    std::vector<int> vertices;  ///< on all others both forces are 0
+    std::vector<int> vertices;  ///< the vertices on which these forces may differ from 0
     ContactLine::Ends ends;     ///< of wetted arcs
 
-    /// The sum of `spreading`. Its reaction acts on the liquid, so it is subtracted from the weight on the
-    /// area.
+    /// The sum of `spreading`. Its reaction acts on the liquid, so this sum is subtracted from the weight
+    /// that acts on the area.
     Eigen::Array2d net_spreading{0, 0};
 
     explicit Forces(int num_vertices);
