@@ -3,7 +3,8 @@
 namespace clog {
 namespace {
 
-/// Fractions of the support above and below which one mechanism alone holds the droplet.
+/// Fractions of the support that wrapped obstacles give: up to the first, squeezing alone holds the droplet,
+/// and from the second on, wrapping alone.
 constexpr double squeezed_below = 1.0 / 3;
 constexpr double wrapped_above = 2.0 / 3;
 

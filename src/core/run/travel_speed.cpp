@@ -11,7 +11,8 @@ namespace {
 constexpr std::size_t batch_size = 5;
 constexpr std::size_t fewest_batches = 10;
 constexpr std::size_t fewest_for_error = 200;
-/// Relative standard error of a mean below which the transient is over: the rest may be round-off.
+/// If the relative standard error of a mean is below this, the transient is over, because the remaining
+/// variation may be round-off.
 constexpr double negligible_error = 1e-6;
 
 double mean_of(std::span<const double> values) {

@@ -9,8 +9,8 @@
 namespace clog {
 namespace {
 
-/// A disc of diameter + gap, its `spacing`, keeps the gap between surfaces if such discs do not overlap. So
-/// all numbers follow from the smallest and the widest spacing, and the area.
+/// Surfaces keep the gap if discs of diameter + gap, the `spacing`, do not overlap. So all numbers below
+/// follow from the smallest and the widest spacing, and from the area.
 struct Spacings {
   double smallest, widest;
   double edge;  // edge of a square of the same area
@@ -38,10 +38,10 @@ double standard_deviation(const Spacings& spacings) {
   return of_number / (spacings.smallest * spacings.edge);
 }
 
-/// A lower bound of the density of saturated arrays. Where no smallest disc fits, every place is within
-/// (smallest + widest)/2 of a disc's centre, and circles that cover a plane have at least 2 pi/sqrt(27) times
-/// its area (Kershner, Am. J. Math. 61, 665 (1939)). 2/sqrt(27) is rounded down by more than coordinates
-/// are rounded.
+/// A lower bound of the density of saturated arrays. If not even a disc of the smallest size fits, every
+/// place is within (smallest + widest)/2 of a disc's centre. Circles that cover a plane have at least 2
+/// pi/sqrt(27) times its area (Kershner, Am. J. Math. 61, 665 (1939)). The constant below is 2/sqrt(27),
+/// rounded down by more than the rounding errors of coordinates.
 double covering_density(const Spacings& spacings) {
   const double reach = (spacings.smallest + spacings.widest) / 2;
   return 0.3848 / (reach * reach);

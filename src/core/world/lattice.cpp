@@ -20,12 +20,12 @@ namespace {
 
 using std::numbers::sqrt3;
 constexpr double degree = std::numbers::pi / 180;
-/// Smallest difference between angles of lattices that fit a box; equal ones differ only by rounding
-/// [degrees].
+/// Angles of different lattices that fit a box differ by more than this; smaller differences are rounding
+/// errors [degrees].
 constexpr double same_angle = 1e-9;
 constexpr double box_rounding = 1e-9;  // relative
-/// A droplet with this much room around its centre touches nothing, polygons of 64 vertices and more
-/// included.
+/// A droplet touches nothing if its centre is at least this far from every obstacle. This includes polygons
+/// of 64 vertices and more.
 constexpr double free_radius = 0.55 * units::droplet_diameter;
 
 /// tan t divided by q/p
@@ -61,7 +61,7 @@ CommensurateLattice lattice(const ObstacleParameters& obstacles, int p, int q) {
           portable::atan2(q * tangent_unit(obstacles.lattice), p) / degree};
 }
 
-/// The square lattice that has exactly this angle and box, if there is one. Then no search is needed.
+/// The square lattice that has exactly this angle and box, if there is one; it makes a search unnecessary.
 std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstacles) {
   const double steps = obstacles.box / obstacles.spacing();
   const auto p = std::lround(steps * portable::cos(obstacles.lattice_angle * degree));

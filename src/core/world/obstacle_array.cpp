@@ -153,7 +153,7 @@ void ObstacleArray::gather(const Window& window, std::vector<Obstacle>& out) con
 }
 
 std::vector<std::uint32_t> ObstacleArray::posts() const {
-  // A forest: each circle points to another circle of its post, the root to itself.
+  // The posts form a forest: each circle points to another circle of its post, the root points to itself.
   std::vector<std::uint32_t> post(binned_.obstacles.size());
   std::iota(post.begin(), post.end(), 0u);
   const auto root_of = [&](std::uint32_t circle) {

@@ -92,7 +92,7 @@ void grow(const RunParameters& growing, double area, DpForces& forces, DropletSt
   }
 }
 
-constexpr double damping_rate = 3;  // near the softest modes' frequency [1/t0]
+constexpr double damping_rate = 3;  // near the frequency of the softest modes [1/t0]
 
 /// Relaxes the grown droplet. Returns whether it comes to rest.
 bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpForces& forces,

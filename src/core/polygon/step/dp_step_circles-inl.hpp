@@ -1,4 +1,4 @@
-/// Circles that push the contour off; part of dp_step_kernel.cpp.
+/// Repulsion of the contour by circles; part of dp_step_kernel.cpp.
 
 #if defined(CLOG_DP_STEP_CIRCLES) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLOG_DP_STEP_CIRCLES
@@ -112,7 +112,8 @@ struct WindowPushes {
   }
 };
 
-/// Stores or adds to the arrays of the windows. @param p  entry of the first edge in the first array
+/// Stores the forces in the arrays of the windows, or adds them to these arrays. @param p  entry of the first
+/// edge in the first array
 template <bool adds>
 HWY_INLINE void keep_pushes(const WindowPushes& push, M listed, double* p, std::ptrdiff_t stride) {
   for (const V v : {push.begin.x, push.end.x, push.far.x, push.begin.y, push.end.y, push.far.y}) {
@@ -165,7 +166,7 @@ HWY_INLINE void gather_pushes(int group, const WindowPushArrays& pushes, const C
 
 /// Overwrites the forces on the vertices that windows may push.
 void push_off_circles(const WallWindows& given, const Contact& contact, const StepArrays& arrays) {
-  // Copies, because a store might change the originals.
+  // Local copies: the compiler would otherwise assume that every store may change these values.
   const WallWindows windows = given;
   const StepArrays a = arrays;
   const V span = all(contact.span), stiffness = all(contact.stiffness);

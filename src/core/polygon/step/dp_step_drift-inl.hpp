@@ -181,7 +181,7 @@ Sums drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficie
     return to;
   };
   EdgeMeasure<elastic, on_area> edges{a};
-  // Edges follow one vector behind the vertices, so that the processor works on both at once.
+  // The loop handles edges one vector behind the vertices, so that the processor works on both at once.
   const Pair first = move(0);
   Pair here = first, next = n > lanes ? move(lanes) : first;
   int i = 0;

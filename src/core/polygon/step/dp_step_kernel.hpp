@@ -16,8 +16,8 @@ namespace clog::kernel {
 /// Number of consecutive edges that are tested for contact at once, for any instruction set.
 inline constexpr int edges_per_group = WallContacts::edges_per_group;
 
-/// An entry for each vertex or edge, the first on a cache line. Valid from [-1] to [n + edges_per_group - 1]:
-/// the passes repeat the contour beyond its ends.
+/// An array with an entry for each vertex or edge, of which entry 0 begins a cache line. Entries from [-1] to
+/// [n + edges_per_group - 1] are valid: the passes repeat the contour beyond its ends.
 struct ContourArray {
   double* first;
 
@@ -33,7 +33,7 @@ struct StepArrays {
   ContourArray length;         ///< of the edges
   ContourPair push;            ///< kick of the vertices by contact
   ContourPair wetting;         ///< part of the kick by wetted walls that derives from no energy
-  ContourPair grad_x, grad_y;  ///< 6 a times the gradient of the centroid's x, of its y
+  ContourPair grad_x, grad_y;  ///< 6 a times the gradients of the centroid's x and of its y
   ContourArray rate;           ///< drag rate of a vertex [1/t0], if the rates differ
   ContourArray damping, kept;  ///< s and s (1 - h2 r), with the rate; see KickCoefficients
   ContourPair kicked;          ///< w, if keeps_kicked; see KickCoefficients
@@ -48,7 +48,7 @@ struct Sums {
   double moment_y;
 };
 
-/// A kick is the change of a vertex' velocity by a force in half a time step: F below is the force times
+/// A kick is the change of a vertex's velocity by a force in half a time step h. F below is a force times
 /// h/(M/N_v).
 struct InterfaceKick {
   double line_tension;  ///< tension at zero length of the spring
@@ -64,9 +64,10 @@ struct AreaForce {
   double x, y;                ///< kick, all but the reaction to the springs along the interface
 };
 /// Coefficients of one kick. With r a vertex's drag rate and s = 1/(1 + h1 r),
-///   w = s (v + closing_ratio F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a):
-/// w is the velocity kicked by force and own drag, v' the next velocity once c and a are known (see
-/// Coupling). One kick thereby ends a time step and begins the next. q takes the place of the velocity.
+///   w = s (v + closing_ratio F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a).
+/// Here w is the velocity after the kick by the force and the vertex's own drag, and v' is the next velocity.
+/// c and a are known only after the sums over all vertices (see Coupling); until then, q takes the place of
+/// the velocity. So one kick ends a time step and begins the next.
 struct KickCoefficients {
   double closing_ratio;  ///< h1 / half_step: the half step that ends a time step, divided by the half step of
                          ///< the forces
@@ -90,12 +91,12 @@ struct KickTerms {
 };
 /// Mean velocities, and what they contribute to the velocities of the vertices.
 ///
-/// An implicit pressure follows from the area after a time step with its present acceleration: A + dt^2
-/// d^2A/dt^2, with the acceleration by all forces on vertices and area, including the added pressure, and by
-/// the area's drag. It neglects the vertices' own drag and the change of the area's gradient. This is
-/// Newmark's method with beta = 1 for this one mode, while all others move by velocity Verlet: its frequency
-/// omega becomes omega/sqrt(1 + (omega dt)^2), stable for every step. If the area is not accelerated, at rest
-/// and in steady fall, nothing is added.
+/// An implicit pressure is that of the area A + dt^2 d^2A/dt^2, which the droplet would have if its present
+/// acceleration lasted for a time step. The acceleration contains all forces on vertices and area, including
+/// the added pressure, and the drag on the area; it neglects the vertices' own drag and the change of the
+/// area's gradient. For this one mode this is Newmark's method with beta = 1, while all other modes move by
+/// velocity Verlet. The mode's frequency omega becomes omega/sqrt(1 + (omega dt)^2), so it is stable for
+/// every step. If the area is not accelerated, as at rest and in steady fall, nothing is added.
 struct Coupling {
   double mean_x = 0, mean_y = 0;  ///< of the vertices
   double area_x = 0, area_y = 0;  ///< of the area's centroid
@@ -109,15 +110,17 @@ struct Power {
   double spreading;           ///< sum F_i v_i, with F_i the kick that spreads vertices along the interface
   double spread_x, spread_y;  ///< sum F_i
 };
-/// A circle and the edges_per_group edges from `first` on; bits mark those that may touch it.
+/// A circle and the edges_per_group edges from `first` on; the bits of `edges` mark those that may touch the
+/// circle.
 struct WallWindow {
   double x, y;   ///< of the circle's centre [sigma]
   double reach;  ///< radius + range [sigma]
   int first;
   std::uint8_t edges;
 };
-/// Forces of edges on their vertices as windows store them: six arrays, for x and then y the forces on the
-/// first vertex, on the second one, and on each of the two beyond them. Zero outside the windows.
+/// Forces of edges on their vertices, as windows store them. The first three of six arrays contain the x of
+/// the forces on an edge's first vertex, on its second vertex, and on each of the two vertices beyond them;
+/// the other three arrays contain the y. All entries outside the windows are zero.
 struct WindowPushArrays {
   double* first;  ///< entry of edge 0; readable from two groups before to two groups behind the windows
   std::ptrdiff_t stride;
@@ -126,7 +129,7 @@ inline constexpr int num_window_push_arrays = 6;
 /// Repulsion by circles; see WallPlan.
 struct WallWindows {
   const WallWindow* all;
-  int num_own;  ///< number of windows, the first ones, of which no two share an edge
+  int num_own;  ///< number of the first windows, of which no two share an edge
   int num_all;
   /// Groups of vertices that windows may push. Group -1 and the one behind the last belong to the contour's
   /// other end.
@@ -139,7 +142,7 @@ struct HoldingCircle {
   double x, y, radius;  ///< [sigma]
   int first_window, end_window;
   int first_group, end_group;  ///< of vertices that it may push, by itself or through films
-  int end_own_group;           ///< end of the first groups, which the circle may push by itself
+  int end_own_group;           ///< end of the groups that the circle may push by itself, which come first
   bool wraps;                  ///< whether it pushes vertices -1, n or n + 1, which belong to the other end
   WindowPushArrays pushes;     ///< of this circle
 };
@@ -223,8 +226,8 @@ struct StepKernel {
   double (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
                           const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
                           const StepArrays& arrays);
-  /// Adds the vertices' contact with wedges' surfaces up to `range` [sigma]. Edges need no test: they meet a
-  /// wedge's tip first, which is a circle.
+  /// Adds the forces of wedges on vertices that are nearer to a wedge's surface than `range` [sigma]. Edges
+  /// need no test: they meet a wedge's tip first, which is listed as a circle.
   void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
                           double stiffness, const StepArrays& arrays);
   /// Computes rate = far_rate (relative + near_wall (sigma/d)^exponent), with d a vertex's distance to the

@@ -22,8 +22,8 @@ inline constexpr int most_steps_per_survey = 32;
 /// more than this fraction of the smallest distance (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
 inline constexpr double most_steps_per_rate = 4, farthest_way_per_rate = 0.2;
 
-/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls a droplet is defined by
-/// its state.
+/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls, the DropletState alone
+/// determines how the droplet moves on.
 class DpStepper {
  public:
   /// @param run  resolved parameters
@@ -33,12 +33,13 @@ class DpStepper {
 
   /// Rebuilds the contact lists of a droplet.
   void start_afresh(const DropletState& state);
-  /// Moves a droplet by `num_steps` time steps of the run, in shorter ones if they would be unstable; stops
-  /// if it bursts. Returns the number of steps taken.
+  /// Moves a droplet by `num_steps` time steps of the run, or by more and shorter steps if these would be
+  /// unstable; stops if the droplet bursts. Returns the number of steps taken.
   /// @param work  if not null, the work of drag and springs is added to it
   std::int64_t move(DropletState& state, int num_steps, Droplet::Work* work);
-  /// The same with these steps, without regard to the run's time step and the bounds of stability. Possible
-  /// contacts are surveyed before each entry. An implicit pressure excludes near-wall drag.
+  /// Moves a droplet by the given steps, which need neither have the run's length nor be stable. Possible
+  /// contacts are surveyed before each entry of `all`. With near-wall drag, the pressure must not be
+  /// implicit.
   void move(DropletState& state, std::span<const Steps> all, Droplet::Work* work);
 
  private:
