@@ -59,14 +59,14 @@ class Outlook {
   fit::CloggingLength even_;     // fit to the times: every run is equally likely to end next
   fit::CloggingLength slowing_;  // fit to their logarithms: a run that has lasted longer takes longer to end
 
-  /// Counts half an end more: without any end the mean is long, but finite.
+  /// Counts half an end more, so that the mean is finite even without any end.
   static double mean(const fit::CloggingLength& fit) { return fit.total_distance / (fit.num_clogs + 0.5); }
 
-  /// Ends are exponential, P = exp(-t/mean).
+  /// Mean for exponential ends, P = exp(-t/mean).
   static double if_even(double mean, double most) {
     return std::isinf(mean) ? most : mean * -std::expm1(-most / mean);
   }
-  /// Ends follow the power law that mixes all exponentials equally, P = (t/seconds)^(-1/mean).
+  /// Mean for ends with the power law that mixes all exponentials equally, P = (t/seconds)^(-1/mean).
   static double if_slowing(double mean, double seconds, double longest) {
     const double power = 1 - 1 / mean;
     const double logarithm = std::log(longest / seconds);

@@ -156,7 +156,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
                     shortest(dwell), rounded_up(known_from)));
 }
 
-/// Clogging lengths of intact runs that reached the distance from which they count.
+/// Fits clogging lengths to the intact runs that reached the distance from which runs are observed.
 void fit_clogging(Group& group, std::span<const Ending> runs, double confidence, double from_distance) {
   // Some of the ends count as events; all other runs are censored.
   const auto observe = [&](auto is_end) {
@@ -247,7 +247,7 @@ fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double te
   return of_enough_runs(is_far ? fit::fit_pooled_speed(travels) : fit::fit_pooled_speed({}));
 }
 
-/// Keeps the run with the largest max-time of each droplet (one seed in one array); the longest come first.
+/// Keeps one run of each droplet (one seed in one array), the run with the largest max-time.
 void keep_longest(std::vector<const sweep::RunRow*>& runs) {
   std::ranges::stable_sort(runs, std::ranges::greater(),
                            [](const sweep::RunRow* run) { return run->parameters.max_time; });
@@ -268,7 +268,7 @@ struct Tally {
   std::vector<fit::Displacement> displacements;
 };
 
-/// Includes a run in the clogging lengths, unless it is left out there.
+/// Includes a run in the clogging lengths, unless the run does not count for them.
 void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Tally& tally) {
   const Ending from_release = ending_of(run, group.dwell);
   const std::optional<Ending> ending = counted(run, from_release);

@@ -66,7 +66,7 @@ store::SweepFile SweepState::read_table() {
   return file;
 }
 
-/// A salvaged file may lack its config: then compare its rows.
+/// A salvaged file may lack its config. In this case, this function compares the rows with the settings.
 std::string SweepState::settings_that_differ(const store::SweepFile& file,
                                              const sweep::Settings& settings) const {
   if (!attribute(file.provenance, "config").empty())

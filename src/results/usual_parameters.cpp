@@ -63,7 +63,7 @@ bool follows(const Parameter& one, const Parameter& other) {
 enum class Others { all, independent };
 
 /// Whether the value is automatic for the row's other parameters: for all of them, or for those that do not
-/// follow from it.
+/// follow from this value.
 bool is_automatic_with(Others others, const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
   if (are_circles_missing(row.parameters)) return true;  // unknown without the circles

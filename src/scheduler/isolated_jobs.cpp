@@ -97,7 +97,8 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
   std::int64_t number = 0;
   bool is_over = true;
   while (true) {
-    // Computes at least one slice between two messages: a task that is stopped at once has a snapshot, too.
+    // There is at least one slice between two messages, so that even a task that is stopped at once has a
+    // snapshot.
     while (!is_over) {
       is_over = job->advance();
       if (is_over) rank.send(over, number, sweep::to_bytes({job->row(), {}}));
@@ -203,8 +204,8 @@ class IsolatedJobs::Processes {
   pid_t process_id_ = -1;
   std::int64_t last_job_ = 0;
 
-  /// After the helper's reply only the process holds the other end of its socket, so the rank notices its
-  /// death.
+  /// When the helper has replied, only the new process holds the other end of its socket. So the rank notices
+  /// the death of this process.
   void start_process() {
     auto [mine, theirs] = Socket::pair();
     mine.limit_halts(patience);
@@ -257,7 +258,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
 
   Processes& processes_;
   std::int64_t number_;
-  sweep::Report last_;  ///< how it started, or the process's last message
+  sweep::Report last_;  ///< the initial report, or the last message of the process
   bool is_over_ = false;
   bool is_asked_ = false;
   bool has_answered_ = false;

@@ -235,7 +235,7 @@ class Master {
     return served;
   }
 
-  /// Gives a worker its next task; without one it waits.
+  /// Gives a worker its next task; if there is none, the worker waits.
   void answer(int worker) {
     const std::optional<Beginning> next = take_task(worker);
     if (next)

@@ -18,7 +18,7 @@ struct Header {
   std::uint64_t num_bytes;
 };
 
-/// The one byte that carries a socket, and room for the socket.
+/// The message of one byte with which a socket is sent, and room for the socket.
 struct Parcel {
   char byte = 0;
   iovec content{&byte, 1};
@@ -77,7 +77,7 @@ void Socket::send(std::int64_t kind, std::int64_t job, std::span<const std::byte
   std::vector<std::byte> message(sizeof header + bytes.size());
   std::memcpy(message.data(), &header, sizeof header);
   std::ranges::copy(bytes, message.begin() + sizeof header);
-  // After half a message the receiver could not parse the next one.
+  // Half a message would keep the receiver from parsing the next message, so the connection ends.
   if (!write_all(message.data(), message.size())) ::shutdown(descriptor_, SHUT_RDWR);
 }
 

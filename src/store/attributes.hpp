@@ -26,8 +26,8 @@ std::string text_as_written(hid_t file, const std::string& name,
 /// An attribute's text; empty if it is missing or damaged.
 std::string intact_text(hid_t file, const std::string& name);
 
-/// Appends the intact attributes to `whole`, and a sentence to `damage` for each damaged one, or for a table
-/// that differs.
+/// Appends the intact attributes to `whole`. Appends a sentence to `damage` for each damaged attribute, and
+/// one for the table if it differs.
 void compare_attributes(hid_t file, const NamedCheckSum& table, Provenance& whole,
                         std::vector<std::string>& damage);
 

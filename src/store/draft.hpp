@@ -18,8 +18,8 @@ namespace clog::store {
 void remove_stale_drafts(const OutputPath& place, std::string_view mark);
 
 /// An incomplete file beside its target, under an unused name. It is locked until it is closed or unlock() is
-/// called. An unlocked draft of ours was left behind by a killed process; the next one that makes a draft
-/// removes it. Other files with such a name stay.
+/// called. An unlocked draft with our mark was left behind by a killed process; the next process that makes a
+/// draft removes it. Other files with such a name stay.
 class Draft {
  public:
   /// @param mark  see remove_stale_drafts(); written first @throws Error if no file can be made there

@@ -56,7 +56,7 @@ void prepare_library();
 /// @throws Error if there is not enough
 void require_memory_of_file(const std::string& purpose, std::size_t size, int copies = 2);
 
-/// The library failed in memory.
+/// A call of the library failed, on data in memory.
 class LibraryError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -79,7 +79,7 @@ Space space_of(std::initializer_list<hsize_t> shape);
 /// Chunks of this many rows, with checksums by which other programs detect damage.
 PropertyList checked_chunks(hsize_t num_rows);
 /// Creates and fills a dataset; attributes can be added to the result. @throws LibraryError
-/// @param data  nullptr: nothing yet
+/// @param data  nullptr: the data are written later
 Dataset write_dataset(hid_t parent, const std::string& name, hid_t type, hid_t space, const void* data,
                       hid_t properties = H5P_DEFAULT);
 /// Number of elements of a list; nullopt for a dataset of another shape.

@@ -26,7 +26,7 @@ std::uint32_t check_sum_of_columns() {
   return check_sum(list);
 }
 
-/// The header of the file: other columns mean another version.
+/// The header of the file. A journal with other columns is of another version.
 struct FileHeader {
   char kind[16] = "clogsweep jrnl2";
   std::uint64_t columns = check_sum_of_columns();
@@ -238,7 +238,7 @@ void Journal::rewrite(std::span<const Entry* const> entries) {
 void Journal::prepare(std::span<const Entry* const> entries, std::uint64_t begin) {
   check_place();
   next_ = std::make_unique<Draft>(place_, journal_mark);
-  // Locking a draft is optional; here it must succeed before the rename.
+  // A draft need not be locked, but this one will be the journal, so it must be locked before the rename.
   if (!try_lock(next_->descriptor(), place_.path())) refuse_replaced();
   next_->write(bytes_of(FileHeader()));
   for (const Entry* entry : entries) next_->write(record_of(entry->row, entry->snapshot));

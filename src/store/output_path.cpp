@@ -184,7 +184,7 @@ void OutputPath::lend_access_to(int descriptor) const {
   const std::vector<char> list = access_list_of(open(O_RDONLY | O_NONBLOCK));
   constexpr mode_t permissions = 0777;
   mode_t mode = there->st_mode & permissions;
-  // A new group gets only the rights of others.
+  // If the file has another group, this group gets only the rights of others.
   if (!has_group) mode &= ~static_cast<mode_t>(S_IRWXG) | ((mode & S_IRWXO) << 3);
   fremovexattr(descriptor, access_list);  // the folder may have set one
   fchmod(descriptor, mode);

@@ -73,7 +73,7 @@ std::string key_of_symbol(std::string_view symbol) {
   };
   for (const Parameter& parameter : parameter_schema())
     if (!plain.empty() && plain_symbol(parameter.symbol) == plain) return parameter.key;
-  // One letter is too little for a suggestion.
+  // Capitals do not matter, except in words of one letter, which are too short for a suggestion.
   for (const Parameter& parameter : parameter_schema())
     if (plain.size() > 1 && lower(plain_symbol(parameter.symbol)) == lower(plain)) return parameter.key;
   return "";

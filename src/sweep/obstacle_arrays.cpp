@@ -27,7 +27,7 @@ constexpr double fewest_shared = 1e5;
 constexpr std::chrono::milliseconds pause{5};
 constexpr std::chrono::milliseconds pause_between_looks{500};
 
-/// Upper bound of the number of obstacles, from the largest part of the area that discs cover.
+/// Upper bound of the number of obstacles, from the largest fraction of an area that discs can cover.
 double num_places(const ObstacleParameters& parameters) {
   const double per_side = parameters.box / (parameters.smallest_diameter() + parameters.gap);
   return parameters.boxes * per_side * per_side;
@@ -42,7 +42,7 @@ std::optional<std::string> shared_name(const RunParameters& run) {
                      executable.st_mtim.tv_nsec, array_key(run));
 }
 
-/// The header before the obstacles and the starts of the cells.
+/// The header of a shared array; after it come the obstacles and the starts of the cells.
 struct Header {
   Period period;
   double largest_radius;
@@ -84,8 +84,8 @@ ObstacleArray ObstacleArrays::build(const RunParameters& run) {
 }
 
 std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParameters& parameters) {
-  // The time for one place is half a microsecond times the number of places within reach of the largest
-  // obstacle, and up to twice as long.
+  // Building takes half a microsecond, or up to twice as long, for each pair of a place and a place within
+  // reach of the largest obstacle.
   constexpr double ten_builds = 10 * 1e-6;
   const double reach =
       (parameters.largest_diameter() + parameters.gap) / (parameters.smallest_diameter() + parameters.gap);

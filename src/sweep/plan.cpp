@@ -23,8 +23,8 @@ namespace {
 
 constexpr std::int64_t largest_sweep = 100'000'000;
 
-/// Returns what a check of one branch of the settings returns. If the check refuses one value of a list like
-/// 0,3, the message asks whether 0.3 was meant.
+/// Makes a check of one branch of the settings, and returns the check's result. If the check refuses one
+/// value of a list like 0,3, the message asks whether 0.3 was meant.
 /// @param where  beginning of the message
 template <class Check>
 auto checked(const Settings& branch, const std::string& where, const Check& check) try {
@@ -70,7 +70,7 @@ bool is_each_possible(const RunParameters& run) try {
 
 }  // namespace
 
-/// Fills a plan, batch by batch.
+/// Fills a plan, one branch of the settings after the other.
 class Plan::Builder {
  public:
   explicit Builder(Plan& plan) : plan_(plan) {}
@@ -118,7 +118,7 @@ class Plan::Builder {
         own[axis] = values;
   }
 
-  /// Refuses all angles at once; resolve() refuses a single one.
+  /// Refuses all angles that do not fit the box, in one message; resolve() would name only the first one.
   void refuse_misfitting_angles(std::size_t product, std::int64_t num_places,
                                 const std::string& where) const {
     std::vector<std::string> angles;
@@ -141,8 +141,7 @@ class Plan::Builder {
                       where, joined(angles, ","), largest_angle_error, box));
   }
 
-  /// The number of groups. This number excludes the seeds, which are counted only to check the largest number
-  /// of runs.
+  /// The number of groups. It excludes the seeds, which are counted only to check the largest number of runs.
   std::int64_t size_of_product(const Settings& branch) {
     auto num_places = std::int64_t{1};
     const std::int64_t num_seeds = std::ssize(*last_seeds_);

@@ -207,7 +207,7 @@ std::set<std::string> Settings::keys_that_follow() const {
       if (!branch.given_[i] && !given_[i] && now[i] != entries()[i] && now[i]->text != entries()[i]->text)
         following.insert(keys()[i].name);
   });
-  if (following.contains(layout_key))  // which a channel's keys would set
+  if (following.contains(layout_key))  // the keys of a channel would set the layout
     for (const Key& key : keys())
       if (is_of_channel(key) && !is_given(key.name)) following.insert(key.name);
   return following;

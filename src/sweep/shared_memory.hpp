@@ -37,7 +37,8 @@ class SharedMemory {
   static std::shared_ptr<const SharedMemory> map(Descriptor file);
 };
 
-/// A lock that at most one process of this user on this machine holds at a time. It ends with the process.
+/// A lock that at most one process of this user on this machine holds at a time. The end of the process
+/// releases it.
 class NameLock {
  public:
   enum class State { held, held_by_another, impossible };

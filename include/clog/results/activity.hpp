@@ -5,11 +5,11 @@
 
 namespace clog::results {
 
-/// Number of busy ranks during one session of a sweep, as means over equal stretches of time, which get
-/// longer with the session.
+/// Number of busy ranks during one session of a sweep, as means over stretches of time. All stretches have
+/// the same length, which grows with the length of the session.
 class Activity {
  public:
-  /// @param num_ranks  that compute
+  /// @param num_ranks  number of ranks that compute
   explicit Activity(int num_ranks) : num_ranks_(num_ranks) {}
 
   /// Call these when a rank begins or ends a task.

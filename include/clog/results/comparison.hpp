@@ -19,18 +19,18 @@ struct Side {
   std::vector<std::string> lists;  ///< see listed_columns()
 };
 
-/// A parameter set of one side, and the one with which it is compared.
+/// A parameter set of one side (`here`), compared with a parameter set of the first side (`there`).
 struct Comparison {
   std::string here, there;    ///< names of the sides
   std::vector<Value> common;  ///< see Comparisons::columns
   fit::CloggingLength length_here{}, length_there{};
   fit::LengthRatio ratio{};  ///< of the length here to the length there
-  int num_both_clogged = 0;  ///< pairs of which both clogged
-  int num_same_place = 0;    ///< pairs of which both clogged, at the same place
+  int num_both_clogged = 0;  ///< pairs of runs that both clogged
+  int num_same_place = 0;    ///< pairs of runs that both clogged, at the same place
 };
 struct Comparisons {
-  std::vector<std::string>
-      columns;  ///< listed columns with a value that both sides have; their values name a comparison
+  std::vector<std::string> columns;    ///< listed columns with a value that both sides have; the values in
+                                       ///< these columns name a comparison
   std::vector<std::string> differing;  ///< columns whose values here and there differ
   std::vector<Comparison> all;
   std::string unit = "sigma";      ///< of lengths: "sigma" or "mm"
@@ -48,8 +48,8 @@ std::vector<Side> sides_of_files(const std::vector<std::string>& paths);
 /// @throws Error if there is no such column of parameters, or only one value
 std::vector<Side> sides_of_column(const std::string& name, const store::SweepFile& file);
 
-/// Compares each side with the first one: parameter sets with the same values of Comparisons::columns. Runs
-/// of the same seed are pairs.
+/// Compares each side with the first side. Parameter sets with the same values in Comparisons::columns are
+/// compared; their runs of the same seed form pairs.
 /// @param sides  two or more
 /// @param within  see Comparisons; nullopt: half an obstacle spacing
 /// @throws std::invalid_argument if there are fewer than two sides

@@ -36,8 +36,8 @@ DistanceTable read_distances(const std::string& path);
 using Scales = std::map<std::string, LaboratoryScale>;
 /// The runs of a sweep. Runs with the same values of all parameters that vary form a group. @throws Error as
 /// require_lengths()
-/// @param scales  of several laboratories: then distances are in mm, and the droplet's diameter [mm] and the
-/// tilt [degrees] separate groups, too
+/// @param scales  if not empty, the units of several laboratories. Then distances are in mm, and the
+/// droplet's diameter [mm] and the tilt [degrees] separate groups, too.
 DistanceTable distances_of(const Side& side, const Scales& scales = {});
 
 /// Prints lengths, intervals, doubts and survival of each group, estimated as for a sweep.

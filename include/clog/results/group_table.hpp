@@ -8,7 +8,7 @@
 
 namespace clog::results {
 
-/// Which of the parameters that all groups share are named above their table.
+/// Which of the parameters that have one value in all groups are named above the table.
 enum class SharedParameters { unusual, all };
 
 /// A printed table: one line per group, with the parameters in which groups differ. If groups have a

@@ -71,10 +71,11 @@ inline constexpr DoubtText doubt_texts[] = {
      "cross themselves or obstacles (handbook, Which droplets are sound)"}};
 const DoubtText& text_of(Doubt doubt);
 
-/// The ways in which a run may end, competing risks: the mechanism that holds a clog (`other`: none of them),
-/// or the droplet's break-up.
+/// The competing ways in which a run may end: the mechanism that holds a clog (`other`: none of the three),
+/// or the break-up of the droplet.
 enum class Cause { wrapped, squeezed, hybrid, other, broken };
-/// Names in files of the number of runs that the cause ended, and of the length (S divided by this number).
+/// Names of two columns: the number of runs that the cause ended, and the length (total distance divided by
+/// this number).
 struct CauseText {
   Cause cause;
   bool is_clog;
@@ -98,11 +99,11 @@ struct LaboratoryScale {
 /// Twelve digits, without the round-off of conversions between units.
 double short_number(double value);
 
-/// Droplets of a device and a line across the flow.
+/// The droplets of a device, and a line across the flow that they may have passed.
 struct Passage {
   double x;  ///< of the line, in the coordinates of the circles [sigma]
   int num_passed;
-  int num_stopped;      ///< clogged or broke up before it; others were still on their way
+  int num_stopped;      ///< clogged or broke up before the line; all others were still moving
   fit::Interval share;  ///< of num_passed divided by num_passed + num_stopped
 };
 
@@ -110,7 +111,8 @@ struct Passage {
 struct Group {
   sweep::RunRow first_row;                                 ///< parameters of all runs, except the seed
   double dwell = std::numeric_limits<double>::infinity();  ///< see group_runs() [t0]
-  double dwells_known_from = 0;  ///< Dwells::known_from that holds for all runs; NaN: for no time [t0]
+  double dwells_known_from =
+      0;  ///< the latest Dwells::known_from of all runs; NaN if the dwells of a run are unknown [t0]
   fit::CloggingLength clogging;
   double least_squares_length = 0;  ///< by the published, biased method; NaN for fewer than two clogs
   fit::WeibullTest weibull;
@@ -131,8 +133,8 @@ struct Group {
   fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
   fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, total distance divided by total time of the runs
   /// v_g/v_t, total distance divided by total time of all runs, even of those with a short distance. A run
-  /// counts until its end, a clogged one until its last dwell began. If droplets clog, only the faster runs
-  /// go far enough to have a mean speed of their own.
+  /// counts until its end, a clogged run until its last dwell began. This speed is not biased towards fast
+  /// runs: if droplets clog, only the faster ones go far enough to have a mean speed of their own.
   fit::MeanSpeed relative_speed_all;
   fit::Migration migration;
   /// Tilt of the rows of posts from the flow towards +y, given by a lattice or by --row-angle; NaN: unknown
@@ -141,19 +143,19 @@ struct Group {
   std::vector<std::uint32_t> seeds;  ///< of the runs that count for the clogging length
   int num_passed = 0;                ///< runs whose droplet reached the exit of the device
   int num_flowing = 0;               ///< runs that max-time ended
-  /// Number of those flowing runs whose droplet had rested for longer than a free droplet takes to fall ten
-  /// diameters; and the shortest such rest [t0].
+  /// Number of those flowing runs whose droplet, at the end, had rested for longer than a free droplet takes
+  /// to fall ten diameters; the next member is the shortest such rest [t0].
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity();
   int num_interrupted = 0;
   int num_repeated = 0;   ///< runs left out because a longer run of the same droplet counts (pooled)
   int num_failed = 0;     ///< left out of all fits
-  int num_damaged = 0;    ///< likewise
-  int num_left_out = 0;   ///< ended before distances are counted, see group_runs(); likewise
+  int num_damaged = 0;    ///< left out of all fits
+  int num_left_out = 0;   ///< ended before distances are counted, see group_runs(); left out of all fits
   int num_on_mesh = 0;    ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
   int num_free = 0;       ///< met no obstacle
   int num_repeating = 0;  ///< went farther than their array's period
-  std::vector<Passage> passages;  ///< through a device, downstream; the exit is the last
+  std::vector<Passage> passages;  ///< through a device, in downstream order; the last one is the exit
   std::vector<Doubt> doubts;
   std::optional<LaboratoryScale> laboratory = {};  ///< units in which results are also given
 };
@@ -167,8 +169,8 @@ std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
 /// Groups rows by everything but the seed, in the order of their parameters. Runs count as in
 /// observation_of().
-/// @param from_distance  distances are measured from here [sigma]: runs that ended earlier are excluded, the
-/// others count with the distance beyond it (left truncation)
+/// @param from_distance  the distance from which on runs are observed [sigma]: runs that ended earlier are
+/// excluded, and the others count with their distance beyond it (left truncation)
 /// @param dwell  a droplet that rested for longer than this counts as clogged where it first did so [t0]. A
 /// droplet that has neither rested so long nor clogged is censored where its last dwell began, because the
 /// full length of that dwell is unknown. A `dwell` of max-time or more has no effect.
@@ -198,8 +200,8 @@ using Field = std::pair<std::string, Value>;
 std::span<const sweep::Column* const> group_columns();
 /// The values of a row in these columns.
 std::vector<Value> parameter_values(const sweep::RunRow& row);
-/// False in a channel and on a wall, where nothing is random: each group is one run, whose row has the
-/// results.
+/// Whether the results include a clogging length. They do not in a channel and on a wall, where nothing is
+/// random: there each group is one run, whose row has the results.
 bool has_clogging_length(const sweep::RunRow& row);
 /// The results of a group, by name.
 std::vector<Field> result_fields(const Group& group);

@@ -10,9 +10,9 @@
 
 namespace clog::results {
 
-/// Rows of several files as one sweep. A run that several files have is included once: a result rather than
-/// an unfinished or failed row, an unfinished row rather than a failed one, otherwise the row with more
-/// steps. Of results that differ by instruction set, those of the first file are kept.
+/// Rows of several files as one sweep. A run that several files have is included once. A result is preferred
+/// to an unfinished row, and an unfinished row to a failed one; of two rows of the same kind, the one with
+/// more steps is kept. Of results that differ by instruction set, those of the first file are kept.
 struct MergedSweep {
   store::SweepFile table;
   std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs

@@ -24,7 +24,7 @@ class Progress {
   Progress(std::ostream& out, Screen screen, int num_computing_ranks, sweep::GroupOf set_of);
 
   /// Adds tasks to the total against which progress is measured.
-  /// @param num_wanted  runs of the whole sweep; the others were done before
+  /// @param num_wanted  number of runs of the whole sweep; those that are not in `tasks` were done before
   void expect(std::span<const std::int64_t> tasks, std::int64_t num_wanted);
 
   void started(std::int64_t task);
@@ -44,7 +44,7 @@ class Progress {
 
   console::StatusLine status_;
   sweep::GroupOf number_of_set_;
-  std::vector<SetTimes> sets_;  // running_ has the running tasks, which count as waiting here
+  std::vector<SetTimes> sets_;  // running tasks, which are in running_, count as waiting here
   std::int64_t num_tasks_ = 0;
   std::int64_t num_before_ = 0;
   int num_ranks_;

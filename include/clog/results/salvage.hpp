@@ -21,8 +21,8 @@ struct Salvage {
 Salvage salvage(const std::string& path);
 /// Removes rows that are physically impossible, or repeat a run of an earlier row. Returns a line for each.
 std::vector<std::string> drop_faulty(std::vector<sweep::RunRow>& rows);
-/// Removes intact rows and attributes for which verify() refuses a file, and adds a line for each to the
-/// damage.
+/// Removes rows and attributes that are intact, but for which verify() refuses a file. Adds a line for each
+/// of them to the damage.
 void drop_what_verify_refuses(const std::string& path, Salvage& found);
 /// Makes the table, and a journal beside it if there are snapshots. @throws Error if the table exists
 void write(const store::SweepFile& table, const std::vector<store::Journal::Entry>& snapshots,

@@ -20,14 +20,14 @@ class SeedRule {
   /// @param first_seeds, most_seeds  per parameter set, at first and at most
   SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds, std::int64_t most_seeds);
 
-  /// Tasks of the next round, once all tasks so far are over; empty at the end. Task s num_groups + g is the
-  /// s-th seed of parameter set g. A set that is not precise enough gets as many more seeds as its fraction
-  /// of clogs so far requires, but at most as many as it already has.
+  /// Call this when all tasks so far are over. Returns the tasks of the next round; none at the end. Task s
+  /// num_groups + g is the s-th seed of parameter set g. A set that is not precise enough gets as many more
+  /// seeds as its fraction of clogs so far requires, but at most as many as it already has.
   /// @param has_clogged  whether a finished task has clogged
   std::vector<std::int64_t> next_round(const std::function<bool(std::int64_t task)>& has_clogged);
 
   std::int64_t num_groups() const { return static_cast<std::int64_t>(num_seeds_.size()); }
-  /// Number of clogs of a parameter set that is precise enough.
+  /// Number of clogs that a parameter set needs to be precise enough.
   std::int64_t clogs_needed() const;
   double precision() const { return precision_; }
   std::int64_t most_seeds() const { return most_seeds_; }
@@ -53,7 +53,8 @@ class SeedRule {
 /// sets there are, if all reached it.
 std::string outcome(const SeedRule& rule, const sweep::Plan& plan);
 
-/// A sweep that a rule may enlarge: its settings have all possible seeds, those given first.
+/// A sweep that a rule may enlarge. Its settings have all seeds that the rule may use; the given ones come
+/// first.
 struct GrowingSweep {
   sweep::Settings settings;
   std::int64_t num_first = 0;  ///< tasks to begin with

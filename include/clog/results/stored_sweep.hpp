@@ -9,7 +9,7 @@
 
 namespace clog::results {
 
-/// The description of a sweep in its file, apart from the rows.
+/// These functions read the description of a sweep that a file contains besides the rows.
 
 /// Opens a sweep for reading; warns on stderr about anything that could not be verified. Rows have their
 /// circles, with the name of their file. @throws Error as store::read_sweep()
@@ -34,7 +34,7 @@ struct RunCount {
   std::int64_t num_runs = 0;
   std::int64_t num_beyond = 0;  ///< those outside the lists of the sweep's last command
 
-  /// num_beyond in brackets, with a space before; empty for none.
+  /// num_beyond in brackets, after a space; empty if it is 0.
   std::string text_of_beyond() const;
 };
 RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);

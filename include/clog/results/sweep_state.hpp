@@ -80,7 +80,7 @@ class SweepState {
   using Entry = store::Journal::Entry;
 
   store::OutputPath place_;
-  std::string path_;   // for messages and readers: links followed
+  std::string path_;   // path without symbolic links, for messages and readers
   std::string stamp_;  // of the table as this sweep read or wrote it last; empty if there was none
   const sweep::Plan* plan_;
   store::Provenance provenance_;
@@ -110,8 +110,9 @@ class SweepState {
   Clock::time_point begin_ = Clock::now();
   bool is_published_ = false;
   Clock::time_point publication_begin_, publication_end_;
-  std::mutex changing_;                                  // protects rows that a publication may be reading
-  std::future<std::optional<std::string>> publication_;  // the stamp; the last member: it ends first
+  std::mutex changing_;  // protects rows that a publication may be reading
+  std::future<std::optional<std::string>>
+      publication_;  // gives the stamp; this is the last member, so that it ends first
 
   Entry* entry(std::int64_t task) const {
     return task < std::ssize(runs_) ? runs_[static_cast<std::size_t>(task)].get() : nullptr;

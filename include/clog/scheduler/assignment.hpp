@@ -8,11 +8,11 @@
 
 namespace clog::scheduler {
 
-/// Rank 0's message to the others before a sweep: the task descriptions and options.
+/// Rank 0's message to the other ranks before a sweep: the descriptions of the tasks, and options.
 struct Assignment {
   std::chrono::milliseconds report_interval{10'000};
   std::string instruction_set = "auto";
-  bool is_isolated = true;  ///< do tasks run in processes of their own?
+  bool is_isolated = true;  ///< whether tasks run in processes of their own
   std::string settings;     ///< see sweep::Settings::packed()
 
   /// Serialised form, for messages.

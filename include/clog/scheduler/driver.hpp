@@ -28,7 +28,7 @@ struct DriverOptions {
 int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& options, const sweep::Plan& plan,
                 const sweep::JobFactory& make_job, results::SweepState& state, results::SeedRule* rule);
 
-/// The part of the other ranks.
+/// What the other ranks do during a sweep.
 void follow_sweep(const scheduler::Communicator& ranks, const sweep::JobFactory& make_job,
                   std::chrono::milliseconds report_interval);
 

@@ -25,8 +25,8 @@ class RankTrust {
   /// Records that a task succeeded, or failed. Returns the ranks that are set aside as a result.
   std::vector<int> succeeded(std::int64_t task, int rank);
   std::vector<int> failed(std::int64_t task, int rank);
-  /// Releases all ranks on hold that are still in service, when no remaining rank could decide whether rank
-  /// or task is at fault.
+  /// Call this when no remaining rank can decide whether a rank or a task is at fault. Releases all ranks on
+  /// hold that are still in service.
   void let_go();
 
   int num_in_service() const { return num_in_service_; }
@@ -34,7 +34,7 @@ class RankTrust {
   /// Whether this rank may retry a failed task: only after every other rank has tried it.
   bool is_next_for(std::int64_t task, int rank) const;
   bool is_trusted(int rank) const;
-  /// Tasks that failed on this rank, and neither failed on a trusted one nor succeeded on any.
+  /// Tasks that failed on this rank, and have neither failed on a trusted rank nor succeeded on any rank.
   std::vector<std::int64_t> unsettled_tasks(int rank) const;
   /// Unsettled tasks of this rank that other ranks should try, to decide whether it may be released: those
   /// that some rank in service has not tried yet. Empty if this rank is not on hold, or if all tasks seem to

@@ -24,19 +24,21 @@ OutputPath journal_place(const OutputPath& table);
 
 /// The records of a sweep since its table was last published, appended to a file beside the table: finished
 /// rows, and rows of running tasks with their snapshots. A record survives the death of the process once
-/// add() has returned, and a crash of the machine once flush() has returned. Opening the file drops an
-/// incomplete record at its end; a damaged record does not make others unreadable. An open journal is locked;
-/// the lock disappears with its process. If somebody removes or replaces the file, the lock no longer
-/// protects it: then nothing is written, neither to it nor to the file that took its place. Closing a journal
-/// without records removes it.
+/// add() has returned, and a crash of the machine once flush() has returned. An incomplete record at the end
+/// of the file is ignored; a damaged record does not make others unreadable.
+///
+/// An open journal is locked; the lock disappears with its process. If somebody removes or replaces the file,
+/// the lock no longer protects it. The journal then writes nothing more, neither to this file nor to the file
+/// that took its place. Closing a journal without records removes its file.
 class Journal {
  public:
   using Entry = sweep::Report;
   struct Contents {
     std::vector<Entry> entries;       ///< oldest first
     std::int64_t num_unreadable = 0;  ///< damaged records between readable ones
-    bool has_torn_end = false;        ///< its writer died while writing a record, or is still writing it
-    std::uint64_t num_bytes = 0;      ///< excluding a torn end
+    bool has_torn_end =
+        false;  ///< whether the last record is incomplete: its writer died, or is still writing it
+    std::uint64_t num_bytes = 0;  ///< excluding a torn end
   };
 
   /// Opens or makes the file. @throws Error if the file is open elsewhere, has another version, is another

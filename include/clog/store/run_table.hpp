@@ -29,7 +29,7 @@ void refuse_existing(const std::string& path);
 void refuse_unwritable(const std::string& path);
 
 /// User-supplied circles, and the name of their file; the name is empty if the sweep's last command does not
-/// give it.
+/// name this file.
 struct CircleFile {
   std::string name;
   OwnCircles circles;
@@ -48,7 +48,8 @@ struct SweepFile {
   Checked checked = Checked::everything;
 };
 
-/// The rows for a file. Each is requested once, in this order, so the rows need not be in one array.
+/// The rows for a file. Each row is requested once, in the order of `i`, so the rows need not be in one
+/// array.
 struct Rows {
   std::size_t number;
   std::function<sweep::RunRow(std::size_t i)> row;
@@ -74,8 +75,8 @@ inline std::optional<std::string> publish_sweep(const OutputPath& place, const s
 /// Reads a file of format version 9 or 10. Missing columns get Parameter::before, or are unknown. @throws
 /// Error if the file is missing, not HDF5, not ours, of another format version, or damaged
 SweepFile read_sweep(const std::string& path);
-/// Tries to read a file without a valid seal in a child process, so that a later read_sweep() of the same
-/// bytes does not fork: a process that has called MPI_Init must not fork. Throws nothing, because
+/// If a file has no valid seal, tries to read it in a child process. Then a later read_sweep() of the same
+/// bytes does not fork, which a process that has called MPI_Init must not do. Throws nothing, because
 /// read_sweep() throws the error.
 void try_before_mpi(const std::string& path);
 /// A warning for readers of this file; empty if all of it was verified.

@@ -12,10 +12,10 @@ namespace clog::sweep {
 /// The values of all parameters that shape a run's walls, as text: runs with equal texts have the same walls.
 std::string array_key(const RunParameters& run);
 
-/// The walls of a sweep's runs, usually obstacle arrays. The last one is kept, because a sweep requests the
-/// same one many times in a row. Large ones are shared by all processes of the same user and executable on a
-/// machine: one of them builds each array while the others wait, and memory holds it once. If sharing fails,
-/// every process waits in vain once and then builds its own array.
+/// The walls of a sweep's runs, usually obstacle arrays. The last array is kept, because a sweep requests the
+/// same array many times in a row. Large arrays are shared by all processes of the same user and executable
+/// on a machine: one process builds the array while the others wait, and memory holds it only once. If
+/// sharing fails, every process waits in vain once, and then builds its own array.
 class ObstacleArrays {
  public:
   /// @param run  resolved
@@ -33,7 +33,7 @@ class ObstacleArrays {
   std::string key_;  ///< of the array that is kept; empty: there is none
   std::shared_ptr<const ObstacleArray> array_;
   int num_built_ = 0;
-  bool is_waiting_worthwhile_ = true;  ///< false after a wait in vain, until a shared array is found again
+  bool is_waiting_worthwhile_ = true;  ///< false after a wait in vain, until a shared array is found
 
   ObstacleArray build(const RunParameters& run);
   ObstacleArray find_or_build(const RunParameters& run);

@@ -40,7 +40,7 @@ class Plan {
   std::vector<std::uint32_t> seeds(std::int64_t group) const;
   /// The group's values as texts of the lists, in the order of keys(); the text of the seeds is empty.
   std::vector<std::string> texts(std::int64_t group) const;
-  /// @param place  of its seed among those of the group, 0 <= place < num_seeds(group)
+  /// @param place  place of the task's seed among the seeds of the group, 0 <= place < num_seeds(group)
   std::int64_t task_of(std::int64_t group, std::int64_t place) const;
   /// Whether every group has equally many seeds, and task s num_groups() + g is seed s of group g.
   bool has_equal_seeds() const { return layers_.size() == 1; }

@@ -26,7 +26,7 @@ class RunJob final : public Job {
   RunParameters run_parameters_;
   std::vector<std::byte> snapshot_;
   std::shared_ptr<ObstacleArrays> arrays_;
-  std::unique_ptr<DropletRun> run_;  // made at the first advance(): the release may fail
+  std::unique_ptr<DropletRun> run_;  // made at the first advance(), because the release may fail
   RunRow row_;
   double wall_seconds_ = 0, processor_seconds_ = 0;
   bool over_ = false;

@@ -29,7 +29,7 @@ struct clog::Words<clog::sweep::FoundBy> {
 
 namespace clog::sweep {
 
-/// Instruction set of a run that resumed from a snapshot of another one.
+/// RunRow::instruction_set of a run that resumed from a snapshot of another instruction set.
 inline constexpr const char* mixed_instruction_sets = "mixed";
 
 /// One row of the table of runs: parameters, results, circumstances. Its columns, their units and meanings
@@ -116,7 +116,7 @@ void record(const RunResult& result, RunRow& row);
 std::size_t packed_size();
 void pack(const RunRow& row, std::span<std::byte> packed);
 
-/// A row, and the error in its bytes: the first value that no row can have; empty if there is none.
+/// A row, and a description of the first value in its bytes that no row can have; empty if there is none.
 struct UnpackedRow {
   RunRow row;
   std::string fault;

@@ -16,9 +16,9 @@
 
 namespace clog::sweep {
 
-/// Escapes a value for a line of a config; unescaped() restores it, whatever bytes it has: characters that
-/// would end or cut the line (control characters, #, a backslash, blanks at the ends) become a backslash, x
-/// and two digits.
+/// Escapes a value for a line of a config. Characters that would end or cut the line (control characters, #,
+/// a backslash, blanks at the ends) become a backslash, x and two digits. unescaped() restores the value,
+/// whatever bytes it has.
 std::string escaped(const std::string& text);
 /// The inverse of escaped(). Any other backslash stays a backslash.
 std::string unescaped(const std::string& text);
@@ -76,7 +76,7 @@ class Settings {
   /// Files that are named but not attached.
   std::vector<std::string> missing_files() const;
 
-  /// Everything, circles included, as text for other ranks; and the inverse. @throws Error
+  /// All settings, circles included, as text for other ranks; and the inverse. @throws Error
   std::string packed() const;
   static Settings from_packed(const std::string& text);
 
@@ -88,7 +88,7 @@ class Settings {
     std::string text;
     std::vector<std::string> values;
   };
-  /// By place in keys(). Shared by the branches of a sweep, of which there may be many.
+  /// Entries by place in keys(). Branches of a sweep share them, because there may be many branches.
   using Entries = std::vector<std::shared_ptr<const Entry>>;
 
   Entries given_ = Entries(keys().size());
@@ -104,7 +104,8 @@ class Settings {
   std::set<std::string> keys_that_follow() const;
 };
 
-/// Refuses keys that another key, or the scene, leaves without effect, in addition to those of check_each().
+/// Refuses keys that have no effect because of another key or of the scene, in addition to those that
+/// check_each() refuses.
 /// @param settings  with one value for each key of words, before parameter sets are made @throws Error
 void refuse_contradictions(const Settings& settings);
 /// A question about a list that may be a mistyped decimal below one, such as 0,5; empty for any other list.

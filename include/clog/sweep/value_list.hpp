@@ -27,7 +27,7 @@ using clog::shortest;
 /// `1 run`, `2 runs`.
 std::string counted(std::int64_t number, const std::string& noun);
 
-/// Describes a text that begins with a number and continues with something like a unit.
+/// The error for a text in which something like a unit follows a number.
 struct NumberWithUnit : Error {
   using Error::Error;
 };
