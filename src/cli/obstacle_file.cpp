@@ -153,7 +153,7 @@ std::optional<Columns> columns_in(std::string comment) {
 /// Reads the numbers of a table, and refuses ambiguous commas.
 class Numbers {
  public:
-  /// @param place  of the cell, from 0. @throws Error
+  /// @param place  number of the cell in its line, from 0. @throws Error
   double read(const console::TableLine& line, const Columns& columns, int place) {
     const std::string& cell = line.cells[static_cast<std::size_t>(place)];
     const std::string name = columns.header.empty() ? fmt::format("cell {}", place + 1)

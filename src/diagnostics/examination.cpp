@@ -137,7 +137,7 @@ Finding speed(const std::vector<RankFacts>& ranks) {
           "look for other programs on those cores, and for bound ranks"};
 }
 
-/// Tries the file operations of a sweep in its folder, on another file.
+/// Tries the file operations of a sweep in the folder of its output, on another file.
 Finding folder(const std::string& output) {
   namespace fs = std::filesystem;
   const fs::path parent = fs::path(output).parent_path();

@@ -13,7 +13,8 @@
 namespace clog::fit {
 namespace {
 
-/// Fraction of the mean distance to which the test raises shorter distances: Weibull's law excludes zero.
+/// Fraction of the mean distance to which the test raises shorter distances, because Weibull's law excludes
+/// zero.
 constexpr double shortest_share = 1e-3;
 
 /// An interval that contains the root of a falling function, found by doubling and halving; nullopt if there
@@ -123,7 +124,7 @@ WeibullTest test_exponentiality(std::span<const Observation> runs) {
   if (!ways.clogs_differ) return test;
 
   const auto d = static_cast<double>(test.num_clogs);
-  // The derivative of the profile likelihood in the shape: falls from +infinity to a negative number.
+  // The derivative of the profile likelihood by the shape; it falls from +infinity to a negative number.
   const auto score = [&](double shape) {
     const PowerSums sums = power_sums(ways.log_x, shape);
     return 1 / shape + ways.clog_logs / d - sums.power_log / sums.power;

@@ -330,7 +330,7 @@ bool are_counts_equal(const Passage& one, const Passage& other) {
   return one.num_passed == other.num_passed && one.num_stopped == other.num_stopped;
 }
 
-/// Of many lines, keeps those at which the counts change, and the last line.
+/// Shortens a long list to the lines at which the counts change, and the last line.
 std::vector<Passage> shown_passages(const std::vector<Passage>& all) {
   constexpr std::size_t most_lines = 8;
   if (all.size() <= most_lines) return all;

@@ -94,7 +94,7 @@ class CommandLine {
 
   double number(const std::string& option) const;
   [[noreturn]] void refuse_missing(const std::string& option) const;
-  /// Whether this is an option whose value is the next word.
+  /// Whether the word is an option whose value is the word after it.
   bool awaits_value(const std::string& word) const;
   void refuse_misspelt_command(const std::string& word) const;
   [[noreturn]] void refuse_surplus_words() const;

@@ -16,7 +16,8 @@ namespace clog::cli {
 /// @throws Error naming the line
 OwnCircles read_circles(const std::string& name);
 
-/// Writes circles in the form that read_circles() reads, with digits that read back exactly. @throws Error
+/// Writes circles in the form that read_circles() reads, with enough digits to read them back exactly.
+/// @throws Error
 void write_obstacles(const std::string& path, std::span<const Obstacle> obstacles);
 
 }  // namespace clog::cli

@@ -16,7 +16,7 @@ struct RoundedInterval {
   std::string value, lower, upper;
 };
 /// A value and the limits of its interval, all three with the same number of figures. This number is at least
-/// three and gives the narrower side of the interval two figures.
+/// three, and large enough to show the narrower side of the interval with two figures.
 RoundedInterval with_interval(double value, double lower, double upper);
 
 struct RoundedError {

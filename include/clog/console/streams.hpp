@@ -4,7 +4,7 @@
 
 namespace clog::console {
 
-/// The first call of every program. Opens closed descriptors 0 to 2 on /dev/null: otherwise the next files
+/// Call this first in every program. Opens closed descriptors 0 to 2 on /dev/null: otherwise the next files
 /// and sockets would get their numbers and receive the program's output. Ignores SIGPIPE, so that a closed
 /// reader does not end the program; printing to std::cout then throws. Ignores SIGXFSZ, so that writing a
 /// file beyond its size limit fails instead of ending the program.

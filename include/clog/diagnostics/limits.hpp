@@ -10,12 +10,12 @@ namespace clog::diagnostics {
 
 /// Cores that the control groups grant to all of their processes together: the processor time that they may
 /// use per period, divided by the period; 0: no limit.
-/// @param root  holds proc and sys
+/// @param root  folder that contains proc and sys
 double granted_cores(const std::filesystem::path& root = "/");
 
 /// Memory still available [bytes], on the host and in the control groups; 0 if unknown. Inactive page cache
 /// counts as available, since the kernel evicts it first.
-/// @param root  holds proc and sys
+/// @param root  folder that contains proc and sys
 double available_memory(const std::filesystem::path& root = "/");
 
 /// Raises the limit on open files if it is low, as far as allowed. MPI needs about twenty, and crashes or

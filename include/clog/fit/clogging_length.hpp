@@ -39,14 +39,14 @@ struct CloggingLength {
   Interval profile{};         ///< by profile likelihood; without clogs like `interval` [sigma]
 };
 
-/// Maximum likelihood for censored exponential data: lambda = S/d, S the sum of all distances and d the
-/// clogs.
+/// Maximum likelihood for censored exponential data: lambda = S/d, with S the sum of all distances and d the
+/// number of clogs.
 ///
 /// The interval is 2 S/chi2_{1-q} .. 2 S/chi2_q with q = (1 - confidence)/2. With d fixed beforehand, or when
 /// every run has clogged, 2 S/lambda is chi-squared distributed with exactly 2d degrees of freedom (Epstein
-/// and Sobel 1953). Here runs are censored after a given time and d is as random as S: the next clog might
-/// come just after the runs ended, for which 2d + 2 would be exact, or just before, for which 2d would be.
-/// The number in between, 2d + 1, has nearly the nominal coverage (Cox, Biometrika 40, 354 (1953); Lawless,
+/// and Sobel 1953). Here runs are censored after a given time, so d is as random as S. If the runs ended just
+/// before their next clog, 2d + 2 degrees of freedom would be exact; if they ended just after a clog, 2d. The
+/// number in between, 2d + 1, has nearly the nominal coverage (Cox, Biometrika 40, 354 (1953); Lawless,
 /// Statistical Models and Methods for Lifetime Data, ch. 4). Without clogs there is a one-sided lower bound,
 /// S/log(1/(1 - confidence)), which corresponds to 2d + 2.
 ///
