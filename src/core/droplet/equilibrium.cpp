@@ -172,7 +172,7 @@ class ForceField {
 /// Newton's method. A step is accepted if it shortens the remaining Newton step, computed with the present
 /// stiffness (P. Deuflhard's natural monotonicity test). A test on forces would reject nearly every step,
 /// because contacts that open or close dominate the forces. Computing a stiffness costs as much as 80 steps,
-/// so each step, accepted or not, corrects the stiffness for the next step. The stiffness is computed again
+/// so each step, accepted or not, corrects the stiffness for the next step. The stiffness is recomputed
 /// where corrections do not help, and once more at the end, within difference_step of the equilibrium. If
 /// steps with corrections fail, or lead to a place where some displacement meets no resistance, the search
 /// returns to the place of the last computed stiffness. From there it continues without corrections, with
