@@ -44,7 +44,7 @@ bool is_same_unit(const std::string& unit, const std::string& other) {
 
 /// Converts lengths of the file to droplet diameters.
 struct Scale {
-  std::string unit;  ///< of the numbers; empty: droplet diameters
+  std::string unit;  ///< unit of the numbers; empty: droplet diameters
   double droplet_metres = 0;
 
   /// Rounds to few enough digits that a file in other units gives the same bits.

@@ -49,7 +49,7 @@ PowerSums power_sums(const std::vector<double>& log_x, double shape) {
 /// Distances of all runs for the test: x = r/(longest r), at least a fraction of their mean.
 struct LogWays {
   double longest = 0;         ///< [sigma]
-  std::vector<double> log_x;  ///< of every run
+  std::vector<double> log_x;  ///< log x of every run
   double total = 0;           ///< sum of all x
   double clog_logs = 0;       ///< sum of log x over clogs
   bool clogs_differ = false;  ///< whether clogs occur at more than one distance

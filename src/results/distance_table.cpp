@@ -28,7 +28,7 @@ constexpr double metres_per_mm = 1e-3;
 /// Places of the columns, and other contents of the first line.
 struct Head {
   int distance = -1, clogged = -1;
-  double factor = 1;  ///< from the column's unit to the table's unit
+  double factor = 1;  ///< factor from the column's unit to the table's unit
   std::size_t num_columns = 0;
   std::vector<std::size_t> labels;
 };

@@ -32,7 +32,7 @@ namespace {
 
 /// Whether so many clogs may be artefacts of the mesh that the length may be wrong.
 bool hangs_on_mesh(const Group& group) {
-  constexpr double tolerated = 0.1;  // of the clogs
+  constexpr double tolerated = 0.1;  // tolerated fraction of the clogs
   return group.num_on_mesh > 0 && group.num_on_mesh >= tolerated * group.clogging.num_clogs;
 }
 
@@ -112,7 +112,7 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
   const bool is_clogged = run.status == RunStatus::clogged;
   const Ending last = {run.distance, is_clogged, cause_of(run)};
   if (!has_dwells_to_tell(run, dwell)) return last;
-  // The mechanism of a droplet that moved on is unknown: it counts as other.
+  // The mechanism of a droplet that moved on is unknown, so its clog counts as `other`.
   if (const Dwell* first = run.dwells.first_longer(dwell)) return {first->distance, true, Cause::other};
   return is_clogged || last.cause ? last : Ending{run.dwells.last_distance, false, {}};
 }
@@ -190,7 +190,7 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
 
 /// The runs that met an obstacle, each counted from its first obstacle on.
 struct Meetings {
-  std::vector<fit::Observation> from_first;  ///< of the runs that met an obstacle
+  std::vector<fit::Observation> from_first;  ///< outcomes of the runs that met an obstacle
   std::int64_t num_contacts = 0;
   double way = 0;  ///< distance of all runs that record contacts [sigma]
   int num_free = 0;

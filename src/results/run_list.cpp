@@ -19,7 +19,7 @@ namespace {
 using Texts = std::vector<std::string>;
 
 constexpr const char* seeds_key = "seeds";
-constexpr std::size_t longest_list = 2500;  // of a key's text; longer lists become points
+constexpr std::size_t longest_list = 2500;  // length of a key's text; longer lists become points
 
 std::string identity_without_seed(sweep::RunRow run) {
   run.parameters.seed = 0;

@@ -38,7 +38,7 @@ bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
          column.parameter->applies_to(run) && !column.parameter->applies_to(RunParameters());
 }
 
-/// A share of the saturated density is a different number for each gap and diameter.
+/// The default density. A share of the saturated density is a different number for each gap and diameter.
 Value usual_density(RunParameters run) {
   run.obstacles.density = ObstacleParameters().density;
   return sweep::describe(resolve(run)).obstacle_density;

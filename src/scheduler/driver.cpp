@@ -99,8 +99,8 @@ class Driver {
     if (report.row.status == RunStatus::interrupted && report.row.steps == 0 && !report.snapshot.empty()) {
       report.row = state_.row(report.row.task);
       report.row.status = RunStatus::interrupted;
-      report.row.wall_seconds = report.row.processor_seconds =
-          0;  // the state of the sweep adds the earlier cost
+      // The state of the sweep adds the earlier cost.
+      report.row.wall_seconds = report.row.processor_seconds = 0;
     }
     state_.report(report);
     if (report.row.status == RunStatus::failed && state_.tries_again(report.row)) {

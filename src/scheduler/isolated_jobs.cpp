@@ -49,7 +49,7 @@ constexpr std::chrono::milliseconds patience_for_start{20'000};
 /// How a process ended.
 struct Ending {
   int fork_error = 0;  // errno, if it never began
-  int code = 0;        // of SIGCHLD: CLD_EXITED or another
+  int code = 0;        // si_code of SIGCHLD: CLD_EXITED or another
   int status = 0;      // exit code or signal
 };
 
@@ -232,7 +232,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
   ~IsolatedJob() override {
     if (!processes_.process().is_open()) return;
     if (is_asked_ && !is_over_)
-      processes_.bury();  // it may never answer
+      processes_.bury();  // the process may never answer
     else
       processes_.process().send(drop, number_, {});
   }
@@ -271,7 +271,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
       fail(ending ? describe(*ending) : without_helper);
       return;
     }
-    if (message->job != number_) return;  // from an earlier job, which was dropped
+    if (message->job != number_) return;  // the message is from an earlier job, which was dropped
     last_ = sweep::report_from(message->bytes);
     is_over_ = message->kind == over;
     is_asked_ = false;

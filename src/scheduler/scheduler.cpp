@@ -122,15 +122,15 @@ class Master {
 
   const Communicator& ranks_;
   Schedule& schedule_;
-  std::vector<std::int64_t> failed_tasks_;  // to be tried again
+  std::vector<std::int64_t> failed_tasks_;  // tasks to be tried again
   const JobFactory& make_job_;
   const SweepEvents& events_;
   std::chrono::milliseconds report_interval_;
   bool stopping_ = false;
   int num_dismissed_ = 0;
-  std::set<int> waiting_;                              // workers
-  std::unordered_map<std::int64_t, Running> running_;  // by task
-  std::unordered_set<std::int64_t> withdrawn_;         // tasks, until they begin again
+  std::set<int> waiting_;                              // workers that wait for a task
+  std::unordered_map<std::int64_t, Running> running_;  // running tasks, by task
+  std::unordered_set<std::int64_t> withdrawn_;         // tasks that are withdrawn until they begin again
   std::optional<Work> own_job_;
   Clock::time_point last_idle_ = Clock::now();
 

@@ -33,11 +33,11 @@ struct FileHeader {
   bool operator==(const FileHeader&) const = default;
 };
 struct RecordHeader {
-  std::uint64_t size;  ///< of the row and the snapshot
+  std::uint64_t size;  ///< size of the row and the snapshot
   std::uint32_t check;
   std::uint32_t magic;
 };
-constexpr std::string_view journal_mark = "clogsweep jrnl";  // of every version
+constexpr std::string_view journal_mark = "clogsweep jrnl";  // the beginning of a journal of any version
 constexpr std::uint32_t record_magic = 0x636c6f67;
 
 template <class T>

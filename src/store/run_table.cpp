@@ -37,7 +37,7 @@ constexpr const char* sweep_kind = "clogsweep sweep";
 constexpr hsize_t rows_per_chunk = 64;
 constexpr std::size_t rows_per_block = 1024;  // rows that are copied at once
 
-using CheckSums = std::vector<std::uint32_t>;  // of the rows
+using CheckSums = std::vector<std::uint32_t>;  // checksums of the rows
 
 /// Calls visit() with the first row and the number of rows of each block.
 template <class Visit>

@@ -60,7 +60,7 @@ std::string escaped(const std::string& text) {
 }
 
 std::string unescaped(const std::string& text) {
-  constexpr std::size_t length = 4;  // of \x0a
+  constexpr std::size_t length = 4;  // length of an escape such as \x0a
   std::string all;
   for (std::size_t i = 0; i < text.size(); ++i) {
     unsigned char byte = 0;

@@ -23,8 +23,8 @@ namespace {
 
 constexpr std::int64_t largest_sweep = 100'000'000;
 
-/// Makes a check of one branch of the settings, and returns the check's result. If the check refuses one
-/// value of a list like 0,3, the message asks whether 0.3 was meant.
+/// Calls check() for one branch of the settings, and returns its result. If the check refuses one value of a
+/// list like 0,3, the message asks whether 0.3 was meant.
 /// @param where  beginning of the message
 template <class Check>
 auto checked(const Settings& branch, const std::string& where, const Check& check) try {
@@ -86,8 +86,8 @@ class Plan::Builder {
  private:
   Plan& plan_;
   std::unordered_map<std::string, std::int64_t> known_;  // groups, by the identity of their runs
-  std::vector<std::string> names_;                       // of products, for messages; empty for lists
-  std::int64_t num_runs_ = 0;                            // of all shards
+  std::vector<std::string> names_;                       // names of products, for messages; empty for lists
+  std::int64_t num_runs_ = 0;                            // number of runs of all shards
   Seeds last_seeds_;                                     // shared by branches with the same seeds
 
   void add_branch(const Settings& branch, const std::string& name) {

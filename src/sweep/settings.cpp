@@ -42,7 +42,7 @@ std::string unit_in_words(const Key& key) {
 
 /// The list of a key, of which each value must be possible in some run. @throws Error that names the key
 std::vector<std::string> values_of(const Key& key, const std::string& text) {
-  constexpr std::size_t longest_text = 3000;  // in a config
+  constexpr std::size_t longest_text = 3000;  // longest list that a config can store
   try {
     if (text.size() > longest_text)
       throw Error("the list is too long to be stored; ranges like 1..15000 are short");

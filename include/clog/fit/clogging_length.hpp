@@ -12,7 +12,7 @@ struct Observation {
   bool clogged;
 };
 
-/// Whether all distances are finite. If one is not, results are NaN.
+/// Whether all distances are finite. If one of them is not, results are NaN.
 bool all_finite(std::span<const Observation> runs);
 
 struct Interval {
@@ -33,10 +33,10 @@ double normal_deviate(double confidence);
 struct CloggingLength {
   int num_runs = 0;
   int num_clogs = 0;
-  double total_distance = 0;  ///< S, over all runs, clogged or not [sigma]
+  double total_distance = 0;  ///< S, sum over all runs, clogged or not [sigma]
   double length = 0;          ///< NaN without clogs [sigma]
-  Interval interval{};        ///< by chi-squared; without clogs a lower bound and infinity [sigma]
-  Interval profile{};         ///< by profile likelihood; without clogs like `interval` [sigma]
+  Interval interval{};        ///< interval by chi-squared; without clogs a lower bound and infinity [sigma]
+  Interval profile{};         ///< interval by profile likelihood; without clogs like `interval` [sigma]
 };
 
 /// Maximum likelihood for censored exponential data: lambda = S/d, with S the sum of all distances and d the

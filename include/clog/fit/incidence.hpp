@@ -18,12 +18,12 @@ struct CompetingEnd {
 /// A step of the estimated F_c(r), the probability to end by cause c within r in the presence of the other
 /// causes.
 struct IncidenceStep {
-  double distance;        ///< of one or more ends by this cause [sigma]
+  double distance;        ///< distance of one or more ends by this cause [sigma]
   int num_at_risk;        ///< runs that reached this distance
-  int num_ends;           ///< of these, ends by this cause at this distance
+  int num_ends;           ///< number of these runs that this cause ends at this distance
   double probability;     ///< F_c just beyond this distance
-  double standard_error;  ///< by the delta method
-  Interval interval;      ///< of F_c; NaN where F_c is 1
+  double standard_error;  ///< standard error of F_c, by the delta method
+  Interval interval;      ///< interval of F_c; NaN where F_c is 1
 };
 
 /// Aalen and Johansen's estimate (Scand. J. Stat. 5, 141 (1978)). At every distance with ends, F_c grows by P

@@ -13,12 +13,12 @@ Interval log_log_interval(double probability, double log_variance, double confid
 
 /// A step of the estimated P(r), the probability to travel farther than r without a clog.
 struct SurvivalStep {
-  double distance;        ///< of one or more clogs [sigma]
+  double distance;        ///< distance of one or more clogs [sigma]
   int num_at_risk;        ///< runs that reached this distance
-  int num_clogs;          ///< of these, clogs at this distance
+  int num_clogs;          ///< number of these runs that clogged at this distance
   double probability;     ///< P just beyond this distance
-  double standard_error;  ///< of `probability`, by Greenwood's formula
-  Interval interval;      ///< of P; NaN where P is 0
+  double standard_error;  ///< standard error of `probability`, by Greenwood's formula
+  Interval interval;      ///< interval of P; NaN where P is 0
 };
 /// Kaplan and Meier's product-limit estimate (J. Am. Stat. Assoc. 53, 457 (1958)). It assumes no law, and
 /// censored runs count up to the distance at which they were last seen. There is one step per distance with

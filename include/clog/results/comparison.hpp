@@ -24,7 +24,7 @@ struct Comparison {
   std::string here, there;    ///< names of the sides
   std::vector<Value> common;  ///< see Comparisons::columns
   fit::CloggingLength length_here{}, length_there{};
-  fit::LengthRatio ratio{};  ///< of the length here to the length there
+  fit::LengthRatio ratio{};  ///< ratio of the length here to the length there
   int num_both_clogged = 0;  ///< pairs of runs that both clogged
   int num_same_place = 0;    ///< pairs of runs that both clogged, at the same place
 };
@@ -33,7 +33,7 @@ struct Comparisons {
                                        ///< these columns name a comparison
   std::vector<std::string> differing;  ///< columns whose values here and there differ
   std::vector<Comparison> all;
-  std::string unit = "sigma";      ///< of lengths: "sigma" or "mm"
+  std::string unit = "sigma";      ///< unit of lengths: "sigma" or "mm"
   std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are wanted in mm, too
   double within = 0;  ///< clogs at most this far apart count as at the same place [sigma]; 0: half a spacing
 };
@@ -53,7 +53,8 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
 /// @param sides  two or more
 /// @param within  see Comparisons; nullopt: half an obstacle spacing
 /// @throws std::invalid_argument if there are fewer than two sides
-/// @throws Error if they have no value in common, or if it is not clear which parameter sets belong together
+/// @throws Error if two sides have no value in common, or if it is not clear which parameter sets belong
+/// together
 Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within);
 
 std::string to_text(const Comparisons& comparisons, double confidence);

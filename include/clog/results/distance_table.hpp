@@ -20,7 +20,7 @@ struct DistanceGroup {
 /// Distances that droplets travelled, measured or simulated.
 struct DistanceTable {
   std::string source;
-  std::string unit;                 ///< of the distances: "sigma" or "mm"
+  std::string unit;                 ///< unit of the distances: "sigma" or "mm"
   std::vector<std::string> labels;  ///< columns that separate groups
   std::vector<DistanceGroup> groups;
 };

@@ -38,7 +38,7 @@ class Events {
   std::int64_t num_runs_ = 0;
   std::int64_t num_finished_ = 0;
   std::map<std::int64_t, Known> known_;
-  std::vector<std::string> columns_;  // that events name, see listed_columns()
+  std::vector<std::string> columns_;  // columns that events name, see listed_columns()
 
   bool count_runs(const store::SweepFile& file);
   std::vector<std::string> of_row(const sweep::RunRow& row) const;

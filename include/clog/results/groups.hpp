@@ -18,7 +18,7 @@
 
 namespace clog::results {
 
-inline constexpr int enough_clogs = 5;  ///< with fewer, the interval is wide and its coverage varies
+inline constexpr int enough_clogs = 5;  ///< with fewer clogs, the interval is wide and its coverage varies
 
 /// Doubts about a group's clogging length; doubt_texts explains each.
 enum class Doubt {
@@ -89,11 +89,12 @@ inline constexpr CauseText cause_texts[] = {{Cause::wrapped, true, "wrapped", "c
 
 /// The model's units in a laboratory; NaN if unknown.
 struct LaboratoryScale {
-  double length = std::numeric_limits<double>::quiet_NaN();   ///< of sigma [mm]
-  double time = std::numeric_limits<double>::quiet_NaN();     ///< of t0 [s]
-  double speed = std::numeric_limits<double>::quiet_NaN();    ///< of v_t [mm/s]
-  double tension = std::numeric_limits<double>::quiet_NaN();  ///< of a droplet with Gamma = 1 [mN/m]
-  double tilt = std::numeric_limits<double>::quiet_NaN();     ///< [degrees]
+  double length = std::numeric_limits<double>::quiet_NaN();  ///< sigma [mm]
+  double time = std::numeric_limits<double>::quiet_NaN();    ///< t0 [s]
+  double speed = std::numeric_limits<double>::quiet_NaN();   ///< v_t [mm/s]
+  /// Interfacial tension of a droplet with Gamma = 1 [mN/m].
+  double tension = std::numeric_limits<double>::quiet_NaN();
+  double tilt = std::numeric_limits<double>::quiet_NaN();  ///< tilt of the plates [degrees]
 };
 
 /// Twelve digits, without the round-off of conversions between units.
@@ -101,33 +102,35 @@ double short_number(double value);
 
 /// The droplets of a device, and a line across the flow that they may have passed.
 struct Passage {
-  double x;  ///< of the line, in the coordinates of the circles [sigma]
+  double x;  ///< x of the line, in the coordinates of the circles [sigma]
   int num_passed;
-  int num_stopped;      ///< clogged or broke up before the line; all others were still moving
-  fit::Interval share;  ///< of num_passed divided by num_passed + num_stopped
+  int num_stopped;      ///< droplets that clogged or broke up before the line; all others were still moving
+  fit::Interval share;  ///< interval of the fraction num_passed / (num_passed + num_stopped)
 };
 
 /// The runs of a sweep that differ in their seed only, and their results.
 struct Group {
   sweep::RunRow first_row;                                 ///< parameters of all runs, except the seed
-  double dwell = std::numeric_limits<double>::infinity();  ///< see group_runs() [t0]
-  double dwells_known_from =
-      0;  ///< the latest Dwells::known_from of all runs; NaN if the dwells of a run are unknown [t0]
+  double dwell = std::numeric_limits<double>::infinity();  ///< minimum duration of a rest that counts as a
+                                                           ///< clog, see group_runs() [t0]
+  /// the latest Dwells::known_from of all runs; NaN if the dwells of a run are unknown [t0]
+  double dwells_known_from = 0;
   fit::CloggingLength clogging;
-  double least_squares_length = 0;  ///< by the published, biased method; NaN for fewer than two clogs
+  double least_squares_length = 0;  ///< length by the published, biased method; NaN for fewer than two clogs
   fit::WeibullTest weibull;
   /// Clogging length of the runs that met an obstacle, each counted from its first obstacle on.
   fit::CloggingLength clogging_met;
-  double contacts_per_length =
-      std::numeric_limits<double>::quiet_NaN();  ///< over all runs that record contacts [1/sigma]
+  /// Over all runs that record contacts [1/sigma].
+  double contacts_per_length = std::numeric_limits<double>::quiet_NaN();
   std::vector<fit::SurvivalStep> survival;
-  std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
+  /// Distances of the runs that did not clog, in increasing order [sigma].
+  std::vector<double> censored_distances;
   /// One entry for each Cause, in the order of the enum. Runs that this cause ended are events, all others
   /// are censored. Empty if the mechanism of a clog is unknown.
   struct EndsBy {
     const CauseText* text;
     fit::CloggingLength ends;
-    std::vector<fit::IncidenceStep> incidence;  ///< empty without a clogging length
+    std::vector<fit::IncidenceStep> incidence;  ///< steps of F_c; empty without a clogging length
   };
   std::vector<EndsBy> causes;
   fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
@@ -140,7 +143,7 @@ struct Group {
   /// Tilt of the rows of posts from the flow towards +y, given by a lattice or by --row-angle; NaN: unknown
   /// [degrees].
   double row_angle = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::uint32_t> seeds;  ///< of the runs that count for the clogging length
+  std::vector<std::uint32_t> seeds;  ///< seeds of the runs that count for the clogging length
   int num_passed = 0;                ///< runs whose droplet reached the exit of the device
   int num_flowing = 0;               ///< runs that max-time ended
   /// Number of those flowing runs whose droplet, at the end, had rested for longer than a free droplet takes
@@ -148,14 +151,16 @@ struct Group {
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity();
   int num_interrupted = 0;
-  int num_repeated = 0;   ///< runs left out because a longer run of the same droplet counts (pooled)
-  int num_failed = 0;     ///< left out of all fits
-  int num_damaged = 0;    ///< left out of all fits
-  int num_left_out = 0;   ///< ended before distances are counted, see group_runs(); left out of all fits
+  int num_repeated = 0;  ///< runs left out because a longer run of the same droplet counts (pooled)
+  int num_failed = 0;    ///< failed runs, left out of all fits
+  int num_damaged = 0;   ///< damaged runs, left out of all fits
+  /// Runs that ended before distances are counted (see group_runs()), left out of all fits.
+  int num_left_out = 0;
   int num_on_mesh = 0;    ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
-  int num_free = 0;       ///< met no obstacle
-  int num_repeating = 0;  ///< went farther than their array's period
-  std::vector<Passage> passages;  ///< through a device, in downstream order; the last one is the exit
+  int num_free = 0;       ///< runs that met no obstacle
+  int num_repeating = 0;  ///< runs that went farther than their array's period
+  /// Passages through a device, in downstream order; the last one is the exit.
+  std::vector<Passage> passages;
   std::vector<Doubt> doubts;
   std::optional<LaboratoryScale> laboratory = {};  ///< units in which results are also given
 };

@@ -15,10 +15,10 @@ namespace clog::results {
 /// more steps is kept. Of results that differ by instruction set, those of the first file are kept.
 struct MergedSweep {
   store::SweepFile table;
-  std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs
+  std::vector<store::Journal::Entry> snapshots;  ///< snapshots of unfinished runs
   std::int64_t num_shared = 0;                   ///< runs that several files have
-  std::int64_t num_differing = 0;                ///< of these, runs whose results differ by instruction set
-  std::int64_t num_faulty = 0;                   ///< excluded rows: physically impossible
+  std::int64_t num_differing = 0;                ///< shared runs whose results differ by instruction set
+  std::int64_t num_faulty = 0;  ///< rows that are excluded because they are physically impossible
 };
 
 /// Merges complete or stopped sweeps, to be written to a new file.

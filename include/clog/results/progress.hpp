@@ -51,7 +51,7 @@ class Progress {
   Clock::time_point begin_ = Clock::now();
   std::map<std::int64_t, Clock::time_point> running_;
   std::map<RunStatus, std::int64_t> ended_by_status_;
-  std::int64_t num_ended_ = 0;  // of all sets
+  std::int64_t num_ended_ = 0;  // number of ended tasks of all sets
 
   SetTimes& set_of(std::int64_t task);
   std::string line() const;

@@ -35,7 +35,7 @@ class RunList {
 
  private:
   struct ParameterSet {
-    std::vector<std::string> texts;  // by place in sweep::keys(); empty for the seeds
+    std::vector<std::string> texts;  // texts by place in sweep::keys(); empty for the seeds
     std::set<std::uint32_t> seeds;
   };
   std::vector<ParameterSet> sets_;

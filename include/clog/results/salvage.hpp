@@ -10,10 +10,10 @@ namespace clog::results {
 
 /// The undamaged rows of a damaged sweep file and of the journal beside it.
 struct Salvage {
-  store::SweepFile table;                        ///< with the results that only the journal had
-  std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs
+  store::SweepFile table;                        ///< the table, including results that only the journal had
+  std::vector<store::Journal::Entry> snapshots;  ///< snapshots of unfinished runs
   std::int64_t num_from_journal = 0;             ///< rows of `table` whose result comes from the journal
-  std::vector<std::string> damage;               ///< a sentence each
+  std::vector<std::string> damage;               ///< a sentence for each damage
 };
 
 /// Reads everything that is undamaged. Changes no file. @throws Error if the table is missing, not ours, or

@@ -10,10 +10,10 @@
 
 namespace clog::results {
 
-/// Adds seeds to a sweep, in rounds, until the clogging length of every parameter set is precise enough.
-/// Each round is determined when the previous one has ended, from the number of clogs alone. So the runs of a
-/// sweep depend neither on the ranks nor on interruptions, and lambda stays unbiased (stopping at a number of
-/// clogs is inverse sampling; the relative width of the interval depends only on this number).
+/// Adds seeds to a sweep, in rounds, until the clogging length of every parameter set is precise enough. Each
+/// round is determined when the previous one has ended, from the number of clogs alone. So the runs of a
+/// sweep depend neither on the ranks nor on interruptions, and lambda stays unbiased: stopping at a number of
+/// clogs is inverse sampling, in which the relative width of the interval depends only on this number.
 class SeedRule {
  public:
   /// @param precision  required half-width of the 95 % interval divided by lambda
@@ -31,7 +31,7 @@ class SeedRule {
   std::int64_t clogs_needed() const;
   double precision() const { return precision_; }
   std::int64_t most_seeds() const { return most_seeds_; }
-  /// Parameter sets that were precise enough at the last next_round().
+  /// Number of parameter sets that were precise enough at the last next_round().
   std::int64_t num_reached() const { return num_reached_; }
   /// The clogs and seeds of a parameter set that did not reach the precision.
   struct Unreached {
@@ -44,7 +44,7 @@ class SeedRule {
  private:
   double precision_;
   std::int64_t most_seeds_;
-  std::vector<std::int64_t> num_seeds_;  // by parameter set, of all rounds so far
+  std::vector<std::int64_t> num_seeds_;  // number of seeds of each parameter set, in all rounds so far
   std::int64_t num_reached_ = 0;
   std::vector<Unreached> unreached_;
 };

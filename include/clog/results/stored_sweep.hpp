@@ -32,7 +32,7 @@ std::int64_t stored_num_wanted(const std::string& path, const store::Provenance&
 /// The number of runs of a file's sweep: those requested, and others in the file.
 struct RunCount {
   std::int64_t num_runs = 0;
-  std::int64_t num_beyond = 0;  ///< those outside the lists of the sweep's last command
+  std::int64_t num_beyond = 0;  ///< runs outside the lists of the sweep's last command
 
   /// num_beyond in brackets, after a space; empty if it is 0.
   std::string text_of_beyond() const;

@@ -20,7 +20,7 @@ struct Assignment {
   static Assignment from(const std::string& text);
 };
 
-/// The jobs of an assignment, in any process. @param text  see Assignment::text()
+/// The jobs of an assignment. Any process may call this. @param text  see Assignment::text()
 sweep::JobFactory assigned_jobs(const std::string& text);
 
 }  // namespace clog::scheduler

@@ -45,13 +45,14 @@ class RankTrust {
   struct Record {
     bool in_service = true;
     bool has_succeeded = false;
-    bool is_refuted = false;                 // a task held against it has succeeded elsewhere
-    std::vector<std::int64_t> held_against;  // tasks
+    bool is_refuted = false;                 // whether a task held against it has succeeded elsewhere
+    std::vector<std::int64_t> held_against;  // tasks that count against the rank
   };
   static constexpr std::size_t most_failures = 3;
 
-  std::unordered_map<int, Record> records_;                       // by rank
-  std::unordered_map<std::int64_t, std::vector<int>> failed_on_;  // ranks, by task until it succeeds
+  std::unordered_map<int, Record> records_;  // records of the ranks, by rank
+  // The ranks on which a task failed, by task until it succeeds.
+  std::unordered_map<std::int64_t, std::vector<int>> failed_on_;
   int num_in_service_;
   int num_ranks_;
   bool has_let_go_ = false;

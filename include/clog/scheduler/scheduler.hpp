@@ -39,7 +39,8 @@ struct SweepEvents {
   /// Called about every 0.1 s; less often while this rank samples an array or releases a droplet, which takes
   /// a second in large boxes.
   std::function<void()> idle = [] {};
-  /// Whether the sweep should stop now. Then running tasks end as interrupted, and no more are handed out.
+  /// Whether the sweep should stop now. Then running tasks end as interrupted, and no further tasks are
+  /// handed out.
   std::function<bool()> stop_requested = [] { return false; };
 };
 
@@ -56,7 +57,7 @@ struct Schedule {
   TaskOrder tasks;
   bool master_computes;
   RankTrust trust;
-  std::unordered_map<int, sweep::RunRow> last_failures;  ///< by rank
+  std::unordered_map<int, sweep::RunRow> last_failures;  ///< the last failure on each rank, by rank
 };
 
 enum class SweepEnd {

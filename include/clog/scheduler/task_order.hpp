@@ -42,11 +42,11 @@ class TaskOrder {
   using Turn = std::tuple<double, std::int64_t, std::size_t>;
   struct Group {
     std::vector<std::int64_t> tasks;
-    std::size_t next = 0;  // of the tasks
+    std::size_t next = 0;  // index of the next task
     std::int64_t num_taken = 0;
     std::int64_t num_ended = 0;
-    double time_ended = 0;     // run times of the tasks that ended [s]
-    double start_running = 0;  // sum of the starts of those that run
+    double time_ended = 0;     // sum of the run times of the tasks that ended [s]
+    double start_running = 0;  // sum of the starts of the tasks that run
     Turn turn;                 // does not depend on the time while no task of the group runs
 
     bool is_waiting() const { return next < tasks.size(); }
@@ -57,7 +57,7 @@ class TaskOrder {
   // Groups with waiting tasks: resting_ has those without a running task, running_ the numbers of the others.
   std::set<Turn> resting_;
   std::set<std::size_t> running_;
-  std::unordered_map<std::int64_t, double> running_since_;  // by task
+  std::unordered_map<std::int64_t, double> running_since_;  // start of each running task, by task
 
   std::size_t number_of(std::int64_t task);
   void begin(std::size_t number, std::int64_t task, double now);

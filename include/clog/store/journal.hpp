@@ -36,8 +36,8 @@ class Journal {
   struct Contents {
     std::vector<Entry> entries;       ///< oldest first
     std::int64_t num_unreadable = 0;  ///< damaged records between readable ones
-    bool has_torn_end =
-        false;  ///< whether the last record is incomplete: its writer died, or is still writing it
+    /// Whether the last record is incomplete: its writer died, or is still writing it.
+    bool has_torn_end = false;
     std::uint64_t num_bytes = 0;  ///< excluding a torn end
   };
 
@@ -78,7 +78,7 @@ class Journal {
   /// Replaces the file by one with only these entries.
   void rewrite(std::span<const Entry* const> entries);
   /// Prepares a file with these entries and the records behind the first `begin` bytes; replace() puts it in
-  /// place. Another thread may call this, as it may call flush().
+  /// place. Like flush(), this may be called by another thread.
   void prepare(std::span<const Entry* const> entries, std::uint64_t begin);
   bool is_prepared() const { return next_ != nullptr; }
   void replace();

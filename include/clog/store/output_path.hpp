@@ -49,8 +49,8 @@ class OutputPath {
   std::error_code replace(const std::string& stamp, const OutputPath& other) const;
   /// Synchronises the folder to disk, so that renames survive a power cut.
   void sync_folder() const;
-  /// The reason why the last sync_folder() of this place, its copies and those beside() it failed; empty if
-  /// none has failed.
+  /// The reason why sync_folder() last failed, for this object, its copies, or the results of beside(); empty
+  /// if it has not failed.
   const std::string& sync_fault() const { return folder_->sync_fault; }
   /// Copies mode, owner, group and access list of the file here, if there is one, to an open file, as far as
   /// permitted.

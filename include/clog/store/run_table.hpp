@@ -44,7 +44,7 @@ enum class Checked {
 struct SweepFile {
   std::vector<sweep::RunRow> rows;
   Provenance provenance;
-  std::vector<CircleFile> circles;  ///< that the rows refer to
+  std::vector<CircleFile> circles;  ///< the circles that the rows refer to
   Checked checked = Checked::everything;
 };
 

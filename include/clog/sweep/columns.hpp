@@ -38,7 +38,7 @@ using Value = ParameterValue;
 
 struct Column {
   std::string name;
-  std::string symbol;  ///< as TeX writes it; may be empty
+  std::string symbol;  ///< the symbol as TeX writes it; may be empty
   std::string unit;    ///< may be empty
   std::string meaning;
   ColumnRole role;

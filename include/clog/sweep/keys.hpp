@@ -33,7 +33,7 @@ const std::vector<Key>& keys();
 std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names);
 /// @throws Error that names the nearest key
 const Key& find_key(std::string_view name);
-/// The key's place in keys(). @throws Error likewise
+/// The key's place in keys(). @throws Error as find_key()
 std::size_t place_of_key(std::string_view name);
 
 /// A parameter's value as text of a config file.

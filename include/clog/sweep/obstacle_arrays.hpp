@@ -30,7 +30,7 @@ class ObstacleArrays {
   static std::chrono::duration<double> longest_wait(const ObstacleParameters& parameters);
 
  private:
-  std::string key_;  ///< of the array that is kept; empty: there is none
+  std::string key_;  ///< key of the array that is kept; empty if there is none
   std::shared_ptr<const ObstacleArray> array_;
   int num_built_ = 0;
   bool is_waiting_worthwhile_ = true;  ///< false after a wait in vain, until a shared array is found

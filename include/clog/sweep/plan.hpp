@@ -60,7 +60,7 @@ class Plan {
   using Seeds = std::shared_ptr<const std::vector<std::uint32_t>>;
   struct Group {
     std::size_t product;
-    std::int64_t place;  ///< in the product, seeds excepted
+    std::int64_t place;  ///< place in the product, seeds excepted
     Seeds seeds;
   };
   /// Successive tasks that repeat the same groups, seed by seed.

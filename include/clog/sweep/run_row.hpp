@@ -40,9 +40,9 @@ struct RunRow {
 
   std::int64_t task = -1;
 
-  RunParameters parameters;                       ///< resolved
-  std::set<const Parameter*> unknown_parameters;  ///< which the row's file does not have
-  double obstacle_density = 0;                    ///< see Scene; of a saturated array, the jamming limit
+  RunParameters parameters;                       ///< resolved parameters
+  std::set<const Parameter*> unknown_parameters;  ///< parameters that the row's file does not have
+  double obstacle_density = 0;     ///< density, see Scene; for a saturated array, that of the jamming limit
   std::string preset;              ///< the preset with this interface, "custom", or "none" for sp
   std::int64_t model_version = 0;  ///< see parameters.hpp
 
@@ -64,23 +64,25 @@ struct RunRow {
   double wrapped_support = not_known;
   std::optional<std::int64_t> num_wrapped, num_gaps, num_arcs;
   double mesh_hold = not_known;
-  double largest_shape_parameter = not_known;  ///< of a passage through a channel, like the next five
+  /// For a passage through a channel, like the next five members.
+  double largest_shape_parameter = not_known;
   double largest_shape_parameter_at = not_known;
   double largest_relative_speed = not_known;
   double largest_relative_speed_at = not_known;
   double smallest_relative_speed = not_known;
   double smallest_relative_speed_at = not_known;
-  double sag = not_known;  ///< on a flat wall
+  double sag = not_known;  ///< for a droplet on a flat wall
   double top_sag = not_known;
   ThinnestNeck neck;
-  double release_x = not_known;  ///< in the coordinates of user-supplied circles
+  double release_x = not_known;  ///< place in the coordinates of user-supplied circles
   double release_y = not_known;
   std::int64_t steps = 0;
 
   double wall_seconds = 0;
   double processor_seconds = not_known;
   std::int64_t rank = 0;
-  std::string instruction_set;  ///< of the polygon's step; "none" for sp; or mixed_instruction_sets
+  /// Instruction set of the polygon's step; "none" for sp; or mixed_instruction_sets.
+  std::string instruction_set;
   std::string host;
   std::int64_t attempt = 1;
   std::string message;

@@ -20,9 +20,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-constexpr int most_stiffnesses = 30;  // most searches compute two
-constexpr int most_steps = 50;        // with one stiffness; most searches need 15
-constexpr int most_rejections = 10;   // of steps in a row
+constexpr int most_stiffnesses = 30;  // most searches compute two stiffnesses
+constexpr int most_steps = 50;        // number of steps with one stiffness; most searches need 15
+constexpr int most_rejections = 10;   // number of rejected steps in a row
 constexpr int most_halvings = 10;
 /// Step of the central differences [sigma]: much smaller than a contact's range, much larger than round-off.
 constexpr double difference_step = 1e-6;

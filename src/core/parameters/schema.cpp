@@ -754,7 +754,7 @@ std::vector<Parameter> verdict_entries() {
   };
 }
 
-/// The laboratory whose units results have.
+/// The laboratory in whose units results are given, too.
 std::vector<Parameter> laboratory_entries() {
   return {entry("laboratory", [](auto& run) -> auto& { return run.laboratory; },
                 {.column = "laboratory",

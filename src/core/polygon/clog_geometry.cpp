@@ -74,7 +74,7 @@ bool hangs_over(const Polygon& polygon, const Post& post) {
 struct Touched {
   double support = 0;
   bool is_wrapped = false;
-  std::vector<Obstacle> circles;  ///< of a post
+  std::vector<Obstacle> circles;  ///< the circles of a post
   std::optional<Wedge> wall;
   double longest_link = 0;  ///< longest touching edge divided by the radius at which it lies; 0 for walls
 };
@@ -120,8 +120,8 @@ class Contacts {
           std::min({distance(begin), distance(end), distance(nearest_on_segment(wall.centre(), begin, end))},
                    [](const WedgeDistance& a, const WedgeDistance& b) { return a.distance < b.distance; });
       const double overlap = range_ - nearest.distance;
-      constexpr double round_off =
-          1e-12;  // round-off in the normal of a wall along the flow; such a wall supports nothing
+      // round-off in the normal of a wall along the flow; such a wall supports nothing
+      constexpr double round_off = 1e-12;
       const double upstream = std::abs(nearest.normal[0]) < round_off ? 0 : nearest.normal[0];
       is_touched |= take(i, overlap, overlap * upstream, touched);
     }

@@ -89,7 +89,7 @@ Axes axes_of_interface(const DpParameters& dp, const DropletState& state) {
   }
   axes.slide.normalize();
   // Springs that carry tension leave uneven edges, which make the ripples of the energy along the slide
-  // higher. Then the search treats the slide like any other motion.
+  // higher. So in this case the search treats the slide like any other motion.
   if (dp.perimeter_spring != PerimeterSpring::along) axes.slide.resize(0);
   return axes;
 }  // NOLINT(clang-analyzer-unix.Malloc): the matrix owns this memory after the move

@@ -16,8 +16,8 @@ constexpr double lobe_width = 2;
 /// films end in beads of a thousandth of the area.
 constexpr double lobe_share = 0.02;
 
-/// Cosine of an angle that counts as right. Without this tolerance round-off would decide which of the
-/// equally long segments across a bridge with straight sides is the shortest.
+/// Largest cosine of an angle that counts as a right angle. Across a bridge with straight sides, all segments
+/// are equally long; without this tolerance, round-off would decide which of them is the shortest.
 constexpr double round_off = 1e-9;
 /// Whether a cosine, or sine, times both lengths is at most the round-off. Avoids square roots.
 bool is_hardly_positive(double value, double squared_lengths) {

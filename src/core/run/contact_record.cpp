@@ -21,7 +21,8 @@ double distance_to_edge(const Eigen::Array2d& point, const Eigen::Array2d& begin
   return (begin + place * edge - point).matrix().norm();
 }
 
-/// Distance from a circle's centre to the closest vertex, or to the closest point of its edges [sigma].
+/// Distance from a circle's centre to the closest vertex or, if edges meet walls, to the closest point of an
+/// edge [sigma].
 double distance_from(const Obstacle& circle, const DropletState& state, bool meets_edges) {
   const auto x = state.x();
   const auto y = state.y();

@@ -100,8 +100,8 @@ void for_each_near(const ObstacleParameters& obstacles, Visit visit) {
 struct IntegerLattice {
   long long p, q;  ///< tangent of the tilt, in tangent_unit(), is q/p
   long long x_of_i, x_of_j, y_of_i, y_of_j, end_x, end_y;
-  double cosine, sine;        ///< of the turn
-  double i_x, i_y, j_x, j_y;  ///< both vectors before the turn, in spacings
+  double cosine, sine;        ///< cosine and sine of the turn
+  double i_x, i_y, j_x, j_y;  ///< the two vectors before the turn, in spacings
 };
 
 IntegerLattice integer_lattice(const ObstacleParameters& obstacles) {

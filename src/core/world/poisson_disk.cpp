@@ -110,7 +110,7 @@ class SequentialAddition {
   /// Numbers of darts (arriving discs) per cell in the first rounds. They are small, because at first most
   /// darts have room. Any numbers give the same statistics; these are fast.
   static constexpr double first_rounds[] = {0.125, 0.25, 0.5, 1, 0.5};
-  static constexpr double darts_per_square = 1;  // in later rounds
+  static constexpr double darts_per_square = 1;  // number of darts per square in later rounds
   /// Number of a cell in the grid, whose margins repeat the opposite side.
   using Cell = std::int32_t;
   /// A square that may still have room, or a dart: its place from the corner of its cell, and the low end of
@@ -161,8 +161,8 @@ class SequentialAddition {
   std::vector<Point> points_;
   std::vector<float> excess_;
   std::size_t num_points_ = 0;
-  float size_;          // of the squares
-  float range_;         // of their excesses
+  float size_;          // size of the squares
+  float range_;         // range of the squares' excesses
   int num_layers_ = 1;  // number of layers of excesses into which a square was cut
   std::vector<Square> parts_;
   std::ptrdiff_t num_parts_ = 0;

@@ -53,7 +53,7 @@ struct DropletModel {
   /// Largest energy that a droplet may have at its release, minus the energy of a free droplet [g rho
   /// sigma^3].
   double (*most_energy_at_release)(const RunParameters& run);
-  /// A moving droplet. The obstacles must outlive it.
+  /// A moving droplet. The obstacles must outlive this droplet.
   std::unique_ptr<Droplet> (*make)(const RunParameters& run, const ObstacleArray& obstacles,
                                    DropletState initial);
   /// The equilibrium that the droplet approaches, see find_equilibrium().

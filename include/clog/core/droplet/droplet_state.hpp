@@ -16,8 +16,8 @@ namespace clog {
 /// distance. The origin is always in the first period, so a droplet one period further on feels the same
 /// forces, bit for bit.
 struct LocalFrame {
-  Eigen::Array2d period{0, 0};                   ///< along and across the flow [sigma]
-  Eigen::Array2d origin{0, 0};                   ///< in the first period [sigma]
+  Eigen::Array2d period{0, 0};                   ///< lengths of the period along and across the flow [sigma]
+  Eigen::Array2d origin{0, 0};                   ///< a place in the first period [sigma]
   Eigen::Array<std::int64_t, 2, 1> image{0, 0};  ///< whole periods
 
   Eigen::Array2d global(const Eigen::Array2d& local) const {

@@ -27,7 +27,7 @@ void move_points(std::ptrdiff_t n, const PointMove& move, const double* force, d
 }  // namespace kernel
 
 struct FireOptions {
-  double mass = 1;             ///< of each point
+  double mass = 1;             ///< mass of each point
   double largest_step = 1e-3;  ///< [t0]; must be stable for velocity Verlet
   double force_tolerance = 0;  ///< stop when no force component exceeds this [g rho sigma^2]
   int max_iterations = 0;

@@ -19,7 +19,8 @@ struct Words<ClogMechanism> {
 /// Geometry of a polygon at rest among obstacles; docs/explanation/clogged.md has the definitions.
 /// The flow is along +x.
 struct ClogGeometry {
-  /// Fraction of the obstacles' upstream support that comes from wrapped obstacles; NaN without support.
+  /// Fraction of the support that wrapped obstacles give; NaN without support. The support is the force of
+  /// the obstacles on the droplet against the flow.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
   int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
   /// Number of gaps in front of the droplet. Two successive arcs (see num_arcs) on different obstacles have a
@@ -32,15 +33,15 @@ struct ClogGeometry {
   /// the radius at which this edge lies. NaN without support.
   double mesh_hold = std::numeric_limits<double>::quiet_NaN();
 
-  /// Wrapped if wrapped obstacles give at least two thirds of the support, hybrid if they give more than a
-  /// third, otherwise squeezed if there is a gap.
+  /// `wrapped` if wrapped obstacles give at least two thirds of the support, `hybrid` if they give more than
+  /// a third, otherwise `squeezed` if there is a gap, and `none` if there is no gap.
   ClogMechanism mechanism() const;
 };
 
-/// The mechanism and its geometry.
+/// The mechanism that holds a droplet, and the geometry from which it follows.
 struct Hold {
   ClogMechanism mechanism = ClogMechanism::none;
-  ClogGeometry geometry;  ///< of a polygon
+  ClogGeometry geometry;  ///< geometry of a polygon; unset for a soft disk
 };
 
 }  // namespace clog

@@ -100,7 +100,7 @@ struct WallYield {
   double hold(WallAnchor& anchor, double slip, double least, double most, double stiffness, Purpose purpose) {
     const double held = std::clamp(slip, least, most);
     excess = std::max(excess, stiffness * std::abs(held - anchor.slip_of_force(slip)));
-    // By the trapezoidal rule, like the integrator: the earlier force acts on half of the path.
+    // This is the trapezoidal rule, as in the integrator: the mean of the earlier and the present force acts.
     dissipated += stiffness * (anchor.slip + held) / 2 * (slip - held);
     anchor.slip = held;
     anchor.yields = purpose == Purpose::equilibrium && held != slip ? 1 : 0;

@@ -170,8 +170,8 @@ struct Period {
 /// Density of a random array.
 struct ObstacleDensity {
   std::optional<double> per_area;  ///< obstacles per sigma^2
-  std::optional<double>
-      share;  ///< fraction of the mean density of saturated arrays; resolve() converts it to per_area
+  /// Fraction of the mean density of saturated arrays; resolve() converts it to per_area.
+  std::optional<double> share;
 
   /// Saturated: obstacles are added until no further one fits.
   ObstacleDensity() = default;
@@ -201,16 +201,16 @@ struct ObstacleParameters {
   int boxes = 1;     ///< period along the flow divided by the period across it
   ObstacleLayout layout = ObstacleLayout::random;
   LatticeKind lattice = LatticeKind::square;
-  double pitch = 0;                    ///< of a lattice, instead of its gap; 0: diameter + gap [sigma]
-  double lattice_angle = 0;            ///< of the lattice's rows from +x to +y [degrees]
+  double pitch = 0;                    ///< pitch of a lattice, instead of its gap; 0: diameter + gap [sigma]
+  double lattice_angle = 0;            ///< angle of the lattice's rows, from +x to +y [degrees]
   std::optional<OwnCircles> own = {};  ///< circles of the layout `file`; they determine gap and density
   Release release = Release::centre;
   double length = 0;  ///< period along the flow; 0: boxes times box [sigma]
-  // For user-supplied circles, in their coordinates:
-  SideWalls side_walls = SideWalls::off;  ///< at y = 0 and y = box
+  // The members from here on are for user-supplied circles, in the coordinates of these circles.
+  SideWalls side_walls = SideWalls::off;  ///< straight walls at y = 0 and y = box
   double entrance = 0;                    ///< x of the line on which droplets are released [sigma]
   double entrance_from = 0;               ///< y at which the line begins [sigma]
-  double entrance_to = 0;                 ///< y at which it ends; 0: at y = box [sigma]
+  double entrance_to = 0;                 ///< y at which the line ends; 0: at y = box [sigma]
   double exit = 0;                        ///< x at which a droplet has passed; 0: there is no exit [sigma]
 
   double smallest_diameter() const { return diameter * (1 - diameter_spread); }
@@ -228,8 +228,8 @@ struct ObstacleParameters {
 /// from the line through the tips, positive downstream.
 struct ChannelParameters {
   double orifice = 0.7;      ///< w, distance between the tips [sigma]
-  double wedge_angle = 45;   ///< between the wedges' flanks and the flow [degrees]; 0: parallel walls
-  double tip_radius = 0.03;  ///< of the wedges' rounded tips [sigma]
+  double wedge_angle = 45;   ///< angle between the wedges' flanks and the flow [degrees]; 0: parallel walls
+  double tip_radius = 0.03;  ///< radius of the wedges' rounded tips [sigma]
   double start = -10;        ///< h at release [sigma]
   double end = 3;            ///< h at which the run is over [sigma]
 };
@@ -250,7 +250,7 @@ struct RunParameters {
   DpParameters dp;
   std::optional<double> wall_stiffness;  ///< E_w [g rho sigma^3]; empty: stiffest stable value (dp only)
   ObstacleParameters obstacles;
-  ChannelParameters channel;  ///< of layout channel
+  ChannelParameters channel;  ///< parameters of the layout `channel`
   DragParameters drag;
   std::optional<double> time_step;  ///< [t0]; empty: automatic
   double max_time = 2e5;            ///< [t0]

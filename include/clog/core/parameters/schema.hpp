@@ -57,16 +57,16 @@ struct ParameterRange {
 };
 
 struct Parameter {
-  const char* key;      ///< in config files and on command lines, e.g. "line-tension"
+  const char* key;      ///< name in config files and on command lines, e.g. "line-tension"
   const char* column;   ///< the column of the table of runs that holds its value
-  const char* symbol;   ///< as TeX writes it
+  const char* symbol;   ///< the symbol as TeX writes it
   const char* unit;     ///< e.g. "g rho sigma^2"; empty: a pure number, or a word
   const char* meaning;  ///< one line
   ParameterRole role;
   const ParameterScope* scope;
   const ParameterScope*
       automatic_in;      ///< runs in which the value, unless given, follows from other parameters
-  ParameterRange range;  ///< of numbers
+  ParameterRange range;  ///< the range, if the values are numbers
   bool has_own_column;   ///< false: the column describes other parameters as well
   bool shapes_array;     ///< whether different values give different obstacle arrays
   /// The column's value for runs to which the parameter does not apply; usually unset.
@@ -75,8 +75,8 @@ struct Parameter {
   ParameterValue before;
 
   ValueKind kind;
-  std::vector<std::string>
-      words;  ///< all values of a word; for a number, the words that select an automatic value
+  /// All values of a word; for a number, the words that select an automatic value.
+  std::vector<std::string> words;
   ParameterValue (*get)(const RunParameters&);
   /// @throws Error if the value is out of the type's range, or the word is unknown
   void (*set)(RunParameters&, const ParameterValue&);

@@ -17,8 +17,8 @@ struct Contacts {
   /// after the droplet has been farther than ContactRecord::parting away; its periodic images count as other
   /// obstacles.
   std::int64_t number = 0;
-  double first_distance =
-      std::numeric_limits<double>::quiet_NaN();  ///< at the first contact; NaN: none [sigma]
+  /// At the first contact; NaN: none [sigma].
+  double first_distance = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Detects at the checks of a run which obstacles touch its droplet. A contact that begins and ends between
@@ -49,9 +49,10 @@ class ContactRecord {
   };
   /// An obstacle near the droplet.
   struct Seen {
-    double gap = std::numeric_limits<double>::infinity();  ///< between its surface and the droplet [sigma]
-    Place nearest{0, 0};                                   ///< of its circles
-    bool is_met = false;                                   ///< one of its circles was in met_
+    /// Distance between the surface of the obstacle and the droplet [sigma].
+    double gap = std::numeric_limits<double>::infinity();
+    Place nearest{0, 0};  ///< the nearest circle of the obstacle
+    bool is_met = false;  ///< whether one of the obstacle's circles was in met_
   };
   ContactReach reach_;
   Contacts contacts_;

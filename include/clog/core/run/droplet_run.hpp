@@ -58,12 +58,12 @@ struct RunResult {
   double distance = 0;  ///< displacement along the flow since release, certified: at rest [sigma]
   double lateral = 0;   ///< displacement across the flow, certified: at rest [sigma]
   double time = 0;      ///< [t0]
-  TravelSpeed speed;    ///< of the run so far
+  TravelSpeed speed;    ///< speed of the run so far
   Dwells dwells;
   Contacts contacts;
   double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
   double shape_parameter = 0;       ///< A at the end, certified: at rest
-  Hold hold;                        ///< of a clogged droplet, certified: at rest
+  Hold hold;                        ///< what holds a clogged droplet, certified: at rest
   Passage passage;                  ///< through a channel; NaN elsewhere
   Sag sag;                          ///< certified: at rest
   ThinnestNeck neck;

@@ -10,9 +10,10 @@ namespace clog {
 
 /// A time in which the droplet advanced by at most dwell-length; NaN if there is none.
 struct Dwell {
-  double length = std::numeric_limits<double>::quiet_NaN();    ///< [t0]
-  double distance = std::numeric_limits<double>::quiet_NaN();  ///< along the flow, where it began [sigma]
-  double begin = std::numeric_limits<double>::quiet_NaN();     ///< [t0]
+  double length = std::numeric_limits<double>::quiet_NaN();  ///< duration [t0]
+  /// Distance along the flow where it began [sigma].
+  double distance = std::numeric_limits<double>::quiet_NaN();
+  double begin = std::numeric_limits<double>::quiet_NaN();  ///< time when it began [t0]
 };
 
 /// The dwells of a run that were longer than all before them.
@@ -58,7 +59,7 @@ class DwellRecord {
 
  private:
   double dwell_length_;
-  Dwells found_;  // those that have ended
+  Dwells found_;  // the dwells that have ended
 
   Dwell present(double time) const;
 };

@@ -15,8 +15,8 @@ struct Extreme {
 /// The extremes of a passage through a channel.
 struct Passage {
   Extreme largest_shape_parameter;
-  Extreme largest_speed;  ///< along the flow [V_t]
-  /// Along the flow [V_t]. The beginning is left out, because the droplet starts from rest.
+  Extreme largest_speed;  ///< speed along the flow [V_t]
+  /// Speed along the flow [V_t]. The beginning is left out, because the droplet starts from rest.
   Extreme smallest_speed;
 
   /// @param is_falling  whether the droplet has had time to reach its terminal speed

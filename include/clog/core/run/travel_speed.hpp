@@ -10,7 +10,7 @@ namespace clog {
 /// A point of r(t).
 struct TravelSample {
   double time;          ///< [t0]
-  double displacement;  ///< along the flow [sigma]
+  double displacement;  ///< displacement along the flow [sigma]
 };
 
 /// Mean speed of one run after its transient; NaN if unknown.

@@ -11,8 +11,9 @@
 namespace clog {
 
 /// A lattice with a rectangular period along the flow. A lattice has one if its tilt t is rational: tan t =
-/// q/p with integers p and q; for a triangular lattice tan t = sqrt(3) q/p. With the lattice's vectors v1 and
-/// v2, p v1 - q v2 is then a period of the square lattice along the flow, of length a sqrt(p^2 + q^2).
+/// q/p with integers p and q; for a triangular lattice tan t = sqrt(3) q/p. For the square lattice with the
+/// vectors v1 and v2, the vector p v1 - q v2 then points along the flow, and the period is as long as this
+/// vector: sqrt(p^2 + q^2) spacings.
 struct CommensurateLattice {
   int p = 1;
   int q = 0;

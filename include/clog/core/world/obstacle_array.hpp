@@ -66,7 +66,7 @@ class ObstacleArray {
 
  private:
   BinnedObstacles binned_;
-  std::shared_ptr<const void> memory_;  // of the obstacles
+  std::shared_ptr<const void> memory_;  // keeps the memory of the obstacles alive
   std::vector<Wedge> wedges_;
 
   std::uint32_t cell_of(double x, double y) const;

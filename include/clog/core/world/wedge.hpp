@@ -21,9 +21,9 @@ struct Angle {
 struct Wedge {
   Eigen::Array2d tip{0, 0};                 ///< place in the box [sigma]; wedges have no periodic images
   Eigen::Array2d axis{1, 0};                ///< unit vector from the tip into the wall
-  Angle half_angle = std::numbers::pi / 2;  ///< in (0, pi/2]
+  Angle half_angle = std::numbers::pi / 2;  ///< half of the opening angle, in (0, pi/2]
 
-  double radius = 0;  ///< of the rounded tip [sigma]
+  double radius = 0;  ///< radius of the rounded tip [sigma]
 
   /// Centre of the rounded tip. The wall is everything within `radius` of a sharp wedge with its tip there.
   Eigen::Array2d centre() const { return tip + radius * axis; }
@@ -32,7 +32,7 @@ struct Wedge {
 
 /// Distance and direction of a wedge's surface from a point.
 struct WedgeDistance {
-  double distance;        ///< to the nearest surface point, negative inside [sigma]
+  double distance;        ///< distance to the nearest surface point, negative inside [sigma]
   Eigen::Array2d normal;  ///< unit vector from the wall to the point
 };
 /// @param point  relative to the wedge's centre() [sigma]

@@ -70,8 +70,7 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     const auto vertices = [&](int k) { return Vectors{load_at(x + i + k), load_at(y + i + k)}; };
     const Vectors begin = vertices(0), end = vertices(1);
     const Vectors middle = far * vertices(-1) + near * begin + near * end + far * vertices(2);
-    // No point of an edge's halves is farther from the vertex than half the length of the path through the
-    // middle.
+    // No point of a half edge is farther from the half's vertex than the half is long.
     const V first_way = hn::Sqrt((middle - begin).square()), second_way = hn::Sqrt((middle - end).square());
     const auto may_touch = [&](const Vectors& vertex, V way) {
       const V farthest = hn::Add(reach, way);

@@ -36,7 +36,7 @@ class RestForces {
   NearContacts near_;
   double way_ = 0;            // displacement up to which the contacts are valid [sigma]
   Eigen::ArrayXd looked_at_;  // positions at the last update of the contacts: all x, then all y, then unused
-                              // numbers that fill the last vector
+                              // Numbers that fill the last vector.
 
   bool contacts_hold(const Travel& travel) const;
   void look(const DropletState& state, const Travel& travel);

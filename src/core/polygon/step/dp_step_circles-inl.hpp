@@ -56,8 +56,8 @@ struct RefinedEdgeVectors {
 /// The points of half edges that are closest to a circle's centre. Half in touch_kernel.cpp computes the same
 /// more slowly, with the same bits on all processors; dp_step.test.cpp compares them.
 struct NearestOnHalves {
-  V fraction;  ///< of the half edge
-  V dx, dy;    ///< from the centre
+  V fraction;  ///< fraction of the half edge from its beginning to the point
+  V dx, dy;    ///< vector from the circle's centre
   V distance2;
 
   /// @param span  1: the whole half edge counts, 0: its beginning alone

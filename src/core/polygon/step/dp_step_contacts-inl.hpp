@@ -34,10 +34,10 @@ struct EdgeVectors {
       : begin(load(a.position, i)), tangent(load(a.tangent, i)), length(load(a.length + i)) {}
 };
 
-/// The points of edges that are closest to given points, one for each edge.
+/// For each edge of a vector, the point of the edge that is closest to a given point.
 struct NearestPoints {
   V along;   ///< distance of the point from the first vertex of its edge
-  V dx, dy;  ///< from the points given
+  V dx, dy;  ///< vector from the given point
   V distance2;
 
   HWY_INLINE NearestPoints(const EdgeVectors& edges, const Pair& point) {
@@ -203,7 +203,7 @@ double push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, c
   return taken;
 }
 
-/// A wedge and vertices near it: distance_to() of wedge.hpp, for a vector of them.
+/// A wedge, for distances of a vector of vertices as distance_to() of wedge.hpp gives for one vertex.
 class WedgeVectors {
  public:
   explicit WedgeVectors(const WedgePlace& w)
@@ -215,7 +215,7 @@ class WedgeVectors {
         sin_(all(w.sin)) {}
 
   struct Seen {
-    V dx, dy;         ///< from the centre of the tip
+    V dx, dy;         ///< vector from the centre of the tip
     V across;         ///< distance from the axis, with its sign
     V to_flank;       ///< distance from the sharp wedge
     M is_before_tip;  ///< where the tip is nearer, so that `to_flank` is not the distance

@@ -57,8 +57,8 @@ enum class Films { none, those_of_one_circle, those_of_several };
 /// Where the vertices of a vector are relative to a circle.
 struct CircleAtVertices {
   V normal_x, normal_y;
-  V inverse;   ///< of the distance from the centre
-  V distance;  ///< from the surface
+  V inverse;   ///< inverse of the distance from the centre
+  V distance;  ///< distance from the surface
 
   HWY_INLINE CircleAtVertices(const HoldingCircle& circle, std::ptrdiff_t i, const StepArrays& a) {
     const Pair place = load(a.position, i);

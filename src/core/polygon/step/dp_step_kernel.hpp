@@ -29,39 +29,39 @@ struct ContourPair {
 };
 struct StepArrays {
   ContourPair position, velocity;
-  ContourPair tangent;         ///< of the edges
-  ContourArray length;         ///< of the edges
+  ContourPair tangent;         ///< unit vectors along the edges
+  ContourArray length;         ///< lengths of the edges
   ContourPair push;            ///< kick of the vertices by contact
   ContourPair wetting;         ///< part of the kick by wetted walls that derives from no energy
   ContourPair grad_x, grad_y;  ///< 6 a times the gradients of the centroid's x and of its y
   ContourArray rate;           ///< drag rate of a vertex [1/t0], if the rates differ
   ContourArray damping, kept;  ///< s and s (1 - h2 r), with the rate; see KickCoefficients
   ContourPair kicked;          ///< w, if keeps_kicked; see KickCoefficients
-  ContourPair chord;           ///< between a vertex's neighbours, for an implicit pressure
+  ContourPair chord;           ///< vector between a vertex's neighbours, for an implicit pressure
 };
 
 /// Sums over the edges.
 struct Sums {
   double area;
   double perimeter;
-  double moment_x;  ///< of the area, area times its centroid [sigma^3]
+  double moment_x;  ///< first moment of the area: the area times its centroid [sigma^3]
   double moment_y;
 };
 
 /// A kick is the change of a vertex's velocity by a force in half a time step h. F below is a force times
 /// h/(M/N_v).
 struct InterfaceKick {
-  double line_tension;  ///< tension at zero length of the spring
-  double spring;        ///< of springs that carry tension
-  double spreading;     ///< of springs along the interface
+  double line_tension;  ///< tension of the interface at zero length of the springs
+  double spring;        ///< stiffness of springs that carry tension
+  double spreading;     ///< stiffness of springs along the interface
   double half_pressure;
-  double vertex_weight;  ///< along +x
+  double vertex_weight;  ///< weight, along +x
 };
 /// A force on the area, spread over the vertices by the gradient of the area's centroid.
 struct AreaForce {
   double area;                ///< [sigma^2]
-  double centre_x, centre_y;  ///< of the area [sigma]
-  double x, y;                ///< kick, all but the reaction to the springs along the interface
+  double centre_x, centre_y;  ///< centroid of the area [sigma]
+  double x, y;                ///< kick, without the reaction to the springs along the interface
 };
 /// Coefficients of one kick. With r a vertex's drag rate and s = 1/(1 + h1 r),
 ///   w = s (v + closing_ratio F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a).
@@ -73,7 +73,7 @@ struct KickCoefficients {
                          ///< the forces
   double h1, h2;         ///< [t0]
   double weight;         ///< (h1 + h2) / half_step, h1 / half_step where no time step begins
-  double half_step;      ///< that of the forces [t0]
+  double half_step;      ///< the half step of the forces [t0]
   bool keeps_kicked;     ///< whether w is needed afterwards
   /// For an implicit pressure: K_a half_step^2/(M/N_v), with K_a the area stiffness. A half kick that ends a
   /// step of another length uses the value of the step that begins.
@@ -98,8 +98,8 @@ struct KickTerms {
 /// velocity Verlet. The mode's frequency omega becomes omega/sqrt(1 + (omega dt)^2), so it is stable for
 /// every step. If the area is not accelerated, as at rest and in steady fall, nothing is added.
 struct Coupling {
-  double mean_x = 0, mean_y = 0;  ///< of the vertices
-  double area_x = 0, area_y = 0;  ///< of the area's centroid
+  double mean_x = 0, mean_y = 0;  ///< mean velocity of the vertices
+  double area_x = 0, area_y = 0;  ///< velocity of the area's centroid
   double c_x = 0, c_y = 0;
   double a_x = 0, a_y = 0;   ///< includes the force on the area; divided by 6 a
   double half_pressure = 0;  ///< pressure that the implicit pressure adds, as a kick
@@ -131,8 +131,8 @@ struct WallWindows {
   const WallWindow* all;
   int num_own;  ///< number of the first windows, of which no two share an edge
   int num_all;
-  /// Groups of vertices that windows may push. Group -1 and the one behind the last belong to the contour's
-  /// other end.
+  /// Groups of vertices that windows may push. Group -1 and the group behind the last one belong to the
+  /// contour's other end.
   const int* groups;
   int num_groups;
   WindowPushArrays pushes;
@@ -141,10 +141,12 @@ struct WallWindows {
 struct HoldingCircle {
   double x, y, radius;  ///< [sigma]
   int first_window, end_window;
-  int first_group, end_group;  ///< of vertices that it may push, by itself or through films
-  int end_own_group;           ///< end of the groups that the circle may push by itself, which come first
-  bool wraps;                  ///< whether it pushes vertices -1, n or n + 1, which belong to the other end
-  WindowPushArrays pushes;     ///< of this circle
+  /// Groups of vertices that the circle may push, by itself or through films.
+  int first_group, end_group;
+  int end_own_group;  ///< end of the groups that the circle may push by itself, which come first
+  /// Whether the circle pushes vertices -1, n or n + 1, which belong to the contour's other end.
+  bool wraps;
+  WindowPushArrays pushes;  ///< forces of this circle
 };
 /// Repulsion and friction of circles; see WallHold. Every group of vertices that a circle may push
 /// has edges_per_group entries of anchor_x, anchor_y, slip, and one of holds.
@@ -153,27 +155,30 @@ struct HoldingCircles {
   std::size_t num;
   const WallWindow* windows;
   const int* groups;
-  double *anchor_x, *anchor_y;  ///< from the circle's centre [sigma]
+  double *anchor_x, *anchor_y;  ///< place relative to the circle's centre [sigma]
   double* slip;                 ///< distance along the wall from the anchor to its vertex [sigma]
   std::uint8_t* holds;          ///< vertices that have an anchor, as bits
-  ContourPair push;             ///< on the vertices, by one circle; memory
-  ContourArray wetted;          ///< length of the interface on one circle [sigma]; memory
-  double *added_x, *added_y;    ///< what circles add to self-contact, an entry for each anchor; memory
-  ContourArray nearest;   ///< distance of the vertices from the nearest circle that pushes [sigma]; memory
-  std::uint8_t* touches;  ///< whether a circle pushes the droplet; memory
+  ContourPair push;             ///< push on the vertices, by one circle; working memory
+  ContourArray wetted;          ///< length of the interface on one circle [sigma]; working memory
+  /// What circles add to self-contact, with an entry for each anchor; working memory.
+  double *added_x, *added_y;
+  /// Distance of the vertices from the nearest circle that pushes [sigma]; working memory.
+  ContourArray nearest;
+  std::uint8_t* touches;  ///< whether a circle pushes the droplet; working memory
   bool are_close;         ///< whether a vertex may be in the film's reach of two circles
 };
 /// Limits of friction, as kicks.
 struct WallGrip {
-  double coefficient;      ///< of friction
-  double traction;         ///< for each sigma of wetted length
-  double stiffness;        ///< k_t of the springs between interface and wall
-  double film_reach;       ///< of friction through films, from the surface; 0: there is none [sigma]
+  double coefficient;  ///< coefficient of friction
+  double traction;     ///< yield traction for each sigma of wetted length
+  double stiffness;    ///< k_t of the springs between interface and wall
+  /// Distance from the surface up to which friction acts through films; 0: there is no such friction [sigma].
+  double film_reach;
   double least_film_push;  ///< smaller forces of self-contact count as zero
 };
 struct Contact {
   double stiffness;   ///< k_c as a kick
-  double span;        ///< of walls; 1: edges, 0: their first vertices alone
+  double span;        ///< 1: walls push edges, 0: they push only the first vertex of each edge
   double self_range;  ///< distance below which the interface repels itself [sigma]
 };
 /// Obstacles that may be nearest to the vertices.
@@ -181,21 +186,22 @@ struct NearWalls {
   const WallContacts::Item* items;  ///< circles, by group
   std::size_t num_items;
   double range;   ///< range that the items' reach includes [sigma]
-  bool alike;     ///< whether all circles have this radius
+  bool alike;     ///< whether all circles have the same radius
   double radius;  ///< [sigma]
   const WedgePlace* wedges;
   std::size_t num_wedges;
 };
 struct NearWallDrag {
-  double shortest;  ///< smaller distances count as this one [sigma]
+  double shortest;  ///< smaller distances count as this distance [sigma]
   double relative, near_wall, exponent;
   double far_rate;  ///< [1/t0]
 };
 
 /// Results of a survey between steps.
 struct Survey {
-  double perimeter, shortest;    ///< of the edges [sigma]
-  double speed, relative_speed;  ///< of the fastest vertex, and relative to their mean [sqrt(sigma g)]
+  double perimeter, shortest;  ///< perimeter, and length of the shortest edge [sigma]
+  /// Speed of the fastest vertex, and its largest value relative to the mean velocity [sqrt(sigma g)].
+  double speed, relative_speed;
   double moved, moved_relative;  ///< largest displacement of a vertex from the earlier positions, see
                                  ///< StepKernel::survey [sigma]
 };
@@ -207,13 +213,14 @@ struct StepKernel {
   /// @param walls, self  earlier positions of the vertices, all x then all y, `self` relative to their mean;
   /// may be null
   Survey (*survey)(int n, const double* walls, const double* self, const StepArrays& arrays);
-  /// Gap between every edge of every item and the contact range of the item's circle, edges_per_group gaps
-  /// for each item; negative in contact [sigma]. Returns the smallest, at most 0.
+  /// Computes the gap between every edge of every item and the contact range of the item's circle:
+  /// edges_per_group gaps for each item, negative in contact [sigma]. Returns the smallest gap, or 0 if all
+  /// gaps are positive.
   double (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
                         const StepArrays& arrays, double* gaps);
   /// The edges of one item with a gap of at most `way`, as bits.
   std::uint8_t (*edges_within)(const double* gaps, double way);
-  /// Gap of every item's closest pair.
+  /// Computes the gap of every item's closest pair. Returns as circle_gaps().
   double (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                       const StepArrays& arrays, double* gaps);
   /// clear_pushes() sets the pushes on all vertices to zero. push() finds those of circles, on the groups of
@@ -221,8 +228,8 @@ struct StepKernel {
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
                const Contact& contact, const StepArrays& arrays);
-  /// Like push(), but on all groups, and with friction of the circles. Returns the energy lost to walls,
-  /// divided by k_t [sigma^2].
+  /// Like push(), but computes the pushes on all groups, including friction of the circles. Returns the
+  /// energy lost to walls, divided by k_t [sigma^2].
   double (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
                           const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
                           const StepArrays& arrays);

@@ -18,8 +18,9 @@ namespace clog {
 
 /// Contacts, speeds and stability are surveyed at least once in this number of steps.
 inline constexpr int most_steps_per_survey = 32;
-/// The rates of the near-wall drag are kept for at most this number of steps, in which no vertex moves by
-/// more than this fraction of the smallest distance (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
+/// The rates of the near-wall drag are kept for at most this number of steps, and no vertex may move farther
+/// in these steps than this fraction of the near-wall cutoff
+/// (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
 inline constexpr double most_steps_per_rate = 4, farthest_way_per_rate = 0.2;
 
 /// Moves a polygon by whole time steps with the vectorised kernel. Between two calls, the DropletState alone
@@ -48,24 +49,24 @@ class DpStepper {
     NearContacts contacts{};
     WallPlan plan;                             // used if holds_circles_ is false
     WallHold hold;                             // used if holds_circles_ is true
-    std::vector<kernel::WedgePlace> wedges{};  // in the droplet's frame
+    std::vector<kernel::WedgePlace> wedges{};  // wedges in the droplet's frame
   };
   /// Friction on vertices; used if holds_circles_ is false.
   struct VertexFriction {
     WallTouches touches;
-    Eigen::ArrayXd force;     // all x then all y; zero between steps
+    Eigen::ArrayXd force;     // forces, all x then all y; zero between steps
     bool has_pushed = false;  // whether `force` acted in the last step
   };
   struct KeptRates {
-    double fastest = 0;  // speed of a vertex at the last survey [sqrt(sigma g)]
+    double fastest = 0;  // speed of the fastest vertex at the last survey [sqrt(sigma g)]
     int steps_left = 0;  // number of steps for which the present rates may still be used
     double h1 = 0, h2 = 0;
   };
   /// The step whose last half kick is pending.
   struct OpenStep {
-    double length = 0;  // 0: there is none
+    double length = 0;  // 0 if no half kick is pending
     Pressure pressure = Pressure::present;
-    Droplet::Work power;  // at its beginning
+    Droplet::Work power;  // power at the beginning of the step
   };
   RunParameters run_;
   DpForces* forces_;
@@ -74,7 +75,7 @@ class DpStepper {
   int steps_per_survey_;
   Pressure most_pressure_;
   kernel::KickTerms terms_;
-  kernel::StepKernel kernel_, implicit_kernel_;  // the latter for an implicit pressure
+  kernel::StepKernel kernel_, implicit_kernel_;  // the second one is for an implicit pressure
   StepMemory memory_;
   kernel::Sums sums_{};
   Near near_;

@@ -19,13 +19,14 @@ struct VertexPair {
 /// Pairs of a vertex and an edge of the same droplet that may touch.
 ///
 /// Contact is between vertices and edges, so it also works if edges are longer than the vertex diameter.
-/// Every edge within reach pushes by itself, with its own nearest point: then energy and force are continuous
-/// wherever the vertex goes, also in a concave corner, where two edges are equally near. Edges close along
-/// the contour do not count as contact, because otherwise every vertex would touch its neighbours. Close
-/// means both of the following: less than three ranges away along the present contour, and fewer vertices
-/// away than make up three ranges at rest. In a compressed contour the number of vertices decides; this
-/// number is fixed, so that contacts there do not depend on when the pairs were made. In a stretched contour
-/// the length decides, so that long edges cannot cross in a sharp fold.
+/// Every edge within reach pushes by itself, with its own nearest point. So energy and force are continuous
+/// wherever the vertex goes, even in a concave corner, where two edges are equally near.
+///
+/// Edges close to a vertex along the contour do not count as contact, because otherwise every vertex would
+/// touch its neighbours. An edge is close if it is less than three ranges away along the present contour, and
+/// also fewer than exclusion() vertices away. In a compressed contour the number of vertices decides. This
+/// number is fixed, so contacts there do not depend on when the pairs were made. In a stretched contour the
+/// distance decides, so that long edges cannot cross in a sharp fold.
 class SelfContacts {
  public:
   struct Pair {
@@ -77,7 +78,7 @@ class SelfContacts {
   std::vector<Pair> pairs_;
   std::vector<Item> items_;
   std::vector<double> along_;    // distance of each vertex from vertex 0 along the contour, followed by the
-                                 // length of the contour
+                                 // Length of the contour.
   std::vector<double> contour_;  // x, y and along_, with the beginning repeated; see kernel::CloseSearch
   std::vector<double> groups_;   // memory of the search
   std::vector<kernel::VertexPair> close_;
@@ -85,7 +86,7 @@ class SelfContacts {
   std::vector<int> end_of_group_;  // index of the end of the pairs of each group of edges
   std::vector<int> item_of_;       // the latest item, by direction and first vertex
 
-  double skin_ = 0;  // of the present pairs
+  double skin_ = 0;  // skin with which the present pairs were made [sigma]
 
   /// Fills along_. Returns the length of the longest edge.
   double measure_edges(const double* x, const double* y, int n);
@@ -99,7 +100,7 @@ class SelfContacts {
 struct EdgeContact {
   double distance;  ///< [sigma]
   double fraction;  ///< the point's place on the edge, 0 at its first vertex, 1 at the next
-  double dx, dy;    ///< from the point to the vertex [sigma]
+  double dx, dy;    ///< vector from the point to the vertex [sigma]
 };
 inline EdgeContact nearest_point(const SelfContacts::Pair& pair, const double* x, const double* y,
                                  int num_vertices) {

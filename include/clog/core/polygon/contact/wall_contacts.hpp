@@ -58,7 +58,7 @@ class WallContacts {
   const ObstacleArray* array_;
   double range_;
   Keep keep_;
-  double skin_ = 0;  // of the present lists
+  double skin_ = 0;  // skin with which the present lists were made [sigma]
   Eigen::Index num_points_ = 0;
   Eigen::ArrayXd reference_;
   std::vector<Obstacle> nearby_;
@@ -66,9 +66,9 @@ class WallContacts {
   struct Bounds {
     Eigen::Array2d least, most;
   };
-  std::vector<Bounds> bounds_;        // of the groups of edges
-  Eigen::ArrayXXd distances_;         // of the vertices from the circles nearby, a column for each circle
-  Eigen::ArrayXd nearest_;            // distance of each vertex from its nearest circle
+  std::vector<Bounds> bounds_;  // bounds of each group of edges
+  Eigen::ArrayXXd distances_;   // distances of the vertices from the circles nearby, a column for each circle
+  Eigen::ArrayXd nearest_;      // distance of each vertex from its nearest circle
   std::vector<std::size_t> item_of_;  // the latest item of each circle
   std::vector<Item> items_;
   double smallest_radius_ = 0, largest_radius_ = 0;

@@ -44,7 +44,7 @@ class WallTouches {
   double range_, stiffness_;
   bool meets_edges_, acts_through_films_;
   FilmTouches films_;
-  std::vector<int> first_part_;  // of each vertex
+  std::vector<int> first_part_;  // first part of each vertex
   std::vector<Part> parts_;
   std::vector<WallPlace> wedges_;
   std::vector<WallTouch> touches_;

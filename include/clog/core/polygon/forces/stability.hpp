@@ -7,16 +7,16 @@ namespace clog {
 /// Upper bounds on omega^2 [1/t0^2] of the stiff modes of a polygon with the given perimeter [sigma].
 /// Velocity Verlet is stable for omega dt < 2; the bounds are those of a chain of masses M/N_v.
 struct StiffModes {
-  double contact =
-      0;  ///< one vertex in contact with a wall, through both its edges if walls push edges: 2 k_c N_v/M
+  /// One vertex in contact with a wall, through both its edges if walls push edges: 2 k_c N_v/M.
+  double contact = 0;
   /// Contact of two strands, in which each vertex is between two edges and each edge between two vertices: 8
   /// k_c N_v/M.
   double self_contact = 0;
   double area = 0;     ///< uniform pressure, K_a P^2/M
   double tension = 0;  ///< transverse zigzag, 4 Gamma N_v/(l M), l the shortest edge
   double spring = 0;   ///< longitudinal zigzag, 4 K_l N_v^2/M
-  double wetting =
-      0;  ///< a wall's pull or push where the tension changes, 6 |Gamma_wall - Gamma| l N_v/(w^2 M)
+  /// A wall's pull or push where the tension changes, 6 |Gamma_wall - Gamma| l N_v/(w^2 M)
+  double wetting = 0;
   double pinning = 0;   ///< spring that holds the end of a wetted arc
   double friction = 0;  ///< springs by which walls hold a vertex along them, k_t N_v/M
 

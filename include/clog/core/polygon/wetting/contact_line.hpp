@@ -65,9 +65,10 @@ class ContactLine {
   /// One end of a wetted arc.
   struct End {
     WallPlace wall;
-    Eigen::Index side;                          ///< 0: the arc's first, 1: its last along the contour
-    double place;                               ///< q, counted outwards [sigma]
-    std::size_t first_gradient, num_gradients;  ///< of q with respect to vertices, in Ends::gradients
+    Eigen::Index side;  ///< 0: the arc's first end along the contour, 1: its last end
+    double place;       ///< q, counted outwards [sigma]
+    /// Range in Ends::gradients of the derivatives of q with respect to vertices.
+    std::size_t first_gradient, num_gradients;
   };
   struct Gradient {
     Eigen::Index vertex;

@@ -34,7 +34,7 @@ class WettedWalls {
     /// interface; otherwise they are 0. They derive from no energy.
     Eigen::ArrayXd spreading;
     std::vector<int> vertices;  ///< the vertices on which these forces may differ from 0
-    ContactLine::Ends ends;     ///< of wetted arcs
+    ContactLine::Ends ends;     ///< ends of wetted arcs
 
     /// The sum of `spreading`. Its reaction acts on the liquid, so this sum is subtracted from the weight
     /// that acts on the area.
@@ -45,8 +45,8 @@ class WettedWalls {
    private:
     friend class WettedWalls;
     struct Vertex {
-      double distance;        // from the nearest wall
-      Eigen::Array2d normal;  // away from it
+      double distance;        // distance from the nearest wall
+      Eigen::Array2d normal;  // unit vector away from the nearest wall
       WettedShare share{0, 0};
       bool is_near = false, is_listed = false;
     };
@@ -70,7 +70,7 @@ class WettedWalls {
   double spring_energy(const DropletState& state) const;
 
  private:
-  double extra_tension_;  // of a wetted wall [g rho sigma^2]
+  double extra_tension_;  // Gamma_wall - Gamma, for a wetted wall [g rho sigma^2]
   bool spreads_;          // whether springs act only along the interface
   double contact_range_, width_;
   const ObstacleArray* obstacles_;
