@@ -110,17 +110,17 @@ struct Passage {
 
 /// The runs of a sweep that differ in their seed only, and their results.
 struct Group {
-  sweep::RunRow first_row;                                 ///< parameters of all runs, except the seed
-  double dwell = std::numeric_limits<double>::infinity();  ///< minimum duration of a rest that counts as a
-                                                           ///< clog, see group_runs() [t0]
-  /// the latest Dwells::known_from of all runs; NaN if the dwells of a run are unknown [t0]
+  sweep::RunRow first_row;  ///< parameters of all runs, except the seed
+  /// A rest that is longer than this counts as a clog, see group_runs() [t0].
+  double dwell = std::numeric_limits<double>::infinity();
+  /// The latest Dwells::known_from of all runs; NaN if the dwells of a run are unknown [t0]
   double dwells_known_from = 0;
   fit::CloggingLength clogging;
   double least_squares_length = 0;  ///< length by the published, biased method; NaN for fewer than two clogs
   fit::WeibullTest weibull;
   /// Clogging length of the runs that met an obstacle, each counted from its first obstacle on.
   fit::CloggingLength clogging_met;
-  /// Over all runs that record contacts [1/sigma].
+  /// Number of contacts divided by distance, for all runs that record contacts together [1/sigma].
   double contacts_per_length = std::numeric_limits<double>::quiet_NaN();
   std::vector<fit::SurvivalStep> survival;
   /// Distances of the runs that did not clog, in increasing order [sigma].

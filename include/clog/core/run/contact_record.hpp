@@ -17,7 +17,7 @@ struct Contacts {
   /// after the droplet has been farther than ContactRecord::parting away; its periodic images count as other
   /// obstacles.
   std::int64_t number = 0;
-  /// At the first contact; NaN: none [sigma].
+  /// Distance of the droplet at the first contact; NaN if there was none [sigma].
   double first_distance = std::numeric_limits<double>::quiet_NaN();
 };
 

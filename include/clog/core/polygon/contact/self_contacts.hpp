@@ -77,8 +77,8 @@ class SelfContacts {
   Eigen::ArrayXd reference_;  // positions relative to their mean when the pairs were made
   std::vector<Pair> pairs_;
   std::vector<Item> items_;
-  std::vector<double> along_;    // distance of each vertex from vertex 0 along the contour, followed by the
-                                 // Length of the contour.
+  // Distance of each vertex from vertex 0 along the contour, followed by the length of the contour.
+  std::vector<double> along_;
   std::vector<double> contour_;  // x, y and along_, with the beginning repeated; see kernel::CloseSearch
   std::vector<double> groups_;   // memory of the search
   std::vector<kernel::VertexPair> close_;
