@@ -156,7 +156,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
                     shortest(dwell), rounded_up(known_from)));
 }
 
-/// Fits clogging lengths to the intact runs that reached the distance from which runs are observed.
+/// Fits clogging lengths to those intact runs that reached `from_distance`.
 void fit_clogging(Group& group, std::span<const Ending> runs, double confidence, double from_distance) {
   // Some of the ends count as events; all other runs are censored.
   const auto observe = [&](auto is_end) {

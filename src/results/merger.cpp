@@ -88,7 +88,8 @@ class Rows {
     paths_[place] = path;
   }
 
-  /// Whether a row replaces the existing one. @throws Error if the two contradict each other
+  /// Whether a row replaces the existing row of the same run. @throws Error if the two rows contradict each
+  /// other
   bool is_better(const RunRow& row, std::size_t place, const std::string& path) {
     const RunRow& known = rows_[place];
     if (!sweep::is_result(row.status) || !sweep::is_result(known.status)) {

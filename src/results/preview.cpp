@@ -246,7 +246,8 @@ void print_left(const sweep::Plan& plan, const std::string& output, const Stored
 /// Warns before the runs about clogging lengths below an obstacle spacing, which clogfit would doubt (`v`).
 void print_short_lengths(const Sample& sample) {
   constexpr std::int64_t fewest = 3;
-  constexpr std::int64_t one_in = 4;  // if the length is five spacings, one clog in six is this short
+  constexpr std::int64_t one_in =
+      4;  // with a clogging length of five spacings, one distance in six would be below one spacing
   if (sample.num_short < fewest || one_in * sample.num_short < sample.num_clogged) return;
   fmt::print(std::cout,
              "# {} of {} clogged within one obstacle spacing ({:.3g} sigma) of their release: such lengths "

@@ -14,7 +14,8 @@ struct ResultColumn {
   std::function<std::string(const Group&)> cell;
 };
 
-/// A clogging length, or its lower bound, and its interval; a dash where they are not known.
+/// A clogging length, or its lower bound without clogs, and the interval of the length; a dash where a number
+/// is unknown.
 std::string length_text(const fit::CloggingLength& clogging);
 std::string interval_text(const fit::CloggingLength& clogging);
 
@@ -33,7 +34,7 @@ bool have_some_broken(const std::vector<Group>& groups);
 bool have_laboratory(const std::vector<Group>& groups);
 /// A group's interfacial tension, clogging length, speed and time until a clog in laboratory units.
 std::vector<Field> laboratory_fields(const Group& group);
-/// The same fields as printed columns.
+/// The laboratory_fields() as printed columns.
 std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups, double confidence);
 /// Columns of diameter and tilt, if the groups differ in them.
 std::vector<ResultColumn> droplet_columns(const std::vector<Group>& groups);

@@ -51,8 +51,8 @@ bool has_derived_density(const sweep::RunRow& row) {
          (!obstacles.density.per_area && !obstacles.density.share);
 }
 
-/// Whether automatic values of one parameter follow from the other. The step follows from the vertices, the
-/// stiffness of walls from both.
+/// Whether automatic values of `one` follow from `other`: the time step follows from the vertices, the
+/// stiffness of walls from the vertices and the time step.
 bool follows(const Parameter& one, const Parameter& other) {
   constexpr std::string_view chain[] = {"vertices", "time-step", "wall-stiffness"};
   const auto* place = std::ranges::find(chain, std::string_view(one.key));

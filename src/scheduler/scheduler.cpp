@@ -145,7 +145,7 @@ class Master {
     return running_.empty() && all_wait && !is_over();
   }
 
-  /// The time of one clock for all rounds [s].
+  /// The present time on a clock that all rounds share [s].
   static double seconds() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
   struct Beginning {

@@ -73,7 +73,8 @@ bool Socket::read_all(void* bytes, std::size_t num_bytes) const {
 
 void Socket::send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const {
   const Header header{kind, job, bytes.size()};
-  // Send in one piece: a sender stopped between two pieces would leave half a message.
+  // The message is sent in one piece, because a sender that is stopped between two pieces would leave half a
+  // message.
   std::vector<std::byte> message(sizeof header + bytes.size());
   std::memcpy(message.data(), &header, sizeof header);
   std::ranges::copy(bytes, message.begin() + sizeof header);

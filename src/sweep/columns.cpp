@@ -125,7 +125,7 @@ void set_parameter(const Parameter& parameter, RunRow& row, const Value& value) 
     parameter.set(row.parameters, value);
 }
 
-/// Digits of a checksum, which represents a file or text.
+/// Number of digits of a checksum. In a column, the checksum stands for the content of a file or text.
 constexpr std::size_t check_sum_size = 16;
 
 Column parameter_column(const Parameter& parameter) {

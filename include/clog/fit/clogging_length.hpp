@@ -63,8 +63,9 @@ CloggingLength fit_clogging_length(std::span<const Observation> runs, double con
 double relative_half_width(std::int64_t num_clogs, double confidence = 0.95);
 
 /// Least squares of exp(-r/lambda) on P(r) = 1 - N_clog(r)/N at every clog, as published (Cheng et al.,
-/// appendix C) [sigma]. Biased: it treats a censored run as one that would never clog, and points as
-/// independent. NaN for fewer than two clogs, and for distances that are not finite.
+/// appendix C) [sigma]. This length is biased, because the method treats censored runs as if they never
+/// clogged, and the points as if they were independent. NaN for fewer than two clogs, and for distances that
+/// are not finite.
 double least_squares_length(std::span<const Observation> runs);
 
 }  // namespace clog::fit

@@ -17,7 +17,8 @@ namespace clog::results {
 class SeedRule {
  public:
   /// @param precision  required half-width of the 95 % interval divided by lambda
-  /// @param first_seeds, most_seeds  per parameter set, at first and at most
+  /// @param first_seeds, most_seeds number of seeds per parameter set in the first round, and largest number
+  /// of seeds
   SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds, std::int64_t most_seeds);
 
   /// Call this when all tasks so far are over. Returns the tasks of the next round; none at the end. Task s

@@ -19,7 +19,8 @@ constexpr double lobe_share = 0.02;
 /// Largest cosine of an angle that counts as a right angle. Across a bridge with straight sides, all segments
 /// are equally long; without this tolerance, round-off would decide which of them is the shortest.
 constexpr double round_off = 1e-9;
-/// Whether a cosine, or sine, times both lengths is at most the round-off. Avoids square roots.
+/// Whether a value, which is a cosine or sine times two lengths, is at most the round-off. Takes the squares
+/// of the lengths, to avoid square roots.
 bool is_hardly_positive(double value, double squared_lengths) {
   return value <= 0 || value * value <= round_off * round_off * squared_lengths;
 }

@@ -155,7 +155,7 @@ class SequentialAddition {
   double cell_size_;
   int margin_;  // number of cells to the farthest point within the largest distance
   int row_length_;
-  bool are_alike_;  // all discs have one size, as usual
+  bool are_alike_;  // whether all discs have the same size, as usual
   /// The points, each relative to the corner of its cell. A cell has at most one point, because its diagonal
   /// is not longer than the smallest distance between two points.
   std::vector<Point> points_;

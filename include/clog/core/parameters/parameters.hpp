@@ -77,8 +77,9 @@ struct Words<LatticeKind> {
                                                 {LatticeKind::triangular, "triangular"},
                                                 {LatticeKind::rhombic, "rhombic"}};
 };
-/// Start of a droplet among user-supplied circles: in the void nearest to the centre of the array, or near a
-/// place drawn from the seed, in the whole array or on a line across the flow.
+/// Where a droplet starts among user-supplied circles: in the void nearest to the centre of the array
+/// (`centre`), or near a random place, which the seed determines. The random place is in the whole array
+/// (`anywhere`) or on a line across the flow (`entrance`).
 enum class Release { centre, anywhere, entrance };
 template <>
 struct Words<Release> {

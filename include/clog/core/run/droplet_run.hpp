@@ -93,7 +93,7 @@ class DropletRun {
 
   /// Releases the droplet as its scene defines. @param run  resolved parameters, here and below
   explicit DropletRun(const RunParameters& run);
-  /// The same, among given walls.
+  /// Releases the droplet in the same way, among given walls.
   DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
   /// @param initial  the droplet at its release
   /// @param way  displacement along the flow after which the droplet has `passed` [sigma]

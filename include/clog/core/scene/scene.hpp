@@ -23,8 +23,8 @@ enum class WallsFrom {
 struct Scene {
   Finding finding;
   WallsFrom walls_from;
-  /// Whether the array is random. Then the period limits the results, because after one period a droplet
-  /// meets the same obstacles again.
+  /// Whether the array is random. The period of a random array limits the results, because after one period a
+  /// droplet meets the same obstacles again.
   bool is_random;
   /// Key of the parameter that is the width of the gaps or the orifice; nullptr if there is none.
   const char* gap_key;

@@ -102,7 +102,8 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     keep(1, own(first) + by_middle(first, near) + by_middle(second, near));
     keep(2, by_middle(first, near) + own(second) + by_middle(second, near));
     keep(3, by_middle(first, far) + by_middle(second, far));
-    // A half's wetted length is its whole length; the middle belongs to both vertices.
+    // A half edge in contact is wetted over its whole length. The length next to the middle belongs to both
+    // vertices.
     const auto wetted = [&](double by_first, double by_second, double* p) {
       hn::Store(hn::Add(hn::IfThenElse(first.touches, hn::Mul(all(by_first), first.length), zero),
                         hn::IfThenElse(second.touches, hn::Mul(all(by_second), second.length), zero)),

@@ -203,7 +203,8 @@ double push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, c
   return taken;
 }
 
-/// A wedge, for distances of a vector of vertices as distance_to() of wedge.hpp gives for one vertex.
+/// Distances from a wedge for a vector of vertices. distance_to() of wedge.hpp computes the same for one
+/// vertex.
 class WedgeVectors {
  public:
   explicit WedgeVectors(const WedgePlace& w)

@@ -107,7 +107,7 @@ struct CouplingVectors {
 
   HWY_INLINE explicit CouplingVectors(const Coupling& k)
       : c{all(k.c_x), all(k.c_y)}, a{all(k.a_x), all(k.a_y)}, pressure(all(k.half_pressure)) {}
-  /// c - G^T a, and an implicit pressure.
+  /// The sum of c - G^T a and the term of an implicit pressure.
   HWY_INLINE Pair pull(int i, bool on_area, bool implicit_pressure, const StepArrays& arrays) const {
     Pair pull = c;
     if (on_area) {

@@ -244,8 +244,8 @@ struct StepKernel {
   /// First pass: forces and velocities.
   Coupling (*kick)(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays);
-  /// Powers at the end of a time step, from the w that the kick kept. Called between the passes, if
-  /// requested.
+  /// Powers at the end of a time step, from the velocities w that the kick kept in `kicked`. Called between
+  /// the passes, if requested.
   Power (*power)(int n, const KickTerms& terms, const InterfaceKick& interface,
                  const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays);
   /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges there. Sums include the perimeter

@@ -42,9 +42,9 @@ class WallContacts {
   bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
   double largest_radius() const { return largest_radius_; }
 
-  /// The same lists as items. An item is a circle and a group of `edges_per_group` edges (vertices), at least
-  /// one of which lists the circle. Items of edges are sorted by circle, then by group; items of vertices are
-  /// sorted by group.
+  /// The same lists, in the form of items. An item is a circle and a group of `edges_per_group` edges
+  /// (vertices), at least one of which lists the circle. Items of edges are sorted by circle, then by group;
+  /// items of vertices are sorted by group.
   struct Item {
     double x, y;   ///< centre, relative to the state's frame [sigma]
     double reach;  ///< radius + range [sigma]

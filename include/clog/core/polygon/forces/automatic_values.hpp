@@ -19,9 +19,9 @@ int automatic_vertices(const RunParameters& run, double obstacle_diameter);
 double half_vertex_diameter(const DpParameters& dp);
 
 /// The automatic K_l [g rho sigma]: a fraction of Gamma for springs to the rest length; 1 for springs to the
-/// mean length; 0.003/V_t for springs along the interface. The latter even out the spacing of the vertices at
-/// a rate of (2 pi)^2 K_l V_t/M = 0.15/t0. Stiffer springs along the interface fluttered at weak drag,
-/// because their force derives from no potential energy.
+/// mean length; 0.003/V_t for springs along the interface. Springs along the interface even out the spacing
+/// of the vertices at a rate of (2 pi)^2 K_l V_t/M = 0.15/t0. Stiffer springs along the interface fluttered
+/// at weak drag, because their force derives from no potential energy.
 double automatic_perimeter_stiffness(const RunParameters& run);
 
 /// Largest expected pressure difference across the interface of a droplet held by obstacles [g rho sigma]. It

@@ -56,10 +56,10 @@ class WettedWalls {
     void clear();
     void list_vertices();
   };
-  /// Finds the forces and the ends.
+  /// Finds the forces on the vertices, and the ends of wetted arcs.
   void find_forces(const VertexPlaces& vertices, const LocalFrame& frame, std::span<const WallAnchor> anchors,
                    Forces& forces) const;
-  /// The same for a moving droplet: first moves its anchors as follow() does.
+  /// Moves the anchors of a moving droplet as follow() does, and then finds the forces and the ends.
   WallYield follow_and_find_forces(const VertexPlaces& vertices, const LocalFrame& frame,
                                    std::vector<WallAnchor>& anchors, Forces& forces) const;
   /// Moves anchors whose springs exceed their limits, see ContactLine::follow().
