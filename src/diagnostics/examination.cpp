@@ -38,7 +38,7 @@ int number_in(const char* name) {
   return text ? std::atoi(text) : 0;
 }
 
-/// Why a single rank should not be alone; nullopt if one rank is intended.
+/// Why a single rank is probably a mistake; nullopt if one rank is intended.
 std::optional<Finding> why_not_alone(int num_ranks) {
   if (num_ranks > 1) return {};
   constexpr const char* of_open_mpi = "OMPI_COMM_WORLD_SIZE";

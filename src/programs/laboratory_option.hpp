@@ -9,9 +9,8 @@
 
 namespace clog::programs {
 
-/// Sets the keys that the file of --lab determines, if the option is given, converts keys that were given
-/// with units, and scales user-supplied circles to the droplet. @throws Error, also if the file has several
-/// droplets
+/// If --lab is given, sets the keys that its file determines, converts the keys that were given with units,
+/// and scales user-supplied circles to the droplet. @throws Error, also if the file has several droplets
 void use_laboratory(cli::CommandLine& line);
 
 /// use_laboratory() for a file of one or several droplets. Several droplets become points, each with the

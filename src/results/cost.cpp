@@ -37,7 +37,7 @@ class Outlook {
     slowing_ = fit::fit_clogging_length(logarithms, default_confidence);
   }
 
-  /// Mean remaining time of a run; max-time ends it after `longest` at the latest.
+  /// Mean remaining time of a run that max-time ends after `longest` at the latest.
   double seconds_left(const RunCost& run, double longest, Case which) const {
     const double most = longest - run.seconds;
     const bool may_never_end = !sets_with_ends_.contains(run.parameter_set);

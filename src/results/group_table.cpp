@@ -36,7 +36,8 @@ std::vector<std::string> parts_of(const std::optional<LaboratoryText>& laborator
   return parts;
 }
 
-/// The entries of a group's laboratory that not all groups have; all entries if every group has the same.
+/// The entries of a group's laboratory that not all groups have; all entries if all groups have the same
+/// laboratory.
 std::string laboratory_label(const Group& group, const std::vector<Group>& groups) {
   std::vector<std::string> own = parts_of(group.first_row.parameters.laboratory);
   const auto is_everywhere = [&](const std::string& part) {

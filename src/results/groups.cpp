@@ -237,8 +237,8 @@ fit::Travel travel_until_arrest(const sweep::RunRow& run) {
   return {way / run.parameters.drag.terminal_speed, is_clogged ? run.dwells.last_begin : run.time};
 }
 
-/// A group whose droplets sank by less than half a diameter on average has no speed, just as a single droplet
-/// with such a distance.
+/// A group whose droplets sank by less than half a diameter on average has no speed. A single droplet that
+/// sank by less than half a diameter has none either.
 fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double terminal_speed) {
   constexpr double shortest_way = 0.5;  // [sigma]
   double way = 0;

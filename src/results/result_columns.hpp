@@ -21,7 +21,8 @@ std::string interval_text(const fit::CloggingLength& clogging);
 
 /// The columns of the scene's results.
 /// @param groups  not empty
-/// @param has_laboratory  whether columns in laboratory units follow, in which speeds are those of all runs
+/// @param has_laboratory  whether columns in laboratory units follow; the speeds in these are those of all
+/// runs
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
                                               bool has_laboratory);
 

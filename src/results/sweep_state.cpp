@@ -16,7 +16,7 @@ namespace clog::results {
 namespace {
 
 /// Keeps `sessions` short, however often a sweep is resumed: the oldest lines are removed, and a long last
-/// one is cut.
+/// line is cut.
 std::string latest_lines(std::string text) {
   constexpr std::size_t longest_line = 2000;
   constexpr std::size_t longest = 30'000;

@@ -73,8 +73,8 @@ std::string describe(const Ending& ending) {
                      signal == SIGKILL ? ", as the kernel does when memory runs out" : "");
 }
 
-/// Makes this process die with the one that forked it, and ignore signals that stop a sweep, which the rank
-/// handles.
+/// Makes this process die with its parent. Lets it ignore the signals that stop a sweep, because the rank
+/// handles these.
 void depend_on_parent(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);  // the parent died before the call

@@ -11,8 +11,8 @@
 
 #include "clog/store/run_table.hpp"
 
-/// Attributes of a file's root. One of them has the checksums of all others, and of the table. Texts that
-/// are too long for one attribute are stored in several.
+/// Attributes of a file's root. One of them has the checksums of all others, and of the table. A text that is
+/// too long for one attribute is stored in several attributes.
 namespace clog::store {
 
 using NamedCheckSum = std::pair<std::string, std::uint32_t>;

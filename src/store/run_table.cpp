@@ -155,7 +155,7 @@ void require_sweep(hid_t file, const std::string& path) {
   require_readable_version(file, path);
 }
 
-/// Why a table is unreadable.
+/// The reason why a table is unreadable.
 class Damage : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

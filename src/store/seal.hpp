@@ -15,7 +15,7 @@ enum class Seal {
 };
 
 /// A line at the end of a file, after the part that HDF5 reads: the size and the checksum of all before it.
-/// Other programs ignore it; those that write to the file remove it.
+/// Programs that only read the file ignore this line; programs that write to the file remove it.
 std::string seal_of(std::span<const std::byte> content);
 
 inline constexpr std::size_t seal_size = 64;

@@ -115,7 +115,8 @@ std::vector<std::string> meant_names(std::string_view word, const std::vector<st
   std::vector<std::string> all = with_part(word, names);
   const std::string near = did_you_mean(word, names);
   std::erase(all, near);
-  // A word without its last letters, such as a plural's s, precedes words that only contain it.
+  // A name that only adds letters at the end of the word, such as a plural's s, precedes names that contain
+  // the word.
   if (!near.empty() && (all.empty() || near.starts_with(word))) all.insert(all.begin(), near);
   if (all.size() > most_named) all.resize(most_named);
   return all;

@@ -114,7 +114,7 @@ const Settings::Entries& Settings::entries() const {
 }
 
 /// The given texts, those that follow from them for other keys, and the defaults. User-supplied circles and
-/// keys of a channel set the layout; the preset sets its keys; without randomness there is one seed.
+/// keys of a channel set the layout. The preset sets its keys. If nothing is random, there is one seed.
 Settings::Entries Settings::resolved() const {
   static const Entries defaults = [] {
     Entries entries;

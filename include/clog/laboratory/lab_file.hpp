@@ -23,7 +23,7 @@ struct Laboratory {
   Experiment experiment;  ///< if not known, terminal_speed is 0 and interfacial_tension NaN
   double thickness = std::numeric_limits<double>::quiet_NaN();  ///< thickness of the cell [m]
   /// Gamma of the model divided by Gamma_exp. The default fits the three droplets of Cheng et al., who say
-  /// that the difference between both Gammas "likely stems from the fact that we compare values of the
+  /// that the difference between the two Gammas "likely stems from the fact that we compare values of the
   /// dimensionless line tension in 2D to values of the dimensionless surface tension in 3D".
   double tension_ratio = 0.3;
   std::optional<MeasuredSpeed> measured = {};  ///< the speed that was scaled to the terminal speed, if any

@@ -15,7 +15,8 @@ struct Scales {
   double gravity = 0;  ///< g_exp [m/s^2]
   double time = 0;     ///< t0 = sqrt(sigma/g_exp) [s]
   double speed = 0;    ///< v_t [m/s]
-  double tension = 0;  ///< interfacial tension of a droplet that moves like one of Gamma = 1 [N/m]
+  double tension =
+      0;  ///< interfacial tension of a droplet that moves like a simulated droplet with Gamma = 1 [N/m]
   double line_tension_experiment = 0;  ///< Gamma_exp
   double line_tension = 0;             ///< Gamma of the model, tension_ratio times Gamma_exp
   double sag = 0;                      ///< sag of a droplet of this line tension on a flat wall [sigma]

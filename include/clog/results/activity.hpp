@@ -17,8 +17,8 @@ class Activity {
   void started(double now);
   void ended(double now);
 
-  /// One line of JSON. `idle_seconds` are summed over all ranks. `tail_seconds` are the part of this sum
-  /// after the last start of a task, when ranks without work waited for the last tasks to end.
+  /// One line of JSON. `idle_seconds` is the sum over all ranks. `tail_seconds` is the part of this sum after
+  /// the last start of a task: then ranks without work wait for the last tasks to end.
   /// @param start_time  when the session began
   std::string line(const std::string& start_time, double now) const;
 

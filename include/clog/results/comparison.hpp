@@ -12,7 +12,7 @@
 
 namespace clog::results {
 
-/// Runs that are compared: those of a file, or those with one value of a parameter.
+/// One side of a comparison: the runs of a file, or the runs with one value of a parameter.
 struct Side {
   std::string name;
   std::vector<sweep::RunRow> rows;

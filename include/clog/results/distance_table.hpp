@@ -40,7 +40,7 @@ using Scales = std::map<std::string, LaboratoryScale>;
 /// droplet's diameter [mm] and the tilt [degrees] separate groups, too.
 DistanceTable distances_of(const Side& side, const Scales& scales = {});
 
-/// Prints lengths, intervals, doubts and survival of each group, estimated as for a sweep.
+/// These functions print lengths, intervals, doubts and survival of each group, estimated as for a sweep.
 /// @param sigma_mm  the droplet's diameter in mm, if it is known: then lengths are given in both units
 std::string lengths_text(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);

@@ -11,9 +11,9 @@
 
 namespace clog::results {
 
-/// Events of a sweep, found by reading its file repeatedly: a line of JSON for every start, end and
-/// interruption of a task, every new attempt, and every round. A task that starts and ends between two reads
-/// has both lines.
+/// Finds the events of a sweep by reading its file repeatedly. There is a line of JSON for every start, end
+/// and interruption of a task, for every new attempt, and for every round. A task that starts and ends
+/// between two reads gets both lines.
 class Events {
  public:
   /// @param path  of the file, for messages

@@ -8,7 +8,8 @@
 
 namespace clog::results {
 
-/// Which of the parameters that have one value in all groups are named above the table.
+/// Selects which parameters that are equal in all groups are named above the table: all of them, or only
+/// those with an unusual value.
 enum class SharedParameters { unusual, all };
 
 /// A printed table: one line per group, with the parameters in which groups differ. If groups have a

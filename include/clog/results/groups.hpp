@@ -34,7 +34,7 @@ enum class Doubt {
   below_spacing,
   untested
 };
-/// A doubt as one letter in tables, as a word in files, and as a sentence for readers.
+/// The texts of a doubt: a letter for tables, a word for files, and a sentence for readers.
 struct DoubtText {
   Doubt doubt;
   char letter;
@@ -172,8 +172,8 @@ bool is_device(const RunParameters& run);
 /// obstacle that the droplet met, and the outcome is nullopt if the droplet met none.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
-/// Groups rows by everything but the seed, in the order of their parameters. Runs count as in
-/// observation_of().
+/// Groups rows by all parameters except the seed. The groups are in the order of their parameters. Runs count
+/// as in observation_of().
 /// @param from_distance  the distance from which on runs are observed [sigma]: runs that ended earlier are
 /// excluded, and the others count with their distance beyond it (left truncation)
 /// @param dwell  a droplet that rested for longer than this counts as clogged where it first did so [t0]. A
@@ -192,16 +192,17 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
 /// The columns of a list of keys, which may be max-time, boxes or both: `max-time,boxes`. @throws Error for
 /// any other key
 std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
-/// Lateral displacement divided by that of a droplet that follows the rows: 0 in the zigzag mode, 1 in the
-/// displacement (bump) mode of deterministic lateral displacement. NaN for rows along the flow.
+/// Lateral displacement divided by the lateral displacement of a droplet that follows the rows. In
+/// deterministic lateral displacement, this ratio is 0 in the zigzag mode and 1 in the displacement (bump)
+/// mode. NaN for rows along the flow.
 fit::Migration share_along_rows(const Group& group);
 /// Whether a run of this group can last longer than Group::dwell.
 bool is_dwell_possible(const Group& group);
 
 using sweep::Value;
 using Field = std::pair<std::string, Value>;
-/// Columns that define a group: all parameters but the seed. Physical parameters come first, and among
-/// them those that shape the array.
+/// Columns that define a group: all parameters except the seed. Physical parameters come first, and the first
+/// of these are the parameters that shape the array.
 std::span<const sweep::Column* const> group_columns();
 /// The values of a row in these columns.
 std::vector<Value> parameter_values(const sweep::RunRow& row);

@@ -31,8 +31,8 @@ MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance
 /// A single file is returned as it is.
 store::SweepFile read_together(const std::vector<std::string>& paths);
 
-/// Gives tasks the numbers, and circles the names, that they have in the settings; rows of runs outside the
-/// settings follow at the end.
+/// Gives each task the number that it has in the settings, and circles the names that they have there. Rows
+/// of runs outside the settings follow at the end.
 void number_tasks(const sweep::Settings& settings, store::SweepFile& table);
 
 /// Provenance of a file that is made from rows of other files.

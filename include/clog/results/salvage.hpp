@@ -24,7 +24,7 @@ std::vector<std::string> drop_faulty(std::vector<sweep::RunRow>& rows);
 /// Removes rows and attributes that are intact, but for which verify() refuses a file. Adds a line for each
 /// of them to the damage.
 void drop_what_verify_refuses(const std::string& path, Salvage& found);
-/// Makes the table, and a journal beside it if there are snapshots. @throws Error if the table exists
+/// Writes the table, and a journal beside it if there are snapshots. @throws Error if the table exists
 void write(const store::SweepFile& table, const std::vector<store::Journal::Entry>& snapshots,
            const std::string& path);
 

@@ -17,7 +17,7 @@ namespace clog::results {
 class SeedRule {
  public:
   /// @param precision  required half-width of the 95 % interval divided by lambda
-  /// @param first_seeds, most_seeds number of seeds per parameter set in the first round, and largest number
+  /// @param first_seeds, most_seeds  number of seeds per parameter set in the first round, and largest number
   /// of seeds
   SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds, std::int64_t most_seeds);
 
@@ -50,8 +50,8 @@ class SeedRule {
   std::vector<Unreached> unreached_;
 };
 
-/// One line: which parameter sets used all seeds before they reached the precision, and a remedy; or how many
-/// sets there are, if all reached it.
+/// The outcome in one line. It names the parameter sets that used all seeds before they reached the
+/// precision, and a remedy. If all sets reached the precision, it gives the number of sets.
 std::string outcome(const SeedRule& rule, const sweep::Plan& plan);
 
 /// A sweep that a rule may enlarge. Its settings have all seeds that the rule may use; the given ones come

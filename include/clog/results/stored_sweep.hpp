@@ -23,9 +23,10 @@ void set_attribute(store::Provenance& provenance, const std::string& name, const
 /// stored_plan()
 sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance);
 sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file);
-/// Columns of the keys that have lists in the sweep's config; empty if the config cannot be read.
+/// Columns of those keys for which the sweep's config has a list; empty if the config cannot be read.
 std::vector<std::string> listed_columns(const store::Provenance& provenance);
-/// Number of runs requested so far: with --until-precision those of the rounds, otherwise all of the plan.
+/// Number of runs requested so far: with --until-precision the runs of the rounds so far, otherwise all runs
+/// of the plan.
 /// @throws Error, which names the file, if the attribute cannot be parsed
 std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
                                const sweep::Plan& plan);

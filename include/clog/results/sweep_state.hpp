@@ -38,7 +38,7 @@ class SweepState {
   /// Requests more of the plan's tasks; tasks_left() then returns the unfinished ones.
   void want(const std::vector<std::int64_t>& tasks);
   std::int64_t num_wanted() const { return num_wanted_; }
-  /// Tasks that have begun and are not over, requested or not.
+  /// Tasks that have begun and are not over, whether they are requested or not.
   std::vector<std::int64_t> tasks_begun() const;
 
   /// Tasks that are requested and not over.
@@ -69,8 +69,8 @@ class SweepState {
   /// Discards a failure: the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
-  /// Starts to publish the table if it is due, or detects that a publication has ended, without waiting for
-  /// the disk.
+  /// Call this often: it starts to publish the table if that is due, or detects that a publication has ended,
+  /// and never waits for the disk.
   void tick();
   bool is_publishing() const { return publication_.valid(); }
   /// Publishes the table, and removes the journal of a complete sweep. Returns a message if that fails.
@@ -94,7 +94,7 @@ class SweepState {
   std::int64_t num_wanted_;
   std::int64_t num_faulty_ = 0;
   std::vector<std::int64_t> tasks_left_;
-  /// Known results of a task, from earlier sessions or attempts.
+  /// What is known of a task from earlier sessions or attempts.
   struct Past {
     double wall_seconds = 0, processor_seconds = 0;  // time spent on the task
     std::string instruction_set;  // that of the snapshot from which the task resumes; empty if it restarts

@@ -11,7 +11,8 @@ namespace clog::results {
 /// row's parameters are impossible.
 std::vector<Value> usual_parameters(const sweep::RunRow& row);
 
-/// Whether this value is what `auto` gives for the row's other parameters, or what its preset sets.
+/// Whether the row's value in this column is the one that `auto` gives for the row's other parameters, or the
+/// one that the row's preset sets.
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row);
 
 /// The value by which a column separates curves and comparisons. It is unset if the row's value is automatic

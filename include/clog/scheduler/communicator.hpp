@@ -8,9 +8,9 @@
 
 namespace clog::scheduler {
 
-/// MPI for the duration of a program: initialised on construction, finalised on destruction. Works without
-/// mpirun as a single rank. Ranks talk in short messages of plain bytes, marked by a tag; all ranks run the
-/// same binary on the same kind of machine.
+/// MPI for the duration of a program: initialised on construction, finalised on destruction. Without mpirun,
+/// the program is a single rank. Ranks send each other short messages of plain bytes, marked by a tag. All
+/// ranks must run the same binary on the same kind of machine.
 class Communicator {
  public:
   Communicator(int& argc, char**& argv);

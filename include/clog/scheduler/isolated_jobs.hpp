@@ -26,7 +26,7 @@ class IsolatedJobs {
   /// Makes the jobs that a text, such as a config, describes. Called in the helper.
   using Describe = std::function<sweep::JobFactory(const std::string& description)>;
 
-  /// Forks the helper: call this before MPI_Init, while there are no threads. @throws Error if no process can
+  /// Forks the helper. Call this before MPI_Init, while there are no threads. @throws Error if no process can
   /// be started; std::system_error if no socket can be made
   explicit IsolatedJobs(const Describe& describe);
   ~IsolatedJobs();

@@ -36,9 +36,9 @@ class RankTrust {
   bool is_trusted(int rank) const;
   /// Tasks that failed on this rank, and have neither failed on a trusted rank nor succeeded on any rank.
   std::vector<std::int64_t> unsettled_tasks(int rank) const;
-  /// Unsettled tasks of this rank that other ranks should try, to decide whether it may be released: those
-  /// that some rank in service has not tried yet. Empty if this rank is not on hold, or if all tasks seem to
-  /// fail on all ranks.
+  /// Unsettled tasks of a rank on hold that another rank in service has not tried yet. Other ranks should try
+  /// these tasks, to decide whether the rank may be released. Empty if this rank is not on hold, or if all
+  /// tasks seem to fail on all ranks.
   std::vector<std::int64_t> tasks_in_doubt(int rank) const;
 
  private:

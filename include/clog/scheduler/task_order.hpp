@@ -54,7 +54,8 @@ class TaskOrder {
   GroupOf number_of_group_;
   std::int64_t num_left_ = 0;
   std::vector<Group> groups_;
-  // Groups with waiting tasks: resting_ has those without a running task, running_ the numbers of the others.
+  // Groups with waiting tasks: resting_ contains the groups without a running task, running_ the numbers of
+  // the groups with a running task.
   std::set<Turn> resting_;
   std::set<std::size_t> running_;
   std::unordered_map<std::int64_t, double> running_since_;  // start of each running task, by task

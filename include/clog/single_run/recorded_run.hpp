@@ -27,7 +27,7 @@ class RecordedRun {
   RecordedRun(DropletRun run, Intervals intervals);
 
   void follow();
-  /// Advances the run by a short piece, to measure the cost of a step. The run is useless afterwards.
+  /// Advances the run by a short piece, to measure the cost of a step. The run must not be used afterwards.
   MostCost measure_cost();
 
   const DropletRun& run() const { return run_; }

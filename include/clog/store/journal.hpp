@@ -34,11 +34,11 @@ class Journal {
  public:
   using Entry = sweep::Report;
   struct Contents {
-    std::vector<Entry> entries;       ///< oldest first
+    std::vector<Entry> entries;       ///< records, the oldest first
     std::int64_t num_unreadable = 0;  ///< damaged records between readable ones
     /// Whether the last record is incomplete: its writer died, or is still writing it.
     bool has_torn_end = false;
-    std::uint64_t num_bytes = 0;  ///< excluding a torn end
+    std::uint64_t num_bytes = 0;  ///< size of the file without an incomplete record at the end
   };
 
   /// Opens or makes the file. @throws Error if the file is open elsewhere, has another version, is another
@@ -61,16 +61,17 @@ class Journal {
   /// started there. @throws Error if it cannot be written
   bool make_anew(const OutputPath& table);
 
-  /// The file's content when it was opened, oldest first.
+  /// The records that the file had when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(contents_.entries); }
   std::int64_t num_unreadable() const { return contents_.num_unreadable; }
   /// Appends a record. @throws Error if the disk is full, or the file is no longer the one at the path; so do
   /// flush() and rewrite()
   void add(const sweep::RunRow& row, std::span<const std::byte> snapshot);
-  /// Saves the records to disk. Once begin() has returned, another thread may call this while this one adds
-  /// records.
+  /// Saves the records to disk. Once begin() has returned, another thread may call this while the thread that
+  /// owns the journal adds records.
   void flush();
-  /// Writes the header of a new file, and removes an incomplete record at the end; so does the first add().
+  /// Prepares the file for writing: writes a missing header, and removes an incomplete record at the end. The
+  /// first add() does this, too.
   void begin();
   std::uint64_t num_bytes() const { return contents_.num_bytes; }
   /// Whether the file is larger than 64 MB, and more than twice as large as after its last rewrite.

@@ -17,9 +17,9 @@ namespace clog::store {
 /// @throws Error if the path leads to something else
 std::string require_regular(std::string path);
 
-/// The location of a file, which may not exist yet: its folder, held open, and its name in that folder.
-/// Symbolic links are followed once, by resolve(); changing them or moving the folder later does not redirect
-/// writes.
+/// The location of a file, which may not exist yet. The object holds the file's folder open, and knows the
+/// file's name in that folder. Symbolic links are followed once, by resolve(), so writes are not redirected
+/// if somebody changes the links or moves the folder later.
 class OutputPath {
  public:
   /// Follows links and opens the folder.
@@ -34,7 +34,8 @@ class OutputPath {
   const std::string& path() const { return path_; }
   /// Opens the file, never through a link. The descriptor is not open if this fails: see errno.
   Descriptor open(int flags) const;
-  /// Creates a file, to read and write; the descriptor is not open if something exists already. @throws Error
+  /// Creates a file for reading and writing. The descriptor is not open if something with this name exists
+  /// already. @throws Error
   Descriptor create(mode_t mode) const;
   bool exists() const { return status().has_value(); }
   /// Whether this open file is still the file at this path. Somebody may have replaced or removed that file.
@@ -55,9 +56,9 @@ class OutputPath {
   /// Copies mode, owner, group and access list of the file here, if there is one, to an open file, as far as
   /// permitted.
   void lend_access_to(int descriptor) const;
-  /// The file's identity: size and seal or, without a seal, device, inode and size. Any other file moved here
-  /// has another stamp. The stamp does not depend on mode and times; some network file systems change the
-  /// inode. Empty if there is no file.
+  /// Identifies the file by size and seal or, without a seal, by device, inode and size. If another file is
+  /// moved here, the stamp changes. It does not depend on mode and times. On some network file systems, the
+  /// inode of a file changes, and with it the stamp of a file without a seal. Empty if there is no file.
   std::string stamp() const;
 
  private:

@@ -35,7 +35,7 @@ struct CircleFile {
   OwnCircles circles;
 };
 
-/// Parts of a file that have been compared with a checksum.
+/// The part of a file that has been compared with checksums.
 enum class Checked {
   everything,         ///< every bit of it
   rows_and_settings,  ///< each row and each attribute: another program has copied or changed the file
@@ -61,9 +61,10 @@ struct Rows {
 };
 
 /// Writes a sweep's file in place of the file with this OutputPath::stamp(). At every moment the path names a
-/// complete table, the old or the new, so readers may read it at any time. The new table is on the disk when
-/// this returns. Returns the stamp of the written file, even if somebody has replaced the file since; nullopt
-/// if a different file is there, which stays. @throws Error, and the old file stays
+/// complete table, the old or the new one, so readers may read it at any time. When this function returns,
+/// the new table is on the disk. Returns the stamp of the written file, even if somebody has replaced the
+/// file since. Returns nullopt if a file with another stamp is there; this file stays. @throws Error if the
+/// file cannot be written; then the old file stays
 std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp, const Rows& rows,
                                          const Provenance& provenance,
                                          const std::vector<CircleFile>& circles);

@@ -32,7 +32,7 @@ struct Trajectory {
   Provenance provenance;
 };
 
-/// Writes a new file, complete or not at all. @throws Error if the file exists or cannot be written
+/// Writes a new file. If this fails, there is no file. @throws Error if the file exists or cannot be written
 void write_trajectory(const std::string& path, const Trajectory& trajectory);
 
 }  // namespace clog::store

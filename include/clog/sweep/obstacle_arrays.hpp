@@ -25,8 +25,8 @@ class ObstacleArrays {
   /// Number of arrays that this process has built.
   int num_built() const { return num_built_; }
 
-  /// Timeout for a wait until another process has built the array: at least ten times as long as building it
-  /// takes, because the processors may be shared and the memory slow, and never less than 10 s.
+  /// Longest time to wait until another process has built the array. It is at least ten times as long as
+  /// building the array takes, because processors may be shared and memory slow, and never less than 10 s.
   static std::chrono::duration<double> longest_wait(const ObstacleParameters& parameters);
 
  private:

@@ -16,12 +16,12 @@ namespace clog::sweep {
 /// Parameter set of a task, by its number.
 using GroupOf = std::function<std::int64_t(std::int64_t task)>;
 
-/// The runs of a sweep: a description that yields any task in any order. It is a list of parameter sets,
-/// called groups, each with its seeds. The parameter sets are the products of the settings' lists, one
+/// Describes the runs of a sweep, so that any task can be made in any order. A plan is a list of parameter
+/// sets, called groups, each with its seeds. The parameter sets are the products of the settings' lists, one
 /// product for each point.
 ///
-/// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array:
-/// task s * num_groups() + g is seed s of group g if all groups have equally many seeds.
+/// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array. If
+/// all groups have equally many seeds, task s * num_groups() + g is seed s of group g.
 class Plan {
  public:
   /// Checks every parameter set of the sweep.
@@ -63,7 +63,7 @@ class Plan {
     std::int64_t place;  ///< place in the product, seeds excepted
     Seeds seeds;
   };
-  /// Successive tasks that repeat the same groups, seed by seed.
+  /// Successive tasks that go through the same groups again and again, each time with the next seed.
   struct Layer {
     std::int64_t first_task;
     std::int64_t first_seed;  ///< place among the seeds of a group

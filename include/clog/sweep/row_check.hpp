@@ -6,9 +6,9 @@
 
 namespace clog::sweep {
 
-/// The first impossible value of a row: a parameter that no run can have, a number that is not finite, a
-/// result that contradicts another or physics. Empty if nothing is wrong. Unknown columns, as in files of
-/// older formats, are accepted.
+/// Describes the first impossible value of a row: a parameter that no run can have, a number that is not
+/// finite, or a result that contradicts another result or physics. Empty if nothing is wrong. Unknown
+/// columns, as in files of older formats, are accepted.
 std::string fault_of(const RunRow& row);
 
 /// Largest possible distance from the release in the time of this row [sigma].

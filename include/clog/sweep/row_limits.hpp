@@ -8,7 +8,7 @@
 
 namespace clog::sweep {
 
-/// The parameters of a run outside the range that was tested for soundness, each with its value and that
+/// The parameters of a run that are outside the range tested for soundness, each with its value and the
 /// range: "line-tension=30 (robust is tested from 0.02 to 10)".
 std::vector<std::string> untested_parameters(const RunRow& row);
 /// One line about all runs of a plan; empty if all are within the tested range.
@@ -27,7 +27,7 @@ std::string possible_repetition(const Plan& plan);
 /// diameter.
 std::vector<std::string> limits_of_circles(const Plan& plan);
 
-/// Known limitations of a plan's results: the lines of the functions above that are not empty.
+/// Known limitations of a plan's results: all lines that the functions above return.
 std::vector<std::string> limits_of_results(const Plan& plan);
 
 /// Largest share of the droplet's weight that the polygon's corners may carry; beyond it, a clog is

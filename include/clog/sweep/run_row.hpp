@@ -106,7 +106,8 @@ inline double cost_seconds(const RunRow& row) {
   return is_known(row.processor_seconds) ? row.processor_seconds : row.wall_seconds;
 }
 
-/// The parameters, seed included, as bytes: equal for equal runs, wherever they are in a sweep.
+/// The parameters and the seed of a run as bytes. They are equal for equal runs, whatever their task numbers
+/// are.
 std::string identity(const RunRow& row);
 
 /// The columns of parameters. @param run  resolved

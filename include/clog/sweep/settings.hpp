@@ -30,8 +30,9 @@ inline constexpr const char* circles_key = "obstacles";
 /// Whether a config explains its keys.
 enum class Comments { none, help };
 
-/// The settings of a sweep: the given texts, and those that follow for the other keys. The parameter sets are
-/// the product of all lists, or of the remaining lists for each point.
+/// The settings of a sweep: the texts that were given for some keys, and the texts of all other keys, which
+/// follow from these or are defaults. The parameter sets are the product of all lists. With points, each
+/// point has the product of the lists of those keys that it does not set.
 class Settings {
  public:
   /// Reads the text that to_config() wrote. @throws Error as set(), or if a line is not one of a config
@@ -44,7 +45,7 @@ class Settings {
   bool is_given(const std::string& name) const;
   /// The reference is valid until the key's text changes.
   const std::string& text(const std::string& name) const { return entry(name).text; }
-  /// The expanded values of a key. This reference, too, is valid until the key's text changes.
+  /// The expanded values of a key. The reference is valid until the key's text changes.
   const std::vector<std::string>& values(const std::string& name) const { return entry(name).values; }
   /// The scene of all runs; nullptr if they have several.
   const Scene* scene() const;
@@ -58,7 +59,7 @@ class Settings {
   /// Calls `visit` for each branch of the settings: for each point, and for each combination of the values of
   /// keys of kind `word`. The settings of a branch have no points and one value for each of these keys, so
   /// that the branch's runs are the product of the other lists.
-  /// @param point  its place; -1 without points
+  /// @param point  place of the branch's point; -1 without points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;
   /// The values() of each key in all branches together.
@@ -106,7 +107,7 @@ class Settings {
 
 /// Refuses keys that have no effect because of another key or of the scene, in addition to those that
 /// check_each() refuses.
-/// @param settings  with one value for each key of words, before parameter sets are made @throws Error
+/// @param settings  a branch, which has one value for each key of kind `word` @throws Error
 void refuse_contradictions(const Settings& settings);
 /// A question about a list that may be a mistyped decimal below one, such as 0,5; empty for any other list.
 std::string possible_decimal(const Key& key, const Settings& settings);

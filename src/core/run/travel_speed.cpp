@@ -19,7 +19,7 @@ double mean_of(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Means of successive blocks of equal length; a shorter rest is excluded.
+/// Means of successive blocks of equal length; a shorter block at the end is excluded.
 std::vector<double> means_of_pieces(std::span<const double> values, std::size_t length) {
   std::vector<double> means;
   for (std::size_t begin = 0; begin + length <= values.size(); begin += length)

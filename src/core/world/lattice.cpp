@@ -73,8 +73,8 @@ std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstac
   return fits ? std::optional(fitting) : std::nullopt;
 }
 
-/// For each p, calls visit(lattice) for those lattices with allowed periods whose tilts are nearest to
-/// lattice_angle on both sides of it.
+/// For each p, calls visit(lattice) for two lattices with allowed periods: those whose tilts are nearest to
+/// lattice_angle, one below and one above it.
 template <class Visit>
 void for_each_near(const ObstacleParameters& obstacles, Visit visit) {
   const double spacing = obstacles.spacing();
@@ -165,8 +165,8 @@ void for_each_point(const IntegerLattice& integers, Visit visit) {
     }
 }
 
-/// A place in the unit cell around an obstacle at (0, 0), before the turn, in spacings: uniform over the
-/// places where a droplet touches no obstacle.
+/// A random place in the unit cell around an obstacle at (0, 0), before the turn, in spacings. It is
+/// uniformly distributed over the places where a droplet touches no obstacle.
 struct CellPlace {
   double along, across;
 };

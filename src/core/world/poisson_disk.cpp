@@ -120,7 +120,7 @@ class SequentialAddition {
     Cell cell;
   };
 
-  /// Squares between two rounds; there are many, and only squares of a mixture differ in their excess.
+  /// The squares between two rounds. There are many, so an excess is stored only for a mixture.
   class Squares {
    public:
     void assign(std::span<const Square> squares, bool have_excess) {

@@ -55,8 +55,8 @@ struct Surroundings {
     return any(is_near) != 0;
   }
 
-  /// Tells which quarters, each of this size, of a square in the cell lie wholly within the distance of one
-  /// point. One bit for each quarter: first along x, then along y.
+  /// Finds the quarters of a square in the cell that lie wholly within the distance of one point. `size` is
+  /// the size of a quarter. The result has one bit for each quarter, first along x, then along y.
   std::int32_t cover_quarters(float square_x, float square_y, float size) const {
     const float half = size / 2;
     const auto far2 = [half](const Floats& from_corner) {

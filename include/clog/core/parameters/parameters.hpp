@@ -135,7 +135,7 @@ struct DpParameters {
   /// Distance below which the interface repels itself: the thickness of a film between two parts of it
   /// [sigma].
   double self_contact_range = published_vertex_diameter;
-  /// Empty: on if there is friction and self-contact.
+  /// If it is empty, friction acts through films if there are friction and self-contact.
   std::optional<FilmFriction> film_friction;
   Gravity gravity = Gravity::area;
   std::optional<int> vertices;  ///< N_v; empty: automatic
@@ -174,7 +174,7 @@ struct ObstacleDensity {
   /// Fraction of the mean density of saturated arrays; resolve() converts it to per_area.
   std::optional<double> share;
 
-  /// Saturated: obstacles are added until no further one fits.
+  /// A saturated array: obstacles are added until no further one fits.
   ObstacleDensity() = default;
   // Implicit, because every number of obstacles per sigma^2 is a density.
   ObstacleDensity(double number_per_area) : per_area(number_per_area) {}
@@ -256,7 +256,7 @@ struct RunParameters {
   std::optional<double> time_step;  ///< [t0]; empty: automatic
   double max_time = 2e5;            ///< [t0]
   std::optional<LaboratoryText> laboratory = {};
-  double dwell_length = 0.05;  ///< a droplet that advances by less counts as resting [sigma]
+  double dwell_length = 0.05;  ///< a droplet that advances by less than this counts as resting [sigma]
   double clog_energy = 1e-17;  ///< E_k/E_t below which a droplet counts as clogged
   ClogDetection clog_detection = ClogDetection::certified;
   std::uint32_t seed = 1;

@@ -82,7 +82,7 @@ struct Parameter {
   void (*set)(RunParameters&, const ParameterValue&);
 
   bool applies_to(const RunParameters& run) const { return scope->holds(run); }
-  /// Whether the parameter's value follows from other parameters in such a run, unless it is given.
+  /// Whether the parameter's value, unless it is given, follows from other parameters of this run.
   bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
 };
 

@@ -23,7 +23,7 @@ struct Surroundings {
 /// polygon
 ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& around, double contact_range,
                            int links_per_edge = 1);
-/// Computes the same for a droplet in an array, from the droplet's refined interface. @param dp  resolved
+/// Geometry of a droplet in an array, from the droplet's refined interface. @param dp  resolved
 ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, const DpParameters& dp);
 
 }  // namespace clog

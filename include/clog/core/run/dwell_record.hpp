@@ -20,8 +20,8 @@ struct Dwell {
 struct Dwells {
   static constexpr std::size_t most = 8;
 
-  /// The longest of all, the longest of those before it, and so on. If there are more than `most`, the
-  /// earliest are dropped.
+  /// The longest dwell of all, the longest of the dwells before that, and so on. If there are more than
+  /// `most`, the earliest are dropped.
   std::array<Dwell, most> longest;
   /// Smallest time for which first_longer() may be called [t0]; NaN if the dwells are unknown.
   double known_from = std::numeric_limits<double>::quiet_NaN();

@@ -10,10 +10,10 @@
 
 namespace clog {
 
-/// A lattice with a rectangular period along the flow. A lattice has one if its tilt t is rational: tan t =
-/// q/p with integers p and q; for a triangular lattice tan t = sqrt(3) q/p. For the square lattice with the
-/// vectors v1 and v2, the vector p v1 - q v2 then points along the flow, and the period is as long as this
-/// vector: sqrt(p^2 + q^2) spacings.
+/// A lattice with a rectangular period along the flow. A lattice has such a period if its tilt t is rational:
+/// tan t = q/p with integers p and q, or tan t = sqrt(3) q/p for a triangular lattice. For the square lattice
+/// with the vectors v1 and v2, the vector p v1 - q v2 then points along the flow, and the period is as long
+/// as this vector: sqrt(p^2 + q^2) spacings.
 struct CommensurateLattice {
   int p = 1;
   int q = 0;
@@ -29,8 +29,8 @@ inline constexpr double largest_angle_error = 0.1;
 double largest_tilt(LatticeKind kind);
 
 /// The lattice whose tilt is nearest to lattice_angle, among those whose periods are at most `box` and
-/// `length` (0: `box`), and at least two spacings and `narrowest_period`. If several are equally near, this
-/// is the one with the largest box. nullopt if no lattice has such periods.
+/// `length` (0: `box`), and at least two spacings and `narrowest_period`. If several lattices are equally
+/// near, the one with the largest box is chosen. nullopt if no lattice has such periods.
 std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles);
 /// nearest_lattice(); nullopt if its tilt is more than largest_angle_error away from lattice_angle.
 std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);

@@ -78,11 +78,11 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
 
 /// Length l of the longest edges on an obstacle, times N_v [sigma]; measured (docs/explanation/wrapped.md).
 double length_over_obstacles(const RunParameters& run) {
-  // The whole interface, if the mesh is even.
+  // Length of the whole interface, for an even mesh.
   const double even = std::numbers::pi * units::droplet_diameter + 0.33 / run.dp.line_tension;
   if (run.dp.perimeter_spring != PerimeterSpring::rest) return even;
   const double stiffness = run.dp.perimeter_stiffness.value_or(automatic_perimeter_stiffness(run));
-  // Softer springs let the vertices slip.
+  // Softer springs let the vertices slip along the interface.
   if (stiffness < 0.02 * run.dp.line_tension) return even;
   return std::max(even, 0.2 * units::droplet_mass * units::gravity / stiffness);
 }

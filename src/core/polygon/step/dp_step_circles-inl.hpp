@@ -144,8 +144,8 @@ HWY_INLINE bool push_window(const WallWindow& window, V span, V stiffness, const
 }
 
 /// One coordinate of the windows' forces on the vertices from p on.
-/// @param p  the forces of edges on their first vertices; one stride behind these are the forces on the
-/// second vertices, and after another stride those on the two others
+/// @param p  the forces of edges on their first vertices; the forces on the second vertices are one stride
+/// behind, the forces on the two other vertices two strides behind
 HWY_INLINE V push_on_vertices(const double* p, std::ptrdiff_t stride) {
   const double *end = p + stride, *far = end + stride;
   const V far_before = load(far - lanes), far_here = load(far);

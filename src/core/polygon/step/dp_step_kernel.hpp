@@ -223,8 +223,8 @@ struct StepKernel {
   /// Computes the gap of every item's closest pair. Returns as circle_gaps().
   double (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                       const StepArrays& arrays, double* gaps);
-  /// clear_pushes() sets the pushes on all vertices to zero. push() finds those of circles, on the groups of
-  /// vertices that `walls` names, and those of the droplet on itself.
+  /// clear_pushes() sets the pushes on all vertices to zero. push() finds the pushes of circles, on the
+  /// groups of vertices that `walls` names, and the pushes of the droplet on itself.
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
                const Contact& contact, const StepArrays& arrays);

@@ -288,7 +288,7 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
     // The chord between the neighbours. Turned outwards it is (y, -x).
     const Pair chord{hn::Add(corner.ex, corner.ex_before), hn::Add(corner.ey, corner.ey_before)};
     const auto [fx, fy] = kick_force<elastic, on_area>(corner, chord, load(a.push, i), along, total, keep);
-    // A common s is applied at the end.
+    // If s is the same for all vertices, it is applied at the end.
     const Pair before = load(a.velocity, i);
     const Pair w{hn::MulAdd(closing_ratio, fx, before.x), hn::MulAdd(closing_ratio, fy, before.y)};
     V s = same_s, kept = same_kept;

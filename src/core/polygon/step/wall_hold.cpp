@@ -128,8 +128,8 @@ void WallHold::clear_pushes() {
             kernel::edges_per_group, 0.0);
 }
 
-/// The memory begins with arrays of the whole contour, all of equal length: four for all circles, then those
-/// of each circle.
+/// The memory consists of arrays of the whole contour, all of equal length. The first four are for all
+/// circles together; the arrays of each circle follow.
 void WallHold::arrange_memory() {
   const std::size_t stride =
       (static_cast<std::size_t>(num_groups_) + before + behind) * kernel::edges_per_group;

@@ -60,7 +60,7 @@ class DpForces {
 
   double vertex_diameter() const { return vertex_diameter_; }
 
-  /// For the integrator: the terms of the interface at this area and perimeter, and the contacts.
+  /// The integrator needs the terms of the interface at this area and perimeter, and the contacts.
   InterfaceTerms interface(double area, double perimeter) const;
   double contact_stiffness() const { return contact_stiffness_; }
   const WallContacts& walls() const { return walls_; }
