@@ -120,7 +120,7 @@ void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory:
     }
 }
 
-/// Prints how speeds that were not measured follow from the measured one.
+/// Prints how the speeds of other droplets follow from the measured speed.
 void say_law_of_speed(const cli::CommandLine& line, const Droplets& droplets) {
   const laboratory::Laboratory& first = droplets.all.front();
   const bool is_given =

@@ -166,7 +166,7 @@ std::vector<bool> varying_columns(const std::vector<Group>& groups) {
   return varies;
 }
 
-/// Whether a value of each group follows from other values of the group.
+/// Whether groups with equal other values always have equal values, too.
 template <class Value, class Others>
 bool follows(const std::vector<Group>& groups, const Value& value_of, const Others& others_of) {
   std::map<decltype(others_of(groups.front())), decltype(value_of(groups.front()))> known;

@@ -48,9 +48,9 @@ constexpr std::chrono::milliseconds patience_for_start{20'000};
 
 /// How a process ended.
 struct Ending {
-  int fork_error = 0;  // errno, if it never began
+  int fork_error = 0;  // errno of fork(), if the process never began
   int code = 0;        // si_code of SIGCHLD: CLD_EXITED or another
-  int status = 0;      // exit code or signal
+  int status = 0;      // exit code, or number of the signal
 };
 
 /// The name of a signal, such as SIGKILL. (sigabbrev_np() needs glibc 2.32.)
@@ -157,7 +157,7 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
 
 }  // namespace
 
-/// The rank's side of its helper and of the computing process.
+/// The rank's connections to its helper and to the computing process.
 class IsolatedJobs::Processes {
  public:
   Processes(Socket helper, pid_t helper_pid) : helper_(std::move(helper)), helper_pid_(helper_pid) {

@@ -40,7 +40,8 @@ std::string unit_in_words(const Key& key) {
   return unit.empty() ? "a pure number" : "in " + unit;
 }
 
-/// The list of a key, of which each value must be possible in some run. @throws Error that names the key
+/// Reads the list of a key, and checks that each of its values is possible in some run. @throws Error that
+/// names the key
 std::vector<std::string> values_of(const Key& key, const std::string& text) {
   constexpr std::size_t longest_text = 3000;  // longest list that a config can store
   try {

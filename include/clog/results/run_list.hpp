@@ -29,8 +29,8 @@ class RunList {
   void fill_seeds(std::size_t number);
 
   bool empty() const { return sets_.empty(); }
-  /// Settings with lists if the runs are the product of lists, otherwise settings with points. Values and
-  /// points are in increasing order.
+  /// The settings of a sweep with exactly these runs. If the runs are the product of lists, the settings have
+  /// these lists, otherwise points. Values and points are in increasing order.
   sweep::Settings settings() const;
 
  private:

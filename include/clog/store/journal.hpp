@@ -55,7 +55,7 @@ class Journal {
   static std::optional<Contents> look(const std::string& path);
 
   const std::string& path() const { return place_.path(); }
-  /// Whether the open file is still the one at its place.
+  /// Whether the open file is still the file at its path.
   bool is_there() const { return place_.holds(file_); }
   /// Creates and locks an empty journal where the old one was removed. Returns false if another sweep has
   /// started there. @throws Error if it cannot be written
@@ -83,8 +83,8 @@ class Journal {
   void prepare(std::span<const Entry* const> entries, std::uint64_t begin);
   bool is_prepared() const { return next_ != nullptr; }
   void replace();
-  /// Removes the file, unless it is no longer the one at the path; nothing may be added afterwards. Returns
-  /// the reason if that failed.
+  /// Removes the file, unless another file has taken its place at the path. Nothing may be added afterwards.
+  /// Returns the reason if the removal failed.
   std::error_code remove();
 
  private:
@@ -93,8 +93,8 @@ class Journal {
   Contents contents_;  ///< contents at opening; num_bytes is kept up to date
   std::uint64_t num_rewritten_bytes_ = 0;
   bool has_begun_ = false;
-  std::unique_ptr<Draft> next_;   ///< the file that is to replace this one
-  std::uint64_t num_copied_ = 0;  ///< bytes of this file that the next one already has or does not need
+  std::unique_ptr<Draft> next_;               ///< the file that will replace this file
+  std::uint64_t num_copied_ = 0;              ///< bytes of this file that next_ already has or does not need
   std::atomic<std::uint64_t> num_whole_ = 0;  ///< bytes of complete records, for the thread of prepare()
 
   std::uint64_t copy_additions();

@@ -33,11 +33,11 @@ std::vector<std::string> limits_of_results(const Plan& plan);
 /// Largest share of the droplet's weight that the polygon's corners may carry; beyond it, a clog is
 /// attributed to the corners, not to the obstacles.
 inline constexpr double tolerated_mesh_hold = 0.01;
-/// Largest difference between the weights of a wrapped droplet's two lobes that friction bears, as a share of
-/// the droplet's weight. Such a droplet hangs over a round obstacle with a lobe on each side. Two parts of
-/// its interface, one above the other with a film between them, lie on half of the obstacle's circumference.
-/// So the tensions on the two sides have a ratio of at most exp(pi mu), as with a capstan. The result is zero
-/// unless friction acts on both parts of the interface (film-friction=on).
+/// Largest difference that friction bears between the weights of the two lobes of a wrapped droplet, as a
+/// share of the droplet's weight. Such a droplet hangs over a round obstacle with a lobe on each side. Two
+/// parts of its interface, one above the other with a film between them, lie on half of the obstacle's
+/// circumference. So the tensions on the two sides have a ratio of at most exp(pi mu), as with a capstan. The
+/// result is zero unless friction acts on both parts of the interface (film-friction=on).
 double weight_borne_by_friction(const DpParameters& dp);
 /// Whether the corners may hold this clog: they may if they can bear more of the weight than friction does.
 /// If mesh_hold is unknown, or friction acts only on the interface next to the wall, the result is true for

@@ -237,7 +237,7 @@ bool DropletRun::is_passage() const { return scene_of(run_).finding == Finding::
 
 bool DropletRun::has_broken() {
   if (run_.dp.break_up_neck == 0) return false;
-  const double thinnest = std::fmin(neck_.width, no_neck);  // a NaN and a number give the number
+  const double thinnest = std::fmin(neck_.width, no_neck);  // fmin() of a NaN and a number gives the number
   const double width = model_of(run_).neck(droplet_->state(), thinnest);
   if (width < thinnest) neck_ = {.width = width, .distance = displacement()[0]};
   return width < run_.dp.break_up_neck;

@@ -98,7 +98,7 @@ void for_each_near(const ObstacleParameters& obstacles, Visit visit) {
 /// A lattice as integers, so that the points in its period are found exactly: point (i, j) lies at
 /// x = (x_of_i i + x_of_j j) length/end_x, y = (y_of_i i + y_of_j j) box/end_y.
 struct IntegerLattice {
-  long long p, q;  ///< tangent of the tilt, in tangent_unit(), is q/p
+  long long p, q;  ///< the tangent of the tilt is q/p times tangent_unit()
   long long x_of_i, x_of_j, y_of_i, y_of_j, end_x, end_y;
   double cosine, sine;        ///< cosine and sine of the turn
   double i_x, i_y, j_x, j_y;  ///< the two vectors before the turn, in spacings

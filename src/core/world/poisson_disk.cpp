@@ -194,7 +194,7 @@ class SequentialAddition {
     return 0x1p-24F * static_cast<float>(static_cast<int>(bits & 0xffffff));
   }
 
-  /// Square of the distance that two discs must keep, (distance + both excesses)^2.
+  /// Square of the distance that two discs must keep: (distance + both excesses)^2.
   float reach2(float both_excesses) const {
     constexpr auto widened = static_cast<float>(1 + rounding);
     return distance2_ + widened * both_excesses * (2 * distance_ + both_excesses);

@@ -42,8 +42,8 @@ class SpForces {
   void visit_wedges(const Eigen::Array2d& place, const LocalFrame& frame, Visit visit) const;
 };
 
-/// Soft disk: one point of mass M with drag -b_inf v. The integrator is that of DpDroplet, but its loop uses
-/// the displacement in half a step as variable instead of the velocity. This shortens the longest chain of
+/// Soft disk: one point of mass M with drag -b_inf v. The integrator is that of DpDroplet, but the variable
+/// in its loop is the displacement in a step instead of the velocity. This shortens the longest chain of
 /// dependent operations in a step to one root, one division and a few sums.
 class SpDroplet final : public Droplet {
  public:

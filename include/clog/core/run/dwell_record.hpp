@@ -11,9 +11,9 @@ namespace clog {
 /// A time in which the droplet advanced by at most dwell-length; NaN if there is none.
 struct Dwell {
   double length = std::numeric_limits<double>::quiet_NaN();  ///< duration [t0]
-  /// Distance along the flow where it began [sigma].
+  /// Distance along the flow at which the dwell began [sigma].
   double distance = std::numeric_limits<double>::quiet_NaN();
-  double begin = std::numeric_limits<double>::quiet_NaN();  ///< time when it began [t0]
+  double begin = std::numeric_limits<double>::quiet_NaN();  ///< time at which the dwell began [t0]
 };
 
 /// The dwells of a run that were longer than all before them.

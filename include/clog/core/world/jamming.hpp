@@ -11,8 +11,9 @@ namespace clog {
 /// 5, 707 (1994)).
 double saturated_density(double diameter, double gap);
 
-/// Obstacles per area of a random array [1/sigma^2]; nullopt: as many as fit. A share is relative to the mean
-/// density of saturated arrays of these diameters and this gap, for any box.
+/// The density that a random array should have [1/sigma^2]; nullopt if as many obstacles as possible are
+/// wanted. A share is relative to the mean density of saturated arrays of these diameters and this gap, for
+/// any box.
 std::optional<double> wanted_density(const ObstacleParameters& obstacles);
 
 /// The largest density of a random array that every seed can reach [1/sigma^2]. It is eight standard

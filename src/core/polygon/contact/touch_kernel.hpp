@@ -14,7 +14,8 @@ struct Circle {
 };
 
 /// The effect of a circle on the consecutive edges of a group. The middle of an edge of the refined contour
-/// depends on the edge and its two neighbours (see refined()), so a force on it acts on four vertices.
+/// depends on the edge and its two neighbours (see refined()), so a force on the middle acts on four
+/// vertices.
 struct GroupTouches {
   static constexpr int edges = WallContacts::edges_per_group;
   /// Forces on the vertex before the edge, on the edge's two vertices, and on the vertex after it [g rho

@@ -72,9 +72,9 @@ struct KickCoefficients {
   double closing_ratio;  ///< h1 / half_step: the half step that ends a time step, divided by the half step of
                          ///< the forces
   double h1, h2;         ///< [t0]
-  double weight;         ///< (h1 + h2) / half_step, h1 / half_step where no time step begins
+  double weight;         ///< (h1 + h2) / half_step, or h1 / half_step if no time step begins
   double half_step;      ///< the half step of the forces [t0]
-  bool keeps_kicked;     ///< whether w is needed afterwards
+  bool keeps_kicked;     ///< whether the kick stores w for power()
   /// For an implicit pressure: K_a half_step^2/(M/N_v), with K_a the area stiffness. A half kick that ends a
   /// step of another length uses the value of the step that begins.
   double softening = 0;

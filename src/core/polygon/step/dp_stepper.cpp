@@ -190,7 +190,8 @@ void DpStepper::kick_and_drift(DropletState& state, double half_step, double dri
     }
     open_.power = now;
   }
-  if (only_closes) std::swap(a.velocity, a.kicked);  // without a second half kick there is no w
+  if (only_closes)
+    std::swap(a.velocity, a.kicked);  // the last half kick leaves the new velocities in `kicked`
   sums_ = kernel.drift(n_, terms_, coefficients, coupling, drift_time, a);
   open_.length = drift_time;
 }

@@ -92,7 +92,8 @@ void WallHold::find_films(const Near& near) {
                             all_[i].radius + all_[j].radius + 2 * film_reach_;
 }
 
-/// Adds the groups of vertices that a circle may push through films. @param reach  from its centre
+/// Adds the groups of vertices that a circle may push through films. @param reach  distance from the circle's
+/// centre up to which it may push
 void WallHold::add_film_groups(kernel::HoldingCircle& circle, double reach,
                                const kernel::ContourPair& vertices) {
   const auto& [x, y] = vertices;

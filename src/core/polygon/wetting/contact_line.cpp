@@ -55,7 +55,7 @@ bool has_hysteresis(const DpParameters& dp) {
 
 /// Position of a vertex relative to a wall.
 struct ContactLine::Beside {
-  Eigen::Array2d normal;   // away from the wall
+  Eigen::Array2d normal;   // unit vector away from the wall
   Eigen::Array2d forward;  // gradient of the coordinate u along the wall; u decreases along the contour
   double on_wedge;         // u on a wedge, measured along its surface from the axis [sigma]
 };

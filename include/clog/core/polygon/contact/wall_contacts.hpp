@@ -11,9 +11,9 @@ namespace clog {
 
 /// Lists of the obstacles near a polygon. `Keep` defines what is listed:
 /// - `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
-/// `range` + skin of the edge.
+///   `range` + skin of the edge.
 /// - `touched_by_vertex`: vertex i lists every obstacle whose surface was within `range` + skin of the
-/// vertex.
+///   vertex.
 /// - `nearest_to_vertex`: vertex i lists every obstacle that could become its nearest.
 ///
 /// The lists are valid while no vertex has moved by more than the skin.

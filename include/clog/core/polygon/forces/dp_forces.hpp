@@ -96,8 +96,8 @@ class DpForces {
   SelfContacts self_;
   WallFriction friction_;
 
-  /// Calls visit(overlap) for every half edge (or vertex) and every listed circle, and for every vertex and
-  /// wedge [sigma]; the overlap is negative where they do not touch.
+  /// Calls visit(overlap) for every half edge (or vertex) with every listed circle, and for every vertex with
+  /// every wedge. The overlap [sigma] is negative where the two do not touch.
   template <class Visit>
   void visit_overlaps(const DropletState& state, Visit visit) const;
 };
