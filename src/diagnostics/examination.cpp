@@ -83,7 +83,7 @@ Finding instruction_sets_of(const std::vector<RankFacts>& ranks) {
               *all.rbegin()};
 }
 
-/// Ranks of one host that are bound to too few cores.
+/// Finds out whether the ranks of a host are bound to too few cores.
 Finding cores(const std::string& host, const std::vector<const RankFacts*>& ranks) {
   std::map<std::vector<int>, int> ranks_by_cores;
   std::set<int> all;

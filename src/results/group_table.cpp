@@ -51,7 +51,7 @@ std::string laboratory_label(const Group& group, const std::vector<Group>& group
   return joined(label.empty() ? own : label, "; ");
 }
 
-/// A parameter's value; the name of the file for user-supplied circles, if it is known.
+/// A parameter's value as text. User-supplied circles are named by their file, if it is known.
 std::string rounded_text(const Group& group, const std::vector<Group>& groups, const sweep::Column& column) {
   const sweep::RunRow& row = group.first_row;
   if (column.name == "laboratory")

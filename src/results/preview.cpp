@@ -162,8 +162,9 @@ constexpr double seconds_to_try = 10;
 /// Runs short pieces of these tasks. The jobs may be computed by another process, which answers between
 /// slices of its work; a job that takes too long, such as a release that does not come to rest, is dropped.
 Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
-  constexpr double fewest_seconds = 0.1;  // time for a run whose array took the run's whole share of the time
-  constexpr double grace = 0.5;           // time to wait for the last answer [s]
+  constexpr double fewest_seconds =
+      0.1;                       // time for a run if its array has used up the run's share of the time [s]
+  constexpr double grace = 0.5;  // time to wait for the last answer [s]
   const Clock::time_point begin = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   const auto advance_until = [&](sweep::Job& job, double end, const auto& is_enough) {

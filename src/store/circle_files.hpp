@@ -8,7 +8,7 @@
 #include "hdf5.hpp"
 
 /// User-supplied circles in the file of a sweep. For each file of circles, the group /obstacles has a table
-/// x, y, radius, whose name is the checksum of the circles.
+/// with the columns x, y and radius. The name of the table is the checksum of the circles.
 namespace clog::store {
 
 /// @throws LibraryError

@@ -159,7 +159,7 @@ std::error_code OutputPath::replace(const std::string& stamp, const OutputPath& 
     }
     if (is_unsupported(reason)) return this->stamp() == stamp ? other.rename_to(*this, 0) : occupied;
     if (reason != std::errc::no_such_file_or_directory)
-      return reason;  // otherwise somebody has removed the file
+      return reason;  // with this reason, somebody has removed the file, and the code below continues
   }
   const std::error_code reason = other.rename_to(*this, RENAME_NOREPLACE);
   if (!is_unsupported(reason)) return reason;

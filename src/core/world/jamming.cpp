@@ -21,8 +21,8 @@ Spacings spacings_of(const ObstacleParameters& obstacles) {
           std::sqrt(obstacles.period().area())};
 }
 
-/// Mean density of saturated arrays. Measured from widest/smallest = 1 to 5, in boxes of at least 10 widest
-/// spacings (smaller boxes agree); the fit is up to 0.5 % below the measurements.
+/// Mean density of saturated arrays. It was measured for widest/smallest from 1 to 5, in boxes of at least 10
+/// widest spacings; smaller boxes agree. The fit is up to 0.5 % below the measurements.
 double mean_density(const Spacings& spacings) {
   const double x = portable::log(spacings.widest / spacings.smallest);
   return saturated_density(spacings.smallest, 0) / (1 + x * (0.59 + x * (0.1 - x * 0.032)));

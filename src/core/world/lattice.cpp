@@ -153,7 +153,7 @@ void for_each_point(const IntegerLattice& integers, Visit visit) {
   const auto& [p, q, x_of_i, x_of_j, y_of_i, y_of_j, end_x, end_y, cosine, sine, i_x, i_y, j_x, j_y] =
       integers;
   const long long area = x_of_i * y_of_j - x_of_j * y_of_i;
-  // The corners of the period, as multiples of both vectors.
+  // The corners of the period are written as multiples of the two vectors.
   const auto [first_i, last_i] =
       std::minmax({0LL, y_of_j * end_x, -x_of_j * end_y, y_of_j * end_x - x_of_j * end_y});
   const auto [first_j, last_j] =

@@ -30,7 +30,7 @@ struct Wedge {
   bool is_flat() const { return half_angle.radians >= std::numbers::pi / 2; }
 };
 
-/// Distance and direction of a wedge's surface from a point.
+/// Distance between a point and the surface of a wedge, and the direction of this surface.
 struct WedgeDistance {
   double distance;        ///< distance to the nearest surface point, negative inside [sigma]
   Eigen::Array2d normal;  ///< unit vector from the wall to the point

@@ -16,8 +16,8 @@ namespace clog::kernel {
 /// Number of consecutive edges that are tested for contact at once, for any instruction set.
 inline constexpr int edges_per_group = WallContacts::edges_per_group;
 
-/// An array with an entry for each vertex or edge, of which entry 0 begins a cache line. Entries from [-1] to
-/// [n + edges_per_group - 1] are valid: the passes repeat the contour beyond its ends.
+/// An array with an entry for each vertex or edge. Entry 0 begins a cache line. Entries from [-1] to [n +
+/// edges_per_group - 1] are valid: the passes repeat the contour beyond its ends.
 struct ContourArray {
   double* first;
 

@@ -193,7 +193,7 @@ struct KickVectors {
     gg_yy = hn::MulAdd(sg.yx, g.yx, hn::MulAdd(sg.yy, g.yy, gg_yy));
   }
 
-  /// @param one_s  the common s of all vertices, which the sums exclude
+  /// @param one_s  s, if it is the same for all vertices; the sums up to here do not contain this factor
   template <bool implicit_pressure>
   HWY_INLINE KickSums total(int n, const AreaForce& force, double one_s) const {
     const auto w = sums(w_x, w_y, spread_x, spread_y);

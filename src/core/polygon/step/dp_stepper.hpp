@@ -71,7 +71,7 @@ class DpStepper {
   RunParameters run_;
   DpForces* forces_;
   int n_;
-  bool holds_circles_;  // whether friction acts, and only at edges in contact with circles
+  bool holds_circles_;  // whether there is friction, and only at edges that touch circles
   int steps_per_survey_;
   Pressure most_pressure_;
   kernel::KickTerms terms_;

@@ -23,7 +23,7 @@ class WettedWalls {
   bool is_on() const { return extra_tension_ != 0 || line_.is_on(); }
   bool hold_ends() const { return line_.is_on(); }
 
-  /// Lists of the obstacles near the vertices, in use only if walls are wetted; see WallContacts.
+  /// Lists of the obstacles near the vertices, see WallContacts. They are used only if walls are wetted.
   WallContacts& lists() { return lists_; }
   const WallContacts& lists() const { return lists_; }
 
