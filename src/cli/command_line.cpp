@@ -186,7 +186,8 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
     for (const auto& known : group->options()) names.push_back(known->long_name());
   const std::string option = excerpt(word.substr(0, word.find('=')));
   const std::string bare = option.substr(std::min(option.find_first_not_of('-'), option.size()));
-  // If no typed word begins like this, parse() added the dashes to `key=value`, and the message omits them.
+  // If the user typed no word that begins like this, parse() added the dashes to `key=value`, and the message
+  // omits them.
   const bool has_dashes =
       std::any_of(typed.begin(), typed.end(), [&](std::string_view one) { return one.starts_with(word); });
   std::vector<std::string> meant = sweep::meant_names(bare, names);

@@ -193,7 +193,8 @@ class Numbers {
   }
 };
 
-/// Checks the header's unit. @throws Error if the file does not define it, or contradicts it
+/// Checks the unit that the header names. @throws Error if the file's comment does not define this unit, or
+/// contradicts it
 void check_unit(const Columns& columns, const Scale& scale) {
   const std::string unit = scale.unit.empty() ? droplet_diameters : scale.unit;
   if (columns.unit.empty() || is_same_unit(columns.unit, unit)) return;

@@ -78,7 +78,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
   return true;
 }
 
-/// Files that an option writes. For a film without a suffix, these are both files that it may become.
+/// Files that an option writes. A film without a suffix may become either of two files; both are listed.
 std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const std::string& option) {
   if (!line.has(option)) return {};
   const std::filesystem::path name = line.get(option);

@@ -166,7 +166,7 @@ class Shares {
   Expectation left() const {
     return {lowest_.seconds_left(), middle_.seconds_left(), highest_.seconds_left()};
   }
-  /// Estimate if runs take at most `longest`.
+  /// Estimate for runs that take `longest` if all of them last to max-time.
   Expectation of(double longest, double relative_error) const {
     const double middle = longest * middle_.value();
     return {longest * lowest_.value(), middle, longest * highest_.value(),

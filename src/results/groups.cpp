@@ -39,7 +39,7 @@ bool hangs_on_mesh(const Group& group) {
 std::vector<Doubt> doubts_about(const Group& group) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool has_length = has_clogging_length(group.first_row);
-  // If all droplets passed the exit, more seeds only raise the bound.
+  // If all droplets passed the exit, more seeds would only raise the lower bound.
   const bool lacks_clogs =
       clogging.num_runs > 0 && group.num_passed != clogging.num_runs && clogging.num_clogs < enough_clogs;
   const bool is_below_spacing = clogging.length < sweep::obstacle_spacing(group.first_row);
@@ -102,7 +102,7 @@ std::optional<Cause> cause_of(const sweep::RunRow& run) {
   throw std::logic_error("a mechanism that is no cause");
 }
 
-/// Whether the run may have dwells of this length. A run that has not begun has none.
+/// Whether the run may have dwells of this length. A run that has not begun has no dwells.
 bool has_dwells_to_tell(const sweep::RunRow& run, double dwell) {
   return dwell < run.parameters.max_time && run.steps > 0;
 }
@@ -211,8 +211,8 @@ void fit_meetings(Group& group, const Meetings& meetings, double confidence) {
   if (meetings.way > 0) group.contacts_per_length = static_cast<double>(meetings.num_contacts) / meetings.way;
 }
 
-/// One or two runs that travelled far enough to have a speed do not represent all, so their mean is not
-/// printed.
+/// If only one or two runs travelled far enough to have a speed, they do not represent all runs, so their
+/// mean is not printed.
 fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   constexpr int fewest_runs = 3;
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -268,7 +268,7 @@ struct Tally {
   std::vector<fit::Displacement> displacements;
 };
 
-/// Includes a run in the clogging lengths, unless the run does not count for them.
+/// Includes a run in the clogging lengths, if the run counts for them.
 void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Tally& tally) {
   const Ending from_release = ending_of(run, group.dwell);
   const std::optional<Ending> ending = counted(run, from_release);

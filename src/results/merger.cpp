@@ -43,7 +43,7 @@ Part whole_part(const std::string& path) {
   return {path, std::move(found.table), std::move(found.snapshots)};
 }
 
-/// Joins the rows of all parts, each run once.
+/// Joins the rows of all parts, so that each run occurs once.
 class Rows {
  public:
   void add(const Part& part) {

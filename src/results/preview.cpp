@@ -69,7 +69,7 @@ double longest_work(const RunParameters& run) { return run.max_time / *run.time_
 struct Sample {
   std::vector<RunCost> costs;
   std::string source;
-  std::string failure;  ///< why the first run that could not begin failed; such runs are not among the costs
+  std::string failure;  ///< why the first run that could not begin failed; `costs` does not contain such runs
   std::int64_t num_clogged = 0;
   std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
   double spacing = 0;          ///< obstacle spacing of such a run [sigma]

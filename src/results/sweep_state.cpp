@@ -208,8 +208,8 @@ void SweepState::withdraw_failure(std::int64_t task) {
 }
 
 void SweepState::tick() {
-  // With more runs, writing the whole table takes longer, and the journal must be rewritten now and then,
-  // too. Together, both may take two per cent of the time.
+  // Writing the whole table takes longer with more runs, and the journal must be rewritten now and then.
+  // Together, these two tasks may take two per cent of the time.
   const Clock::time_point now = Clock::now();
   if (publication_.valid()) {
     if (publication_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;

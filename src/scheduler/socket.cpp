@@ -18,7 +18,7 @@ struct Header {
   std::uint64_t num_bytes;
 };
 
-/// The message of one byte with which a socket is sent, and room for the socket.
+/// A message of one byte, which must accompany a socket that is sent, and room for the socket.
 struct Parcel {
   char byte = 0;
   iovec content{&byte, 1};

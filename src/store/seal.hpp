@@ -7,11 +7,11 @@
 
 namespace clog::store {
 
-/// Whether a file is as it was written, bit for bit.
+/// Whether a file has the bits with which it was written.
 enum class Seal {
   whole,    ///< yes
   broken,   ///< no
-  missing,  ///< not known: a copy made by another program, or one that lost its end
+  missing,  ///< not known: the file is a copy made by another program, or has lost its end
 };
 
 /// A line at the end of a file, after the part that HDF5 reads: the size and the checksum of all before it.

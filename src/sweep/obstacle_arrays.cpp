@@ -84,7 +84,7 @@ ObstacleArray ObstacleArrays::build(const RunParameters& run) {
 }
 
 std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParameters& parameters) {
-  // Building takes half a microsecond, or up to twice as long, for each pair of a place and a place within
+  // For every place of an obstacle, building takes 0.5 to 1 microseconds times the number of places within
   // reach of the largest obstacle.
   constexpr double ten_builds = 10 * 1e-6;
   const double reach =
@@ -132,7 +132,8 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
 std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const RunParameters& run) {
   const Scene& scene = scene_of(run);
   if (scene.walls_from == WallsFrom::droplet) return std::make_shared<ObstacleArray>(scene.walls(run));
-  // In a device with side walls the droplet's reach limits where it may start, and so shifts the walls, too.
+  // In a device with side walls, the droplet's reach limits where the droplet may start. This place shifts
+  // the walls, so the reach belongs to the key.
   std::string key = array_key(run);
   if (scene.walls_from == WallsFrom::circles) key += shortest(model_of(run).reach(run));
   if (key != key_) {

@@ -49,8 +49,8 @@ std::vector<std::uint32_t> seeds_of(const Settings& settings) {
   return seeds;
 }
 
-/// A shard's seeds: every n-th, with an offset that differs between parameter sets, so that all shards have
-/// equal work.
+/// The seeds of a shard: every n-th seed. The first one differs between parameter sets, so that all shards
+/// have equal work.
 std::vector<std::uint32_t> part_of(const std::vector<std::uint32_t>& seeds, std::size_t share,
                                    const Shard& shard) {
   const auto of = static_cast<std::size_t>(shard.of);

@@ -49,8 +49,8 @@ class NameLock {
 
   State state() const { return state_; }
   /// Whether a process of another user holds the lock. Any process can take the address of a lock, and the
-  /// processes that need the lock would then wait in vain. Slow, because it inspects all processes of this
-  /// user.
+  /// processes that need the lock would then wait in vain. This call is slow, because it inspects all
+  /// processes of this user.
   bool is_taken_by_another_user() const;
 
  private:

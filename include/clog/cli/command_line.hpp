@@ -25,7 +25,7 @@ class CommandLine {
   /// `clogsweep merge`
   CommandLine(std::string program, std::string usage, SweepKeys sweep_keys = SweepKeys::none);
 
-  /// Declares an option without a value; like all declarations, call it before parse().
+  /// Declares an option without a value. All declarations must precede parse().
   CommandLine& flag(const char* name, const char* help);
   /// Declares an option with a value. @param otherwise  the default value; nullptr: none
   CommandLine& option(const char* name, const char* help, const char* otherwise = nullptr);
@@ -67,8 +67,8 @@ class CommandLine {
   const std::string& program() const { return program_; }
   const sweep::Settings& settings() const { return settings_; }
   sweep::Settings& settings() { return settings_; }
-  /// The given texts that contain numbers with units, by key. settings() does not contain these texts,
-  /// because only the laboratory of --lab can convert them.
+  /// The given texts with numbers that have units, by key. settings() does not contain these texts, because
+  /// only the laboratory of --lab can convert them.
   const std::map<std::string, std::string>& texts_with_units() const { return texts_with_units_; }
   /// The command as it was given, in one line.
   const std::string& text() const { return text_; }

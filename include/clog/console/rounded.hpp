@@ -22,8 +22,8 @@ RoundedInterval with_interval(double value, double lower, double upper);
 struct RoundedError {
   std::string value, error;
 };
-/// The error with two figures, and the value to the same digit, but with at most eight figures. Without an
-/// error, the value with three figures.
+/// The error with two figures, and the value rounded to the same digit, but with at most eight figures.
+/// Without an error, the value has three figures.
 RoundedError with_error(double value, double error);
 
 }  // namespace clog::console

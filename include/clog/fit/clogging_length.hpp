@@ -45,10 +45,10 @@ struct CloggingLength {
 /// The interval is 2 S/chi2_{1-q} .. 2 S/chi2_q with q = (1 - confidence)/2. With d fixed beforehand, or when
 /// every run has clogged, 2 S/lambda is chi-squared distributed with exactly 2d degrees of freedom (Epstein
 /// and Sobel 1953). Here runs are censored after a given time, so d is as random as S. If the runs ended just
-/// before their next clog, 2d + 2 degrees of freedom would be exact; if they ended just after a clog, 2d. The
-/// number in between, 2d + 1, has nearly the nominal coverage (Cox, Biometrika 40, 354 (1953); Lawless,
-/// Statistical Models and Methods for Lifetime Data, ch. 4). Without clogs there is a one-sided lower bound,
-/// S/log(1/(1 - confidence)), which corresponds to 2d + 2.
+/// before their next clog, 2d + 2 degrees of freedom would be exact. If they ended just after a clog, 2d
+/// would be exact. The number in between, 2d + 1, has nearly the nominal coverage (Cox, Biometrika 40, 354
+/// (1953); Lawless, Statistical Models and Methods for Lifetime Data, ch. 4). Without clogs there is a
+/// one-sided lower bound, S/log(1/(1 - confidence)), which corresponds to 2d + 2.
 ///
 /// `profile` holds all lambda with 2 (l(S/d) - l(lambda)) below chi-squared's quantile for one degree of
 /// freedom, l(lambda) = -d log lambda - S/lambda.

@@ -6,14 +6,14 @@
 
 namespace clog::fit {
 
-/// Two runs with the same obstacles and release, one of each sweep.
+/// A run of each sweep; both runs have the same obstacles and the same release.
 struct Pair {
   Observation here;
   Observation there;
   bool is_alike = false;  ///< both end at the same place, or neither clogs: the pair shows no difference
 };
 
-/// Ratio of the clogging length `here` to the one `there`.
+/// Ratio of the clogging length `here` to the clogging length `there`.
 struct LengthRatio {
   double ratio = 0;     ///< `here` divided by `there`; NaN without clogs on both sides
   Interval interval{};  ///< `paired` or `unpaired`; NaN without clogs

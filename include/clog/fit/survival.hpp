@@ -37,8 +37,8 @@ struct WeibullTest {
   int num_clogs = 0;
   double shape = 0;  ///< NaN for fewer than two clogs at different distances, or infinite ones
   double scale = 0;  ///< [sigma]
-  double exponential_likelihood = 0;  ///< log, maximal
-  double weibull_likelihood = 0;      ///< log, maximal
+  double exponential_likelihood = 0;  ///< maximum of the log-likelihood
+  double weibull_likelihood = 0;      ///< maximum of the log-likelihood
   double likelihood_ratio = 0;        ///< twice the difference, chi-squared with one degree of freedom
   double p_value = 0;                 ///< probability of a ratio at least as large if P(r) is exponential
 };

@@ -19,7 +19,7 @@ class Activity {
 
   /// One line of JSON. `idle_seconds` is the sum over all ranks. `tail_seconds` is the part of this sum after
   /// the last start of a task: then ranks without work wait for the last tasks to end.
-  /// @param start_time  when the session began
+  /// @param start_time  time at which the session began, as text
   std::string line(const std::string& start_time, double now) const;
 
  private:

@@ -8,9 +8,9 @@ namespace clog::results {
 /// The cost of one run so far. Work is counted in steps times vertices.
 struct RunCost {
   std::int64_t parameter_set = 0;
-  double begin_seconds = 0;  ///< time for sampling its obstacles and releasing the droplet
+  double begin_seconds = 0;  ///< time for sampling the obstacles and releasing the droplet
   double seconds = 0;        ///< time since the release
-  double work = 0;           ///< done in these seconds
+  double work = 0;           ///< work done in these seconds
   double longest_work = 0;   ///< the work if the run lasts to max-time
   bool is_over = false;
 };

@@ -19,7 +19,8 @@ class Events {
   /// @param path  of the file, for messages
   explicit Events(std::string path) : path_(std::move(path)) {}
 
-  /// Events since the last call; the first call returns only the numbers of all runs and of finished ones.
+  /// Returns the events since the last call. The first call returns only the numbers of all runs and of
+  /// finished runs.
   /// @throws Error as stored_plan()
   std::vector<std::string> look(const store::SweepFile& file);
   /// The last line, after the sweep has ended.

@@ -125,8 +125,8 @@ struct Group {
   std::vector<fit::SurvivalStep> survival;
   /// Distances of the runs that did not clog, in increasing order [sigma].
   std::vector<double> censored_distances;
-  /// One entry for each Cause, in the order of the enum. Runs that this cause ended are events, all others
-  /// are censored. Empty if the mechanism of a clog is unknown.
+  /// The ends by one cause. `causes` has an entry for each Cause, in the order of the enum; it is empty if
+  /// the mechanism of a clog is unknown. Runs that the cause ended are events, all other runs are censored.
   struct EndsBy {
     const CauseText* text;
     fit::CloggingLength ends;
@@ -168,8 +168,8 @@ struct Group {
 /// Whether there are user-supplied circles with an entrance or an exit.
 bool is_device(const RunParameters& run);
 
-/// The outcome of an intact run. Its distance counts from the release; in a device it counts from the first
-/// obstacle that the droplet met, and the outcome is nullopt if the droplet met none.
+/// The outcome of an intact run. The distance counts from the release, but in a device from the first
+/// obstacle that the droplet met. There the outcome is nullopt if the droplet met no obstacle.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
 /// Groups rows by all parameters except the seed. The groups are in the order of their parameters. Runs count

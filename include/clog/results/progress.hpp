@@ -31,7 +31,7 @@ class Progress {
   void ended(const sweep::RunRow& row);
   /// An attempt failed; the task will be tried again.
   void tried(std::int64_t task) { running_.erase(task); }
-  /// Takes back the end of a failed task that will run again.
+  /// Withdraws the report that a task has ended by a failure, because the task will run again.
   void not_ended(const sweep::RunRow& failed);
   /// Prints a permanent line, on any screen.
   void say(const std::string& text) { status_.say(text); }

@@ -18,8 +18,8 @@ class RunList {
  public:
   /// Adds all runs of a plan. @throws Error if another plan has other circles under the same name
   void add(const sweep::Plan& plan);
-  /// Adds a run that may be outside the plan, for instance one of an earlier command of the sweep. The run
-  /// gets the texts of the plan's first parameter set, with the row's own values where they differ. Returns
+  /// Adds a run that may be outside the plan, for instance one of an earlier command of the sweep. The texts
+  /// of the run are those of the plan's first parameter set, except where the row has other values. Returns
   /// whether the resulting texts describe this run.
   bool add(const sweep::Plan& plan, const sweep::RunRow& row);
 

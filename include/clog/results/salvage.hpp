@@ -19,7 +19,8 @@ struct Salvage {
 /// Reads everything that is undamaged. Changes no file. @throws Error if the table is missing, not ours, or
 /// completely unreadable
 Salvage salvage(const std::string& path);
-/// Removes rows that are physically impossible, or repeat a run of an earlier row. Returns a line for each.
+/// Removes rows that are physically impossible, or that repeat the run of an earlier row. Returns a line for
+/// each removed row.
 std::vector<std::string> drop_faulty(std::vector<sweep::RunRow>& rows);
 /// Removes rows and attributes that are intact, but for which verify() refuses a file. Adds a line for each
 /// of them to the damage.

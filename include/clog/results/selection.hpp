@@ -39,7 +39,7 @@ class Condition {
 
 /// The rows of a file that satisfy all conditions, as a sweep of exactly these runs.
 /// @param maker  the program that makes the file, from cli::origin()
-/// @throws Error if no row does, or a word is in no row
+/// @throws Error if no row satisfies all conditions, or if a word of a condition is in no row
 store::SweepFile select(const std::string& path, const std::vector<std::string>& conditions,
                         const store::Provenance& maker);
 

@@ -30,7 +30,7 @@ std::vector<std::string> listed_columns(const store::Provenance& provenance);
 /// @throws Error, which names the file, if the attribute cannot be parsed
 std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
                                const sweep::Plan& plan);
-/// The number of runs of a file's sweep: those requested, and others in the file.
+/// The number of runs of a file's sweep: the runs that were requested, and other runs in the file.
 struct RunCount {
   std::int64_t num_runs = 0;
   std::int64_t num_beyond = 0;  ///< runs outside the lists of the sweep's last command

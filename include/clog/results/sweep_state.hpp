@@ -64,9 +64,9 @@ class SweepState {
   void report(const sweep::Report& report);
   /// Row of a run that has begun.
   const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task)->row; }
-  /// The first run if all that have begun have failed, otherwise nullptr.
+  /// If all runs that have begun have failed, the first of them, otherwise nullptr.
   const sweep::RunRow* first_if_all_failed() const;
-  /// Discards a failure: the task runs again with the same attempt number.
+  /// Discards a failure, so that the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
   /// Call this often: it starts to publish the table if that is due, or detects that a publication has ended,

@@ -20,7 +20,7 @@ struct SetTimes {
   std::int64_t num_finished = 0;
   std::int64_t num_running = 0;
   std::int64_t num_waiting = 0;
-  double seconds = 0;  ///< total time that the finished runs took and the running ones have taken
+  double seconds = 0;  ///< total time of the finished runs, and of the running runs so far
 };
 /// Estimates the remaining time of a sweep. Short runs end first, so the mean over finished runs alone is too
 /// small. Therefore running runs count as censored, as for the clogging length. Each parameter set has its

@@ -36,8 +36,8 @@ struct SweepEvents {
   /// Called when a rank gets no more tasks. The row is that of the last task that failed on this rank, with
   /// rank and host.
   std::function<void(const sweep::RunRow& failed)> set_aside = [](const sweep::RunRow&) {};
-  /// Called about every 0.1 s; less often while this rank samples an array or releases a droplet, which takes
-  /// a second in large boxes.
+  /// Called about every 0.1 s, but less often while rank 0 samples an array or releases a droplet, which
+  /// takes a second in large boxes.
   std::function<void()> idle = [] {};
   /// Whether the sweep should stop now. Then running tasks end as interrupted, and no further tasks are
   /// handed out.
@@ -70,10 +70,10 @@ enum class SweepEnd {
 ///
 /// Rank 0 hands out one task at a time, since tasks differ a thousandfold in length, and gathers the rows.
 /// Rows do not depend on the order of the tasks. A task that failed is tried again on another rank, if there
-/// is one, before new tasks start. A rank on which everything fails is set aside: see RankTrust. Rank 0, if
-/// it computes, does so in slices between polls. No rank spins: an idle rank sleeps, with a backoff of up to
-/// a few milliseconds. A stopped task has two seconds to report its progress; otherwise its previous report
-/// is used.
+/// is one, before new tasks start. A rank on which everything fails is set aside: see RankTrust. If rank 0
+/// computes, it does so in slices between two polls for messages. No rank spins: an idle rank sleeps, with a
+/// backoff of up to a few milliseconds. A stopped task has two seconds to report its progress; otherwise its
+/// previous report is used.
 /// @param schedule  used on rank 0 only
 /// @param make_job  called on the rank that works on the task
 /// @param report_interval  time between two reports of a running task

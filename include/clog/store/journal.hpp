@@ -64,8 +64,8 @@ class Journal {
   /// The records that the file had when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(contents_.entries); }
   std::int64_t num_unreadable() const { return contents_.num_unreadable; }
-  /// Appends a record. @throws Error if the disk is full, or the file is no longer the one at the path; so do
-  /// flush() and rewrite()
+  /// Appends a record. @throws Error if the disk is full, or if another file is at the path, as do flush()
+  /// and rewrite()
   void add(const sweep::RunRow& row, std::span<const std::byte> snapshot);
   /// Saves the records to disk. Once begin() has returned, another thread may call this while the thread that
   /// owns the journal adds records.
@@ -93,9 +93,10 @@ class Journal {
   Contents contents_;  ///< contents at opening; num_bytes is kept up to date
   std::uint64_t num_rewritten_bytes_ = 0;
   bool has_begun_ = false;
-  std::unique_ptr<Draft> next_;               ///< the file that will replace this file
-  std::uint64_t num_copied_ = 0;              ///< bytes of this file that next_ already has or does not need
-  std::atomic<std::uint64_t> num_whole_ = 0;  ///< bytes of complete records, for the thread of prepare()
+  std::unique_ptr<Draft> next_;   ///< the file that will replace this file
+  std::uint64_t num_copied_ = 0;  ///< bytes of this file that next_ already has or does not need
+  std::atomic<std::uint64_t> num_whole_ =
+      0;  ///< number of bytes of complete records, for the thread that calls prepare()
 
   std::uint64_t copy_additions();
   void open_and_lock(const OutputPath* table);

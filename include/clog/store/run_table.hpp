@@ -16,7 +16,7 @@ namespace clog::store {
 /// Version of the file format; see docs/reference/files.md.
 inline constexpr const char* format_version = "10";
 
-/// Name and text of the attributes at the file's root: the origin of its numbers.
+/// Names and texts of the attributes at the file's root, which describe the origin of the file's numbers.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
 /// Version of the HDF5 library, e.g. "1.10.8".
@@ -37,8 +37,8 @@ struct CircleFile {
 
 /// The part of a file that has been compared with checksums.
 enum class Checked {
-  everything,         ///< every bit of it
-  rows_and_settings,  ///< each row and each attribute: another program has copied or changed the file
+  everything,         ///< every bit of the file
+  rows_and_settings,  ///< each row and each attribute, because another program has copied or changed the file
 };
 
 struct SweepFile {
@@ -86,7 +86,7 @@ std::string caution(const std::string& path, const SweepFile& file);
 /// A file that may be damaged: the intact rows and attributes, and a list of the damage.
 struct Examination {
   SweepFile whole;
-  std::vector<std::string> damage;  ///< a sentence each
+  std::vector<std::string> damage;  ///< a sentence for each damage
   /// Whether one of HDF5's own checksums does not match, so that h5py and other readers refuse the file.
   bool is_refused_by_others = false;
 };

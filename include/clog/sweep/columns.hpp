@@ -17,9 +17,9 @@ namespace clog::sweep {
 
 /// The kind of information in a column.
 enum class ColumnRole {
-  parameter,     ///< what was run: equal runs have equal values
-  result,        ///< equal runs have equal values, bit for bit
-  circumstance,  ///< who made the row, how long it took: differs between equal runs
+  parameter,     ///< describes the run: equal runs have equal values
+  result,        ///< the outcome: equal runs have equal values, bit for bit
+  circumstance,  ///< for instance the host, or the time that the run took: differs between equal runs
 };
 
 }  // namespace clog::sweep

@@ -43,10 +43,10 @@ std::string written(const ParameterValue& value, const Parameter& parameter);
 bool is_same_value(const std::string& a, const std::string& b);
 
 std::vector<std::string> preset_names();
-/// The keys of the interface and of its numerics with their values in a preset; empty if there is no such
-/// preset.
+/// The keys that a preset sets (of the interface and of its numerics), with their values; empty if there is
+/// no such preset.
 std::vector<std::pair<const char*, const char*>> preset_texts(std::string_view name);
-/// The preset whose interface this resolved parameter set has, or `custom`.
+/// Name of the preset whose values this resolved parameter set has; `custom` if there is none.
 std::string preset_name(const RunParameters& run);
 
 }  // namespace clog::sweep

@@ -13,7 +13,7 @@ namespace clog::sweep {
 class RunJob final : public Job {
  public:
   /// @param run       resolved
-  /// @param snapshot  of the same task; if it cannot be read, the run restarts
+  /// @param snapshot  a snapshot of the same task; if it cannot be read, the run restarts
   /// @param arrays    from which the run's obstacles come
   RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> snapshot = {},
          std::shared_ptr<ObstacleArrays> arrays = std::make_shared<ObstacleArrays>());

@@ -16,7 +16,7 @@
 
 namespace clog::sweep {
 
-/// Escapes a value for a line of a config. Characters that would end or cut the line (control characters, #,
+/// Escapes a value for a line of a config: characters that would end or cut the line (control characters, #,
 /// a backslash, blanks at the ends) become a backslash, x and two digits. unescaped() restores the value,
 /// whatever bytes it has.
 std::string escaped(const std::string& text);
@@ -62,7 +62,7 @@ class Settings {
   /// @param point  place of the branch's point; -1 without points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;
-  /// The values() of each key in all branches together.
+  /// All values() that each key has in any of the branches.
   std::map<std::string, std::vector<std::string>> all_values() const;
 
   /// A line of a config: a key with its text, or one of `point-keys`, `point`, `shard`.
