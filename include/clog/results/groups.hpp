@@ -125,8 +125,9 @@ struct Group {
   std::vector<fit::SurvivalStep> survival;
   /// Distances of the runs that did not clog, in increasing order [sigma].
   std::vector<double> censored_distances;
-  /// The ends by one cause. `causes` has an entry for each Cause, in the order of the enum; it is empty if
-  /// the mechanism of a clog is unknown. Runs that the cause ended are events, all other runs are censored.
+  /// The runs that ended by one cause. `causes` has an entry for each Cause, in the order of the enum; it is
+  /// empty if the mechanism of a clog is unknown. Runs that the cause ended are events, all other runs are
+  /// censored.
   struct EndsBy {
     const CauseText* text;
     fit::CloggingLength ends;

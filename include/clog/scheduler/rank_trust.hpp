@@ -16,8 +16,8 @@ namespace clog::scheduler {
 /// - Three failures that count against a rank put it on hold: it gets no more tasks until their cause is
 ///   known.
 /// - If one of the three tasks then succeeds elsewhere, the rank is set aside for good.
-/// - The last rank left of several cannot be compared with any: three failures set it aside at once. A rank
-///   that was alone from the beginning is never set aside.
+/// - If all ranks but one are set aside, the last rank cannot be compared with another, so three failures set
+///   it aside at once. A rank that was alone from the beginning is never set aside.
 class RankTrust {
  public:
   explicit RankTrust(const std::vector<int>& ranks);

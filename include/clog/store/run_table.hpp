@@ -48,8 +48,8 @@ struct SweepFile {
   Checked checked = Checked::everything;
 };
 
-/// The rows for a file. Each row is requested once, in the order of `i`, so the rows need not be in one
-/// array.
+/// The rows that a new file gets. Each row is requested once, in the order of `i`, so the rows need not be in
+/// one array.
 struct Rows {
   std::size_t number;
   std::function<sweep::RunRow(std::size_t i)> row;

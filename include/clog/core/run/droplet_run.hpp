@@ -116,14 +116,14 @@ class DropletRun {
   /// The run's result so far; status `running` while it is not over.
   RunResult result() const;
   double time() const { return static_cast<double>(steps_done_) * run_.time_step.value(); }
-  /// Along and across the flow since release [sigma].
+  /// Displacement along and across the flow since release [sigma].
   Eigen::Array2d displacement() const { return displacement_of(droplet_->centre()); }
   /// Displacement of a point, given in the droplet's frame, from the place of release [sigma].
   Eigen::Array2d displacement_of(const Eigen::Array2d& local) const {
     return droplet_->state().frame.displacement(local, start_frame_, start_);
   }
   double kinetic_energy_ratio() const;
-  /// The gravity term is relative to the place of release.
+  /// The gravity term measures the height from the place of release.
   PotentialEnergy potential_energy() const;
   /// Starts to add up the energy lost to drag, see Droplet::work().
   void measure_dissipation() { droplet_->measure_dissipation(); }

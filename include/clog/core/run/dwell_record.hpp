@@ -25,8 +25,9 @@ struct Dwells {
   std::array<Dwell, most> longest;
   /// Smallest time for which first_longer() may be called [t0]; NaN if the dwells are unknown.
   double known_from = std::numeric_limits<double>::quiet_NaN();
-  double last_distance = std::numeric_limits<double>::quiet_NaN();  ///< where the last dwell began [sigma]
-  double last_begin = std::numeric_limits<double>::quiet_NaN();     ///< and when [t0]
+  /// Distance [sigma] and time [t0] at which the last dwell began.
+  double last_distance = std::numeric_limits<double>::quiet_NaN();
+  double last_begin = std::numeric_limits<double>::quiet_NaN();
 
   /// The first dwell longer than `time`; nullptr if there was none.
   /// @param time  not less than known_from [t0]

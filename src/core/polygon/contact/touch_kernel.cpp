@@ -38,7 +38,7 @@ HWY_INLINE Vectors operator*(V factor, const Vectors& v) {
 }
 
 /// Half edges, from a vertex to the middle of its edge, in contact with a circle. NearestOnHalves in
-/// dp_step_circles-inl.hpp computes the same faster.
+/// dp_step_circles-inl.hpp computes the same points faster.
 struct Half {
   M touches;
   V length;

@@ -10,7 +10,8 @@ namespace clog {
 namespace {
 
 // A droplet moves 0.05 sigma in about 1000 steps, so renewals of the lists cost almost nothing. The list of
-// obstacles that may be nearest to a vertex gets longer with a thicker skin, so its skin is thinner.
+// obstacles that may be nearest to a vertex gets longer with a thicker skin, so this list has the thinner
+// one.
 constexpr double touching_skin = 0.05;
 constexpr double nearest_skin = 0.02;
 
@@ -100,7 +101,7 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
 }
 
 /// Lists the edges of each group that a circle near the group's bounds may touch until the lists are renewed.
-/// An obstacle that is within range then is within range + skin now.
+/// An obstacle that gets within range before the renewal is within range + skin now.
 /// @param fine  the refined contour, see refined()
 void WallContacts::list_by_edge(const Eigen::ArrayXd& fine) {
   constexpr double rounding = 1e-12;
@@ -153,7 +154,8 @@ void WallContacts::measure_distances(const DropletState& state) {
 }
 
 /// Lists the obstacles that a vertex may touch, or that may be its nearest, until the lists are renewed. An
-/// obstacle that is the nearest then is at most 2 skins farther away now than the present nearest one.
+/// obstacle that becomes the nearest before the renewal is at most 2 skins farther away now than the present
+/// nearest one.
 void WallContacts::list_by_vertex(const DropletState& state) {
   measure_distances(state);
   candidates_.resize(num_points_);

@@ -141,7 +141,7 @@ void resolve_film_friction(DpParameters& dp) {
 
 int automatic_vertices(const RunParameters& run, double obstacle_diameter) {
   constexpr int fewest = 128, most = 1024, group = 8;
-  constexpr double longest_edge = 0.28;  // divided by the obstacle's radius
+  constexpr double longest_edge = 0.28;  // in units of the obstacle's radius
   const double needed = length_over_obstacles(run) / (longest_edge * obstacle_diameter / 2);
   if (!(needed < most)) return most;
   return std::max(fewest, group * static_cast<int>(std::ceil(needed / group)));

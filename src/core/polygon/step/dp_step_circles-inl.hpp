@@ -81,7 +81,7 @@ struct NearestOnHalves {
   }
 };
 
-/// Both halves of edges and a circle.
+/// Closest points of both halves of each edge to a circle's centre.
 struct HalvesAtCircle {
   NearestOnHalves first, second;
   HWY_INLINE HalvesAtCircle(const RefinedEdgeVectors& e, V x, V y, V span)

@@ -113,7 +113,7 @@ struct Power {
 /// A circle and the edges_per_group edges from `first` on; the bits of `edges` mark those that may touch the
 /// circle.
 struct WallWindow {
-  double x, y;   ///< of the circle's centre [sigma]
+  double x, y;   ///< circle's centre [sigma]
   double reach;  ///< radius + range [sigma]
   int first;
   std::uint8_t edges;
@@ -208,7 +208,7 @@ struct Survey {
 
 /// One instruction set's versions of the passes.
 struct StepKernel {
-  /// Edges and sums over them.
+  /// Computes the edges, and sums over them.
   Sums (*measure)(int n, const StepArrays& arrays);
   /// @param walls, self  earlier positions of the vertices, all x then all y, `self` relative to their mean;
   /// may be null
@@ -228,8 +228,8 @@ struct StepKernel {
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
                const Contact& contact, const StepArrays& arrays);
-  /// Like push(), but computes the pushes on all groups, including friction of the circles. Returns the
-  /// energy lost to walls, divided by k_t [sigma^2].
+  /// Does the same as push(), but for all groups, and includes the circles' friction. Returns the energy lost
+  /// to walls, divided by k_t [sigma^2].
   double (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
                           const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
                           const StepArrays& arrays);

@@ -317,7 +317,7 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
 }
 
 /// Calls make() with the terms of kicks and drifts as compile-time constants: elastic, coupled, on_area,
-/// varying_rate, implicit_pressure. The last only occurs with constant rates.
+/// varying_rate, implicit_pressure. Only constant rates occur together with implicit_pressure.
 template <class Make>
 auto version(const KickTerms& terms, Make make) {
   constexpr std::true_type yes;

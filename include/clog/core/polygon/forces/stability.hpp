@@ -39,7 +39,7 @@ inline constexpr double max_total_with_self_omega_dt2 = 3.9;
 /// times as many droplets without drag diverged (docs/notes/2026-11-26-time-step.md).
 inline constexpr double max_area_omega_dt2 = 1.0;
 
-/// With the automatic step, the modes of a circle reach this fraction of their bounds.
+/// With the automatic step, the modes of a circle reach at most this fraction of their bounds.
 inline constexpr double auto_step_margin = 0.8;
 
 /// Stiff modes of a polygon with resolved parameters (see resolve()), for the given perimeter and shortest
