@@ -186,7 +186,8 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
     for (const auto& known : group->options()) names.push_back(known->long_name());
   const std::string option = excerpt(word.substr(0, word.find('=')));
   const std::string bare = option.substr(std::min(option.find_first_not_of('-'), option.size()));
-  // Skips the dashes that parse() added to `key=value`.
+  // If the user typed no word that begins like this, parse() added the dashes to `key=value`, and the message
+  // omits them.
   const bool has_dashes =
       std::any_of(typed.begin(), typed.end(), [&](std::string_view one) { return one.starts_with(word); });
   std::vector<std::string> meant = sweep::meant_names(bare, names);
@@ -197,8 +198,8 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
                              : fmt::format("; did you mean {}?", joined(meant, " or "))));
 }
 
-/// Boost would report such lines, too, but it replaces %names% in its message, and this never ends if the
-/// line itself contains such a name (Boost 1.74).
+/// Boost would report such lines, too. But Boost 1.74 replaces %names% in its message, and this replacement
+/// never ends if the line itself contains such a name.
 static void refuse_lines_without_value(const std::string& path, const std::string& text) {
   std::istringstream lines(text);
   int number = 0;

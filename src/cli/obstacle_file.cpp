@@ -44,7 +44,7 @@ bool is_same_unit(const std::string& unit, const std::string& other) {
 
 /// Converts lengths of the file to droplet diameters.
 struct Scale {
-  std::string unit;  ///< of the numbers; empty: droplet diameters
+  std::string unit;  ///< unit of the numbers; empty: droplet diameters
   double droplet_metres = 0;
 
   /// Rounds to few enough digits that a file in other units gives the same bits.
@@ -153,7 +153,7 @@ std::optional<Columns> columns_in(std::string comment) {
 /// Reads the numbers of a table, and refuses ambiguous commas.
 class Numbers {
  public:
-  /// @param place  of the cell, from 0. @throws Error
+  /// @param place  number of the cell in its line, from 0. @throws Error
   double read(const console::TableLine& line, const Columns& columns, int place) {
     const std::string& cell = line.cells[static_cast<std::size_t>(place)];
     const std::string name = columns.header.empty() ? fmt::format("cell {}", place + 1)
@@ -193,7 +193,8 @@ class Numbers {
   }
 };
 
-/// Checks the header's unit. @throws Error if the file does not define it, or contradicts it
+/// Checks the unit that the header names. @throws Error if the file's comment does not define this unit, or
+/// contradicts it
 void check_unit(const Columns& columns, const Scale& scale) {
   const std::string unit = scale.unit.empty() ? droplet_diameters : scale.unit;
   if (columns.unit.empty() || is_same_unit(columns.unit, unit)) return;

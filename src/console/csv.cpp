@@ -99,7 +99,7 @@ class Splitter {
     if (separator_ == ' ') has_more_ = rest_.find_first_not_of(blanks) != std::string_view::npos;
     return trimmed(cell);
   }
-  /// Takes a cell in quotes, in which two quotes stand for one.
+  /// Takes a cell in quotes. In such a cell, two quotes stand for one quote.
   std::string quoted() {
     std::string cell;
     for (;;) {

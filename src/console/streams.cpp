@@ -16,7 +16,7 @@ namespace clog::console {
 void prepare_streams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
-      std::_Exit(exit_user_fault);  // standard error may be closed, too
+      std::_Exit(exit_user_fault);  // no message, because standard error may be closed, too
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond ulimit -f then fails instead of ending the program
   std::cout.exceptions(std::ios_base::badbit);

@@ -38,7 +38,7 @@ int number_in(const char* name) {
   return text ? std::atoi(text) : 0;
 }
 
-/// Why a single rank should not be alone; nullopt if one rank is intended.
+/// Why a single rank is probably a mistake; nullopt if one rank is intended.
 std::optional<Finding> why_not_alone(int num_ranks) {
   if (num_ranks > 1) return {};
   constexpr const char* of_open_mpi = "OMPI_COMM_WORLD_SIZE";
@@ -83,7 +83,7 @@ Finding instruction_sets_of(const std::vector<RankFacts>& ranks) {
               *all.rbegin()};
 }
 
-/// Ranks of one host that are bound to too few cores.
+/// Finds out whether the ranks of a host are bound to too few cores.
 Finding cores(const std::string& host, const std::vector<const RankFacts*>& ranks) {
   std::map<std::vector<int>, int> ranks_by_cores;
   std::set<int> all;
@@ -137,7 +137,7 @@ Finding speed(const std::vector<RankFacts>& ranks) {
           "look for other programs on those cores, and for bound ranks"};
 }
 
-/// Tries the file operations of a sweep in its folder, on another file.
+/// Tries the file operations of a sweep in the folder of its output, on another file.
 Finding folder(const std::string& output) {
   namespace fs = std::filesystem;
   const fs::path parent = fs::path(output).parent_path();

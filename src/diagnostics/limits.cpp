@@ -36,7 +36,8 @@ std::optional<double> only_number(const fs::path& path) {
   return {};  // no such file, or no limit ("max")
 }
 
-/// Control groups of the process, from the innermost outwards. In a container the inner ones may be missing.
+/// Control groups of the process, from the innermost outwards. In a container, the innermost groups may be
+/// missing.
 std::vector<fs::path> control_groups(const fs::path& root) {
   std::ifstream file(root / "proc/self/cgroup");
   std::string own = "/";

@@ -120,7 +120,7 @@ double least_squares_length(std::span<const Observation> runs) {
   const double first = std::max(clogs.front(), 1e-6);
   const double low = std::log(first / (10 * std::log(static_cast<double>(runs.size()) + 2)));
   const double high = std::log(10 * static_cast<double>(runs.size()));
-  // The sum may have one or two local minima, so begin with the best place of a grid.
+  // The sum may have one or two local minima, so the search begins at the best point of a grid.
   constexpr int num_points = 200;
   const double spacing = (high - low) / num_points;
   double best = low;

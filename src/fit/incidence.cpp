@@ -12,7 +12,7 @@ namespace {
 /// The runs that end at one distance.
 struct Ends {
   double at_risk;
-  double all, own;  ///< ends by any cause; by the given one
+  double all, own;  ///< number of ends by any cause, and by the given cause
 };
 
 /// Sums over all distances so far from which the variance of F_c follows. With g = d/(n (n - d)) for all

@@ -13,7 +13,8 @@
 namespace clog::fit {
 namespace {
 
-/// Fraction of the mean distance to which the test raises shorter distances: Weibull's law excludes zero.
+/// Fraction of the mean distance to which the test raises shorter distances, because Weibull's law excludes
+/// zero.
 constexpr double shortest_share = 1e-3;
 
 /// An interval that contains the root of a falling function, found by doubling and halving; nullopt if there
@@ -48,7 +49,7 @@ PowerSums power_sums(const std::vector<double>& log_x, double shape) {
 /// Distances of all runs for the test: x = r/(longest r), at least a fraction of their mean.
 struct LogWays {
   double longest = 0;         ///< [sigma]
-  std::vector<double> log_x;  ///< of every run
+  std::vector<double> log_x;  ///< log x of every run
   double total = 0;           ///< sum of all x
   double clog_logs = 0;       ///< sum of log x over clogs
   bool clogs_differ = false;  ///< whether clogs occur at more than one distance
@@ -123,7 +124,7 @@ WeibullTest test_exponentiality(std::span<const Observation> runs) {
   if (!ways.clogs_differ) return test;
 
   const auto d = static_cast<double>(test.num_clogs);
-  // The derivative of the profile likelihood in the shape: falls from +infinity to a negative number.
+  // The derivative of the profile likelihood by the shape; it falls from +infinity to a negative number.
   const auto score = [&](double shape) {
     const PowerSums sums = power_sums(ways.log_x, shape);
     return 1 / shape + ways.clog_logs / d - sums.power_log / sums.power;

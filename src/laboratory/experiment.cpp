@@ -27,7 +27,7 @@ const std::map<std::string, double>& known_units(const std::string& quantity) {
   return units.at(quantity);
 }
 
-/// The unit with u for the micro sign, which has two code points.
+/// Replaces the micro sign, for which there are two code points, by u.
 std::string with_plain_micro(const std::string& unit) {
   for (const std::string_view sign : {"µ", "μ"})
     if (unit.starts_with(sign)) return std::string("u").append(unit, sign.size());

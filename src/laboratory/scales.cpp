@@ -28,9 +28,9 @@ struct Puddle {
   double height = 0, area = 0, moment = 0;  ///< moment: of depth below the apex
 };
 
-/// Young and Laplace: phi' = kappa_0 + z/Gamma, x' = cos(phi), z' = sin(phi) along the interface, with z the
-/// depth below the apex and phi the slope's angle, from 0 at the apex to pi at the wall; area' = 2 x z'.
-/// Integrated by the fourth-order Runge-Kutta rule.
+/// Integrates the equation of Young and Laplace along the interface by the fourth-order Runge-Kutta rule:
+/// phi' = kappa_0 + z/Gamma, x' = cos(phi), z' = sin(phi), area' = 2 x z'. Here z is the depth below the
+/// apex, and phi the angle of the slope, from 0 at the apex to pi at the wall.
 Puddle puddle(double line_tension, double apex_curvature) {
   using State = Eigen::Array<double, 5, 1>;  // phi, x, z, area, moment
   // The interface bends over a length of sqrt(Gamma) at a puddle's rim, and over a radius of 1/2 elsewhere.

@@ -44,7 +44,7 @@ std::vector<results::Side> sides(const cli::CommandLine& line, const std::vector
   return results::sides_of_files(paths);
 }
 
-/// Compares files of which one or more are tables of measured distances.
+/// Compares files, at least one of which is a table of measured distances.
 results::Comparisons compare_measured(const cli::CommandLine& line, const std::vector<std::string>& paths,
                                       double confidence) {
   for (const char* option : {"by", "within", "picture"})

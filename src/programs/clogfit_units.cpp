@@ -111,7 +111,7 @@ std::string why_no_tilt(const Laboratory& lab) {
                      console::plain(laboratory::line_tension_upright(lab)));
 }
 
-/// Conversion of an option, a number of the model.
+/// Converts an option, which is a number of the model, to a quantity of the laboratory.
 struct Conversion {
   const char *option, *symbol;
   const char *name, *what, *unit;

@@ -78,7 +78,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
   return true;
 }
 
-/// Files that an option writes. For a film without a suffix, these are both files that it may become.
+/// Files that an option writes. A film without a suffix may become either of two files; both are listed.
 std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const std::string& option) {
   if (!line.has(option)) return {};
   const std::filesystem::path name = line.get(option);
@@ -86,7 +86,8 @@ std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const 
   return {name.string() + ".mp4", name.string() + ".gif"};
 }
 
-/// Files are written one after the other, so two of the same name would be noticed only after the run.
+/// Refuses options that name the same file. The files are written one after the other, so two equal names
+/// would otherwise be noticed only after the run.
 void refuse_same_files(const cli::CommandLine& line) {
   std::map<std::filesystem::path, std::string> options;
   for (const std::string option : {"output", "write-obstacles", "frames"})

@@ -25,9 +25,9 @@ void refuse_options(const cli::CommandLine& line, const std::string& system,
 
 /// Reads --sample-interval and --polygon-interval. @throws Error
 single_run::RecordedRun::Intervals intervals(const cli::CommandLine& line, double time_step);
-/// Prints the outcome of a run, with --lab in mm and s, too. Returns the exit code.
+/// Prints the outcome of a run; with --lab, lengths and times are also in mm and s. Returns the exit code.
 int report(const cli::CommandLine& line, const single_run::RecordedRun& watched);
-/// Prints parameters outside the range tested for soundness on the standard error.
+/// Prints on the standard error which parameters are outside the range tested for soundness.
 void warn_of_untested_parameters(const sweep::Plan& plan);
 
 }  // namespace clog::programs

@@ -16,9 +16,9 @@
 namespace clog::programs {
 namespace {
 
-/// Finds all errors before anything is computed or written.
+/// Follows a run and writes its trajectory, after all errors of the user have been found.
 /// @param config  printed by --dry-run
-/// @param begin  computes and writes; not called if there is nothing to run
+/// @param begin  called before the first step; not called if there is nothing to run
 int follow_run(const cli::CommandLine& line, const RunParameters& parameters, const std::string& config,
                const std::function<void(const DropletRun&)>& begin) {
   const std::string output = line.get("output");

@@ -128,7 +128,7 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
   // Rank 0 reads and checks; the others wait for its exit code, or its assignment.
   cli::CommandLine line("clogsweep", clogsweep_usage, cli::CommandLine::SweepKeys::accepted);
   std::optional<Led> led;
-  std::string task;  // of all ranks, see scheduler::Assignment::text()
+  std::string task;  // the text of an assignment, see scheduler::Assignment::text()
   int exit_code = go_on;
   if (ranks.rank() == 0) {
     exit_code = cli::run_program("clogsweep", [&] {

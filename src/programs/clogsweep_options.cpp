@@ -76,7 +76,7 @@ bool is_full(const sweep::Points& points, std::size_t place) {
   return std::ranges::none_of(points.rows, [&](const auto& row) { return row[place].empty(); });
 }
 
-/// Adds --lab, --points and --shard to the settings.
+/// Adds the plan of --lab, --points and --shard to the settings.
 void add_plan_options(cli::CommandLine& line) {
   sweep::Settings& settings = line.settings();
   sweep::Points points = settings.points();
@@ -106,7 +106,7 @@ void add_plan_options(cli::CommandLine& line) {
   }
 }
 
-/// A table is HDF5, whatever its name; another suffix is a mistake.
+/// Refuses a suffix of another format, because a table is an HDF5 file, whatever its name is.
 void refuse_other_format(const cli::CommandLine& line) {
   if (!line.has("output")) return;
   const std::string name = line.get("output");

@@ -11,7 +11,7 @@
 namespace clog::programs {
 
 /// Declares and parses the options of a sweep. Returns whether there is anything else to do. @throws Error,
-/// like the functions below
+/// as the functions below do
 bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv);
 
 /// The options of the driver, checked except for the output's name.

@@ -62,7 +62,7 @@ std::string scaled_circles(const std::string& list, const laboratory::Laboratory
   return joined(names, ",");
 }
 
-/// Numbers of a list; the first two of `lin(0.3mm,0.5mm,3)`.
+/// The numbers of a list; of `lin(0.3mm,0.5mm,3)` only the first two.
 std::vector<std::string> numbers_of(const std::string& list) {
   std::vector<std::string> numbers = split_at_commas(list);
   std::erase_if(numbers, [](const std::string& number) { return number.ends_with(')'); });
@@ -91,9 +91,10 @@ bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, c
          });
 }
 
-/// An array whose lengths are given in millimetres is the same for all droplets. In sigma it would grow with
-/// the droplets, which the user must request.
-/// @param texts  as given.
+/// An array whose lengths are given in millimetres is the same for all droplets. Numbers without a unit would
+/// be in droplet diameters, so that the array would grow with the droplets. The user must request this by
+/// writing sigma.
+/// @param texts  the texts that the user gave
 /// @throws Error
 void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory::Texts& texts) {
   sweep::Settings settings = line.settings();
@@ -119,7 +120,7 @@ void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory:
     }
 }
 
-/// Prints how speeds that were not measured follow from the measured one.
+/// Prints how the speeds of other droplets follow from the measured speed.
 void say_law_of_speed(const cli::CommandLine& line, const Droplets& droplets) {
   const laboratory::Laboratory& first = droplets.all.front();
   const bool is_given =

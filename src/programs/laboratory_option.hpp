@@ -9,9 +9,8 @@
 
 namespace clog::programs {
 
-/// Sets the keys that the file of --lab determines, if the option is given, converts keys that were given
-/// with units, and scales user-supplied circles to the droplet. @throws Error, also if the file has several
-/// droplets
+/// If --lab is given, sets the keys that its file determines, converts the keys that were given with units,
+/// and scales user-supplied circles to the droplet. @throws Error, also if the file has several droplets
 void use_laboratory(cli::CommandLine& line);
 
 /// use_laboratory() for a file of one or several droplets. Several droplets become points, each with the
@@ -19,15 +18,16 @@ void use_laboratory(cli::CommandLine& line);
 /// @param points  the sweep's points, none or some; each is combined with each droplet
 void use_laboratories(cli::CommandLine& line, sweep::Points& points);
 
-/// Gives each group the scale of --lab, or else of its own laboratory. @throws Error
+/// Gives each group the scale of the laboratory of --lab or, without --lab, of the group's own laboratory.
+/// @throws Error
 void set_scales(const cli::CommandLine& line, std::vector<results::Group>& groups);
 
 /// The scale of each laboratory of these rows; empty if some row has no laboratory, or if --lab applies to
 /// all rows. @throws Error
 results::Scales scales_of_rows(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
 
-/// The droplet's diameter in mm: that of --lab, or else of the common laboratory of all rows; nullopt if
-/// neither exists. @throws Error
+/// The droplet's diameter in mm, from the laboratory of --lab or, without --lab, from the common laboratory
+/// of all rows; nullopt if there is neither. @throws Error
 std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
 
 }  // namespace clog::programs

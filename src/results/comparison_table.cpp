@@ -68,7 +68,7 @@ std::string clogs_text(const Comparison& one) {
   return fmt::format("{}/{}", one.length_here.num_clogs, one.length_there.num_clogs);
 }
 
-/// @param factor  from the unit of the lengths to the unit shown
+/// @param factor  the unit of the lengths divided by the unit shown
 std::vector<std::string> cells(const Comparison& one, double factor, bool have_pairs) {
   const fit::LengthRatio& ratio = one.ratio;
   std::vector<std::string> all = {clogs_text(one), bounded_length(one.length_here, factor),

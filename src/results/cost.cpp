@@ -37,7 +37,7 @@ class Outlook {
     slowing_ = fit::fit_clogging_length(logarithms, default_confidence);
   }
 
-  /// Mean remaining time of a run; max-time ends it after `longest` at the latest.
+  /// Mean remaining time of a run that max-time ends after `longest` at the latest.
   double seconds_left(const RunCost& run, double longest, Case which) const {
     const double most = longest - run.seconds;
     const bool may_never_end = !sets_with_ends_.contains(run.parameter_set);
@@ -59,14 +59,14 @@ class Outlook {
   fit::CloggingLength even_;     // fit to the times: every run is equally likely to end next
   fit::CloggingLength slowing_;  // fit to their logarithms: a run that has lasted longer takes longer to end
 
-  /// Counts half an end more: without any end the mean is long, but finite.
+  /// Counts half an end more, so that the mean is finite even without any end.
   static double mean(const fit::CloggingLength& fit) { return fit.total_distance / (fit.num_clogs + 0.5); }
 
-  /// Ends are exponential, P = exp(-t/mean).
+  /// Mean for exponential ends, P = exp(-t/mean).
   static double if_even(double mean, double most) {
     return std::isinf(mean) ? most : mean * -std::expm1(-most / mean);
   }
-  /// Ends follow the power law that mixes all exponentials equally, P = (t/seconds)^(-1/mean).
+  /// Mean for ends with the power law that mixes all exponentials equally, P = (t/seconds)^(-1/mean).
   static double if_slowing(double mean, double seconds, double longest) {
     const double power = 1 - 1 / mean;
     const double logarithm = std::log(longest / seconds);
@@ -166,7 +166,7 @@ class Shares {
   Expectation left() const {
     return {lowest_.seconds_left(), middle_.seconds_left(), highest_.seconds_left()};
   }
-  /// Estimate if runs take at most `longest`.
+  /// Estimate for runs that take `longest` if all of them last to max-time.
   Expectation of(double longest, double relative_error) const {
     const double middle = longest * middle_.value();
     return {longest * lowest_.value(), middle, longest * highest_.value(),

@@ -28,7 +28,7 @@ constexpr double metres_per_mm = 1e-3;
 /// Places of the columns, and other contents of the first line.
 struct Head {
   int distance = -1, clogged = -1;
-  double factor = 1;  ///< from the column's unit to the table's unit
+  double factor = 1;  ///< factor from the column's unit to the table's unit
   std::size_t num_columns = 0;
   std::vector<std::size_t> labels;
 };
@@ -116,8 +116,8 @@ std::string column_name(std::string label) {
 
 /// How the groups of two tables match.
 struct Match {
-  std::vector<std::string> columns;  ///< labels of the table here, then labels that only the other table has
-  std::vector<std::pair<std::size_t, std::size_t>> common;  ///< places of a common label here and there
+  std::vector<std::string> columns;  ///< labels of the first table, then those that only the second table has
+  std::vector<std::pair<std::size_t, std::size_t>> common;  ///< places of a common label in the two tables
   std::vector<std::size_t> only_there;
 
   bool have_common_labels(const DistanceGroup& here, const DistanceGroup& there) const {

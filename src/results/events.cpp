@@ -22,7 +22,7 @@ std::string line(const Json& event) { return console::json_text(event, -1); }
 
 }  // namespace
 
-/// Counts the runs. Returns whether there are more to do than before.
+/// Counts the runs. Returns whether there are more runs to do than at the last call.
 bool Events::count_runs(const store::SweepFile& file) {
   std::string config = attribute(file.provenance, "config");
   std::string num_wanted = attribute(file.provenance, "num_wanted");

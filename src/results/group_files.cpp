@@ -60,7 +60,7 @@ Json field_units(const std::vector<Group>& groups) {
 Json group_json(const Group& group, bool with_laboratory) {
   Json entry;
   for (const auto& [name, value] : all_fields(group, with_laboratory)) entry[name] = json_of(value);
-  // Programs that draw groups need this: automatic values separate no curves and need no mention.
+  // Programs that draw groups need these names, because automatic values separate no curves.
   entry["automatic"] = Json::array();
   for (const sweep::Column* column : group_columns())
     if (separating_value(*column, group.first_row) == Value() && column->get(group.first_row) != Value())
@@ -109,7 +109,7 @@ std::string to_json(const std::vector<Group>& groups, double confidence,
                    {"lists", listed_columns(provenance)},
                    {"sweep", origin},
                    {"groups", list}};
-  // One scale for all groups, or each group's own.
+  // If all groups have the same scale, the document has it once, otherwise each group has its own.
   for (const Group& group : groups)
     if (const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory)
       document["laboratories"][own->check_sum()] = console::printable(own->text());

@@ -36,7 +36,8 @@ std::vector<std::string> parts_of(const std::optional<LaboratoryText>& laborator
   return parts;
 }
 
-/// The entries of a group's laboratory that not all groups have; all entries if every group has the same.
+/// The entries of a group's laboratory that not all groups have; all entries if all groups have the same
+/// laboratory.
 std::string laboratory_label(const Group& group, const std::vector<Group>& groups) {
   std::vector<std::string> own = parts_of(group.first_row.parameters.laboratory);
   const auto is_everywhere = [&](const std::string& part) {
@@ -50,7 +51,7 @@ std::string laboratory_label(const Group& group, const std::vector<Group>& group
   return joined(label.empty() ? own : label, "; ");
 }
 
-/// A parameter's value; the name of the file for user-supplied circles, if it is known.
+/// A parameter's value as text. User-supplied circles are named by their file, if it is known.
 std::string rounded_text(const Group& group, const std::vector<Group>& groups, const sweep::Column& column) {
   const sweep::RunRow& row = group.first_row;
   if (column.name == "laboratory")
@@ -101,7 +102,7 @@ std::string column_notes(const std::vector<Group>& groups) {
   return text;
 }
 
-/// The longest time with one digit that is shorter than the given time.
+/// The longest time that is shorter than the given time and has one significant digit.
 double shorter_dwell(double rest) {
   const double unit = std::pow(10, std::floor(std::log10(rest)));
   const double digit = std::ceil(rest / unit) - 1;
@@ -165,7 +166,7 @@ std::vector<bool> varying_columns(const std::vector<Group>& groups) {
   return varies;
 }
 
-/// Whether a value of each group follows from other values of the group.
+/// Whether groups with equal other values always have equal values, too.
 template <class Value, class Others>
 bool follows(const std::vector<Group>& groups, const Value& value_of, const Others& others_of) {
   std::map<decltype(others_of(groups.front())), decltype(value_of(groups.front()))> known;
@@ -174,7 +175,7 @@ bool follows(const std::vector<Group>& groups, const Value& value_of, const Othe
   });
 }
 
-/// Whether automatic values of the column follow from those that are shown, wherever the groups differ in it.
+/// Whether the values of the column follow from the values of the shown columns.
 bool follows_from_shown(std::size_t place, const std::vector<bool>& shown, const std::vector<Group>& groups) {
   const auto shown_values = [&](const Group& group) {
     std::vector<Value> values;
@@ -199,7 +200,7 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
                     (column->get(first) != Value() && is_of(scene_of(run).gap_key)) ||
                     is_of(model_of(run).stiffness_key));
   }
-  // A given automatic value precedes the values that follow from it.
+  // The number of vertices comes first, then the time step, because other automatic values follow from both.
   std::vector<std::size_t> order(shown.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, [](std::size_t i) {
@@ -330,7 +331,7 @@ bool are_counts_equal(const Passage& one, const Passage& other) {
   return one.num_passed == other.num_passed && one.num_stopped == other.num_stopped;
 }
 
-/// Shortens a list of many lines to those at which the counts change, and the last.
+/// Shortens a long list to the lines at which the counts change, and the last line.
 std::vector<Passage> shown_passages(const std::vector<Passage>& all) {
   constexpr std::size_t most_lines = 8;
   if (all.size() <= most_lines) return all;
@@ -360,7 +361,7 @@ std::string table_of_passages(const std::vector<Group>& groups, const std::vecto
                      console::aligned(lines));
 }
 
-/// Defines a clog if resting droplets count as clogged, too.
+/// Defines a clog, if resting droplets count as clogged, too; otherwise returns an empty text.
 std::string definition_of_clogs(const std::vector<Group>& groups) {
   const double dwell = groups.front().dwell;
   if (std::isinf(dwell)) return "";

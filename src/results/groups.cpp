@@ -32,14 +32,14 @@ namespace {
 
 /// Whether so many clogs may be artefacts of the mesh that the length may be wrong.
 bool hangs_on_mesh(const Group& group) {
-  constexpr double tolerated = 0.1;  // of the clogs
+  constexpr double tolerated = 0.1;  // tolerated fraction of the clogs
   return group.num_on_mesh > 0 && group.num_on_mesh >= tolerated * group.clogging.num_clogs;
 }
 
 std::vector<Doubt> doubts_about(const Group& group) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool has_length = has_clogging_length(group.first_row);
-  // If all droplets passed the exit, more seeds only raise the bound.
+  // If all droplets passed the exit, more seeds would only raise the lower bound.
   const bool lacks_clogs =
       clogging.num_runs > 0 && group.num_passed != clogging.num_runs && clogging.num_clogs < enough_clogs;
   const bool is_below_spacing = clogging.length < sweep::obstacle_spacing(group.first_row);
@@ -102,7 +102,7 @@ std::optional<Cause> cause_of(const sweep::RunRow& run) {
   throw std::logic_error("a mechanism that is no cause");
 }
 
-/// Whether the run may have dwells of this length. A run that has not begun has none.
+/// Whether the run may have dwells of this length. A run that has not begun has no dwells.
 bool has_dwells_to_tell(const sweep::RunRow& run, double dwell) {
   return dwell < run.parameters.max_time && run.steps > 0;
 }
@@ -112,7 +112,7 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
   const bool is_clogged = run.status == RunStatus::clogged;
   const Ending last = {run.distance, is_clogged, cause_of(run)};
   if (!has_dwells_to_tell(run, dwell)) return last;
-  // The mechanism of a droplet that moved on is unknown: it counts as other.
+  // The mechanism of a droplet that moved on is unknown, so its clog counts as `other`.
   if (const Dwell* first = run.dwells.first_longer(dwell)) return {first->distance, true, Cause::other};
   return is_clogged || last.cause ? last : Ending{run.dwells.last_distance, false, {}};
 }
@@ -156,7 +156,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
                     shortest(dwell), rounded_up(known_from)));
 }
 
-/// Clogging lengths of intact runs that reached the distance from which they count.
+/// Fits clogging lengths to those intact runs that reached `from_distance`.
 void fit_clogging(Group& group, std::span<const Ending> runs, double confidence, double from_distance) {
   // Some of the ends count as events; all other runs are censored.
   const auto observe = [&](auto is_end) {
@@ -190,7 +190,7 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
 
 /// The runs that met an obstacle, each counted from its first obstacle on.
 struct Meetings {
-  std::vector<fit::Observation> from_first;  ///< of the runs that met an obstacle
+  std::vector<fit::Observation> from_first;  ///< outcomes of the runs that met an obstacle
   std::int64_t num_contacts = 0;
   double way = 0;  ///< distance of all runs that record contacts [sigma]
   int num_free = 0;
@@ -211,8 +211,8 @@ void fit_meetings(Group& group, const Meetings& meetings, double confidence) {
   if (meetings.way > 0) group.contacts_per_length = static_cast<double>(meetings.num_contacts) / meetings.way;
 }
 
-/// One or two runs that travelled far enough to have a speed do not represent all, so their mean is not
-/// printed.
+/// If only one or two runs travelled far enough to have a speed, they do not represent all runs, so their
+/// mean is not printed.
 fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   constexpr int fewest_runs = 3;
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -237,8 +237,8 @@ fit::Travel travel_until_arrest(const sweep::RunRow& run) {
   return {way / run.parameters.drag.terminal_speed, is_clogged ? run.dwells.last_begin : run.time};
 }
 
-/// A group whose droplets sank by less than half a diameter on average has no speed, just as a single droplet
-/// with such a distance.
+/// A group whose droplets sank by less than half a diameter on average has no speed. A single droplet that
+/// sank by less than half a diameter has none either.
 fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double terminal_speed) {
   constexpr double shortest_way = 0.5;  // [sigma]
   double way = 0;
@@ -247,7 +247,7 @@ fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double te
   return of_enough_runs(is_far ? fit::fit_pooled_speed(travels) : fit::fit_pooled_speed({}));
 }
 
-/// Keeps the run with the largest max-time of each droplet (one seed in one array); the longest come first.
+/// Keeps one run of each droplet (one seed in one array), the run with the largest max-time.
 void keep_longest(std::vector<const sweep::RunRow*>& runs) {
   std::ranges::stable_sort(runs, std::ranges::greater(),
                            [](const sweep::RunRow* run) { return run->parameters.max_time; });
@@ -268,7 +268,7 @@ struct Tally {
   std::vector<fit::Displacement> displacements;
 };
 
-/// Includes a run in the clogging lengths, unless it is left out there.
+/// Includes a run in the clogging lengths, if the run counts for them.
 void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Tally& tally) {
   const Ending from_release = ending_of(run, group.dwell);
   const std::optional<Ending> ending = counted(run, from_release);

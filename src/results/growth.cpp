@@ -22,7 +22,7 @@ bool is_automatic(const sweep::Key& key, const sweep::Settings& settings) {
          });
 }
 
-/// Whether any value of one list is in the other. Numbers may be written differently.
+/// Whether two lists have a common value. Equal numbers may be written differently.
 bool have_common_value(const std::vector<std::string>& some, const std::vector<std::string>& others) {
   return std::any_of(some.begin(), some.end(), [&](const std::string& value) {
     return std::any_of(others.begin(), others.end(),

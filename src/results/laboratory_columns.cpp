@@ -14,8 +14,7 @@ namespace {
 
 LaboratoryScale scale_of(const Group& group) { return group.laboratory.value_or(LaboratoryScale()); }
 
-/// Mean time until a clog: lambda divided by the speed of all runs, in units of the laboratory's terminal
-/// speed [s].
+/// Mean time until a clog [s]: lambda divided by the speed of all runs, both in units of the laboratory.
 double time_to_clog(const Group& group) {
   const LaboratoryScale scale = scale_of(group);
   if (group.clogging.num_clogs == 0) return std::numeric_limits<double>::quiet_NaN();

@@ -43,7 +43,7 @@ Part whole_part(const std::string& path) {
   return {path, std::move(found.table), std::move(found.snapshots)};
 }
 
-/// Joins the rows of all parts, each run once.
+/// Joins the rows of all parts, so that each run occurs once.
 class Rows {
  public:
   void add(const Part& part) {
@@ -88,7 +88,8 @@ class Rows {
     paths_[place] = path;
   }
 
-  /// Whether a row replaces the existing one. @throws Error if the two contradict each other
+  /// Whether a row replaces the existing row of the same run. @throws Error if the two rows contradict each
+  /// other
   bool is_better(const RunRow& row, std::size_t place, const std::string& path) {
     const RunRow& known = rows_[place];
     if (!sweep::is_result(row.status) || !sweep::is_result(known.status)) {
@@ -98,7 +99,7 @@ class Rows {
     }
     const std::vector<std::string> differing = differing_results(known, row);
     if (differing.empty()) return false;
-    // No replay reproduces a run under two instruction sets.
+    // A replay cannot reproduce a run that used two instruction sets.
     const bool is_mixed = row.instruction_set == sweep::mixed_instruction_sets;
     if (known.instruction_set == row.instruction_set && !is_mixed)
       throw Error(fmt::format(
@@ -110,7 +111,7 @@ class Rows {
   }
 };
 
-/// Adds circles that are missing.
+/// Adds those circles of a file that are missing.
 void add_circles(const store::SweepFile& file, std::vector<store::CircleFile>& all) {
   for (const store::CircleFile& one : file.circles) {
     const auto known =
@@ -250,7 +251,7 @@ store::SweepFile read_together(const std::vector<std::string>& paths) {
     const sweep::Settings settings = runs.settings();
     config = settings.to_config();
     number_tasks(settings, merged.table);
-  } catch (const Error&) {  // from a version with other keys
+  } catch (const Error&) {  // the config is from a version with other keys
   }
   merged.table.provenance =
       joint_provenance(parts.front().table.provenance, config, tables_of(parts), lines_of(parts));

@@ -69,7 +69,7 @@ double longest_work(const RunParameters& run) { return run.max_time / *run.time_
 struct Sample {
   std::vector<RunCost> costs;
   std::string source;
-  std::string failure;  ///< why the first run that could not begin failed; such runs are not among the costs
+  std::string failure;  ///< why the first run that could not begin failed; `costs` does not contain such runs
   std::int64_t num_clogged = 0;
   std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
   double spacing = 0;          ///< obstacle spacing of such a run [sigma]
@@ -162,8 +162,9 @@ constexpr double seconds_to_try = 10;
 /// Runs short pieces of these tasks. The jobs may be computed by another process, which answers between
 /// slices of its work; a job that takes too long, such as a release that does not come to rest, is dropped.
 Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
-  constexpr double fewest_seconds = 0.1;  // for a run whose array took the run's whole share of the time
-  constexpr double grace = 0.5;           // time to wait for the last answer [s]
+  constexpr double fewest_seconds =
+      0.1;                       // time for a run if its array has used up the run's share of the time [s]
+  constexpr double grace = 0.5;  // time to wait for the last answer [s]
   const Clock::time_point begin = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   const auto advance_until = [&](sweep::Job& job, double end, const auto& is_enough) {
@@ -246,7 +247,8 @@ void print_left(const sweep::Plan& plan, const std::string& output, const Stored
 /// Warns before the runs about clogging lengths below an obstacle spacing, which clogfit would doubt (`v`).
 void print_short_lengths(const Sample& sample) {
   constexpr std::int64_t fewest = 3;
-  constexpr std::int64_t one_in = 4;  // if the length is five spacings, one clog in six is this short
+  constexpr std::int64_t one_in =
+      4;  // with a clogging length of five spacings, one distance in six would be below one spacing
   if (sample.num_short < fewest || one_in * sample.num_short < sample.num_clogged) return;
   fmt::print(std::cout,
              "# {} of {} clogged within one obstacle spacing ({:.3g} sigma) of their release: such lengths "

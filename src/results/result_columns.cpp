@@ -15,7 +15,8 @@
 namespace clog::results {
 namespace {
 
-/// The group's break-ups; nullptr unless all mechanisms are known: files with break-ups have mechanisms, too.
+/// The group's break-ups; nullptr if its mechanisms are unknown, because files with break-ups have
+/// mechanisms, too.
 const fit::CloggingLength* break_ups(const Group& group) {
   for (const Group::EndsBy& cause : group.causes)
     if (cause.text->cause == Cause::broken) return &cause.ends;
@@ -144,7 +145,7 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
         {"of", [](const Group& group) { return std::to_string(group.relative_speed.num_runs); }});
   // Speeds in laboratory units are those of all runs.
   if (has_laboratory || have_few_speeds) append("all runs", speed_of_all, columns);
-  // A droplet in a random array goes straight on average.
+  // Only groups with rows of posts have these columns: in a random array, droplets go straight on average.
   if (std::ranges::any_of(groups, has_rows)) {
     append("lateral/r", slope_of, columns);
     append("along rows", share_of, columns);

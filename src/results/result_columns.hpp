@@ -14,17 +14,20 @@ struct ResultColumn {
   std::function<std::string(const Group&)> cell;
 };
 
-/// A clogging length, or its lower bound, and its interval; a dash where they are not known.
+/// A clogging length, or its lower bound without clogs, and the interval of the length; a dash where a number
+/// is unknown.
 std::string length_text(const fit::CloggingLength& clogging);
 std::string interval_text(const fit::CloggingLength& clogging);
 
 /// The columns of the scene's results.
 /// @param groups  not empty
-/// @param has_laboratory  whether columns in laboratory units follow, in which speeds are those of all runs
+/// @param has_laboratory  whether columns in laboratory units follow; the speeds in these are those of all
+/// runs
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
                                               bool has_laboratory);
 
-/// Whether the table shows the mechanisms: if clogs differ in them, or some are excluded.
+/// Whether the table shows the mechanisms: it does if clogs differ in them, or if some clogs have been
+/// excluded.
 bool are_mechanisms_shown(const std::vector<Group>& groups);
 bool have_some_broken(const std::vector<Group>& groups);
 
@@ -32,7 +35,7 @@ bool have_some_broken(const std::vector<Group>& groups);
 bool have_laboratory(const std::vector<Group>& groups);
 /// A group's interfacial tension, clogging length, speed and time until a clog in laboratory units.
 std::vector<Field> laboratory_fields(const Group& group);
-/// The same fields as printed columns.
+/// The laboratory_fields() as printed columns.
 std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups, double confidence);
 /// Columns of diameter and tilt, if the groups differ in them.
 std::vector<ResultColumn> droplet_columns(const std::vector<Group>& groups);

@@ -40,8 +40,8 @@ SweepState::Known SweepState::recognise(std::vector<sweep::RunRow> rows, std::ve
     std::unique_ptr<Entry>& run = place(record.row);
     if (!run && !fixed) fixed.emplace(*plan_, settings);
     if (!run) refuse_foreign(record.row, *fixed);
-    // If a run's last record was lost from the journal, the table has its result and the journal only an
-    // earlier state: keep the table's row.
+    // If the journal has lost a run's last record, the table has the result, and the journal only an earlier
+    // state. Then the table's row is kept.
     if (!run || sweep::is_result(record.row.status) || !sweep::is_result(run->row.status))
       run = std::make_unique<Entry>(std::move(record));
   }
@@ -66,7 +66,7 @@ store::SweepFile SweepState::read_table() {
   return file;
 }
 
-/// A salvaged file may lack its config: then compare its rows.
+/// A salvaged file may lack its config. In this case, this function compares the rows with the settings.
 std::string SweepState::settings_that_differ(const store::SweepFile& file,
                                              const sweep::Settings& settings) const {
   if (!attribute(file.provenance, "config").empty())

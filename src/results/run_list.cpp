@@ -19,7 +19,7 @@ namespace {
 using Texts = std::vector<std::string>;
 
 constexpr const char* seeds_key = "seeds";
-constexpr std::size_t longest_list = 2500;  // of a key's text; longer lists become points
+constexpr std::size_t longest_list = 2500;  // length of a key's text; longer lists become points
 
 std::string identity_without_seed(sweep::RunRow run) {
   run.parameters.seed = 0;
@@ -37,7 +37,7 @@ bool is_less(const std::string& a, const std::string& b) {
   return std::pair(number_or_infinity(a), a) < std::pair(number_or_infinity(b), b);
 }
 
-/// `1..10,15`; several texts if many seeds are not consecutive.
+/// The seeds as text, such as `1..10,15`; as several texts if many seeds are not consecutive.
 Texts texts_of(const std::set<std::uint32_t>& seeds) {
   Texts texts;
   std::string text;
@@ -134,7 +134,7 @@ bool RunList::add(const sweep::Plan& plan, const sweep::RunRow& row) try {
   if (sweep::identity(sweep::describe(one.task(0))) != sweep::identity(row)) return false;
   set_of(plan, row, std::move(*texts)).seeds.insert(row.parameters.seed);
   return true;
-} catch (const Error&) {  // from a version with other keys or ranges
+} catch (const Error&) {  // the row is from a version with other keys or ranges
   return false;
 }
 

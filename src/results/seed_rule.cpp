@@ -29,7 +29,7 @@ std::int64_t clogs_for(double precision) {
   return enough;
 }
 
-/// The keys that distinguish one parameter set from the others.
+/// The keys by which a parameter set differs from the others, with their values.
 std::string name_of(std::int64_t group, const sweep::Plan& plan) {
   const sweep::RunRow row = sweep::describe(plan.task(group));
   std::vector<std::string> words;

@@ -94,8 +94,8 @@ sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file) {
   });
 }
 
-/// Whether the key has a list of its own, or one in points. Other keys may vary because they follow from a
-/// word.
+/// Whether the key has a list of its own, or a list in points. The values of other keys may vary, too, but
+/// they follow from a word in a list.
 static bool is_listed(const sweep::Key& key, const sweep::Settings& settings) {
   const std::vector<std::string>& keys = settings.points().keys;
   return settings.values(key.name).size() > 1 || std::ranges::find(keys, key.name) != keys.end();
@@ -110,7 +110,7 @@ std::vector<std::string> listed_columns(const store::Provenance& provenance) try
       columns.emplace_back(key.parameter->column);
   return columns;
 } catch (const Error&) {
-  return {};  // from a version with other keys
+  return {};  // the config is from a version with other keys
 }
 
 std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,

@@ -16,7 +16,7 @@ namespace clog::results {
 namespace {
 
 /// Keeps `sessions` short, however often a sweep is resumed: the oldest lines are removed, and a long last
-/// one is cut.
+/// line is cut.
 std::string latest_lines(std::string text) {
   constexpr std::size_t longest_line = 2000;
   constexpr std::size_t longest = 30'000;
@@ -208,8 +208,8 @@ void SweepState::withdraw_failure(std::int64_t task) {
 }
 
 void SweepState::tick() {
-  // Writing the whole table takes longer the more runs there are, and the journal must be rewritten now and
-  // then; together they may take two percent of the time.
+  // Writing the whole table takes longer with more runs, and the journal must be rewritten now and then.
+  // Together, these two tasks may take two per cent of the time.
   const Clock::time_point now = Clock::now();
   if (publication_.valid()) {
     if (publication_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;
@@ -287,7 +287,7 @@ void SweepState::end_publication() {
   stamp_ = *std::move(published);
 }
 
-/// Writes the table under another name, to keep the foreign file in its place.
+/// Writes the table under another name, so that a foreign file keeps its place.
 void SweepState::rescue() {
   if (journal_.is_there()) journal_.rewrite(entries());
   int number = 1;
@@ -299,8 +299,8 @@ void SweepState::rescue() {
       path_, rescued().path()));
 }
 
-/// Prepares the journal for when the table has the results before `place`: unfinished runs and all later
-/// records stay.
+/// Rewrites the journal for the time when the table will have the results of all records before `place`. The
+/// journal then needs only the unfinished runs, and the records from `place` on.
 void SweepState::prepare_journal(const std::vector<const Entry*>& all, std::uint64_t place) {
   std::deque<Entry> unfinished;
   std::vector<const Entry*> needed;

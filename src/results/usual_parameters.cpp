@@ -38,7 +38,7 @@ bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
          column.parameter->applies_to(run) && !column.parameter->applies_to(RunParameters());
 }
 
-/// A share of the saturated density is a different number for each gap and diameter.
+/// The default density. A share of the saturated density is a different number for each gap and diameter.
 Value usual_density(RunParameters run) {
   run.obstacles.density = ObstacleParameters().density;
   return sweep::describe(resolve(run)).obstacle_density;
@@ -51,8 +51,8 @@ bool has_derived_density(const sweep::RunRow& row) {
          (!obstacles.density.per_area && !obstacles.density.share);
 }
 
-/// Whether automatic values of one parameter follow from the other. The step follows from the vertices, the
-/// stiffness of walls from both.
+/// Whether automatic values of `one` follow from `other`: the time step follows from the vertices, the
+/// stiffness of walls from the vertices and the time step.
 bool follows(const Parameter& one, const Parameter& other) {
   constexpr std::string_view chain[] = {"vertices", "time-step", "wall-stiffness"};
   const auto* place = std::ranges::find(chain, std::string_view(one.key));
@@ -63,7 +63,7 @@ bool follows(const Parameter& one, const Parameter& other) {
 enum class Others { all, independent };
 
 /// Whether the value is automatic for the row's other parameters: for all of them, or for those that do not
-/// follow from it.
+/// follow from this value.
 bool is_automatic_with(Others others, const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
   if (are_circles_missing(row.parameters)) return true;  // unknown without the circles

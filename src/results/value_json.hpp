@@ -13,7 +13,7 @@ namespace clog::results {
 inline Value finite_value(double number) { return std::isfinite(number) ? Value(number) : Value(); }
 /// @returns null for an unset value and for a number that is not finite
 nlohmann::ordered_json json_of(const sweep::Value& value);
-/// A step of a survival or incidence curve. @param name  key of the number of ends
+/// A step of a survival or incidence curve as JSON. @param name  key of the number of ends
 template <class Step>
 nlohmann::ordered_json step_json(const Step& step, const char* name, int num_ends) {
   return {{"distance", step.distance},

@@ -15,9 +15,9 @@ namespace {
 /// Variables in which launchers give a process its rank.
 constexpr const char* rank_variables[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
 
-/// A rank that no launcher has started is alone. Otherwise Open MPI would start a daemon for the rank, which
-/// looks for ssh and ends the rank when the daemon is killed. Open MPI would also use a folder whose name all
-/// such ranks of a user share, so that a rank that starts while another ends may fail.
+/// Tells Open MPI that a rank that no launcher has started is alone. Otherwise Open MPI would start a daemon,
+/// which looks for ssh, and the rank would end when the daemon is killed. Open MPI would also use a folder
+/// that all single ranks of a user share, so a rank that starts while another rank ends might fail.
 void stand_alone_without_launcher() {
   for (const char* name : rank_variables)
     if (std::getenv(name)) return;

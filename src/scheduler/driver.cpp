@@ -99,8 +99,8 @@ class Driver {
     if (report.row.status == RunStatus::interrupted && report.row.steps == 0 && !report.snapshot.empty()) {
       report.row = state_.row(report.row.task);
       report.row.status = RunStatus::interrupted;
-      report.row.wall_seconds = report.row.processor_seconds =
-          0;  // the state of the sweep adds the earlier cost
+      // The state of the sweep adds the earlier cost.
+      report.row.wall_seconds = report.row.processor_seconds = 0;
     }
     state_.report(report);
     if (report.row.status == RunStatus::failed && state_.tries_again(report.row)) {
@@ -124,8 +124,8 @@ class Driver {
 bool begin_round(results::SeedRule& rule, results::SweepState& state) {
   std::vector<std::int64_t> next =
       rule.next_round([&](std::int64_t task) { return state.row(task).status == RunStatus::clogged; });
-  // Tasks that an earlier call with a higher precision started: finish them although this call does not need
-  // them.
+  // An earlier call with a higher precision may have started more tasks than this call needs. They are
+  // finished, too.
   if (next.empty()) next = state.tasks_begun();
   if (next.empty()) return false;
   state.want(next);

@@ -48,9 +48,9 @@ constexpr std::chrono::milliseconds patience_for_start{20'000};
 
 /// How a process ended.
 struct Ending {
-  int fork_error = 0;  // errno, if it never began
-  int code = 0;        // of SIGCHLD: CLD_EXITED or another
-  int status = 0;      // exit code or signal
+  int fork_error = 0;  // errno of fork(), if the process never began
+  int code = 0;        // si_code of SIGCHLD: CLD_EXITED or another
+  int status = 0;      // exit code, or number of the signal
 };
 
 /// The name of a signal, such as SIGKILL. (sigabbrev_np() needs glibc 2.32.)
@@ -73,8 +73,8 @@ std::string describe(const Ending& ending) {
                      signal == SIGKILL ? ", as the kernel does when memory runs out" : "");
 }
 
-/// Makes this process die with the one that forked it, and ignore signals that stop a sweep, which the rank
-/// handles.
+/// Makes this process die with its parent. Lets it ignore the signals that stop a sweep, because the rank
+/// handles these.
 void depend_on_parent(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);  // the parent died before the call
@@ -97,7 +97,8 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
   std::int64_t number = 0;
   bool is_over = true;
   while (true) {
-    // Computes at least one slice between two messages: a task that is stopped at once has a snapshot, too.
+    // There is at least one slice between two messages, so that even a task that is stopped at once has a
+    // snapshot.
     while (!is_over) {
       is_over = job->advance();
       if (is_over) rank.send(over, number, sweep::to_bytes({job->row(), {}}));
@@ -156,7 +157,7 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
 
 }  // namespace
 
-/// The rank's side of its helper and of the computing process.
+/// The rank's connections to its helper and to the computing process.
 class IsolatedJobs::Processes {
  public:
   Processes(Socket helper, pid_t helper_pid) : helper_(std::move(helper)), helper_pid_(helper_pid) {
@@ -203,8 +204,8 @@ class IsolatedJobs::Processes {
   pid_t process_id_ = -1;
   std::int64_t last_job_ = 0;
 
-  /// After the helper's reply only the process holds the other end of its socket, so the rank notices its
-  /// death.
+  /// When the helper has replied, only the new process holds the other end of its socket. So the rank notices
+  /// the death of this process.
   void start_process() {
     auto [mine, theirs] = Socket::pair();
     mine.limit_halts(patience);
@@ -231,7 +232,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
   ~IsolatedJob() override {
     if (!processes_.process().is_open()) return;
     if (is_asked_ && !is_over_)
-      processes_.bury();  // it may never answer
+      processes_.bury();  // the process may never answer
     else
       processes_.process().send(drop, number_, {});
   }
@@ -257,7 +258,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
 
   Processes& processes_;
   std::int64_t number_;
-  sweep::Report last_;  ///< how it started, or the process's last message
+  sweep::Report last_;  ///< the initial report, or the last message of the process
   bool is_over_ = false;
   bool is_asked_ = false;
   bool has_answered_ = false;
@@ -270,7 +271,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
       fail(ending ? describe(*ending) : without_helper);
       return;
     }
-    if (message->job != number_) return;  // from an earlier job, which was dropped
+    if (message->job != number_) return;  // the message is from an earlier job, which was dropped
     last_ = sweep::report_from(message->bytes);
     is_over_ = message->kind == over;
     is_asked_ = false;

@@ -122,15 +122,15 @@ class Master {
 
   const Communicator& ranks_;
   Schedule& schedule_;
-  std::vector<std::int64_t> failed_tasks_;  // to be tried again
+  std::vector<std::int64_t> failed_tasks_;  // tasks to be tried again
   const JobFactory& make_job_;
   const SweepEvents& events_;
   std::chrono::milliseconds report_interval_;
   bool stopping_ = false;
   int num_dismissed_ = 0;
-  std::set<int> waiting_;                              // workers
-  std::unordered_map<std::int64_t, Running> running_;  // by task
-  std::unordered_set<std::int64_t> withdrawn_;         // tasks, until they begin again
+  std::set<int> waiting_;                              // workers that wait for a task
+  std::unordered_map<std::int64_t, Running> running_;  // running tasks, by task
+  std::unordered_set<std::int64_t> withdrawn_;         // tasks that are withdrawn until they begin again
   std::optional<Work> own_job_;
   Clock::time_point last_idle_ = Clock::now();
 
@@ -145,7 +145,7 @@ class Master {
     return running_.empty() && all_wait && !is_over();
   }
 
-  /// The time of one clock for all rounds [s].
+  /// The present time on a clock that all rounds share [s].
   static double seconds() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
   struct Beginning {
@@ -235,7 +235,7 @@ class Master {
     return served;
   }
 
-  /// Gives a worker its next task; without one it waits.
+  /// Gives a worker its next task; if there is none, the worker waits.
   void answer(int worker) {
     const std::optional<Beginning> next = take_task(worker);
     if (next)

@@ -18,7 +18,7 @@ struct Header {
   std::uint64_t num_bytes;
 };
 
-/// The one byte that carries a socket, and room for the socket.
+/// A message of one byte, which must accompany a socket that is sent, and room for the socket.
 struct Parcel {
   char byte = 0;
   iovec content{&byte, 1};
@@ -73,11 +73,12 @@ bool Socket::read_all(void* bytes, std::size_t num_bytes) const {
 
 void Socket::send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const {
   const Header header{kind, job, bytes.size()};
-  // Send in one piece: a sender stopped between two pieces would leave half a message.
+  // The message is sent in one piece, because a sender that is stopped between two pieces would leave half a
+  // message.
   std::vector<std::byte> message(sizeof header + bytes.size());
   std::memcpy(message.data(), &header, sizeof header);
   std::ranges::copy(bytes, message.begin() + sizeof header);
-  // After half a message the receiver could not parse the next one.
+  // Half a message would keep the receiver from parsing the next message, so the connection ends.
   if (!write_all(message.data(), message.size())) ::shutdown(descriptor_, SHUT_RDWR);
 }
 

@@ -28,8 +28,8 @@ class Socket {
     std::vector<std::byte> bytes;
   };
   bool is_open() const { return descriptor_.is_open(); }
-  /// From now on the other process counts as dead if a message in either direction halts for this long after
-  /// its beginning: the process may have been stopped.
+  /// From now on, the other process counts as dead if a message in either direction has begun and then halts
+  /// for this long. Such a process may have been stopped.
   void limit_halts(std::chrono::milliseconds longest) const;
   void close() { descriptor_ = Descriptor(); }
   /// A message to a process that has died is lost.
@@ -37,7 +37,8 @@ class Socket {
   /// Waits for a message, without a timeout unless limit_halts() was called. Returns nullopt if the other
   /// process has died.
   std::optional<Message> receive() const;
-  /// Whether there is something to receive, possibly the end.
+  /// Waits for something to receive, which may be the end of the connection. Returns whether there is
+  /// something.
   bool wait(std::chrono::milliseconds longest) const;
 
   /// Sends one end of another connection to the other process (SCM_RIGHTS).

@@ -43,7 +43,7 @@ std::vector<Obstacle> obstacles_along(const std::vector<store::PolygonFrame>& fr
   return obstacles;
 }
 
-/// The number of the run's checks in this time, at least one.
+/// Converts a time to a number of checks of the run, at least one.
 std::int64_t in_checks(double interval, double time_step) {
   constexpr double never = 1e15;
   return std::llround(std::clamp(interval / (DropletRun::steps_per_check * time_step), 1.0, never));
@@ -53,7 +53,7 @@ bool is_in_channel(const DropletRun& run) {
   return run.parameters().obstacles.layout == ObstacleLayout::channel;
 }
 
-/// The channel in the attributes of a file.
+/// Appends the parameters of the channel to the attributes of a file.
 void append_channel(const ChannelParameters& channel, store::Provenance& provenance) {
   for (const auto& [name, value] : {std::pair{"orifice", channel.orifice},
                                     {"wedge_angle", channel.wedge_angle},

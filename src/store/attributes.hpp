@@ -11,8 +11,8 @@
 
 #include "clog/store/run_table.hpp"
 
-/// Attributes of a file's root. One of them has the checksums of all others, and of the table. Texts that
-/// are too long for one attribute are stored in several.
+/// Attributes of a file's root. One of them has the checksums of all others, and of the table. A text that is
+/// too long for one attribute is stored in several attributes.
 namespace clog::store {
 
 using NamedCheckSum = std::pair<std::string, std::uint32_t>;
@@ -26,8 +26,8 @@ std::string text_as_written(hid_t file, const std::string& name,
 /// An attribute's text; empty if it is missing or damaged.
 std::string intact_text(hid_t file, const std::string& name);
 
-/// Appends the intact attributes to `whole`, and a sentence to `damage` for each damaged one, or for a table
-/// that differs.
+/// Appends the intact attributes to `whole`. Appends a sentence to `damage` for each damaged attribute, and
+/// one for the table if it differs.
 void compare_attributes(hid_t file, const NamedCheckSum& table, Provenance& whole,
                         std::vector<std::string>& damage);
 

@@ -7,8 +7,8 @@
 #include "clog/store/run_table.hpp"
 #include "hdf5.hpp"
 
-/// User-supplied circles in the file of a sweep: the group /obstacles has a table x, y, radius for each file,
-/// named by their checksum.
+/// User-supplied circles in the file of a sweep. For each file of circles, the group /obstacles has a table
+/// with the columns x, y and radius. The name of the table is the checksum of the circles.
 namespace clog::store {
 
 /// @throws LibraryError

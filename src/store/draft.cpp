@@ -40,8 +40,9 @@ void remove_stale_drafts(const OutputPath& place, std::string_view mark) {
 }
 
 Draft::Draft(OutputPath place, std::string_view mark) : place_(std::move(place)), draft_(place_) {
-  const mode_t mode =
-      place_.exists() ? 0600 : 0666;  // nobody may read it before it has its target's access rights
+  const mode_t mode = place_.exists()
+                          ? 0600
+                          : 0666;  // nobody may read the draft before it has the access rights of its target
   for (int number = 1;; ++number) {
     draft_ = draft_place(place_, number);
     remove_if_stale(draft_, mark);

@@ -18,8 +18,8 @@ namespace clog::store {
 void remove_stale_drafts(const OutputPath& place, std::string_view mark);
 
 /// An incomplete file beside its target, under an unused name. It is locked until it is closed or unlock() is
-/// called. An unlocked draft of ours was left behind by a killed process; the next one that makes a draft
-/// removes it. Other files with such a name stay.
+/// called. An unlocked draft with our mark was left behind by a killed process; the next process that makes a
+/// draft removes it. Other files with such a name stay.
 class Draft {
  public:
   /// @param mark  see remove_stale_drafts(); written first @throws Error if no file can be made there
@@ -38,8 +38,9 @@ class Draft {
   /// if somebody else has locked them.
   void unlock();
   /// Saves the draft to disk and renames it to the target, with the mode, owner, group and access list of the
-  /// file with this OutputPath::stamp(), which it replaces. Returns the stamp of the published file, which
-  /// somebody may have replaced since; nullopt if a different file is there, which stays. @throws Error
+  /// file with this OutputPath::stamp(), which it replaces. Returns the stamp of the published file, even if
+  /// somebody has replaced the file since. Returns nullopt if a file with another stamp is there; this file
+  /// stays. @throws Error
   std::optional<std::string> publish(const std::string& stamp);
   /// The open file, which the caller owns from now on.
   Descriptor take_descriptor() { return std::move(file_); }

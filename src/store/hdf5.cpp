@@ -27,7 +27,7 @@ void prepare_library() {
     setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
     return true;
   }();
-  if (is_prepared) H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // of this thread
+  if (is_prepared) H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the error stack of this thread
 }
 
 void require_memory_of_file(const std::string& purpose, std::size_t size, int copies) {

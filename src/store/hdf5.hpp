@@ -45,9 +45,10 @@ using Attribute = Handle<H5Aclose>;
 using PropertyList = Handle<H5Pclose>;
 using Group = Handle<H5Gclose>;
 
-/// Call this before the first use of the library. It turns off the library's clean-up at exit, which crashes
-/// after a failed write; its error stack on the screen (we print one line of our own); and its file locks (a
-/// reader with the file open must not make a write fail; locks also fail on many cluster file systems).
+/// Call this before the first use of the library. It turns off three functions of the library. The clean-up
+/// at exit crashes after a failed write. The error stack on the screen is not needed, because we print one
+/// line of our own. File locks would make a write fail while a reader has the file open, and they also fail
+/// on many cluster file systems.
 void prepare_library();
 
 /// Checks the memory for a file that the library reads or writes in memory: the library may crash without it.
@@ -56,7 +57,7 @@ void prepare_library();
 /// @throws Error if there is not enough
 void require_memory_of_file(const std::string& purpose, std::size_t size, int copies = 2);
 
-/// The library failed in memory.
+/// A call of the library failed, on data in memory.
 class LibraryError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -79,7 +80,7 @@ Space space_of(std::initializer_list<hsize_t> shape);
 /// Chunks of this many rows, with checksums by which other programs detect damage.
 PropertyList checked_chunks(hsize_t num_rows);
 /// Creates and fills a dataset; attributes can be added to the result. @throws LibraryError
-/// @param data  nullptr: nothing yet
+/// @param data  nullptr: the data are written later
 Dataset write_dataset(hid_t parent, const std::string& name, hid_t type, hid_t space, const void* data,
                       hid_t properties = H5P_DEFAULT);
 /// Number of elements of a list; nullopt for a dataset of another shape.

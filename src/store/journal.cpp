@@ -26,18 +26,18 @@ std::uint32_t check_sum_of_columns() {
   return check_sum(list);
 }
 
-/// The header of the file: other columns mean another version.
+/// The header of the file. A journal with other columns is of another version.
 struct FileHeader {
   char kind[16] = "clogsweep jrnl2";
   std::uint64_t columns = check_sum_of_columns();
   bool operator==(const FileHeader&) const = default;
 };
 struct RecordHeader {
-  std::uint64_t size;  ///< of the row and the snapshot
+  std::uint64_t size;  ///< size of the row and the snapshot
   std::uint32_t check;
   std::uint32_t magic;
 };
-constexpr std::string_view journal_mark = "clogsweep jrnl";  // of every version
+constexpr std::string_view journal_mark = "clogsweep jrnl";  // the beginning of a journal of any version
 constexpr std::uint32_t record_magic = 0x636c6f67;
 
 template <class T>
@@ -85,7 +85,7 @@ Journal::Contents parse(std::span<const std::byte> bytes) {
                           check_sum(bytes.subspan(begin, header->size)) == header->check;
     if (!is_whole) {
       if (header) ++num_passed;
-      ++place;  // do not skip by a size that may be damaged: search byte by byte
+      ++place;  // the search goes on byte by byte, because the size in the header may be damaged
       continue;
     }
     if (place > end) contents.num_unreadable += std::max<std::int64_t>(1, num_passed);
@@ -173,7 +173,8 @@ void Journal::begin() {
     write_at(file_, bytes_of(FileHeader()), 0, place_.path());
     contents_.num_bytes = sizeof(FileHeader);
     check(sync(file_), FileAction::write, place_.path());
-    place_.sync_folder();  // the table's next publication in the same folder reports a failure
+    place_.sync_folder();  // a failure is reported by the next publication of the table, which is in the same
+                           // folder
   }
   if (ftruncate(file_, static_cast<off_t>(contents_.num_bytes)) != 0)
     throw FileError(FileAction::write, place_.path(), last_error());
@@ -238,7 +239,7 @@ void Journal::rewrite(std::span<const Entry* const> entries) {
 void Journal::prepare(std::span<const Entry* const> entries, std::uint64_t begin) {
   check_place();
   next_ = std::make_unique<Draft>(place_, journal_mark);
-  // Locking a draft is optional; here it must succeed before the rename.
+  // A draft need not be locked, but this one will be the journal, so it must be locked before the rename.
   if (!try_lock(next_->descriptor(), place_.path())) refuse_replaced();
   next_->write(bytes_of(FileHeader()));
   for (const Entry* entry : entries) next_->write(record_of(entry->row, entry->snapshot));
@@ -267,7 +268,7 @@ std::uint64_t Journal::copy_additions() {
 void Journal::replace() {
   check_place();
   copy_additions();
-  // The table in the same folder reports whether the folder can be synchronised.
+  // Whether the folder can be synchronised is reported when the table in this folder is published.
   if (!next_->publish(place_.stamp())) refuse_replaced();
   file_ = next_->take_descriptor();
   contents_.num_bytes = num_rewritten_bytes_ = next_->size();
@@ -278,7 +279,8 @@ void Journal::replace() {
 
 std::error_code Journal::remove() {
   const std::error_code reason = is_there() ? place_.remove() : std::error_code();
-  place_.sync_folder();  // if a power cut restores the file, everything in it is in the table, too
+  place_.sync_folder();  // a power cut may restore the file, which does no harm, because the table contains
+                         // all of its results
   close();
   return reason;
 }

@@ -14,7 +14,7 @@ namespace clog::store {
 /// text is its checksum, to which rows refer.
 /// @throws LibraryError
 void write_laboratories(hid_t file, const std::set<std::string>& check_sums);
-/// Adds the texts; appends a sentence to the damage for each damaged one.
+/// Adds the texts to those that this process knows. Appends a sentence to `damage` for each damaged text.
 void read_laboratories(hid_t file, std::vector<std::string>& damage);
 /// Files before format 10 have one description for all rows, in an attribute.
 void adopt_laboratory_of_all(SweepFile& file);

@@ -159,7 +159,7 @@ std::error_code OutputPath::replace(const std::string& stamp, const OutputPath& 
     }
     if (is_unsupported(reason)) return this->stamp() == stamp ? other.rename_to(*this, 0) : occupied;
     if (reason != std::errc::no_such_file_or_directory)
-      return reason;  // otherwise somebody has removed the file
+      return reason;  // if no file was there, somebody has removed it, which is no error
   }
   const std::error_code reason = other.rename_to(*this, RENAME_NOREPLACE);
   if (!is_unsupported(reason)) return reason;
@@ -184,7 +184,7 @@ void OutputPath::lend_access_to(int descriptor) const {
   const std::vector<char> list = access_list_of(open(O_RDONLY | O_NONBLOCK));
   constexpr mode_t permissions = 0777;
   mode_t mode = there->st_mode & permissions;
-  // A new group gets only the rights of others.
+  // If the file could not get this group, the group that it has gets only the rights of others.
   if (!has_group) mode &= ~static_cast<mode_t>(S_IRWXG) | ((mode & S_IRWXO) << 3);
   fremovexattr(descriptor, access_list);  // the folder may have set one
   fchmod(descriptor, mode);

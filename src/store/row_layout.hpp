@@ -32,7 +32,7 @@ class RowLayout {
   explicit RowLayout(std::vector<const sweep::Column*> columns);
 
   static constexpr std::size_t absent = static_cast<std::size_t>(-1);
-  std::vector<const sweep::Column*> columns_;  // of the file, in its order
+  std::vector<const sweep::Column*> columns_;  // columns of the file, in the file's order
   std::vector<std::size_t> places_;            // place of each of sweep::columns() in a packed row, or absent
   std::size_t size_ = 0;
   Type type_;

@@ -37,7 +37,7 @@ constexpr const char* sweep_kind = "clogsweep sweep";
 constexpr hsize_t rows_per_chunk = 64;
 constexpr std::size_t rows_per_block = 1024;  // rows that are copied at once
 
-using CheckSums = std::vector<std::uint32_t>;  // of the rows
+using CheckSums = std::vector<std::uint32_t>;  // checksums of the rows
 
 /// Calls visit() with the first row and the number of rows of each block.
 template <class Visit>
@@ -89,7 +89,7 @@ CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& labor
 /// columns, from a table of an older program.
 constexpr const char* num_columns_name = "num_columns";
 
-/// The entry of the list of checksums for all rows together.
+/// The entry for all rows together, in the list of checksums.
 NamedCheckSum joint_check_sum(const CheckSums& sums) {
   return {fmt::format("{} rows", sums.size()), check_sum(std::as_bytes(std::span(sums)))};
 }
@@ -155,7 +155,7 @@ void require_sweep(hid_t file, const std::string& path) {
   require_readable_version(file, path);
 }
 
-/// Why a table is unreadable.
+/// The reason why a table is unreadable.
 class Damage : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -173,7 +173,7 @@ std::size_t num_rows_of(hid_t dataset, std::size_t bytes_each) {
   return *number;
 }
 
-/// Our checksums identify damaged rows, so the library should return all data.
+/// Turns off the library's check: our checksums identify damaged rows, so the library should return all data.
 PropertyList without_library_check() {
   PropertyList properties(H5Pcreate(H5P_DATASET_XFER));
   H5Pset_edc_check(properties, H5Z_DISABLE_EDC);
@@ -194,7 +194,8 @@ CheckSums read_check_sums(hid_t file, std::size_t num_rows) {
   return sums;
 }
 
-/// Zero if the attribute is missing, as in files of format 9, or damaged.
+/// Number of columns that the writer's attribute gives; zero if it is missing, as in files of format 9, or
+/// damaged.
 std::size_t num_columns_written(hid_t file) {
   const std::string text = intact_text(file, num_columns_name);
   std::size_t number = 0;
@@ -269,7 +270,8 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
                           damage.what()));
 }
 
-/// Returns the seal of the file, which this process can then read safely.
+/// Returns the seal of the file. Unless the seal is whole, first tries to read the file in a child process;
+/// if that succeeds, this process can read it safely.
 Seal try_unless_whole(std::vector<std::byte>& image, const std::string& path) {
   const Seal seal = look_at_seal(image);
   if (seal != Seal::whole) try_in_child(image, path, [&] { examine(image, seal, path); });

@@ -7,15 +7,15 @@
 
 namespace clog::store {
 
-/// Whether a file is as it was written, bit for bit.
+/// Whether a file has the bits with which it was written.
 enum class Seal {
   whole,    ///< yes
   broken,   ///< no
-  missing,  ///< not known: a copy made by another program, or one that lost its end
+  missing,  ///< not known: the file is a copy made by another program, or has lost its end
 };
 
 /// A line at the end of a file, after the part that HDF5 reads: the size and the checksum of all before it.
-/// Other programs ignore it; those that write to the file remove it.
+/// Programs that only read the file ignore this line; programs that write to the file remove it.
 std::string seal_of(std::span<const std::byte> content);
 
 inline constexpr std::size_t seal_size = 64;

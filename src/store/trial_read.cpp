@@ -19,7 +19,7 @@
 namespace clog::store {
 namespace {
 
-/// Far more than a read takes [s of CPU time]; an endless loop exceeds it.
+/// Limit of CPU time [s], which is far more than a read takes; only an endless loop exceeds it.
 rlim_t time_limit(std::size_t num_bytes) {
   constexpr std::size_t least = 10, bytes_per_second = 50'000'000;
   return least + num_bytes / bytes_per_second;

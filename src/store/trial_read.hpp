@@ -7,9 +7,9 @@
 
 namespace clog::store {
 
-/// First reads a file without a valid seal in a child process, because HDF5 may crash or spin on damaged
-/// metadata. Keeps the outcome for the last bytes, so that the same bytes are tried only once. Ignores errors
-/// that `read` throws, because the actual read throws them again.
+/// Reads a file that has no valid seal first in a child process, because HDF5 may crash or loop for ever on
+/// damaged metadata. Remembers the outcome for the last file, so that the same bytes are tried only once.
+/// Ignores errors that `read` throws, because the actual read throws them again.
 /// @param image  all bytes of the file, which `read` reads
 /// @throws Error naming the path if the child process dies
 void try_in_child(std::span<const std::byte> image, const std::string& path,

@@ -25,7 +25,7 @@ std::size_t longest(const std::vector<std::string>& words) {
   return size;
 }
 
-// Conversion of a member of RunRow to and from a value, by its type.
+// These functions convert a member of RunRow to a value and back, by the type of the member.
 
 Value outside(double value) { return is_known(value) ? Value(value) : Value(); }
 Value outside(std::int64_t value) { return value; }
@@ -71,8 +71,8 @@ constexpr ValueKind kind_of() {
   return ValueKind::word;
 }
 
-/// A column that is a member of the row, or a part of one.
-/// @param place  from a row, const or not, to a reference to it
+/// A column that is a member of the row, or a part of a member.
+/// @param place  a function from a row (const or not) to a reference to the member or part
 template <class Place>
 Column column_at(const std::string& name, Place place, ColumnRole role, const char* unit,
                  const std::string& meaning, std::size_t size = number_size) {
@@ -115,7 +115,7 @@ Value value_of(const Parameter& parameter, const RunRow& row) {
   return row.unknown_parameters.contains(&parameter) ? Value() : parameter.get(row.parameters);
 }
 
-/// An empty value is unknown: the file is older than the parameter.
+/// An unset value means that the file is older than the parameter.
 void set_parameter(const Parameter& parameter, RunRow& row, const Value& value) {
   if (!parameter.applies_to(row.parameters)) return;
   row.unknown_parameters.erase(&parameter);
@@ -125,7 +125,7 @@ void set_parameter(const Parameter& parameter, RunRow& row, const Value& value) 
     parameter.set(row.parameters, value);
 }
 
-/// Digits of a checksum, which represents a file or text.
+/// Number of digits of a checksum. In a column, the checksum stands for the content of a file or text.
 constexpr std::size_t check_sum_size = 16;
 
 Column parameter_column(const Parameter& parameter) {

@@ -15,8 +15,9 @@ namespace {
 constexpr const char* point_keys_line = "point-keys";
 constexpr const char* point_line = "point";
 constexpr const char* shard_line = "shard";
-constexpr const char* usual_text = "*";  // of a key for which a point has no text
-// After the config follow, for each file, its name with the number of its circles, then one line per circle.
+constexpr const char* usual_text = "*";  // stands for the text of a key in a point that has none
+// After the config, there is for each file a line with its name and number of circles, then a line for each
+// circle.
 constexpr const char* file_mark = "#circles ";
 
 /// The text with blanks escaped, because they separate texts.
@@ -59,7 +60,7 @@ std::string escaped(const std::string& text) {
 }
 
 std::string unescaped(const std::string& text) {
-  constexpr std::size_t length = 4;  // of \x0a
+  constexpr std::size_t length = 4;  // length of an escape such as \x0a
   std::string all;
   for (std::size_t i = 0; i < text.size(); ++i) {
     unsigned char byte = 0;

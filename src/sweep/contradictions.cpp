@@ -9,7 +9,7 @@
 namespace clog::sweep {
 namespace {
 
-/// Whether the key is given and differs from its automatic text.
+/// Whether the key is given with another text than its default.
 bool is_changed(const Settings& settings, const std::string& key) {
   return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
 }

@@ -73,7 +73,7 @@ std::string key_of_symbol(std::string_view symbol) {
   };
   for (const Parameter& parameter : parameter_schema())
     if (!plain.empty() && plain_symbol(parameter.symbol) == plain) return parameter.key;
-  // One letter is too little for a suggestion.
+  // Capitals do not matter, except in words of one letter, which are too short for a suggestion.
   for (const Parameter& parameter : parameter_schema())
     if (plain.size() > 1 && lower(plain_symbol(parameter.symbol)) == lower(plain)) return parameter.key;
   return "";
@@ -115,7 +115,8 @@ std::vector<std::string> meant_names(std::string_view word, const std::vector<st
   std::vector<std::string> all = with_part(word, names);
   const std::string near = did_you_mean(word, names);
   std::erase(all, near);
-  // A word without its last letters, such as a plural's s, precedes words that only contain it.
+  // A name that only adds letters at the end of the word, such as a plural's s, precedes names that contain
+  // the word.
   if (!near.empty() && (all.empty() || near.starts_with(word))) all.insert(all.begin(), near);
   if (all.size() > most_named) all.resize(most_named);
   return all;

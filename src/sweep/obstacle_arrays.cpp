@@ -27,7 +27,7 @@ constexpr double fewest_shared = 1e5;
 constexpr std::chrono::milliseconds pause{5};
 constexpr std::chrono::milliseconds pause_between_looks{500};
 
-/// Upper bound of the number of obstacles, from the largest part of the area that discs cover.
+/// Upper bound of the number of obstacles, from the largest fraction of an area that discs can cover.
 double num_places(const ObstacleParameters& parameters) {
   const double per_side = parameters.box / (parameters.smallest_diameter() + parameters.gap);
   return parameters.boxes * per_side * per_side;
@@ -42,7 +42,7 @@ std::optional<std::string> shared_name(const RunParameters& run) {
                      executable.st_mtim.tv_nsec, array_key(run));
 }
 
-/// The header before the obstacles and the starts of the cells.
+/// The header of a shared array; after it come the obstacles and the starts of the cells.
 struct Header {
   Period period;
   double largest_radius;
@@ -84,8 +84,8 @@ ObstacleArray ObstacleArrays::build(const RunParameters& run) {
 }
 
 std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParameters& parameters) {
-  // The time for one place is half a microsecond times the number of places within reach of the largest
-  // obstacle, and up to twice as long.
+  // For every place of an obstacle, building takes 0.5 to 1 microseconds times the number of places within
+  // reach of the largest obstacle.
   constexpr double ten_builds = 10 * 1e-6;
   const double reach =
       (parameters.largest_diameter() + parameters.gap) / (parameters.smallest_diameter() + parameters.gap);
@@ -132,7 +132,8 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
 std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const RunParameters& run) {
   const Scene& scene = scene_of(run);
   if (scene.walls_from == WallsFrom::droplet) return std::make_shared<ObstacleArray>(scene.walls(run));
-  // In a device with side walls the droplet's reach limits where it may start, and so shifts the walls, too.
+  // In a device with side walls, the droplet's reach limits where the droplet may start. This place shifts
+  // the walls, so the reach belongs to the key.
   std::string key = array_key(run);
   if (scene.walls_from == WallsFrom::circles) key += shortest(model_of(run).reach(run));
   if (key != key_) {

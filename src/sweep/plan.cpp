@@ -23,8 +23,8 @@ namespace {
 
 constexpr std::int64_t largest_sweep = 100'000'000;
 
-/// Returns what a check of one branch of the settings returns. If the check refuses one value of a list like
-/// 0,3, the message asks whether 0.3 was meant.
+/// Calls check() for one branch of the settings, and returns its result. If the check refuses one value of a
+/// list like 0,3, the message asks whether 0.3 was meant.
 /// @param where  beginning of the message
 template <class Check>
 auto checked(const Settings& branch, const std::string& where, const Check& check) try {
@@ -49,8 +49,8 @@ std::vector<std::uint32_t> seeds_of(const Settings& settings) {
   return seeds;
 }
 
-/// A shard's seeds: every n-th, with an offset that differs between parameter sets, so that all shards have
-/// equal work.
+/// The seeds of a shard: every n-th seed. The first one differs between parameter sets, so that all shards
+/// have equal work.
 std::vector<std::uint32_t> part_of(const std::vector<std::uint32_t>& seeds, std::size_t share,
                                    const Shard& shard) {
   const auto of = static_cast<std::size_t>(shard.of);
@@ -70,7 +70,7 @@ bool is_each_possible(const RunParameters& run) try {
 
 }  // namespace
 
-/// Fills a plan, batch by batch.
+/// Fills a plan, one branch of the settings after the other.
 class Plan::Builder {
  public:
   explicit Builder(Plan& plan) : plan_(plan) {}
@@ -86,8 +86,8 @@ class Plan::Builder {
  private:
   Plan& plan_;
   std::unordered_map<std::string, std::int64_t> known_;  // groups, by the identity of their runs
-  std::vector<std::string> names_;                       // of products, for messages; empty for lists
-  std::int64_t num_runs_ = 0;                            // of all shards
+  std::vector<std::string> names_;                       // names of products, for messages; empty for lists
+  std::int64_t num_runs_ = 0;                            // number of runs of all shards
   Seeds last_seeds_;                                     // shared by branches with the same seeds
 
   void add_branch(const Settings& branch, const std::string& name) {
@@ -118,7 +118,7 @@ class Plan::Builder {
         own[axis] = values;
   }
 
-  /// Refuses all angles at once; resolve() refuses a single one.
+  /// Refuses all angles that do not fit the box, in one message; resolve() would name only the first one.
   void refuse_misfitting_angles(std::size_t product, std::int64_t num_places,
                                 const std::string& where) const {
     std::vector<std::string> angles;
@@ -141,8 +141,7 @@ class Plan::Builder {
                       where, joined(angles, ","), largest_angle_error, box));
   }
 
-  /// The number of groups. This number excludes the seeds, which are counted only to check the largest number
-  /// of runs.
+  /// The number of groups. It excludes the seeds, which are counted only to check the largest number of runs.
   std::int64_t size_of_product(const Settings& branch) {
     auto num_places = std::int64_t{1};
     const std::int64_t num_seeds = std::ssize(*last_seeds_);

@@ -297,7 +297,8 @@ std::string result_fault(const RunRow& row) {
 }  // namespace
 
 double farthest_way(const RunRow& row) {
-  // Springs along the interface have no energy; an additional tenth covers their little work.
+  // The energy at the release excludes springs along the interface, which have no energy; the margin covers
+  // their work.
   constexpr double margin = 1.1;
   const double weight = units::droplet_mass * units::gravity;
   const RunParameters& run = row.parameters;

@@ -68,7 +68,7 @@ std::string untested_angle(const DpParameters& dp) {
 /// This was observed with obstacles whose diameter was at most the length of an edge. It is more frequent
 /// among more obstacles.
 std::string untested_diameter(const RunParameters& run) {
-  constexpr double thinnest = 2;  // in units of the edge length, with a margin
+  constexpr double thinnest = 2;  // diameter in units of the edge length, with a margin
   if (scene_of(run).walls_from == WallsFrom::droplet) return "";  // there are no obstacles
   const double edge = units::regular_edge_length(*run.dp.vertices);
   if (!(run.obstacles.smallest_diameter() < thinnest * edge)) return "";
@@ -117,8 +117,8 @@ bool has_met_repetition(const RunRow& row) { return row.distance > repetition_le
 
 std::string possible_repetition(const Plan& plan) {
   std::int64_t num_groups = 0;
-  double farthest = 0, shortest_length = 0, most_boxes = 0;  // of the set that needs most boxes
-  bool is_of_user = false;  // whether its circles are user-supplied, so that boxes do not multiply them
+  double farthest = 0, shortest_length = 0, most_boxes = 0;  // numbers of the set that needs most boxes
+  bool is_of_user = false;  // whether the set's circles are user-supplied, so that boxes do not multiply them
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunRow row = describe(plan.group(group));
     const RunParameters& run = row.parameters;

@@ -40,9 +40,10 @@ std::string unit_in_words(const Key& key) {
   return unit.empty() ? "a pure number" : "in " + unit;
 }
 
-/// The list of a key, of which each value must be possible in some run. @throws Error that names the key
+/// Reads the list of a key, and checks that each of its values is possible in some run. @throws Error that
+/// names the key
 std::vector<std::string> values_of(const Key& key, const std::string& text) {
-  constexpr std::size_t longest_text = 3000;  // in a config
+  constexpr std::size_t longest_text = 3000;  // longest list that a config can store
   try {
     if (text.size() > longest_text)
       throw Error("the list is too long to be stored; ranges like 1..15000 are short");
@@ -114,7 +115,7 @@ const Settings::Entries& Settings::entries() const {
 }
 
 /// The given texts, those that follow from them for other keys, and the defaults. User-supplied circles and
-/// keys of a channel set the layout; the preset sets its keys; without randomness there is one seed.
+/// keys of a channel set the layout. The preset sets its keys. If nothing is random, there is one seed.
 Settings::Entries Settings::resolved() const {
   static const Entries defaults = [] {
     Entries entries;
@@ -207,7 +208,7 @@ std::set<std::string> Settings::keys_that_follow() const {
       if (!branch.given_[i] && !given_[i] && now[i] != entries()[i] && now[i]->text != entries()[i]->text)
         following.insert(keys()[i].name);
   });
-  if (following.contains(layout_key))  // which a channel's keys would set
+  if (following.contains(layout_key))  // the keys of a channel would set the layout
     for (const Key& key : keys())
       if (is_of_channel(key) && !is_given(key.name)) following.insert(key.name);
   return following;

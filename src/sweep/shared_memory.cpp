@@ -44,8 +44,9 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
   return true;
 }
 
-/// Calls visit() for files that processes of this user have open, found in /proc, until it returns true.
-/// @param link  where the entry of such a file leads
+/// Calls visit() for files that processes of this user have open, until it returns true. Finds these files in
+/// /proc.
+/// @param link  target of the links in /proc that lead to such a file
 void visit_open_files(const fs::path& link, const std::function<bool(const fs::path&)>& visit) {
   // An unreadable process belongs to another user, or has just ended.
   std::error_code error;

@@ -10,15 +10,16 @@
 
 namespace clog::sweep {
 
-/// Memory that processes of one user on one machine share, found by its name. It is a memfd, sealed when
-/// complete and visible in /proc: no file is made, and the memory is freed with the last process that holds
-/// it, however this process ends.
+/// Memory that processes of one user on one machine share, found by its name. It is a memfd, which is sealed
+/// when complete, and which other processes find in /proc. So no file is made, and the memory is freed when
+/// the last process that holds it ends, however it ends.
 class SharedMemory {
  public:
-  /// Memory that a process, perhaps this one, holds under the name; nullptr if there is none, or it is not
+  /// Memory that this or another process holds under the name; nullptr if there is none, or if it is not
   /// accessible.
   static std::shared_ptr<const SharedMemory> find(const std::string& name);
-  /// Publishes consecutive pieces as one memory; nullptr if the system has no such memory, or not enough.
+  /// Publishes consecutive pieces as one memory. Returns nullptr if the system has no memfd, or not enough
+  /// memory.
   /// @param name  up to 200 characters
   static std::shared_ptr<const SharedMemory> publish(const std::string& name,
                                                      std::span<const std::span<const std::byte>> pieces);
@@ -37,7 +38,8 @@ class SharedMemory {
   static std::shared_ptr<const SharedMemory> map(Descriptor file);
 };
 
-/// A lock that at most one process of this user on this machine holds at a time. It ends with the process.
+/// A lock that at most one process of this user on this machine holds at a time. The end of the process
+/// releases it.
 class NameLock {
  public:
   enum class State { held, held_by_another, impossible };
@@ -47,8 +49,8 @@ class NameLock {
 
   State state() const { return state_; }
   /// Whether a process of another user holds the lock. Any process can take the address of a lock, and the
-  /// processes that need the lock would then wait in vain. Slow, because it inspects all processes of this
-  /// user.
+  /// processes that need the lock would then wait in vain. This call is slow, because it inspects all
+  /// processes of this user.
   bool is_taken_by_another_user() const;
 
  private:

@@ -25,12 +25,12 @@ class CommandLine {
   /// `clogsweep merge`
   CommandLine(std::string program, std::string usage, SweepKeys sweep_keys = SweepKeys::none);
 
-  /// Declares an option without a value; like all declarations, call it before parse().
+  /// Declares an option without a value. All declarations must precede parse().
   CommandLine& flag(const char* name, const char* help);
   /// Declares an option with a value. @param otherwise  the default value; nullptr: none
   CommandLine& option(const char* name, const char* help, const char* otherwise = nullptr);
-  /// Declares an option whose value may also be given as a word without dashes. The first such word is the
-  /// value of the option that was declared first, the second word that of the next one, and so on.
+  /// Declares an option whose value may also be given as a word without dashes. Such words are the values of
+  /// these options in the order in which the options were declared.
   CommandLine& word(const char* name, const char* help);
   /// Declares an option for all further words without dashes.
   CommandLine& words(const char* name, const char* help);
@@ -57,9 +57,9 @@ class CommandLine {
   double get_share(const std::string& option) const;
   /// @throws Error if the option's value is not a number above zero
   double get_positive(const std::string& option) const;
-  /// The positive numbers of an option that takes a list. The list has the forms that the list of a key may
-  /// have: `0.1,0.2` or `log(0.1,1,5)`. Empty if the option was not given. @throws Error if a number is not
-  /// above zero
+  /// The positive numbers of an option that takes a list. The list is written like the list of a key:
+  /// `0.1,0.2` or `log(0.1,1,5)`. Empty if the option was not given. @throws Error if a number is not above
+  /// zero
   std::vector<double> get_positives(const std::string& option) const;
   /// The option's value, or its default. @throws Error if it is not a whole number in the range
   std::int64_t get_whole(const std::string& option, std::int64_t otherwise, std::int64_t least,
@@ -67,8 +67,8 @@ class CommandLine {
   const std::string& program() const { return program_; }
   const sweep::Settings& settings() const { return settings_; }
   sweep::Settings& settings() { return settings_; }
-  /// The given texts that contain numbers with units, by key. settings() does not contain these texts,
-  /// because only the laboratory of --lab can convert them.
+  /// The given texts with numbers that have units, by key. settings() does not contain these texts, because
+  /// only the laboratory of --lab can convert them.
   const std::map<std::string, std::string>& texts_with_units() const { return texts_with_units_; }
   /// The command as it was given, in one line.
   const std::string& text() const { return text_; }
@@ -94,7 +94,7 @@ class CommandLine {
 
   double number(const std::string& option) const;
   [[noreturn]] void refuse_missing(const std::string& option) const;
-  /// Whether this is an option whose value is the next word.
+  /// Whether the word is an option whose value is the word after it.
   bool awaits_value(const std::string& word) const;
   void refuse_misspelt_command(const std::string& word) const;
   [[noreturn]] void refuse_surplus_words() const;

@@ -8,15 +8,17 @@
 
 namespace clog::cli {
 
-/// Reads circles from a text file, one per line: x, y and the diameter [sigma], or the columns that the first
-/// line names; cells are separated by commas, semicolons, tabs or blanks. A circle without a diameter gets
-/// obstacle-diameter. Lines starting with # are skipped, except `# units=um droplet=200um`, which gives the
-/// units of the following lengths. In a file with this comment, every circle needs a diameter.
+/// Reads circles from a text file with one circle per line. The columns are x, y and the diameter [sigma],
+/// unless the first line names the columns. Commas, semicolons, tabs or blanks separate the cells. A circle
+/// without a diameter gets obstacle-diameter. Lines starting with # are skipped, except `# units=um
+/// droplet=200um`, which gives the unit of the lengths that follow and the diameter of the droplet. In a file
+/// with this comment, every circle needs a diameter.
 /// @param name  name of the file, followed by @0.8mm to scale the circles to a droplet of 0.8 mm
 /// @throws Error naming the line
 OwnCircles read_circles(const std::string& name);
 
-/// Writes circles in the form that read_circles() reads, with digits that read back exactly. @throws Error
+/// Writes circles in the form that read_circles() reads, with enough digits to read them back exactly.
+/// @throws Error
 void write_obstacles(const std::string& path, std::span<const Obstacle> obstacles);
 
 }  // namespace clog::cli

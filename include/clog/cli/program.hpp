@@ -11,8 +11,8 @@
 
 namespace clog::cli {
 
-/// Runs a program's body; an Error, or output that cannot be written, becomes one line on the error stream
-/// and exit code 2.
+/// Runs a program's body. If the body throws an Error, or its output cannot be written, prints one line on
+/// the error stream and returns exit code 2.
 int run_program(const std::string& program, const std::function<int()>& body);
 
 /// A command of a program, such as `clogsweep merge`.

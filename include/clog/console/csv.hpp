@@ -24,9 +24,9 @@ std::optional<double> metres_of(const std::string& unit);
 
 /// A line of a table.
 struct TableLine {
-  int number;                      ///< from 1
+  int number;                      ///< number of the line, from 1
   std::vector<std::string> cells;  ///< without quotes and blanks around them; empty cells are kept
-  char separator;                  ///< between the cells; a blank stands for one or more blanks
+  char separator;                  ///< the separator between cells; a blank stands for one or more blanks
 };
 
 /// Reads a table line by line. Supports files of spreadsheets, pandas, R and ImageJ: the first line shows

@@ -16,14 +16,14 @@ struct RoundedInterval {
   std::string value, lower, upper;
 };
 /// A value and the limits of its interval, all three with the same number of figures. This number is at least
-/// three and gives the narrower side of the interval two figures.
+/// three, and large enough to show the narrower side of the interval with two figures.
 RoundedInterval with_interval(double value, double lower, double upper);
 
 struct RoundedError {
   std::string value, error;
 };
-/// The error with two figures, and the value to the same digit, but with at most eight figures. Without an
-/// error, the value with three figures.
+/// The error with two figures, and the value rounded to the same digit, but with at most eight figures.
+/// Without an error, the value has three figures.
 RoundedError with_error(double value, double error);
 
 }  // namespace clog::console

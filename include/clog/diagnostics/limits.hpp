@@ -8,18 +8,18 @@ namespace clog::diagnostics {
 // through control groups (Linux, Documentation/admin-guide/cgroup-v2.rst): the tightest limit of the
 // process's own group and all enclosing groups counts. Limits of version 1 are ignored.
 
-/// Cores that the control groups grant to all of their processes together: the processor time that they may
-/// use per period, divided by the period; 0: no limit.
-/// @param root  holds proc and sys
+/// Number of cores that the control groups grant to all of their processes together: the processor time that
+/// these may use per period, divided by the period. 0 if there is no limit.
+/// @param root  folder that contains proc and sys
 double granted_cores(const std::filesystem::path& root = "/");
 
 /// Memory still available [bytes], on the host and in the control groups; 0 if unknown. Inactive page cache
 /// counts as available, since the kernel evicts it first.
-/// @param root  holds proc and sys
+/// @param root  folder that contains proc and sys
 double available_memory(const std::filesystem::path& root = "/");
 
-/// Raises the limit on open files if it is low, as far as allowed. MPI needs about twenty, and crashes or
-/// prints messages of its own with fewer. @throws Error if it stays too low
+/// Raises the limit on open files as far as allowed, if the limit is low. MPI needs about twenty open files;
+/// with fewer it crashes or prints messages of its own. @throws Error if it stays too low
 void require_open_files();
 
 }  // namespace clog::diagnostics

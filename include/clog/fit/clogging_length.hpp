@@ -12,7 +12,7 @@ struct Observation {
   bool clogged;
 };
 
-/// Whether all distances are finite. If one is not, results are NaN.
+/// Whether all distances are finite. If one of them is not, results are NaN.
 bool all_finite(std::span<const Observation> runs);
 
 struct Interval {
@@ -33,22 +33,22 @@ double normal_deviate(double confidence);
 struct CloggingLength {
   int num_runs = 0;
   int num_clogs = 0;
-  double total_distance = 0;  ///< S, over all runs, clogged or not [sigma]
+  double total_distance = 0;  ///< S, sum over all runs, clogged or not [sigma]
   double length = 0;          ///< NaN without clogs [sigma]
-  Interval interval{};        ///< by chi-squared; without clogs a lower bound and infinity [sigma]
-  Interval profile{};         ///< by profile likelihood; without clogs like `interval` [sigma]
+  Interval interval{};        ///< interval by chi-squared; without clogs a lower bound and infinity [sigma]
+  Interval profile{};         ///< interval by profile likelihood; without clogs like `interval` [sigma]
 };
 
-/// Maximum likelihood for censored exponential data: lambda = S/d, S the sum of all distances and d the
-/// clogs.
+/// Maximum likelihood for censored exponential data: lambda = S/d, with S the sum of all distances and d the
+/// number of clogs.
 ///
 /// The interval is 2 S/chi2_{1-q} .. 2 S/chi2_q with q = (1 - confidence)/2. With d fixed beforehand, or when
 /// every run has clogged, 2 S/lambda is chi-squared distributed with exactly 2d degrees of freedom (Epstein
-/// and Sobel 1953). Here runs are censored after a given time and d is as random as S: the next clog might
-/// come just after the runs ended, for which 2d + 2 would be exact, or just before, for which 2d would be.
-/// The number in between, 2d + 1, has nearly the nominal coverage (Cox, Biometrika 40, 354 (1953); Lawless,
-/// Statistical Models and Methods for Lifetime Data, ch. 4). Without clogs there is a one-sided lower bound,
-/// S/log(1/(1 - confidence)), which corresponds to 2d + 2.
+/// and Sobel 1953). Here runs are censored after a given time, so d is as random as S. If the runs ended just
+/// before their next clog, 2d + 2 degrees of freedom would be exact. If they ended just after a clog, 2d
+/// would be exact. The number in between, 2d + 1, has nearly the nominal coverage (Cox, Biometrika 40, 354
+/// (1953); Lawless, Statistical Models and Methods for Lifetime Data, ch. 4). Without clogs there is a
+/// one-sided lower bound, S/log(1/(1 - confidence)), which corresponds to 2d + 2.
 ///
 /// `profile` holds all lambda with 2 (l(S/d) - l(lambda)) below chi-squared's quantile for one degree of
 /// freedom, l(lambda) = -d log lambda - S/lambda.
@@ -63,8 +63,9 @@ CloggingLength fit_clogging_length(std::span<const Observation> runs, double con
 double relative_half_width(std::int64_t num_clogs, double confidence = 0.95);
 
 /// Least squares of exp(-r/lambda) on P(r) = 1 - N_clog(r)/N at every clog, as published (Cheng et al.,
-/// appendix C) [sigma]. Biased: it treats a censored run as one that would never clog, and points as
-/// independent. NaN for fewer than two clogs, and for distances that are not finite.
+/// appendix C) [sigma]. This length is biased, because the method treats censored runs as if they never
+/// clogged, and the points as if they were independent. NaN for fewer than two clogs, and for distances that
+/// are not finite.
 double least_squares_length(std::span<const Observation> runs);
 
 }  // namespace clog::fit

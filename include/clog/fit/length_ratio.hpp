@@ -6,16 +6,16 @@
 
 namespace clog::fit {
 
-/// Two runs with the same obstacles and release, one of each sweep.
+/// A run of each sweep; both runs have the same obstacles and the same release.
 struct Pair {
   Observation here;
   Observation there;
   bool is_alike = false;  ///< both end at the same place, or neither clogs: the pair shows no difference
 };
 
-/// Ratio of the clogging length `here` to the one `there`.
+/// Ratio of the clogging length `here` to the clogging length `there`.
 struct LengthRatio {
-  double ratio = 0;     ///< NaN without clogs on both sides
+  double ratio = 0;     ///< `here` divided by `there`; NaN without clogs on both sides
   Interval interval{};  ///< `paired` or `unpaired`; NaN without clogs
   /// From the numbers of clogs, as if all runs were independent: a ratio of two lengths follows Snedecor's F,
   /// with the degrees of freedom of fit_clogging_length().
@@ -23,7 +23,7 @@ struct LengthRatio {
   /// From the scatter over the pairs: the jackknife of log lambda/lambda with Student's t (Miller, Biometrika
   /// 61, 1 (1974)). NaN for fewer than three pairs, or if at most one pair has clogs.
   Interval paired{};
-  double paired_ratio = 0;  ///< from the runs of the pairs alone
+  double paired_ratio = 0;  ///< the ratio from the runs of the pairs alone
   bool is_paired = false;   ///< whether `interval` is `paired`, and `ratio` is `paired_ratio`
   int num_pairs = 0;
   int num_unlike = 0;  ///< pairs that are not alike

@@ -13,7 +13,7 @@ struct Displacement {
 /// Lateral displacement per distance travelled, the tangent of the migration angle.
 struct Migration {
   double slope = 0;           ///< NaN if no run went far enough, and for distances that are not finite
-  double standard_error = 0;  ///< from the scatter between runs; NaN for fewer than two
+  double standard_error = 0;  ///< from the scatter between runs; NaN for fewer than two runs
 };
 
 /// Distance that a run must travel to show the direction of migration [sigma]. Runs that travelled less have

@@ -12,9 +12,9 @@ double to_si(const std::string& text, const std::string& units);
 
 /// A droplet between two plates that are tilted, driven by buoyancy; all in SI units.
 struct Experiment {
-  double diameter = 0;        ///< of the undeformed droplet [m]
-  double terminal_speed = 0;  ///< far from walls [m/s]
-  double tilt = 0;            ///< of the plates to the horizontal [rad]
+  double diameter = 0;        ///< diameter of the undeformed droplet [m]
+  double terminal_speed = 0;  ///< speed far from walls [m/s]
+  double tilt = 0;            ///< tilt of the plates to the horizontal [rad]
   double droplet_density = 0;
   double outer_density = 0;
   double interfacial_tension = 0;  ///< NaN if it is not known [N/m]

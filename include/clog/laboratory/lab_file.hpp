@@ -10,7 +10,7 @@
 namespace clog::laboratory {
 
 /// A terminal speed that was measured with another droplet or at another tilt. The speed is proportional to
-/// sin(tilt), because the drag of the model is linear, and to diameter^exponent. The exponent is 0 by
+/// diameter^exponent and, because the drag of the model is linear, to sin(tilt). The exponent is 0 by
 /// default, because weight and drag of a flat droplet between two plates are both proportional to the
 /// droplet's area (Taylor and Saffman 1959).
 struct MeasuredSpeed {
@@ -21,9 +21,9 @@ struct MeasuredSpeed {
 /// An experiment as a lab.cfg describes it.
 struct Laboratory {
   Experiment experiment;  ///< if not known, terminal_speed is 0 and interfacial_tension NaN
-  double thickness = std::numeric_limits<double>::quiet_NaN();  ///< of the cell [m]
+  double thickness = std::numeric_limits<double>::quiet_NaN();  ///< thickness of the cell [m]
   /// Gamma of the model divided by Gamma_exp. The default fits the three droplets of Cheng et al., who say
-  /// that the difference between both Gammas "likely stems from the fact that we compare values of the
+  /// that the difference between the two Gammas "likely stems from the fact that we compare values of the
   /// dimensionless line tension in 2D to values of the dimensionless surface tension in 3D".
   double tension_ratio = 0.3;
   std::optional<MeasuredSpeed> measured = {};  ///< the speed that was scaled to the terminal speed, if any
@@ -37,7 +37,7 @@ std::vector<Laboratory> read_laboratories(const std::string& path);
 /// Reads a file of one laboratory. @throws Error as read_laboratories(), and if there are several
 /// laboratories
 Laboratory read_laboratory(const std::string& path);
-/// How the terminal speed was scaled, in one line; empty if it was measured.
+/// One line on how the terminal speed was scaled; empty if it was measured.
 std::string law_of_speed(const Laboratory& lab);
 /// @param source  name of the text in messages
 Laboratory parse_laboratory(const std::string& text, const std::string& source);

@@ -15,7 +15,8 @@ struct Scales {
   double gravity = 0;  ///< g_exp [m/s^2]
   double time = 0;     ///< t0 = sqrt(sigma/g_exp) [s]
   double speed = 0;    ///< v_t [m/s]
-  double tension = 0;  ///< interfacial tension of a droplet that moves like one of Gamma = 1 [N/m]
+  double tension =
+      0;  ///< interfacial tension of a droplet that moves like a simulated droplet with Gamma = 1 [N/m]
   double line_tension_experiment = 0;  ///< Gamma_exp
   double line_tension = 0;             ///< Gamma of the model, tension_ratio times Gamma_exp
   double sag = 0;                      ///< sag of a droplet of this line tension on a flat wall [sigma]
@@ -35,8 +36,8 @@ Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings);
 /// @throws Error that names the key, if one of its numbers has another unit than the key can have
 std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales);
 
-/// How far the centroid of a droplet sinks on a flat wall that it does not wet, by the two-dimensional
-/// equation of Young and Laplace [sigma]. NaN for Gamma below 1e-3 and above 1e4.
+/// The sag: how far the centroid of a droplet sinks on a flat wall that it does not wet [sigma]. It follows
+/// from the two-dimensional equation of Young and Laplace. NaN for Gamma below 1e-3 and above 1e4.
 double sag_on_wall(double line_tension);
 /// Gamma of the droplet with this sag; NaN if there is none.
 double line_tension_of_sag(double sag);

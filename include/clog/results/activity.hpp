@@ -5,11 +5,11 @@
 
 namespace clog::results {
 
-/// Number of busy ranks during one session of a sweep, as means over equal stretches of time, which get
-/// longer with the session.
+/// Number of busy ranks during one session of a sweep, as means over stretches of time. All stretches have
+/// the same length, which grows with the length of the session.
 class Activity {
  public:
-  /// @param num_ranks  that compute
+  /// @param num_ranks  number of ranks that compute
   explicit Activity(int num_ranks) : num_ranks_(num_ranks) {}
 
   /// Call these when a rank begins or ends a task.
@@ -17,9 +17,9 @@ class Activity {
   void started(double now);
   void ended(double now);
 
-  /// One line of JSON. `idle_seconds` are summed over all ranks. `tail_seconds` are the part of this sum
-  /// after the last start of a task, when ranks without work waited for the last tasks to end.
-  /// @param start_time  when the session began
+  /// One line of JSON. `idle_seconds` is the sum over all ranks. `tail_seconds` is the part of this sum after
+  /// the last start of a task: then ranks without work wait for the last tasks to end.
+  /// @param start_time  time at which the session began, as text
   std::string line(const std::string& start_time, double now) const;
 
  private:

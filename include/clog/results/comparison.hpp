@@ -12,28 +12,28 @@
 
 namespace clog::results {
 
-/// Runs that are compared: those of a file, or those with one value of a parameter.
+/// One side of a comparison: the runs of a file, or the runs with one value of a parameter.
 struct Side {
   std::string name;
   std::vector<sweep::RunRow> rows;
   std::vector<std::string> lists;  ///< see listed_columns()
 };
 
-/// A parameter set of one side, and the one with which it is compared.
+/// A parameter set of one side (`here`), compared with a parameter set of the first side (`there`).
 struct Comparison {
   std::string here, there;    ///< names of the sides
   std::vector<Value> common;  ///< see Comparisons::columns
   fit::CloggingLength length_here{}, length_there{};
-  fit::LengthRatio ratio{};  ///< of the length here to the length there
-  int num_both_clogged = 0;  ///< pairs of which both clogged
-  int num_same_place = 0;    ///< pairs of which both clogged, at the same place
+  fit::LengthRatio ratio{};  ///< ratio of the length here to the length there
+  int num_both_clogged = 0;  ///< pairs of runs that both clogged
+  int num_same_place = 0;    ///< pairs of runs that both clogged, at the same place
 };
 struct Comparisons {
-  std::vector<std::string>
-      columns;  ///< listed columns with a value that both sides have; their values name a comparison
+  std::vector<std::string> columns;    ///< listed columns with a value that both sides have; the values in
+                                       ///< these columns name a comparison
   std::vector<std::string> differing;  ///< columns whose values here and there differ
   std::vector<Comparison> all;
-  std::string unit = "sigma";      ///< of lengths: "sigma" or "mm"
+  std::string unit = "sigma";      ///< unit of lengths: "sigma" or "mm"
   std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are wanted in mm, too
   double within = 0;  ///< clogs at most this far apart count as at the same place [sigma]; 0: half a spacing
 };
@@ -48,12 +48,13 @@ std::vector<Side> sides_of_files(const std::vector<std::string>& paths);
 /// @throws Error if there is no such column of parameters, or only one value
 std::vector<Side> sides_of_column(const std::string& name, const store::SweepFile& file);
 
-/// Compares each side with the first one: parameter sets with the same values of Comparisons::columns. Runs
-/// of the same seed are pairs.
+/// Compares each side with the first side. Parameter sets with the same values in Comparisons::columns are
+/// compared; their runs of the same seed form pairs.
 /// @param sides  two or more
 /// @param within  see Comparisons; nullopt: half an obstacle spacing
 /// @throws std::invalid_argument if there are fewer than two sides
-/// @throws Error if they have no value in common, or if it is not clear which parameter sets belong together
+/// @throws Error if two sides have no value in common, or if it is not clear which parameter sets belong
+/// together
 Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within);
 
 std::string to_text(const Comparisons& comparisons, double confidence);

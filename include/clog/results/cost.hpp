@@ -8,10 +8,10 @@ namespace clog::results {
 /// The cost of one run so far. Work is counted in steps times vertices.
 struct RunCost {
   std::int64_t parameter_set = 0;
-  double begin_seconds = 0;  ///< time for sampling its obstacles and releasing the droplet
+  double begin_seconds = 0;  ///< time for sampling the obstacles and releasing the droplet
   double seconds = 0;        ///< time since the release
-  double work = 0;           ///< done in these seconds
-  double longest_work = 0;   ///< work of the run if it lasts to max-time
+  double work = 0;           ///< work done in these seconds
+  double longest_work = 0;   ///< the work if the run lasts to max-time
   bool is_over = false;
 };
 
@@ -19,14 +19,14 @@ struct RunCost {
 struct WaitingRuns {
   std::int64_t parameter_set = 0;
   std::int64_t number = 0;
-  double longest_work = 0;  ///< of each run
+  double longest_work = 0;  ///< the work of each run if it lasts to max-time
 };
 
 /// Computing time of a whole sweep, or of the rest of it [s].
 struct SweepCost {
   double seconds_per_work = 0;
-  double bound = 0;  ///< if every run lasts to max-time
-  /// The estimate, and roughly its 95 % interval.
+  double bound = 0;  ///< the cost if every run lasts to max-time
+  /// The estimate, and its approximate 95 % interval.
   double expected = 0;
   double lower = 0;
   double upper = 0;
@@ -36,20 +36,22 @@ struct SweepCost {
 ///
 /// The remaining time of unfinished runs is estimated from late ends only, because earlier ends say little
 /// about it. An end is late if its run has lasted at least half as long as the shortest unfinished run. The
-/// lower limit assumes that late ends are exponentially distributed; the upper limit, that they come from a
-/// mixture of short and long runs and become rarer with time; the estimate is the geometric mean of both. If
-/// no run of a parameter set has ended, all may last to max-time: this is the upper limit, and for the
-/// estimate every order of magnitude of the remaining time is equally likely. The interval combines the error
-/// of each law with that of the sample.
+/// lower limit assumes that late ends are exponentially distributed. The upper limit assumes that they come
+/// from a mixture of short and long runs and become rarer with time. The estimate is the geometric mean of
+/// both limits.
+///
+/// If no run of a parameter set has ended, all its runs may last to max-time, which is the upper limit. For
+/// the estimate, every order of magnitude of the remaining time is then equally likely. The interval combines
+/// the error of each of these laws with the error of the sample.
 /// @param sample  not empty; at least one run has done work and taken time
-/// @param all_work  of all runs of the sweep, if every run lasts to max-time
+/// @param all_work  work of all runs of the sweep, if every run lasts to max-time
 SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int64_t num_runs);
 
-/// Remaining cost of a sweep, from all its runs that have begun. They are not a random sample, because long
-/// runs start first. So each parameter set is estimated separately, as above: the remaining time of its
-/// unfinished runs from its own runs if one of them has ended, otherwise from all runs. For a set without a
-/// started run, the estimate is the same fraction of its bound as for the other sets, and the error is as
-/// large as the estimate.
+/// Estimates the remaining cost of a sweep from all its runs that have begun. These runs are not a random
+/// sample, because long runs start first. So each parameter set is estimated separately, by the method of
+/// sweep_cost(). The remaining time of a set's unfinished runs follows from the set's own runs if one of them
+/// has ended, otherwise from all runs. For a set without a started run, the estimate is the same fraction of
+/// its bound as for the other sets, and the error is as large as the estimate.
 /// @param begun  not empty; at least one run has done work and taken time
 SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting);
 

@@ -20,7 +20,7 @@ struct DistanceGroup {
 /// Distances that droplets travelled, measured or simulated.
 struct DistanceTable {
   std::string source;
-  std::string unit;                 ///< of the distances: "sigma" or "mm"
+  std::string unit;                 ///< unit of the distances: "sigma" or "mm"
   std::vector<std::string> labels;  ///< columns that separate groups
   std::vector<DistanceGroup> groups;
 };
@@ -36,11 +36,11 @@ DistanceTable read_distances(const std::string& path);
 using Scales = std::map<std::string, LaboratoryScale>;
 /// The runs of a sweep. Runs with the same values of all parameters that vary form a group. @throws Error as
 /// require_lengths()
-/// @param scales  of several laboratories: then distances are in mm, and the droplet's diameter [mm] and the
-/// tilt [degrees] separate groups, too
+/// @param scales  if not empty, the units of several laboratories. Then distances are in mm, and the
+/// droplet's diameter [mm] and the tilt [degrees] separate groups, too.
 DistanceTable distances_of(const Side& side, const Scales& scales = {});
 
-/// Prints lengths, intervals, doubts and survival of each group, estimated as for a sweep.
+/// These functions print lengths, intervals, doubts and survival of each group, estimated as for a sweep.
 /// @param sigma_mm  the droplet's diameter in mm, if it is known: then lengths are given in both units
 std::string lengths_text(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);

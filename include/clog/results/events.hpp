@@ -11,15 +11,16 @@
 
 namespace clog::results {
 
-/// Events of a sweep, found by reading its file repeatedly: a line of JSON for every start, end and
-/// interruption of a task, every new attempt, and every round. A task that starts and ends between two reads
-/// has both lines.
+/// Finds the events of a sweep by reading its file repeatedly. There is a line of JSON for every start, end
+/// and interruption of a task, for every new attempt, and for every round. A task that starts and ends
+/// between two reads gets both lines.
 class Events {
  public:
   /// @param path  of the file, for messages
   explicit Events(std::string path) : path_(std::move(path)) {}
 
-  /// Events since the last call; the first call returns only the numbers of all runs and of finished ones.
+  /// Returns the events since the last call. The first call returns only the numbers of all runs and of
+  /// finished runs.
   /// @throws Error as stored_plan()
   std::vector<std::string> look(const store::SweepFile& file);
   /// The last line, after the sweep has ended.
@@ -38,7 +39,7 @@ class Events {
   std::int64_t num_runs_ = 0;
   std::int64_t num_finished_ = 0;
   std::map<std::int64_t, Known> known_;
-  std::vector<std::string> columns_;  // that events name, see listed_columns()
+  std::vector<std::string> columns_;  // columns that events name, see listed_columns()
 
   bool count_runs(const store::SweepFile& file);
   std::vector<std::string> of_row(const sweep::RunRow& row) const;

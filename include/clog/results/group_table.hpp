@@ -8,11 +8,13 @@
 
 namespace clog::results {
 
-/// Which of the parameters that all groups share are named above their table.
+/// Selects which parameters that are equal in all groups are named above the table: all of them, or only
+/// those with an unusual value.
 enum class SharedParameters { unusual, all };
 
 /// A printed table: one line per group, with the parameters in which groups differ. If groups have a
-/// laboratory, this function and the two below also print lengths, speeds and times in laboratory units.
+/// laboratory, this function, to_csv() and to_json() also print lengths, speeds and times in laboratory
+/// units.
 std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared);
 /// All fields of every group.
 std::string to_csv(const std::vector<Group>& groups);

@@ -18,7 +18,7 @@
 
 namespace clog::results {
 
-inline constexpr int enough_clogs = 5;  ///< with fewer, the interval is wide and its coverage varies
+inline constexpr int enough_clogs = 5;  ///< with fewer clogs, the interval is wide and its coverage varies
 
 /// Doubts about a group's clogging length; doubt_texts explains each.
 enum class Doubt {
@@ -34,7 +34,7 @@ enum class Doubt {
   below_spacing,
   untested
 };
-/// A doubt as one letter in tables, as a word in files, and as a sentence for readers.
+/// The texts of a doubt: a letter for tables, a word for files, and a sentence for readers.
 struct DoubtText {
   Doubt doubt;
   char letter;
@@ -71,10 +71,11 @@ inline constexpr DoubtText doubt_texts[] = {
      "cross themselves or obstacles (handbook, Which droplets are sound)"}};
 const DoubtText& text_of(Doubt doubt);
 
-/// The ways in which a run may end, competing risks: the mechanism that holds a clog (`other`: none of them),
-/// or the droplet's break-up.
+/// The competing ways in which a run may end: the mechanism that holds a clog (`other`: none of the three),
+/// or the break-up of the droplet.
 enum class Cause { wrapped, squeezed, hybrid, other, broken };
-/// Names in files of the number of runs that the cause ended, and of the length (S divided by this number).
+/// Names of two columns: the number of runs that the cause ended, and the length (total distance divided by
+/// this number).
 struct CauseText {
   Cause cause;
   bool is_clog;
@@ -88,72 +89,79 @@ inline constexpr CauseText cause_texts[] = {{Cause::wrapped, true, "wrapped", "c
 
 /// The model's units in a laboratory; NaN if unknown.
 struct LaboratoryScale {
-  double length = std::numeric_limits<double>::quiet_NaN();   ///< of sigma [mm]
-  double time = std::numeric_limits<double>::quiet_NaN();     ///< of t0 [s]
-  double speed = std::numeric_limits<double>::quiet_NaN();    ///< of v_t [mm/s]
-  double tension = std::numeric_limits<double>::quiet_NaN();  ///< of a droplet with Gamma = 1 [mN/m]
-  double tilt = std::numeric_limits<double>::quiet_NaN();     ///< [degrees]
+  double length = std::numeric_limits<double>::quiet_NaN();  ///< sigma [mm]
+  double time = std::numeric_limits<double>::quiet_NaN();    ///< t0 [s]
+  double speed = std::numeric_limits<double>::quiet_NaN();   ///< v_t [mm/s]
+  /// Interfacial tension of a droplet with Gamma = 1 [mN/m].
+  double tension = std::numeric_limits<double>::quiet_NaN();
+  double tilt = std::numeric_limits<double>::quiet_NaN();  ///< tilt of the plates [degrees]
 };
 
 /// Twelve digits, without the round-off of conversions between units.
 double short_number(double value);
 
-/// Droplets of a device and a line across the flow.
+/// The droplets of a device, and a line across the flow that they may have passed.
 struct Passage {
-  double x;  ///< of the line, in the coordinates of the circles [sigma]
+  double x;  ///< x of the line, in the coordinates of the circles [sigma]
   int num_passed;
-  int num_stopped;      ///< clogged or broke up before it; others were still on their way
-  fit::Interval share;  ///< of num_passed divided by num_passed + num_stopped
+  int num_stopped;      ///< droplets that clogged or broke up before the line; all others were still moving
+  fit::Interval share;  ///< interval of the fraction num_passed / (num_passed + num_stopped)
 };
 
 /// The runs of a sweep that differ in their seed only, and their results.
 struct Group {
-  sweep::RunRow first_row;                                 ///< parameters of all runs, except the seed
-  double dwell = std::numeric_limits<double>::infinity();  ///< see group_runs() [t0]
-  double dwells_known_from = 0;  ///< Dwells::known_from that holds for all runs; NaN: for no time [t0]
+  sweep::RunRow first_row;  ///< parameters of all runs, except the seed
+  /// A rest that is longer than this counts as a clog, see group_runs() [t0].
+  double dwell = std::numeric_limits<double>::infinity();
+  /// The latest Dwells::known_from of all runs; NaN if the dwells of a run are unknown [t0]
+  double dwells_known_from = 0;
   fit::CloggingLength clogging;
-  double least_squares_length = 0;  ///< by the published, biased method; NaN for fewer than two clogs
+  double least_squares_length = 0;  ///< length by the published, biased method; NaN for fewer than two clogs
   fit::WeibullTest weibull;
   /// Clogging length of the runs that met an obstacle, each counted from its first obstacle on.
   fit::CloggingLength clogging_met;
-  double contacts_per_length =
-      std::numeric_limits<double>::quiet_NaN();  ///< over all runs that record contacts [1/sigma]
+  /// Number of contacts divided by distance, for all runs that record contacts together [1/sigma].
+  double contacts_per_length = std::numeric_limits<double>::quiet_NaN();
   std::vector<fit::SurvivalStep> survival;
-  std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
-  /// One entry for each Cause, in the order of the enum. Runs that this cause ended are events, all others
-  /// are censored. Empty if the mechanism of a clog is unknown.
+  /// Distances of the runs that did not clog, in increasing order [sigma].
+  std::vector<double> censored_distances;
+  /// The runs that ended by one cause. `causes` has an entry for each Cause, in the order of the enum; it is
+  /// empty if the mechanism of a clog is unknown. Runs that the cause ended are events, all other runs are
+  /// censored.
   struct EndsBy {
     const CauseText* text;
     fit::CloggingLength ends;
-    std::vector<fit::IncidenceStep> incidence;  ///< empty without a clogging length
+    std::vector<fit::IncidenceStep> incidence;  ///< steps of F_c; empty without a clogging length
   };
   std::vector<EndsBy> causes;
   fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
   fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, total distance divided by total time of the runs
   /// v_g/v_t, total distance divided by total time of all runs, even of those with a short distance. A run
-  /// counts until its end, a clogged one until its last dwell began. If droplets clog, only the faster runs
-  /// go far enough to have a mean speed of their own.
+  /// counts until its end, a clogged run until its last dwell began. This speed is not biased towards fast
+  /// runs: if droplets clog, only the faster ones go far enough to have a mean speed of their own.
   fit::MeanSpeed relative_speed_all;
   fit::Migration migration;
   /// Tilt of the rows of posts from the flow towards +y, given by a lattice or by --row-angle; NaN: unknown
   /// [degrees].
   double row_angle = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::uint32_t> seeds;  ///< of the runs that count for the clogging length
+  std::vector<std::uint32_t> seeds;  ///< seeds of the runs that count for the clogging length
   int num_passed = 0;                ///< runs whose droplet reached the exit of the device
   int num_flowing = 0;               ///< runs that max-time ended
-  /// Number of those flowing runs whose droplet had rested for longer than a free droplet takes to fall ten
-  /// diameters; and the shortest such rest [t0].
+  /// Number of those flowing runs whose droplet, at the end, had rested for longer than a free droplet takes
+  /// to fall ten diameters; the next member is the shortest such rest [t0].
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity();
   int num_interrupted = 0;
-  int num_repeated = 0;   ///< runs left out because a longer run of the same droplet counts (pooled)
-  int num_failed = 0;     ///< left out of all fits
-  int num_damaged = 0;    ///< likewise
-  int num_left_out = 0;   ///< ended before distances are counted, see group_runs(); likewise
+  int num_repeated = 0;  ///< runs left out because a longer run of the same droplet counts (pooled)
+  int num_failed = 0;    ///< failed runs, left out of all fits
+  int num_damaged = 0;   ///< damaged runs, left out of all fits
+  /// Runs that ended before distances are counted (see group_runs()), left out of all fits.
+  int num_left_out = 0;
   int num_on_mesh = 0;    ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
-  int num_free = 0;       ///< met no obstacle
-  int num_repeating = 0;  ///< went farther than their array's period
-  std::vector<Passage> passages;  ///< through a device, downstream; the exit is the last
+  int num_free = 0;       ///< runs that met no obstacle
+  int num_repeating = 0;  ///< runs that went farther than their array's period
+  /// Passages through a device, in downstream order; the last one is the exit.
+  std::vector<Passage> passages;
   std::vector<Doubt> doubts;
   std::optional<LaboratoryScale> laboratory = {};  ///< units in which results are also given
 };
@@ -161,14 +169,14 @@ struct Group {
 /// Whether there are user-supplied circles with an entrance or an exit.
 bool is_device(const RunParameters& run);
 
-/// The outcome of an intact run. Its distance counts from the release; in a device it counts from the first
-/// obstacle that the droplet met, and the outcome is nullopt if the droplet met none.
+/// The outcome of an intact run. The distance counts from the release, but in a device from the first
+/// obstacle that the droplet met. There the outcome is nullopt if the droplet met no obstacle.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
-/// Groups rows by everything but the seed, in the order of their parameters. Runs count as in
-/// observation_of().
-/// @param from_distance  distances are measured from here [sigma]: runs that ended earlier are excluded, the
-/// others count with the distance beyond it (left truncation)
+/// Groups rows by all parameters except the seed. The groups are in the order of their parameters. Runs count
+/// as in observation_of().
+/// @param from_distance  the distance from which on runs are observed [sigma]: runs that ended earlier are
+/// excluded, and the others count with their distance beyond it (left truncation)
 /// @param dwell  a droplet that rested for longer than this counts as clogged where it first did so [t0]. A
 /// droplet that has neither rested so long nor clogged is censored where its last dwell began, because the
 /// full length of that dwell is unknown. A `dwell` of max-time or more has no effect.
@@ -185,21 +193,22 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
 /// The columns of a list of keys, which may be max-time, boxes or both: `max-time,boxes`. @throws Error for
 /// any other key
 std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
-/// Lateral displacement divided by that of a droplet that follows the rows: 0 in the zigzag mode, 1 in the
-/// displacement (bump) mode of deterministic lateral displacement. NaN for rows along the flow.
+/// Lateral displacement divided by the lateral displacement of a droplet that follows the rows. In
+/// deterministic lateral displacement, this ratio is 0 in the zigzag mode and 1 in the displacement (bump)
+/// mode. NaN for rows along the flow.
 fit::Migration share_along_rows(const Group& group);
 /// Whether a run of this group can last longer than Group::dwell.
 bool is_dwell_possible(const Group& group);
 
 using sweep::Value;
 using Field = std::pair<std::string, Value>;
-/// Columns that define a group: all parameters but the seed. Physical parameters come first, and among
-/// them those that shape the array.
+/// Columns that define a group: all parameters except the seed. Physical parameters come first, and the first
+/// of these are the parameters that shape the array.
 std::span<const sweep::Column* const> group_columns();
 /// The values of a row in these columns.
 std::vector<Value> parameter_values(const sweep::RunRow& row);
-/// False in a channel and on a wall, where nothing is random: each group is one run, whose row has the
-/// results.
+/// Whether the results include a clogging length. They do not in a channel and on a wall, where nothing is
+/// random: there each group is one run, whose row has the results.
 bool has_clogging_length(const sweep::RunRow& row);
 /// The results of a group, by name.
 std::vector<Field> result_fields(const Group& group);

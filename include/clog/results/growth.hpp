@@ -16,8 +16,9 @@ namespace clog::results {
 /// other.
 std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here);
 
-/// The plan's values of fixed keys, by which rows of other sweeps are recognised. Automatic values are not
-/// compared: they may follow from line tensions and gaps that only an earlier plan of the sweep contained.
+/// The plan's values of the fixed keys. A row with another value of such a key belongs to another sweep.
+/// Automatic values are not compared: they may follow from line tensions and gaps that only an earlier plan
+/// of the sweep contained.
 class FixedValues {
  public:
   FixedValues(const sweep::Plan& plan, sweep::Settings settings);

@@ -10,15 +10,15 @@
 
 namespace clog::results {
 
-/// Rows of several files as one sweep. A run that several files have is included once: a result rather than
-/// an unfinished or failed row, an unfinished row rather than a failed one, otherwise the row with more
-/// steps. Of results that differ by instruction set, those of the first file are kept.
+/// Rows of several files as one sweep. A run that several files have is included once. A result is preferred
+/// to an unfinished row, and an unfinished row to a failed one; of two rows of the same kind, the one with
+/// more steps is kept. Of results that differ by instruction set, those of the first file are kept.
 struct MergedSweep {
   store::SweepFile table;
-  std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs
+  std::vector<store::Journal::Entry> snapshots;  ///< snapshots of unfinished runs
   std::int64_t num_shared = 0;                   ///< runs that several files have
-  std::int64_t num_differing = 0;                ///< of these, runs whose results differ by instruction set
-  std::int64_t num_faulty = 0;                   ///< excluded rows: physically impossible
+  std::int64_t num_differing = 0;                ///< shared runs whose results differ by instruction set
+  std::int64_t num_faulty = 0;  ///< rows that are excluded because they are physically impossible
 };
 
 /// Merges complete or stopped sweeps, to be written to a new file.
@@ -31,8 +31,8 @@ MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance
 /// A single file is returned as it is.
 store::SweepFile read_together(const std::vector<std::string>& paths);
 
-/// Gives tasks the numbers, and circles the names, that they have in the settings; rows of runs outside the
-/// settings follow at the end.
+/// Gives each task the number that it has in the settings, and circles the names that they have there. Rows
+/// of runs outside the settings follow at the end.
 void number_tasks(const sweep::Settings& settings, store::SweepFile& table);
 
 /// Provenance of a file that is made from rows of other files.

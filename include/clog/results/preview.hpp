@@ -15,13 +15,13 @@ namespace clog::results {
 void print_tasks(const sweep::Plan& plan);
 /// Prints known limits of the results, such as an array that repeats; nothing if there are none.
 void print_limits(const sweep::Plan& plan);
-/// Prints an upper bound of the sweep's duration (no run ends before max-time) and an estimate
-/// (sweep_cost()): from the runs in `output` or, if these are few, from short trial runs. Then prints the
-/// finished and the remaining part of the sweep in `output`. Returns the exit code: a failure if no run can
-/// begin.
+/// Prints an upper bound of the sweep's duration, for which every run lasts to max-time, and an estimate
+/// (sweep_cost()). The estimate uses the runs in `output` or, if these are few, short trial runs. Then prints
+/// the finished and the remaining part of the sweep in `output`. Returns the exit code: a failure if no run
+/// can begin.
 /// @param output  the sweep's file, which need not exist; empty: no file
 /// @param rule  if not null, `plan` is the first round, and the cost of further rounds is printed, too
-/// @param jobs  make the trial runs
+/// @param jobs  makes the jobs of the trial runs
 int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule,
                const sweep::JobFactory& jobs);
 /// Prints every key with its value, and the values of `auto` for the first task.

@@ -24,14 +24,14 @@ class Progress {
   Progress(std::ostream& out, Screen screen, int num_computing_ranks, sweep::GroupOf set_of);
 
   /// Adds tasks to the total against which progress is measured.
-  /// @param num_wanted  runs of the whole sweep; the others were done before
+  /// @param num_wanted  number of runs of the whole sweep; those that are not in `tasks` were done before
   void expect(std::span<const std::int64_t> tasks, std::int64_t num_wanted);
 
   void started(std::int64_t task);
   void ended(const sweep::RunRow& row);
   /// An attempt failed; the task will be tried again.
   void tried(std::int64_t task) { running_.erase(task); }
-  /// Takes back the end of a failed task that will run again.
+  /// Withdraws the report that a task has ended by a failure, because the task will run again.
   void not_ended(const sweep::RunRow& failed);
   /// Prints a permanent line, on any screen.
   void say(const std::string& text) { status_.say(text); }
@@ -44,14 +44,14 @@ class Progress {
 
   console::StatusLine status_;
   sweep::GroupOf number_of_set_;
-  std::vector<SetTimes> sets_;  // running_ has the running tasks, which count as waiting here
+  std::vector<SetTimes> sets_;  // running tasks, which are in running_, count as waiting here
   std::int64_t num_tasks_ = 0;
   std::int64_t num_before_ = 0;
   int num_ranks_;
   Clock::time_point begin_ = Clock::now();
   std::map<std::int64_t, Clock::time_point> running_;
   std::map<RunStatus, std::int64_t> ended_by_status_;
-  std::int64_t num_ended_ = 0;  // of all sets
+  std::int64_t num_ended_ = 0;  // number of ended tasks of all sets
 
   SetTimes& set_of(std::int64_t task);
   std::string line() const;

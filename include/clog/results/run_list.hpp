@@ -18,8 +18,8 @@ class RunList {
  public:
   /// Adds all runs of a plan. @throws Error if another plan has other circles under the same name
   void add(const sweep::Plan& plan);
-  /// Adds a run that may be outside the plan, for instance one of an earlier command of the sweep. The run
-  /// gets the texts of the plan's first parameter set, with the row's own values where they differ. Returns
+  /// Adds a run that may be outside the plan, for instance one of an earlier command of the sweep. The texts
+  /// of the run are those of the plan's first parameter set, except where the row has other values. Returns
   /// whether the resulting texts describe this run.
   bool add(const sweep::Plan& plan, const sweep::RunRow& row);
 
@@ -29,13 +29,13 @@ class RunList {
   void fill_seeds(std::size_t number);
 
   bool empty() const { return sets_.empty(); }
-  /// The settings have lists if the runs are the product of these lists, otherwise points. Values and points
-  /// are in increasing order.
+  /// The settings of a sweep with exactly these runs. If the runs are the product of lists, the settings have
+  /// these lists, otherwise points. Values and points are in increasing order.
   sweep::Settings settings() const;
 
  private:
   struct ParameterSet {
-    std::vector<std::string> texts;  // by place in sweep::keys(); empty for the seeds
+    std::vector<std::string> texts;  // texts by place in sweep::keys(); empty for the seeds
     std::set<std::uint32_t> seeds;
   };
   std::vector<ParameterSet> sets_;

@@ -10,28 +10,29 @@
 
 namespace clog::results {
 
-/// Adds seeds to a sweep, in rounds, until the clogging length of every parameter set is precise enough.
-/// Each round is determined when the previous one has ended, from the number of clogs alone. So the runs of a
-/// sweep depend neither on the ranks nor on interruptions, and lambda stays unbiased (stopping at a number of
-/// clogs is inverse sampling; the relative width of the interval depends only on this number).
+/// Adds seeds to a sweep, in rounds, until the clogging length of every parameter set is precise enough. Each
+/// round is determined when the previous one has ended, from the number of clogs alone. So the runs of a
+/// sweep depend neither on the ranks nor on interruptions, and lambda stays unbiased: stopping at a number of
+/// clogs is inverse sampling, in which the relative width of the interval depends only on this number.
 class SeedRule {
  public:
   /// @param precision  required half-width of the 95 % interval divided by lambda
-  /// @param first_seeds, most_seeds  per parameter set, at first and at most
+  /// @param first_seeds, most_seeds  number of seeds per parameter set in the first round, and largest number
+  /// of seeds
   SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds, std::int64_t most_seeds);
 
-  /// Tasks of the next round, once all tasks so far are over; empty at the end. Task s num_groups + g is the
-  /// s-th seed of parameter set g. A set that is not precise enough gets as many more seeds as its fraction
-  /// of clogs so far requires, but at most as many as it already has.
+  /// Call this when all tasks so far are over. Returns the tasks of the next round; none at the end. Task s
+  /// num_groups + g is the s-th seed of parameter set g. A set that is not precise enough gets as many more
+  /// seeds as its fraction of clogs so far requires, but at most as many as it already has.
   /// @param has_clogged  whether a finished task has clogged
   std::vector<std::int64_t> next_round(const std::function<bool(std::int64_t task)>& has_clogged);
 
   std::int64_t num_groups() const { return static_cast<std::int64_t>(num_seeds_.size()); }
-  /// Number of clogs of a parameter set that is precise enough.
+  /// Number of clogs that a parameter set needs to be precise enough.
   std::int64_t clogs_needed() const;
   double precision() const { return precision_; }
   std::int64_t most_seeds() const { return most_seeds_; }
-  /// Parameter sets that were precise enough at the last next_round().
+  /// Number of parameter sets that were precise enough at the last next_round().
   std::int64_t num_reached() const { return num_reached_; }
   /// The clogs and seeds of a parameter set that did not reach the precision.
   struct Unreached {
@@ -44,16 +45,17 @@ class SeedRule {
  private:
   double precision_;
   std::int64_t most_seeds_;
-  std::vector<std::int64_t> num_seeds_;  // by parameter set, of all rounds so far
+  std::vector<std::int64_t> num_seeds_;  // number of seeds of each parameter set, in all rounds so far
   std::int64_t num_reached_ = 0;
   std::vector<Unreached> unreached_;
 };
 
-/// One line: which parameter sets used all seeds before they reached the precision, and a remedy; or how many
-/// sets there are, if all reached it.
+/// The outcome in one line. It names the parameter sets that used all seeds before they reached the
+/// precision, and a remedy. If all sets reached the precision, it gives the number of sets.
 std::string outcome(const SeedRule& rule, const sweep::Plan& plan);
 
-/// A sweep that a rule may enlarge: its settings have all possible seeds, those given first.
+/// A sweep that a rule may enlarge. Its settings have all seeds that the rule may use; the given ones come
+/// first.
 struct GrowingSweep {
   sweep::Settings settings;
   std::int64_t num_first = 0;  ///< tasks to begin with

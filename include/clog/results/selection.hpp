@@ -20,8 +20,8 @@ class Condition {
   /// A row without a value in the column satisfies no condition.
   bool holds(const sweep::RunRow& row) const;
 
-  /// A misspelt word would equal no row's value, and so select no row or all rows. @throws Error if no row
-  /// has one of the words
+  /// A misspelt word equals no row's value, so it would select no row, or with != all rows. @throws Error if
+  /// no row has one of the words
   void require_known_words(std::span<const sweep::RunRow> rows) const;
 
  private:
@@ -39,7 +39,7 @@ class Condition {
 
 /// The rows of a file that satisfy all conditions, as a sweep of exactly these runs.
 /// @param maker  the program that makes the file, from cli::origin()
-/// @throws Error if no row does, or a word is in no row
+/// @throws Error if no row satisfies all conditions, or if a word of a condition is in no row
 store::SweepFile select(const std::string& path, const std::vector<std::string>& conditions,
                         const store::Provenance& maker);
 

@@ -34,9 +34,9 @@ struct Status {
   }
 };
 
-/// Status from a sweep's file, also while it is written. Runs in progress count as not clogged so far, at
-/// their present distance: finished runs alone would give too short lengths, because runs that clog early
-/// finish first. @throws Error if the file lacks the description of its sweep
+/// The status of a sweep from its file, which the sweep may still be writing. Runs in progress count as not
+/// clogged so far, at their present distance. Finished runs alone would give too short lengths, because runs
+/// that clog early finish first. @throws Error if the file lacks the description of its sweep
 Status status_of(const std::string& path, const store::SweepFile& file, double confidence);
 
 /// The status as printed text.

@@ -9,7 +9,7 @@
 
 namespace clog::results {
 
-/// The description of a sweep in its file, apart from the rows.
+/// These functions read the description of a sweep that a file contains besides the rows.
 
 /// Opens a sweep for reading; warns on stderr about anything that could not be verified. Rows have their
 /// circles, with the name of their file. @throws Error as store::read_sweep()
@@ -23,18 +23,19 @@ void set_attribute(store::Provenance& provenance, const std::string& name, const
 /// stored_plan()
 sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance);
 sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file);
-/// Columns of the keys that have lists in the sweep's config; empty if the config cannot be read.
+/// Columns of those keys for which the sweep's config has a list; empty if the config cannot be read.
 std::vector<std::string> listed_columns(const store::Provenance& provenance);
-/// Number of runs requested so far: with --until-precision those of the rounds, otherwise all of the plan.
+/// Number of runs requested so far: with --until-precision the runs of the rounds so far, otherwise all runs
+/// of the plan.
 /// @throws Error, which names the file, if the attribute cannot be parsed
 std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
                                const sweep::Plan& plan);
-/// The number of runs of a file's sweep: those requested, and others in the file.
+/// The number of runs of a file's sweep: the runs that were requested, and other runs in the file.
 struct RunCount {
   std::int64_t num_runs = 0;
-  std::int64_t num_beyond = 0;  ///< those outside the lists of the sweep's last command
+  std::int64_t num_beyond = 0;  ///< runs outside the lists of the sweep's last command
 
-  /// num_beyond in brackets, with a space before; empty for none.
+  /// num_beyond in brackets, after a space; empty if it is 0.
   std::string text_of_beyond() const;
 };
 RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);

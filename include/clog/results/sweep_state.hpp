@@ -38,18 +38,19 @@ class SweepState {
   /// Requests more of the plan's tasks; tasks_left() then returns the unfinished ones.
   void want(const std::vector<std::int64_t>& tasks);
   std::int64_t num_wanted() const { return num_wanted_; }
-  /// Tasks that have begun and are not over, requested or not.
+  /// Tasks that have begun and are not over, whether they are requested or not.
   std::vector<std::int64_t> tasks_begun() const;
 
   /// Tasks that are requested and not over.
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
-  /// How many of tasks_left() resume from a snapshot.
+  /// Number of tasks_left() that resume from a snapshot.
   std::int64_t num_resumed() const;
-  /// Runs in the file that are outside this plan; the file keeps them.
+  /// Number of runs in the file that are outside this plan; the file keeps them.
   std::int64_t num_beyond() const { return static_cast<std::int64_t>(other_runs_.size()); }
-  /// Physically impossible rows; their runs are recomputed.
+  /// Number of physically impossible rows; their runs are recomputed.
   std::int64_t num_faulty() const { return num_faulty_; }
-  /// Damaged records of the journal: their runs resume from an earlier record, or restart.
+  /// Number of damaged records of the journal. Runs of such records resume from an earlier record, or
+  /// restart.
   std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
 
   /// Names what could not be verified in the file that the sweep resumes from; empty if all was verified.
@@ -63,13 +64,13 @@ class SweepState {
   void report(const sweep::Report& report);
   /// Row of a run that has begun.
   const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task)->row; }
-  /// The first run if all that have begun have failed, otherwise nullptr.
+  /// If all runs that have begun have failed, the first of them, otherwise nullptr.
   const sweep::RunRow* first_if_all_failed() const;
-  /// Discards a failure: the task runs again with the same attempt number.
+  /// Discards a failure, so that the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
-  /// Starts to publish the table if it is due, or detects that a publication has ended, without waiting for
-  /// the disk.
+  /// Call this often: it starts to publish the table if that is due, or detects that a publication has ended,
+  /// and never waits for the disk.
   void tick();
   bool is_publishing() const { return publication_.valid(); }
   /// Publishes the table, and removes the journal of a complete sweep. Returns a message if that fails.
@@ -80,23 +81,23 @@ class SweepState {
   using Entry = store::Journal::Entry;
 
   store::OutputPath place_;
-  std::string path_;   // for messages and readers: links followed
-  std::string stamp_;  // of the table as this sweep read or wrote it last; empty if there was none
+  std::string path_;   // path without symbolic links, for messages and readers
+  std::string stamp_;  // stamp of the table as this sweep read or wrote it last; empty if there was none
   const sweep::Plan* plan_;
   store::Provenance provenance_;
   std::int64_t attempts_;
   store::Journal journal_;
   using Entries = std::vector<std::unique_ptr<Entry>>;
-  Entries runs_;                            // by task; nullptr: it has not begun
-  Entries other_runs_;                      // in the file, but not of this plan
+  Entries runs_;                            // runs by task; nullptr for a task that has not begun
+  Entries other_runs_;                      // runs that are in the file, but not in this plan
   std::vector<store::CircleFile> circles_;  // files of the circles of all runs
   std::int64_t num_wanted_;
   std::int64_t num_faulty_ = 0;
   std::vector<std::int64_t> tasks_left_;
-  /// Known results of a task, from earlier sessions or attempts.
+  /// What is known of a task from earlier sessions or attempts.
   struct Past {
-    double wall_seconds = 0, processor_seconds = 0;  // spent on it
-    std::string instruction_set;  // of the snapshot that it resumes from; empty if it restarts
+    double wall_seconds = 0, processor_seconds = 0;  // time spent on the task
+    std::string instruction_set;  // that of the snapshot from which the task resumes; empty if it restarts
     void take_costs(const sweep::RunRow& row) {
       wall_seconds = row.wall_seconds;
       processor_seconds = row.processor_seconds;
@@ -105,13 +106,14 @@ class SweepState {
   std::unordered_map<std::int64_t, Past> past_;
   std::string caution_;
   std::optional<Activity> activity_;
-  std::string earlier_activity_;  // of other sessions
+  std::string earlier_activity_;  // the lines of other sessions
   std::string session_time_;
   Clock::time_point begin_ = Clock::now();
   bool is_published_ = false;
   Clock::time_point publication_begin_, publication_end_;
-  std::mutex changing_;                                  // protects rows that a publication may be reading
-  std::future<std::optional<std::string>> publication_;  // the stamp; the last member: it ends first
+  std::mutex changing_;  // protects rows that a publication may be reading
+  // Gives the stamp; this is the last member, so that it ends first.
+  std::future<std::optional<std::string>> publication_;
 
   Entry* entry(std::int64_t task) const {
     return task < std::ssize(runs_) ? runs_[static_cast<std::size_t>(task)].get() : nullptr;

@@ -20,13 +20,15 @@ struct SetTimes {
   std::int64_t num_finished = 0;
   std::int64_t num_running = 0;
   std::int64_t num_waiting = 0;
-  double seconds = 0;  ///< total time that the finished runs took and the running ones have taken
+  double seconds = 0;  ///< total time of the finished runs, and of the running runs so far
 };
-/// Short runs end first, so the mean over finished runs alone is too small: running runs count as censored,
-/// as for the clogging length. Each parameter set has its own mean; a set without a finished run gets the
-/// mean of all sets, with an equally large error. The time left is then each rank's share of the waiting
-/// runs, plus a tail in which ranks run out of tasks one by one (the largest of W exponential times is 1 +
-/// 1/2 + ... + 1/W means). The range is the 80 % interval that results from the errors of the means.
+/// Estimates the remaining time of a sweep. Short runs end first, so the mean over finished runs alone is too
+/// small. Therefore running runs count as censored, as for the clogging length. Each parameter set has its
+/// own mean; a set without a finished run gets the mean of all sets, with an equally large error.
+///
+/// The time left is each rank's share of the waiting runs, plus a tail in which the W ranks run out of tasks
+/// one by one. For the tail, the longest of W exponential times is on average 1 + 1/2 + ... + 1/W times as
+/// long as their mean. The range is the 80 % interval that results from the errors of the means.
 TimeLeft time_left(std::span<const SetTimes> sets, std::size_t num_ranks);
 
 }  // namespace clog::results

@@ -7,15 +7,17 @@
 namespace clog::results {
 
 /// The default parameter_values() of a run with this row's model and preset. For a parameter that may be
-/// automatic, this is the row's value if the row has the automatic value, otherwise unset. Empty if the row's
-/// parameters are impossible.
+/// automatic, the default is the row's value if that is the automatic one, otherwise unset. Empty if the
+/// row's parameters are impossible.
 std::vector<Value> usual_parameters(const sweep::RunRow& row);
 
-/// Whether this value is what `auto` gives for the row's other parameters, or what its preset sets.
+/// Whether the row's value in this column is the one that `auto` gives for the row's other parameters, or the
+/// one that the row's preset sets.
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row);
 
-/// The value by which a column separates curves and comparisons: unset if it is automatic or follows from the
-/// array; for springs to the rest length the ratio K_l/Gamma of `perimeter-stiffness-ratio`.
+/// The value by which a column separates curves and comparisons. It is unset if the row's value is automatic
+/// or follows from the array. For springs to the rest length, it is the ratio K_l/Gamma of
+/// `perimeter-stiffness-ratio`.
 Value separating_value(const sweep::Column& column, const sweep::RunRow& row);
 
 }  // namespace clog::results

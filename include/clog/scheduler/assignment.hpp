@@ -8,11 +8,11 @@
 
 namespace clog::scheduler {
 
-/// Rank 0's message to the others before a sweep: the task descriptions and options.
+/// Rank 0's message to the other ranks before a sweep: the descriptions of the tasks, and options.
 struct Assignment {
   std::chrono::milliseconds report_interval{10'000};
   std::string instruction_set = "auto";
-  bool is_isolated = true;  ///< do tasks run in processes of their own?
+  bool is_isolated = true;  ///< whether tasks run in processes of their own
   std::string settings;     ///< see sweep::Settings::packed()
 
   /// Serialised form, for messages.
@@ -20,7 +20,7 @@ struct Assignment {
   static Assignment from(const std::string& text);
 };
 
-/// The jobs of an assignment, in any process. @param text  see Assignment::text()
+/// The jobs of an assignment. Any process may call this. @param text  see Assignment::text()
 sweep::JobFactory assigned_jobs(const std::string& text);
 
 }  // namespace clog::scheduler

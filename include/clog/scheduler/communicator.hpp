@@ -8,9 +8,9 @@
 
 namespace clog::scheduler {
 
-/// MPI for the duration of a program: initialised on construction, finalised on destruction. Works without
-/// mpirun as a single rank. Ranks talk in short messages of plain bytes, marked by a tag; all ranks run the
-/// same binary on the same kind of machine.
+/// MPI for the duration of a program: initialised on construction, finalised on destruction. Without mpirun,
+/// the program is a single rank. Ranks send each other short messages of plain bytes, marked by a tag. All
+/// ranks must run the same binary on the same kind of machine.
 class Communicator {
  public:
   Communicator(int& argc, char**& argv);
@@ -18,8 +18,8 @@ class Communicator {
   Communicator(const Communicator&) = delete;
   Communicator& operator=(const Communicator&) = delete;
 
-  /// Whether this process may be rank 0, from the launcher's variables before MPI starts: true on rank 0, and
-  /// on every rank without such variables.
+  /// Whether this process may be rank 0, according to the launcher's environment variables, before MPI
+  /// starts. True on rank 0, and on every rank without such variables.
   static bool may_be_rank_0();
 
   int rank() const { return rank_; }
@@ -43,9 +43,9 @@ class Communicator {
     std::size_t num_bytes;
   };
   static constexpr int any = -1;
-  /// Sends and returns when the bytes may be reused.
+  /// Sends a message, and returns when the bytes may be reused.
   void send(int destination, int tag, std::span<const std::byte> bytes) const;
-  /// Is a message waiting? Never blocks.
+  /// The envelope of a waiting message; nullopt if no message is waiting. Never blocks.
   std::optional<Envelope> probe(int source, int tag) const;
   /// Receives the message that probe() found.
   std::vector<std::byte> receive(const Envelope& envelope) const;

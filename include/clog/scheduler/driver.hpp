@@ -22,13 +22,13 @@ struct DriverOptions {
   Log::Level log = Log::Level::normal;
 };
 
-/// Rank 0's part of a sweep, while the other ranks are in follow_sweep(): connects the scheduler with the
-/// state, the log and the progress line. Returns the exit code.
+/// Rank 0 calls this for a sweep, while the other ranks call follow_sweep(). Connects the scheduler with the
+/// state of the sweep, the log and the progress line. Returns the exit code.
 /// @param rule  requests more of the plan's tasks when those requested are over; nullptr: none
 int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& options, const sweep::Plan& plan,
                 const sweep::JobFactory& make_job, results::SweepState& state, results::SeedRule* rule);
 
-/// The part of the other ranks.
+/// All ranks except rank 0 call this for a sweep.
 void follow_sweep(const scheduler::Communicator& ranks, const sweep::JobFactory& make_job,
                   std::chrono::milliseconds report_interval);
 

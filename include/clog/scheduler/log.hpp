@@ -18,7 +18,7 @@ void announce(const std::string& output, const sweep::Plan& plan, const results:
 class Log {
  public:
   enum class Level {
-    quiet,   ///< events that need action: a rank that is set aside
+    quiet,   ///< only events that need action, such as a rank that is set aside
     normal,  ///< also failures and the reason for a stop
     verbose  ///< also every task that starts or ends
   };

@@ -20,8 +20,8 @@ enum class MasterComputes { automatic, yes, no };
 using sweep::Report;
 using sweep::Start;
 
-/// Callbacks by which the scheduler informs and queries its caller during a sweep. Called on rank 0 only,
-/// between slices of its own work.
+/// Callbacks by which the scheduler informs and queries its caller during a sweep. They are called on rank 0
+/// only, between slices of rank 0's own work.
 struct SweepEvents {
   std::function<Start(std::int64_t task, int rank)> started = [](std::int64_t, int) { return Start(); };
   /// Called from time to time for a running task; the status of its row is `running`.
@@ -33,18 +33,19 @@ struct SweepEvents {
   /// Called for a task that `failed` when the rank may be at fault (see RankTrust): the attempt does not
   /// count, and the task is tried once more whatever tries_again() returned.
   std::function<void(std::int64_t task)> failure_withdrawn = [](std::int64_t) {};
-  /// Called when a rank gets no more tasks. The row is that of the last task that failed on it, with rank and
-  /// host.
+  /// Called when a rank gets no more tasks. The row is that of the last task that failed on this rank, with
+  /// rank and host.
   std::function<void(const sweep::RunRow& failed)> set_aside = [](const sweep::RunRow&) {};
-  /// Called about every 0.1 s; less often while this rank samples an array or releases a droplet, which takes
-  /// a second in large boxes.
+  /// Called about every 0.1 s, but less often while rank 0 samples an array or releases a droplet, which
+  /// takes a second in large boxes.
   std::function<void()> idle = [] {};
-  /// Whether the sweep should stop now. Then running tasks end as interrupted, and no more are handed out.
+  /// Whether the sweep should stop now. Then running tasks end as interrupted, and no further tasks are
+  /// handed out.
   std::function<bool()> stop_requested = [] { return false; };
 };
 
-/// Whether rank 0 computes. `automatic`: only with up to 16 ranks. With more, the gain of one rank is not
-/// worth the delay that its slices add before each worker's next task.
+/// Whether rank 0 computes. `automatic`: only with up to 16 ranks. With more ranks, the work of rank 0 gains
+/// little, and its slices delay the next task of every worker.
 bool computes(int num_ranks, MasterComputes choice);
 
 /// Rank 0's state of a sweep's tasks and ranks, kept over all rounds: ranks that were set aside stay set
@@ -56,7 +57,7 @@ struct Schedule {
   TaskOrder tasks;
   bool master_computes;
   RankTrust trust;
-  std::unordered_map<int, sweep::RunRow> last_failures;  ///< by rank
+  std::unordered_map<int, sweep::RunRow> last_failures;  ///< the last failure on each rank, by rank
 };
 
 enum class SweepEnd {
@@ -65,18 +66,18 @@ enum class SweepEnd {
   no_rank_left,  ///< every rank was set aside
 };
 
-/// Works through all tasks with all ranks, a round of a sweep; collective.
+/// Works through all tasks of a round with all ranks; every rank must call this.
 ///
 /// Rank 0 hands out one task at a time, since tasks differ a thousandfold in length, and gathers the rows.
 /// Rows do not depend on the order of the tasks. A task that failed is tried again on another rank, if there
-/// is one, before new tasks start. A rank on which everything fails is set aside: see RankTrust. Rank 0, if
-/// it computes, does so in slices between polls. No rank spins: an idle rank sleeps, with a backoff of up to
-/// a few milliseconds. A stopped task has two seconds to report its progress; otherwise its previous report
-/// is used.
-/// @param schedule  matters on rank 0
+/// is one, before new tasks start. A rank on which everything fails is set aside: see RankTrust. If rank 0
+/// computes, it does so in slices between two polls for messages. No rank spins: an idle rank sleeps, with a
+/// backoff of up to a few milliseconds. A stopped task has two seconds to report its progress; otherwise its
+/// previous report is used.
+/// @param schedule  used on rank 0 only
 /// @param make_job  called on the rank that works on the task
 /// @param report_interval  time between two reports of a running task
-/// @return how it ended (rank 0; complete elsewhere)
+/// @return how the round ended, on rank 0; `complete` on the other ranks
 SweepEnd run_tasks(const Communicator& ranks, Schedule& schedule, const sweep::JobFactory& make_job,
                    const SweepEvents& events,
                    std::chrono::milliseconds report_interval = std::chrono::seconds(10));

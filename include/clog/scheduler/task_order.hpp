@@ -11,13 +11,14 @@
 
 namespace clog::scheduler {
 
-/// Chooses the task to hand out next: the one expected to run longest, so that ranks do not idle while a long
-/// one finishes last.
+/// Chooses the task to hand out next: the task expected to run longest, so that at the end ranks do not idle
+/// while a long task finishes.
 ///
 /// The tasks of a group differ in their seed only, and are handed out in order. A group's expected run time
-/// is the mean of an exponential distribution fitted to its finished and, as censored, its running tasks:
-/// their total time divided by the number that ended. A group without an ended task is expected to be longer
-/// than any other; among those the one with fewest tasks handed out is next.
+/// is the mean of an exponential distribution, fitted to its finished tasks and, as censored, its running
+/// tasks: the total time of all these tasks divided by the number that ended. Tasks of a group without an
+/// ended task are expected to run longer than all others; of several such groups, the one with the fewest
+/// tasks handed out is next.
 class TaskOrder {
  public:
   using GroupOf = std::function<std::int64_t(std::int64_t task)>;
@@ -29,34 +30,35 @@ class TaskOrder {
 
   bool empty() const { return num_left_ == 0; }
   /// Hands out a task; there must be one. The cost is proportional to the number of running groups.
-  /// @param now  time [s], from any moment on, the same in all calls
+  /// @param now  time since some moment, which must be the same in all calls [s]
   std::int64_t take(double now);
   void ended(std::int64_t task, double now);
   /// Records that a task that had ended has started again.
   void begun_again(std::int64_t task, double now);
 
  private:
-  /// Priority of a group, the smallest is next: minus the expected run time, number of tasks handed out,
-  /// number of the group.
+  /// Priority of a group; the group with the smallest is next. It contains minus the expected run time, the
+  /// number of tasks handed out, and the number of the group.
   using Turn = std::tuple<double, std::int64_t, std::size_t>;
   struct Group {
     std::vector<std::int64_t> tasks;
-    std::size_t next = 0;  // of the tasks
+    std::size_t next = 0;  // index of the next task
     std::int64_t num_taken = 0;
     std::int64_t num_ended = 0;
-    double time_ended = 0;     // run times of the tasks that ended [s]
-    double start_running = 0;  // sum of the starts of those that run
-    Turn turn;                 // while none runs it does not depend on the time
+    double time_ended = 0;     // sum of the run times of the tasks that ended [s]
+    double start_running = 0;  // sum of the starts of the tasks that run
+    Turn turn;                 // does not depend on the time while no task of the group runs
 
     bool is_waiting() const { return next < tasks.size(); }
   };
   GroupOf number_of_group_;
   std::int64_t num_left_ = 0;
   std::vector<Group> groups_;
-  // Groups with waiting tasks: resting_ has those without a running task, running_ the numbers of the others.
+  // Groups with waiting tasks: resting_ contains the groups without a running task, running_ the numbers of
+  // the groups with a running task.
   std::set<Turn> resting_;
   std::set<std::size_t> running_;
-  std::unordered_map<std::int64_t, double> running_since_;  // by task
+  std::unordered_map<std::int64_t, double> running_since_;  // start of each running task, by task
 
   std::size_t number_of(std::int64_t task);
   void begin(std::size_t number, std::int64_t task, double now);

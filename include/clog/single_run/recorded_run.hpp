@@ -16,24 +16,24 @@ namespace clog::single_run {
 /// Follows one droplet to its end, or to a signal, and records samples.
 class RecordedRun {
  public:
-  /// Intervals in checks of the run (0: no polygons).
+  /// Intervals between samples and between polygons, in checks of the run (0: no polygons).
   struct Intervals {
     std::int64_t samples = 1;
     std::int64_t polygons = 0;
   };
-  /// @param samples, polygons  [t0]; without polygons none are kept
+  /// @param samples, polygons  intervals [t0]; no polygons are kept if their interval is missing
   static Intervals every(double samples, std::optional<double> polygons, double time_step);
 
   RecordedRun(DropletRun run, Intervals intervals);
 
   void follow();
-  /// Advances the run by a short piece, to measure the cost of a step. The run is useless afterwards.
+  /// Advances the run by a short piece, to measure the cost of a step. The run must not be used afterwards.
   MostCost measure_cost();
 
   const DropletRun& run() const { return run_; }
   /// The run's result; its status is `interrupted` if a signal ended it.
   RunResult result() const;
-  /// Samples, polygons, the obstacles near them, and the row's columns of results.
+  /// A trajectory of samples, polygons and the obstacles near them, with a row that contains the results.
   /// @param row  the columns of parameters, see sweep::describe()
   /// @param origin  of the trajectory
   store::Trajectory trajectory(sweep::RunRow row, store::Provenance origin) const;

@@ -24,19 +24,21 @@ OutputPath journal_place(const OutputPath& table);
 
 /// The records of a sweep since its table was last published, appended to a file beside the table: finished
 /// rows, and rows of running tasks with their snapshots. A record survives the death of the process once
-/// add() has returned, and a crash of the machine once flush() has returned. Opening the file drops an
-/// incomplete record at its end; a damaged record does not make others unreadable. An open journal is locked;
-/// the lock disappears with its process. If somebody removes or replaces the file, the lock no longer
-/// protects it: then nothing is written, neither to it nor to the file that took its place. Closing a journal
-/// without records removes it.
+/// add() has returned, and a crash of the machine once flush() has returned. An incomplete record at the end
+/// of the file is ignored; a damaged record does not make others unreadable.
+///
+/// An open journal is locked; the lock disappears with its process. If somebody removes or replaces the file,
+/// the lock no longer protects it. The journal then writes nothing more, neither to this file nor to the file
+/// that took its place. Closing a journal without records removes its file.
 class Journal {
  public:
   using Entry = sweep::Report;
   struct Contents {
-    std::vector<Entry> entries;       ///< oldest first
+    std::vector<Entry> entries;       ///< records, the oldest first
     std::int64_t num_unreadable = 0;  ///< damaged records between readable ones
-    bool has_torn_end = false;        ///< its writer died while writing a record, or is still writing it
-    std::uint64_t num_bytes = 0;      ///< excluding a torn end
+    /// Whether the last record is incomplete: its writer died, or is still writing it.
+    bool has_torn_end = false;
+    std::uint64_t num_bytes = 0;  ///< size of the file without an incomplete record at the end
   };
 
   /// Opens or makes the file. @throws Error if the file is open elsewhere, has another version, is another
@@ -53,22 +55,23 @@ class Journal {
   static std::optional<Contents> look(const std::string& path);
 
   const std::string& path() const { return place_.path(); }
-  /// Whether the open file is still the one at its place.
+  /// Whether the open file is still the file at its path.
   bool is_there() const { return place_.holds(file_); }
   /// Creates and locks an empty journal where the old one was removed. Returns false if another sweep has
   /// started there. @throws Error if it cannot be written
   bool make_anew(const OutputPath& table);
 
-  /// The file's content when it was opened, oldest first.
+  /// The records that the file had when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(contents_.entries); }
   std::int64_t num_unreadable() const { return contents_.num_unreadable; }
-  /// Appends a record. @throws Error if the disk is full, or the file is no longer the one at the path; so do
-  /// flush() and rewrite()
+  /// Appends a record. @throws Error if the disk is full, or if another file is at the path, as do flush()
+  /// and rewrite()
   void add(const sweep::RunRow& row, std::span<const std::byte> snapshot);
-  /// Saves the records to disk. Once begin() has returned, another thread may call this while this one adds
-  /// records.
+  /// Saves the records to disk. Once begin() has returned, another thread may call this while the thread that
+  /// owns the journal adds records.
   void flush();
-  /// Writes the header of a new file, and removes an incomplete record at the end; so does the first add().
+  /// Prepares the file for writing: writes a missing header, and removes an incomplete record at the end. The
+  /// first add() does this, too.
   void begin();
   std::uint64_t num_bytes() const { return contents_.num_bytes; }
   /// Whether the file is larger than 64 MB, and more than twice as large as after its last rewrite.
@@ -76,12 +79,12 @@ class Journal {
   /// Replaces the file by one with only these entries.
   void rewrite(std::span<const Entry* const> entries);
   /// Prepares a file with these entries and the records behind the first `begin` bytes; replace() puts it in
-  /// place. Another thread may call this, as it may call flush().
+  /// place. Like flush(), this may be called by another thread.
   void prepare(std::span<const Entry* const> entries, std::uint64_t begin);
   bool is_prepared() const { return next_ != nullptr; }
   void replace();
-  /// Removes the file, unless it is no longer the one at the path; nothing may be added afterwards. Returns
-  /// the reason if that failed.
+  /// Removes the file, unless another file has taken its place at the path. Nothing may be added afterwards.
+  /// Returns the reason if the removal failed.
   std::error_code remove();
 
  private:
@@ -90,9 +93,10 @@ class Journal {
   Contents contents_;  ///< contents at opening; num_bytes is kept up to date
   std::uint64_t num_rewritten_bytes_ = 0;
   bool has_begun_ = false;
-  std::unique_ptr<Draft> next_;   ///< the file that is to replace this one
-  std::uint64_t num_copied_ = 0;  ///< bytes of this file that the next one already has or does not need
-  std::atomic<std::uint64_t> num_whole_ = 0;  ///< bytes of complete records, for the thread of prepare()
+  std::unique_ptr<Draft> next_;   ///< the file that will replace this file
+  std::uint64_t num_copied_ = 0;  ///< bytes of this file that next_ already has or does not need
+  std::atomic<std::uint64_t> num_whole_ =
+      0;  ///< number of bytes of complete records, for the thread that calls prepare()
 
   std::uint64_t copy_additions();
   void open_and_lock(const OutputPath* table);

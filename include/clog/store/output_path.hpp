@@ -11,53 +11,54 @@
 
 namespace clog::store {
 
-/// Tables, trajectories and journals are regular files: opening a pipe would wait, and only regular files can
-/// be locked, read at any place and replaced as a whole. Links are followed. The path of a file that does not
-/// exist yet is accepted. Returns the path.
-/// @throws Error if something else is there
+/// Checks that a path leads to a regular file, or to no file yet, and returns the path. Tables, trajectories
+/// and journals are regular files: opening a pipe would wait, and only regular files can be locked, read at
+/// any place and replaced as a whole. Links are followed.
+/// @throws Error if the path leads to something else
 std::string require_regular(std::string path);
 
-/// The location of a file, which may not exist yet: its folder, held open, and its name in that folder.
-/// Symbolic links are followed once, by resolve(); changing them or moving the folder later does not redirect
-/// writes.
+/// The location of a file, which may not exist yet. The object holds the file's folder open, and knows the
+/// file's name in that folder. Symbolic links are followed once, by resolve(), so writes are not redirected
+/// if somebody changes the links or moves the folder later.
 class OutputPath {
  public:
   /// Follows links and opens the folder.
   /// @throws Error if the path names no file, its folder cannot be opened, or a link on the path is in a
   /// world-writable sticky folder and belongs neither to this user nor to the folder's owner
   static OutputPath resolve(const std::string& path);
-  /// A path in the same folder: the name with this ending. A link there is not followed.
+  /// The file in the same folder whose name is this name with an ending. If it is a link, it is not followed.
   OutputPath beside(const std::string& ending) const;
   bool is_link() const;
 
-  /// For messages and readers: links followed.
+  /// The path with links followed, for messages and readers.
   const std::string& path() const { return path_; }
   /// Opens the file, never through a link. The descriptor is not open if this fails: see errno.
   Descriptor open(int flags) const;
-  /// Creates a file, to read and write; the descriptor is not open if something exists already. @throws Error
+  /// Creates a file for reading and writing. The descriptor is not open if something with this name exists
+  /// already. @throws Error
   Descriptor create(mode_t mode) const;
   bool exists() const { return status().has_value(); }
-  /// Whether this open file is still the one here. Somebody may have replaced or removed it meanwhile.
-  /// @param failure  if given, why this is unknown
+  /// Whether this open file is still the file at this path. Somebody may have replaced or removed that file.
+  /// @param failure  if given, gets the reason why this is unknown
   bool holds(int descriptor, std::error_code* failure = nullptr) const;
   /// Removes the file, if there is one. Returns the reason if that failed.
   std::error_code remove() const;
-  /// Renames the file at `other`, in the same folder, to this name. There it replaces the file with this
-  /// stamp(); if that file was removed, or if the stamp is empty, it replaces no file. Returns the reason if
-  /// that failed: `file_exists` if a different file has this name; then both files stay. If the file system
-  /// can exchange two names at once, a file that appears here at the last moment is kept, too.
+  /// Renames the file at `other`, in the same folder, to this name, where it replaces the file with this
+  /// stamp(). If that file was removed, or if the stamp is empty, it replaces no file. Returns the reason if
+  /// the renaming failed: `file_exists` if a different file has this name; then both files stay. If the file
+  /// system can exchange two names at once, even a file that appears here at the last moment stays.
   std::error_code replace(const std::string& stamp, const OutputPath& other) const;
   /// Synchronises the folder to disk, so that renames survive a power cut.
   void sync_folder() const;
-  /// The reason why the last sync_folder() of this place, its copies and those beside() it failed; empty if
-  /// none has failed.
+  /// The reason why sync_folder() last failed, for this object, its copies, or the results of beside(); empty
+  /// if it has not failed.
   const std::string& sync_fault() const { return folder_->sync_fault; }
   /// Copies mode, owner, group and access list of the file here, if there is one, to an open file, as far as
   /// permitted.
   void lend_access_to(int descriptor) const;
-  /// The file's identity: size and seal or, without a seal, device, inode and size. Any other file moved here
-  /// has another stamp. The stamp does not depend on mode and times; some network file systems change the
-  /// inode. Empty if there is no file.
+  /// Identifies the file by size and seal or, without a seal, by device, inode and size. If another file is
+  /// moved here, the stamp changes. It does not depend on mode and times. On some network file systems, the
+  /// inode of a file changes, and with it the stamp of a file without a seal. Empty if there is no file.
   std::string stamp() const;
 
  private:

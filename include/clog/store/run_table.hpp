@@ -16,7 +16,7 @@ namespace clog::store {
 /// Version of the file format; see docs/reference/files.md.
 inline constexpr const char* format_version = "10";
 
-/// Name and text of the attributes at the file's root: the origin of its numbers.
+/// Names and texts of the attributes at the file's root, which describe the origin of the file's numbers.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
 /// Version of the HDF5 library, e.g. "1.10.8".
@@ -29,26 +29,27 @@ void refuse_existing(const std::string& path);
 void refuse_unwritable(const std::string& path);
 
 /// User-supplied circles, and the name of their file; the name is empty if the sweep's last command does not
-/// give it.
+/// name this file.
 struct CircleFile {
   std::string name;
   OwnCircles circles;
 };
 
-/// Parts of a file that have been compared with a checksum.
+/// The part of a file that has been compared with checksums.
 enum class Checked {
-  everything,         ///< every bit of it
-  rows_and_settings,  ///< each row and each attribute: another program has copied or changed the file
+  everything,         ///< every bit of the file
+  rows_and_settings,  ///< each row and each attribute, because another program has copied or changed the file
 };
 
 struct SweepFile {
   std::vector<sweep::RunRow> rows;
   Provenance provenance;
-  std::vector<CircleFile> circles;  ///< that the rows refer to
+  std::vector<CircleFile> circles;  ///< the circles that the rows refer to
   Checked checked = Checked::everything;
 };
 
-/// The rows for a file. Each is requested once, in this order, so the rows need not be in one array.
+/// The rows that a new file gets. Each row is requested once, in the order of `i`, so the rows need not be in
+/// one array.
 struct Rows {
   std::size_t number;
   std::function<sweep::RunRow(std::size_t i)> row;
@@ -60,9 +61,10 @@ struct Rows {
 };
 
 /// Writes a sweep's file in place of the file with this OutputPath::stamp(). At every moment the path names a
-/// complete table, the old or the new, so readers may read it at any time. The new table is on the disk when
-/// this returns. Returns the stamp of the written file, even if somebody has replaced the file since; nullopt
-/// if a different file is there, which stays. @throws Error, and the old file stays
+/// complete table, the old or the new one, so readers may read it at any time. When this function returns,
+/// the new table is on the disk. Returns the stamp of the written file, even if somebody has replaced the
+/// file since. Returns nullopt if a file with another stamp is there; this file stays. @throws Error if the
+/// file cannot be written; then the old file stays
 std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp, const Rows& rows,
                                          const Provenance& provenance,
                                          const std::vector<CircleFile>& circles);
@@ -74,8 +76,8 @@ inline std::optional<std::string> publish_sweep(const OutputPath& place, const s
 /// Reads a file of format version 9 or 10. Missing columns get Parameter::before, or are unknown. @throws
 /// Error if the file is missing, not HDF5, not ours, of another format version, or damaged
 SweepFile read_sweep(const std::string& path);
-/// Tries to read a file without a valid seal in a child process, so that a later read_sweep() of the same
-/// bytes does not fork: a process that has called MPI_Init must not fork. Throws nothing, because
+/// If a file has no valid seal, tries to read it in a child process. Then a later read_sweep() of the same
+/// bytes does not fork, which a process that has called MPI_Init must not do. Throws nothing, because
 /// read_sweep() throws the error.
 void try_before_mpi(const std::string& path);
 /// A warning for readers of this file; empty if all of it was verified.
@@ -84,7 +86,7 @@ std::string caution(const std::string& path, const SweepFile& file);
 /// A file that may be damaged: the intact rows and attributes, and a list of the damage.
 struct Examination {
   SweepFile whole;
-  std::vector<std::string> damage;  ///< a sentence each
+  std::vector<std::string> damage;  ///< a sentence for each damage
   /// Whether one of HDF5's own checksums does not match, so that h5py and other readers refuse the file.
   bool is_refused_by_others = false;
 };

@@ -12,7 +12,7 @@ namespace clog::store {
 /// One column of /trajectory: a number per moment.
 struct TrajectoryColumn {
   std::string name;
-  std::string meaning;  ///< with its unit
+  std::string meaning;  ///< the meaning with its unit
   std::vector<double> values;
 };
 
@@ -24,15 +24,15 @@ struct PolygonFrame {
 };
 
 struct Trajectory {
-  std::vector<TrajectoryColumn> columns;  ///< all of the same size
-  std::vector<PolygonFrame> polygons;     ///< may be empty; all of the same size
-  std::vector<Obstacle> obstacles;        ///< near the path, in the polygons' coordinates; may be empty
-  std::vector<Wedge> wedges;              ///< near the path, in the same coordinates; may be empty
-  sweep::RunRow row;                      ///< what a sweep would have stored for this run
+  std::vector<TrajectoryColumn> columns;  ///< columns, all of the same size
+  std::vector<PolygonFrame> polygons;     ///< polygons, all of the same size; may be empty
+  std::vector<Obstacle> obstacles;  ///< obstacles near the path, in the polygons' coordinates; may be empty
+  std::vector<Wedge> wedges;        ///< wedges near the path, in the same coordinates; may be empty
+  sweep::RunRow row;                ///< what a sweep would have stored for this run
   Provenance provenance;
 };
 
-/// Writes a new file, complete or not at all. @throws Error if the file exists or cannot be written
+/// Writes a new file. If this fails, there is no file. @throws Error if the file exists or cannot be written
 void write_trajectory(const std::string& path, const Trajectory& trajectory);
 
 }  // namespace clog::store

@@ -10,16 +10,16 @@
 #include "clog/core/parameters/schema.hpp"
 #include "clog/sweep/run_row.hpp"
 
-/// Every column of the table of runs, described once: those of the parameters follow from parameter_schema(),
-/// results are listed in columns.cpp. A new result is a member of RunRow, an entry there, and the line
-/// of record() that fills it.
+/// Every column of the table of runs is described once. The columns of the parameters follow from
+/// parameter_schema(); the columns of results are listed in columns.cpp. A new result needs a member of
+/// RunRow, an entry in columns.cpp, and a line of record() that fills the member.
 namespace clog::sweep {
 
 /// The kind of information in a column.
 enum class ColumnRole {
-  parameter,     ///< what was run: equal runs have equal values
-  result,        ///< equal runs have equal values, bit for bit
-  circumstance,  ///< who made the row, how long it took: differs between equal runs
+  parameter,     ///< describes the run: equal runs have equal values
+  result,        ///< the outcome: equal runs have equal values, bit for bit
+  circumstance,  ///< for instance the host, or the time that the run took: differs between equal runs
 };
 
 }  // namespace clog::sweep
@@ -38,7 +38,7 @@ using Value = ParameterValue;
 
 struct Column {
   std::string name;
-  std::string symbol;  ///< as TeX writes it; may be empty
+  std::string symbol;  ///< the symbol as TeX writes it; may be empty
   std::string unit;    ///< may be empty
   std::string meaning;
   ColumnRole role;
@@ -60,14 +60,14 @@ struct Column {
 
   /// Writes `size` bytes in a file's layout; unset values are stored as NaN, -1 or "".
   void pack(const RunRow& row, std::byte* bytes) const;
-  /// Reads these bytes; columns must be read in the order of columns(). Keeps the first fault.
+  /// Reads these bytes; columns must be read in the order of columns(). `unpacked` keeps the first fault.
   void unpack(const std::byte* bytes, UnpackedRow& unpacked) const;
 };
 
 /// All columns, in their order in files.
 std::span<const Column> columns();
-/// Name of the column with the length of a dwell of Dwells::longest. With `_at` or `_from` at its end, it is
-/// the name of the column that tells where or when this dwell began.
+/// Name of the column with the length of a dwell of Dwells::longest. The column whose name also has `_at` or
+/// `_from` at its end contains the place or the time at which this dwell began.
 std::string dwell_column(std::size_t place);
 /// @throws std::out_of_range if there is none
 const Column& column(std::string_view name);

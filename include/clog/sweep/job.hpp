@@ -15,12 +15,12 @@ namespace clog::sweep {
 class Job {
  public:
   virtual ~Job() = default;
-  /// Works for some milliseconds. Returns whether the task is over. Errors of the task end it with a row of
-  /// status `failed`; advance() does not throw.
+  /// Works for some milliseconds. Returns whether the task is over. An error of the task ends the task with a
+  /// row of status `failed`; advance() does not throw.
   virtual bool advance() = 0;
-  /// Whether row() and snapshot() have the task's present state. Never waits. A job that another process
-  /// computes sends a request to this process; after advance() has received the answer, one call returns
-  /// true.
+  /// Whether row() and snapshot() have the task's present state. The call never waits. If another process
+  /// computes the job, a first call sends this process a request and returns false; after advance() has
+  /// received the answer, one call returns true.
   virtual bool refresh() { return true; }
   /// The task's row. As long as the task is not over, the row has the status `interrupted`.
   virtual RunRow row() const = 0;

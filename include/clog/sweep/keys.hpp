@@ -20,20 +20,21 @@ struct Key {
   std::string help;            ///< meaning and unit
   const Parameter* parameter;  ///< nullptr: preset
 
-  /// Sets the key's parameter to a value. Does nothing for the preset, which acts through other keys, and for
-  /// obstacles, whose values name files: Plan knows their content. @throws Error, without the key's name, if
-  /// the value cannot be read or is out of the type's range
+  /// Sets the key's parameter to a value. Does nothing for the preset, which acts through other keys. Does
+  /// nothing for obstacles either, because the values of this key only name files; Plan knows the content of
+  /// these files. @throws Error, without the key's name, if the value cannot be read or is out of the type's
+  /// range
   void apply(RunParameters& run, const std::string& value) const;
 };
 
 /// All keys, in the order in which they are shown.
 const std::vector<Key>& keys();
-/// Suggestions for a word that is no key: the key whose symbol in the paper is this word (Gamma, w_ob), up to
-/// three names that contain the word, or the nearest name. Empty if there is none.
+/// Suggestions for a word that is no key: the key whose symbol in the paper is this word (Gamma, w_ob), or up
+/// to three names that contain the word, or the nearest name. Empty if there is none.
 std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names);
 /// @throws Error that names the nearest key
 const Key& find_key(std::string_view name);
-/// The key's place in keys(). @throws Error likewise
+/// The key's place in keys(). @throws Error as find_key()
 std::size_t place_of_key(std::string_view name);
 
 /// A parameter's value as text of a config file.
@@ -42,10 +43,10 @@ std::string written(const ParameterValue& value, const Parameter& parameter);
 bool is_same_value(const std::string& a, const std::string& b);
 
 std::vector<std::string> preset_names();
-/// The keys of the interface and of its numerics with their values in a preset; empty if there is no such
-/// preset.
+/// The keys that a preset sets (of the interface and of its numerics), with their values; empty if there is
+/// no such preset.
 std::vector<std::pair<const char*, const char*>> preset_texts(std::string_view name);
-/// The preset whose interface this resolved parameter set has, or `custom`.
+/// Name of the preset whose values this resolved parameter set has; `custom` if there is none.
 std::string preset_name(const RunParameters& run);
 
 }  // namespace clog::sweep

@@ -16,8 +16,8 @@ struct Start {
   std::int64_t attempt = 1;
 };
 
-/// Progress of a task: its row, and a snapshot from which it can resume, if there is one. A sweep's journal
-/// consists of reports, too.
+/// Progress of a task: the task's row and, if there is one, a snapshot from which the task can resume. A
+/// sweep's journal consists of reports, too.
 struct Report {
   RunRow row;
   std::vector<std::byte> snapshot;

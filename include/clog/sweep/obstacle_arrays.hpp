@@ -12,10 +12,10 @@ namespace clog::sweep {
 /// The values of all parameters that shape a run's walls, as text: runs with equal texts have the same walls.
 std::string array_key(const RunParameters& run);
 
-/// The walls of a sweep's runs, usually obstacle arrays. The last one is kept, because a sweep requests the
-/// same one many times in a row. Large ones are shared by all processes of the same user and executable on a
-/// machine: one of them builds each array while the others wait, and memory holds it once. If sharing fails,
-/// every process waits in vain once and then builds its own array.
+/// The walls of a sweep's runs, usually obstacle arrays. The last array is kept, because a sweep requests the
+/// same array many times in a row. Large arrays are shared by all processes of the same user and executable
+/// on a machine: one process builds the array while the others wait, and memory holds it only once. If
+/// sharing fails, every process waits in vain once, and then builds its own array.
 class ObstacleArrays {
  public:
   /// @param run  resolved
@@ -25,15 +25,15 @@ class ObstacleArrays {
   /// Number of arrays that this process has built.
   int num_built() const { return num_built_; }
 
-  /// Timeout for a wait until another process has built the array: at least ten times as long as building it
-  /// takes, because the processors may be shared and the memory slow, and never less than 10 s.
+  /// Longest time to wait until another process has built the array. It is at least ten times as long as
+  /// building the array takes, because processors may be shared and memory slow, and never less than 10 s.
   static std::chrono::duration<double> longest_wait(const ObstacleParameters& parameters);
 
  private:
-  std::string key_;  ///< of the array that is kept; empty: there is none
+  std::string key_;  ///< key of the array that is kept; empty if there is none
   std::shared_ptr<const ObstacleArray> array_;
   int num_built_ = 0;
-  bool is_waiting_worthwhile_ = true;  ///< false after a wait in vain, until a shared array is found again
+  bool is_waiting_worthwhile_ = true;  ///< false after a wait in vain, until a shared array is found
 
   ObstacleArray build(const RunParameters& run);
   ObstacleArray find_or_build(const RunParameters& run);

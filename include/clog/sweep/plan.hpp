@@ -16,12 +16,12 @@ namespace clog::sweep {
 /// Parameter set of a task, by its number.
 using GroupOf = std::function<std::int64_t(std::int64_t task)>;
 
-/// The runs of a sweep: a description that yields any task in any order. It is a list of parameter sets,
-/// called groups, each with its seeds. The parameter sets are the products of the settings' lists, one
+/// Describes the runs of a sweep, so that any task can be made in any order. A plan is a list of parameter
+/// sets, called groups, each with its seeds. The parameter sets are the products of the settings' lists, one
 /// product for each point.
 ///
-/// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array:
-/// task s * num_groups() + g is seed s of group g if all groups have equally many seeds.
+/// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array. If
+/// all groups have equally many seeds, task s * num_groups() + g is seed s of group g.
 class Plan {
  public:
   /// Checks every parameter set of the sweep.
@@ -40,7 +40,7 @@ class Plan {
   std::vector<std::uint32_t> seeds(std::int64_t group) const;
   /// The group's values as texts of the lists, in the order of keys(); the text of the seeds is empty.
   std::vector<std::string> texts(std::int64_t group) const;
-  /// @param place  of its seed among those of the group, 0 <= place < num_seeds(group)
+  /// @param place  place of the task's seed among the seeds of the group, 0 <= place < num_seeds(group)
   std::int64_t task_of(std::int64_t group, std::int64_t place) const;
   /// Whether every group has equally many seeds, and task s num_groups() + g is seed s of group g.
   bool has_equal_seeds() const { return layers_.size() == 1; }
@@ -60,10 +60,10 @@ class Plan {
   using Seeds = std::shared_ptr<const std::vector<std::uint32_t>>;
   struct Group {
     std::size_t product;
-    std::int64_t place;  ///< in the product, seeds excepted
+    std::int64_t place;  ///< place in the product, seeds excepted
     Seeds seeds;
   };
-  /// Successive tasks that repeat the same groups, seed by seed.
+  /// Successive tasks that go through the same groups again and again, each time with the next seed.
   struct Layer {
     std::int64_t first_task;
     std::int64_t first_seed;  ///< place among the seeds of a group

@@ -7,15 +7,15 @@
 namespace clog::sweep {
 
 /// Parameter sets, listed one by one: each has its own texts for `keys`, and the texts of the settings for
-/// all other keys. A text may be a list; that of the key seeds usually is.
+/// all other keys. A text may be a list; the text of the key seeds usually is a list.
 struct Points {
   std::vector<std::string> keys;
   /// A text for every key; an empty one stands for the settings' text.
   std::vector<std::vector<std::string>> rows;
 
   bool empty() const { return keys.empty(); }
-  /// Drops all points, and sets the keys of those that will be added. @throws Error if there is no name, or
-  /// if a name is unknown or repeated
+  /// Drops all points, and sets the keys of the points that will be added. @throws Error if there is no name,
+  /// or if a name is unknown or repeated
   void begin(const std::vector<std::string>& names);
   /// @throws Error that names the point, if it lacks a text for a key, or has one that cannot be read
   void add(const std::vector<std::string>& texts);

@@ -8,15 +8,15 @@
 
 namespace clog::sweep {
 
-/// The parameters of a run outside the range that was tested for soundness, each with its value and that
+/// The parameters of a run that are outside the range tested for soundness, each with its value and the
 /// range: "line-tension=30 (robust is tested from 0.02 to 10)".
 std::vector<std::string> untested_parameters(const RunRow& row);
 /// One line about all runs of a plan; empty if all are within the tested range.
 std::string untested_parameters(const Plan& plan);
 
 /// Distance after which a droplet may meet the same obstacles again [sigma]: the length of an array that
-/// represents a random one. Periodicity across the flow does not shorten it. Infinite for lattices, which
-/// repeat by nature, and without an array.
+/// represents a random one. Periodicity across the flow does not shorten this distance. It is infinite for
+/// lattices, which repeat by nature, and without an array.
 double repetition_length(const RunRow& row);
 /// Whether the droplet has come as far as repetition_length().
 bool has_met_repetition(const RunRow& row);
@@ -27,26 +27,26 @@ std::string possible_repetition(const Plan& plan);
 /// diameter.
 std::vector<std::string> limits_of_circles(const Plan& plan);
 
-/// Known limitations of a plan's results: the lines of the functions above that are not empty.
+/// Known limitations of a plan's results: all lines that the functions above return.
 std::vector<std::string> limits_of_results(const Plan& plan);
 
 /// Largest share of the droplet's weight that the polygon's corners may carry; beyond it, a clog is
 /// attributed to the corners, not to the obstacles.
 inline constexpr double tolerated_mesh_hold = 0.01;
-/// A wrapped droplet hangs over a round obstacle with a lobe on each side; two parts of its interface, one
-/// above the other with a film between them, lie on half of the obstacle's circumference. The function
-/// returns the largest difference between the weights of the lobes, as a share of the droplet's weight, that
-/// friction bears: the tensions of the two lobes have a ratio of at most exp(pi mu) (capstan). Zero unless
-/// friction acts on both parts of the interface (film-friction=on).
+/// Largest difference that friction bears between the weights of the two lobes of a wrapped droplet, as a
+/// share of the droplet's weight. Such a droplet hangs over a round obstacle with a lobe on each side. Two
+/// parts of its interface, one above the other with a film between them, lie on half of the obstacle's
+/// circumference. So the tensions on the two sides have a ratio of at most exp(pi mu), as with a capstan. The
+/// result is zero unless friction acts on both parts of the interface (film-friction=on).
 double weight_borne_by_friction(const DpParameters& dp);
-/// Whether the corners may hold this clog. True if they can bear more of the weight than friction does. If
-/// mesh_hold is unknown, or friction acts only on the interface next to the wall, this is true for every
-/// droplet that hangs over obstacles (docs/explanation/wrapped.md).
+/// Whether the corners may hold this clog: they may if they can bear more of the weight than friction does.
+/// If mesh_hold is unknown, or friction acts only on the interface next to the wall, the result is true for
+/// every droplet that hangs over obstacles (docs/explanation/wrapped.md).
 bool may_hang_on_mesh(const RunRow& row);
 
-/// Smallest possible centre-to-centre distance of two obstacles; the mean of these if diameters vary [sigma].
-/// For user-supplied circles, which may have any diameters and one gap narrower than all others:
-/// 1/sqrt(circles per area). The release void is about as large.
+/// Smallest possible centre-to-centre distance of two obstacles, or its mean if diameters vary [sigma].
+/// User-supplied circles may have any diameters, and one gap may be narrower than all others, so their
+/// spacing is 1/sqrt(circles per area). The release void is about as large as the spacing.
 double obstacle_spacing(const RunRow& row);
 
 }  // namespace clog::sweep

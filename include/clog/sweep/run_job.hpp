@@ -13,7 +13,7 @@ namespace clog::sweep {
 class RunJob final : public Job {
  public:
   /// @param run       resolved
-  /// @param snapshot  of the same task; if it cannot be read, the run restarts
+  /// @param snapshot  a snapshot of the same task; if it cannot be read, the run restarts
   /// @param arrays    from which the run's obstacles come
   RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> snapshot = {},
          std::shared_ptr<ObstacleArrays> arrays = std::make_shared<ObstacleArrays>());
@@ -26,7 +26,7 @@ class RunJob final : public Job {
   RunParameters run_parameters_;
   std::vector<std::byte> snapshot_;
   std::shared_ptr<ObstacleArrays> arrays_;
-  std::unique_ptr<DropletRun> run_;  // made at the first advance(): the release may fail
+  std::unique_ptr<DropletRun> run_;  // made at the first advance(), because the release may fail
   RunRow row_;
   double wall_seconds_ = 0, processor_seconds_ = 0;
   bool over_ = false;

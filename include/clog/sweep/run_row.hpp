@@ -29,7 +29,7 @@ struct clog::Words<clog::sweep::FoundBy> {
 
 namespace clog::sweep {
 
-/// Instruction set of a run that resumed from a snapshot of another one.
+/// RunRow::instruction_set of a run that resumed from a snapshot of another instruction set.
 inline constexpr const char* mixed_instruction_sets = "mixed";
 
 /// One row of the table of runs: parameters, results, circumstances. Its columns, their units and meanings
@@ -40,9 +40,9 @@ struct RunRow {
 
   std::int64_t task = -1;
 
-  RunParameters parameters;                       ///< resolved
-  std::set<const Parameter*> unknown_parameters;  ///< which the row's file does not have
-  double obstacle_density = 0;                    ///< see Scene; of a saturated array, the jamming limit
+  RunParameters parameters;                       ///< resolved parameters
+  std::set<const Parameter*> unknown_parameters;  ///< parameters that the row's file does not have
+  double obstacle_density = 0;     ///< density, see Scene; for a saturated array, that of the jamming limit
   std::string preset;              ///< the preset with this interface, "custom", or "none" for sp
   std::int64_t model_version = 0;  ///< see parameters.hpp
 
@@ -64,23 +64,25 @@ struct RunRow {
   double wrapped_support = not_known;
   std::optional<std::int64_t> num_wrapped, num_gaps, num_arcs;
   double mesh_hold = not_known;
-  double largest_shape_parameter = not_known;  ///< of a passage through a channel, like the next five
+  /// For a passage through a channel, like the next five members.
+  double largest_shape_parameter = not_known;
   double largest_shape_parameter_at = not_known;
   double largest_relative_speed = not_known;
   double largest_relative_speed_at = not_known;
   double smallest_relative_speed = not_known;
   double smallest_relative_speed_at = not_known;
-  double sag = not_known;  ///< on a flat wall
+  double sag = not_known;  ///< for a droplet on a flat wall
   double top_sag = not_known;
   ThinnestNeck neck;
-  double release_x = not_known;  ///< in the coordinates of user-supplied circles
+  double release_x = not_known;  ///< place in the coordinates of user-supplied circles
   double release_y = not_known;
   std::int64_t steps = 0;
 
   double wall_seconds = 0;
   double processor_seconds = not_known;
   std::int64_t rank = 0;
-  std::string instruction_set;  ///< of the polygon's step; "none" for sp; or mixed_instruction_sets
+  /// Instruction set of the polygon's step; "none" for sp; or mixed_instruction_sets.
+  std::string instruction_set;
   std::string host;
   std::int64_t attempt = 1;
   std::string message;
@@ -104,7 +106,8 @@ inline double cost_seconds(const RunRow& row) {
   return is_known(row.processor_seconds) ? row.processor_seconds : row.wall_seconds;
 }
 
-/// The parameters, seed included, as bytes: equal for equal runs, wherever they are in a sweep.
+/// The parameters and the seed of a run as bytes. They are equal for equal runs, whatever their task numbers
+/// are.
 std::string identity(const RunRow& row);
 
 /// The columns of parameters. @param run  resolved
@@ -116,7 +119,7 @@ void record(const RunResult& result, RunRow& row);
 std::size_t packed_size();
 void pack(const RunRow& row, std::span<std::byte> packed);
 
-/// A row, and the error in its bytes: the first value that no row can have; empty if there is none.
+/// A row, and a description of the first value in its bytes that no row can have; empty if there is none.
 struct UnpackedRow {
   RunRow row;
   std::string fault;

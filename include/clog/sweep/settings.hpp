@@ -16,9 +16,9 @@
 
 namespace clog::sweep {
 
-/// Escapes a value for a line of a config; unescaped() restores it, whatever bytes it has: characters that
-/// would end or cut the line (control characters, #, a backslash, blanks at the ends) become a backslash, x
-/// and two digits.
+/// Escapes a value for a line of a config: characters that would end or cut the line (control characters, #,
+/// a backslash, blanks at the ends) become a backslash, x and two digits. unescaped() restores the value,
+/// whatever bytes it has.
 std::string escaped(const std::string& text);
 /// The inverse of escaped(). Any other backslash stays a backslash.
 std::string unescaped(const std::string& text);
@@ -30,8 +30,9 @@ inline constexpr const char* circles_key = "obstacles";
 /// Whether a config explains its keys.
 enum class Comments { none, help };
 
-/// The settings of a sweep: the given texts, and those that follow for the other keys. The parameter sets are
-/// the product of all lists, or of the remaining lists for each point.
+/// The settings of a sweep: the texts that were given for some keys, and the texts of all other keys, which
+/// follow from these or are defaults. The parameter sets are the product of all lists. With points, each
+/// point has the product of the lists of those keys that it does not set.
 class Settings {
  public:
   /// Reads the text that to_config() wrote. @throws Error as set(), or if a line is not one of a config
@@ -44,7 +45,7 @@ class Settings {
   bool is_given(const std::string& name) const;
   /// The reference is valid until the key's text changes.
   const std::string& text(const std::string& name) const { return entry(name).text; }
-  /// The expanded values of a key. This reference, too, is valid until the key's text changes.
+  /// The expanded values of a key. The reference is valid until the key's text changes.
   const std::vector<std::string>& values(const std::string& name) const { return entry(name).values; }
   /// The scene of all runs; nullptr if they have several.
   const Scene* scene() const;
@@ -58,10 +59,10 @@ class Settings {
   /// Calls `visit` for each branch of the settings: for each point, and for each combination of the values of
   /// keys of kind `word`. The settings of a branch have no points and one value for each of these keys, so
   /// that the branch's runs are the product of the other lists.
-  /// @param point  its place; -1 without points
+  /// @param point  place of the branch's point; -1 without points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;
-  /// The values() of each key in all branches together.
+  /// All values() that each key has in any of the branches.
   std::map<std::string, std::vector<std::string>> all_values() const;
 
   /// A line of a config: a key with its text, or one of `point-keys`, `point`, `shard`.
@@ -76,7 +77,7 @@ class Settings {
   /// Files that are named but not attached.
   std::vector<std::string> missing_files() const;
 
-  /// Everything, circles included, as text for other ranks; and the inverse. @throws Error
+  /// All settings, circles included, as text for other ranks; and the inverse. @throws Error
   std::string packed() const;
   static Settings from_packed(const std::string& text);
 
@@ -88,7 +89,7 @@ class Settings {
     std::string text;
     std::vector<std::string> values;
   };
-  /// By place in keys(). Shared by the branches of a sweep, of which there may be many.
+  /// Entries by place in keys(). Branches of a sweep share them, because there may be many branches.
   using Entries = std::vector<std::shared_ptr<const Entry>>;
 
   Entries given_ = Entries(keys().size());
@@ -104,8 +105,9 @@ class Settings {
   std::set<std::string> keys_that_follow() const;
 };
 
-/// Refuses keys that another key, or the scene, leaves without effect, in addition to those of check_each().
-/// @param settings  with one value for each key of words, before parameter sets are made @throws Error
+/// Refuses keys that have no effect because of another key or of the scene, in addition to those that
+/// check_each() refuses.
+/// @param settings  a branch, which has one value for each key of kind `word` @throws Error
 void refuse_contradictions(const Settings& settings);
 /// A question about a list that may be a mistyped decimal below one, such as 0,5; empty for any other list.
 std::string possible_decimal(const Key& key, const Settings& settings);

@@ -18,7 +18,7 @@ namespace clog::sweep {
 /// @throws Error, without the key's name, that says what is wrong with which item
 std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
                                      const std::vector<std::string>& words);
-/// The same, but values may repeat.
+/// Splits a list like expand_list(), but values may repeat.
 std::vector<std::string> expand_values(std::string_view text, ValueKind kind,
                                        const std::vector<std::string>& words);
 
@@ -27,7 +27,7 @@ using clog::shortest;
 /// `1 run`, `2 runs`.
 std::string counted(std::int64_t number, const std::string& noun);
 
-/// Describes a text that begins with a number and continues with something like a unit.
+/// The error for a text in which something like a unit follows a number.
 struct NumberWithUnit : Error {
   using Error::Error;
 };
@@ -42,8 +42,8 @@ std::string with_decimal_point(std::string_view text);
 /// The candidate nearest to a mistyped word, or empty if none is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
-/// The candidates that end with the word, as wall-contact ends with contact; if there are none, those that
-/// contain it between dashes.
+/// The candidates that end with the word, as wall-contact ends with contact. If there are none, the
+/// candidates that contain the word between dashes.
 std::vector<std::string> with_part(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace clog::sweep

@@ -12,7 +12,8 @@ namespace {
 
 constexpr int most_steps_per_check = 32;
 constexpr double contact_range = units::droplet_diameter / 2;
-/// Distance that a disk moves in some hundred steps: the list stays short and is seldom renewed [sigma].
+/// Skin of the list of obstacles. A disk moves this far in some hundred steps, so the list is seldom renewed,
+/// and it stays short.
 constexpr double usual_skin = 0.02;  // [sigma]
 
 }  // namespace
@@ -52,8 +53,8 @@ Eigen::Array2d SpForces::wedge_force(const Eigen::Array2d& place, const LocalFra
   return force;
 }
 
-/// The chain of operations that wait for each other has only a root, a division and a few sums; the processor
-/// overlaps the others.
+/// Only a root, a division and a few sums depend on each other; the processor executes the other operations
+/// at the same time.
 [[gnu::always_inline]] inline Eigen::Array2d SpForces::scaled_force(double scale, const Eigen::Array2d& place,
                                                                     const LocalFrame& frame) const {
   const double stiffness = scale * contact_stiffness(wall_stiffness_, units::droplet_diameter);
@@ -111,7 +112,7 @@ void SpDroplet::start_afresh() {
 void SpDroplet::advance(int num_steps) {
   const double dt = run_.time_step.value();
   for (int done = 0, steps = 0; done < num_steps; done += steps) {
-    // Checks more often at large steps and high speeds, so that the list of obstacles stays short.
+    // At large steps and high speeds, checks are more frequent, so that the list of obstacles stays short.
     steps = std::min(most_steps_per_check, num_steps - done);
     while (steps > 1 && state_.possible_travel(steps * dt).absolute > usual_skin) steps /= 2;
     if (state_.recentre().any()) forces_.forget_contacts();
@@ -122,8 +123,8 @@ void SpDroplet::advance(int num_steps) {
 }
 
 /// Velocity Verlet, M dv/dt = f - b v with the drag of the second half kick implicit:
-///   u = (1 - d) v + h f,  x += dt u,  v = (u + h f)/(1 + d),  h = dt/2M, d = dt b/2M,
-/// followed from one half-step's displacement s = dt u to the next, s' = keep s + gain f.
+///   u = (1 - d) v + h f,  x += dt u,  v = (u + h f)/(1 + d),  h = dt/2M,  d = dt b/2M.
+/// The loop computes each displacement s = dt u from the one before: s' = keep s + gain f.
 void SpDroplet::integrate(int num_steps) {
   const double dt = run_.time_step.value();
   const double h = 0.5 * dt / units::droplet_mass;

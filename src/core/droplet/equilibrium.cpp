@@ -20,9 +20,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-constexpr int most_stiffnesses = 30;  // most searches compute two
-constexpr int most_steps = 50;        // with one stiffness; most searches need 15
-constexpr int most_rejections = 10;   // of steps in a row
+constexpr int most_stiffnesses = 30;  // most searches compute two stiffnesses
+constexpr int most_steps = 50;        // number of steps with one stiffness; most searches need 15
+constexpr int most_rejections = 10;   // number of rejected steps in a row
 constexpr int most_halvings = 10;
 /// Step of the central differences [sigma]: much smaller than a contact's range, much larger than round-off.
 constexpr double difference_step = 1e-6;
@@ -34,7 +34,7 @@ constexpr double move_tolerance = 1e-7;
 /// Largest fraction of the remaining distance that an accepted step may leave.
 constexpr double most_left = 0.75;
 /// A correction keeps at least this fraction of the stiffness along a step. A contact that opens during the
-/// step may remove nearly all of it, and the next step would be far too long.
+/// step may remove nearly all of this stiffness, and the next step would then be far too long.
 constexpr double least_part = 0.5;
 
 MatrixXd symmetric(const MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2; }
@@ -47,9 +47,10 @@ bool is_definite(double bound, const MatrixXd& k) {
 }
 
 /// Whether every displacement decays under drag, dx/dt = -Kx, faster than with stiffness `bound`. This is the
-/// case if K - bound is positive definite, which is cheaper to test; if the forces have an energy, K is
-/// symmetric and this is also necessary. Springs along the interface have no energy: they make K slightly
-/// unsymmetric, and a soft K may be stable without being definite.
+/// case if K - bound is positive definite, which is cheap to test. If the forces have an energy, K is
+/// symmetric, and the condition is also necessary. Springs along the interface have no energy and make K
+/// slightly unsymmetric. Then a soft K may be stable without being positive definite, so its eigenvalues
+/// decide.
 bool is_stable(double bound, const MatrixXd& k, bool has_energy) {
   if (is_definite(bound, k)) return true;
   return !has_energy && Eigen::EigenSolver<MatrixXd>(k, false).eigenvalues().real().minCoeff() > bound;
@@ -57,7 +58,8 @@ bool is_stable(double bound, const MatrixXd& k, bool has_energy) {
 
 /// The stiffness K, which is minus the derivative of the force, in two parts: K_tt of the vertices along the
 /// interface, and the Schur complement K_nn - K_nt K_tt^-1 K_tn, the stiffness of the shape if the vertices
-/// adapt along it. With fixed vertices, the mesh would seem to hold a droplet that is free to drift aside.
+/// adapt along the interface. If the vertices were fixed along the interface, the mesh would seem to hold a
+/// droplet that is free to drift aside.
 class Stiffness {
  public:
   explicit Stiffness(bool has_energy) : has_energy_(has_energy) {}
@@ -76,7 +78,7 @@ class Stiffness {
     shape_factor_.compute(shape_);
     return true;
   }
-  /// The displacement that these forces would cause.
+  /// The displacement that these forces would cause with this stiffness.
   VectorXd solve(const VectorXd& force) const {
     const Index n = force.size() / 2;
     const VectorXd along = along_.solve(force.tail(n));
@@ -87,10 +89,10 @@ class Stiffness {
     return move;
   }
 
-  /// Changes K by a matrix of rank one, so that solve() gives `step` for the change of force along `step`, as
+  /// Changes K by a matrix of rank one, so that solve() maps the change of force along `step` to `step`, as
   /// far as least_part allows. A contact changes K by rank one, too, so a few corrections are enough. C. G.
   /// Broyden, Math. Comp. 19, 577 (1965); J. J. More and J. A. Trangenstein, Math. Comp. 30, 523 (1976).
-  /// @param found  what solve() gave for that change of force before
+  /// @param found  the displacement that solve() gives for this change of force before the correction
   void learn(const VectorXd& step, const VectorXd& found) {
     const double part_kept = step.dot(found) / step.squaredNorm();
     const double share = part_kept < least_part ? (1 - least_part) / (1 - part_kept) : 1;
@@ -131,7 +133,7 @@ class ForceField {
     return force;
   }
 
-  /// At the position of the last force_at(). Valid until the next call.
+  /// The stiffness at the position of the last force_at(). The reference is valid until the next call.
   const MatrixXd& stiffness(const Axes& axes) {
     const ArrayXd middle = state_.position;
     stiffness_.resize(middle.size(), middle.size());
@@ -168,12 +170,13 @@ class ForceField {
 };
 
 /// Newton's method. A step is accepted if it shortens the remaining Newton step, computed with the present
-/// stiffness (P. Deuflhard's natural monotonicity test): a test on forces would reject nearly every step,
+/// stiffness (P. Deuflhard's natural monotonicity test). A test on forces would reject nearly every step,
 /// because contacts that open or close dominate the forces. Computing a stiffness costs as much as 80 steps,
-/// so each step, accepted or not, corrects the stiffness for the next step. The stiffness is recomputed where
-/// corrections do not help, and once more at the end, within difference_step of the equilibrium. If such
-/// steps fail, or lead to a place without resistance, the search returns to the last computed stiffness and
-/// continues without corrections, with halved steps.
+/// so each step, accepted or not, corrects the stiffness for the next step. The stiffness is recomputed
+/// where corrections do not help, and once more at the end, within difference_step of the equilibrium. If
+/// steps with corrections fail, or lead to a place where some displacement meets no resistance, the search
+/// returns to the place of the last computed stiffness. From there it continues without corrections, with
+/// halved steps.
 class Search {
  public:
   Search(const EquilibriumForces& forces, const DropletState& initial)
@@ -209,7 +212,7 @@ class Search {
   Stiffness stiffness_;
   bool halves_ = false;
   ArrayXd position_;
-  ArrayXd begun_at_;  // where the last stiffness was computed that resists all displacements
+  ArrayXd begun_at_;  // place of the last computed stiffness that resists all displacements
   // At the present position:
   Axes axes_;
   VectorXd force_;
@@ -237,8 +240,8 @@ class Search {
     return rests();
   }
 
-  /// Moves by a part of the step if at most the fraction `share` of the distance then remains. Returns
-  /// whether it moved.
+  /// Moves by a part of the step, if at most the fraction `share` of the distance to the equilibrium then
+  /// remains. Returns whether the droplet moved.
   bool tries(double part, double share) {
     const VectorXd step = part * move_;
     const ArrayXd place = position_ + (axes_.directions * step).array();
@@ -256,8 +259,9 @@ class Search {
     return succeeds;
   }
 
-  /// Takes steps with the stiffness computed here. Returns whether they reduced the distance or the droplet
-  /// rests, and whether the place is within farthest_rest of the start.
+  /// Takes steps with the stiffness of the present position. Returns true if the steps reduced the distance
+  /// to the equilibrium or brought the droplet to rest, and if the droplet is still within farthest_rest of
+  /// the start.
   bool approach() {
     begun_at_ = position_;
     move_ = stiffness_.solve(force_);

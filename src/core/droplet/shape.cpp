@@ -86,7 +86,8 @@ int num_self_crossings(const Eigen::ArrayXd& position) {
   const int n = static_cast<int>(position.size() / 2);
   const auto x = position.head(n);
   const auto y = position.tail(n);
-  // Sorts edges by their lower ends along the contour's longer side, where few edges overlap.
+  // Edges are sorted by their lower ends along the longer side of the contour, because few edges overlap
+  // there.
   const bool is_wide = x.maxCoeff() - x.minCoeff() > y.maxCoeff() - y.minCoeff();
   const double* along = is_wide ? position.data() : position.data() + n;
   const double* across = is_wide ? position.data() + n : position.data();
@@ -137,7 +138,7 @@ Eigen::Array2d area_centroid(const Eigen::ArrayXd& position) {
   return moment / (3 * twice_area);
 }
 
-// The quotient rule on the sums of area_centroid().
+// Applies the quotient rule to the sums of area_centroid().
 Eigen::Array2d area_centroid_velocity(const Eigen::ArrayXd& position, const Eigen::ArrayXd& velocity) {
   const Eigen::Index n = position.size() / 2;
   const auto at = [n](const Eigen::ArrayXd& points, Eigen::Index i) {

@@ -19,8 +19,8 @@ namespace clog {
 inline void require(bool holds, const char* key, double value, const char* reason_and_remedy) {
   if (!holds) refuse(key, value, reason_and_remedy);
 }
-/// @param reason_and_remedy  makes the text; called only on refusal, because formatting it every time would
-/// take most of the time for planning a large sweep
+/// @param reason_and_remedy  makes the text. It is called only on refusal, because formatting a text for
+/// every check would take most of the time for planning a large sweep.
 template <std::invocable Words>
 void require(bool holds, const char* key, double value, const Words& reason_and_remedy) {
   if (!holds) refuse(key, value, reason_and_remedy());

@@ -37,7 +37,7 @@ constexpr ParameterScope lattices = {
     "lattice", "a random array has no rows", "add obstacle-layout=lattice",
     [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::lattice; }};
 
-// Conversion of a member to and from a value, by its type.
+// Outside<T> converts a member of type T to a value of the schema and back.
 
 template <class T>
 struct Outside;
@@ -101,7 +101,7 @@ struct Outside<Enum> {
   }
 };
 
-/// A word; empty optional: `auto`.
+/// A word of an enum; an empty optional is `auto`.
 template <class Enum>
 requires std::is_enum_v<Enum>
 struct Outside<std::optional<Enum>> : Outside<Enum> {
@@ -149,7 +149,7 @@ struct Outside<std::optional<OwnCircles>> {
   }
 };
 
-/// The text itself, or its checksum.
+/// The description of a laboratory, given as its text or as its checksum.
 template <>
 struct Outside<std::optional<LaboratoryText>> {
   static constexpr ValueKind kind = ValueKind::text;
@@ -178,12 +178,13 @@ struct Facts {
   ParameterRange range = {};
   bool has_own_column = true;
   bool shapes_array = false;
-  std::vector<std::string> words = {};  ///< if not all words of the type
+  std::vector<std::string> words = {};  ///< the allowed words, if not all words of the type
   ParameterValue elsewhere = {};
   ParameterValue before = {};
 };
 
-/// @param Member  stateless: from the parameters of a run, const or not, to a reference to the member
+/// @param Member  a function without state, from the parameters of a run (const or not) to a reference to the
+/// member
 template <class Member>
 Parameter entry(const char* key, Member, const Facts& facts) {
   using T = std::remove_cvref_t<decltype(Member{}(std::declval<RunParameters&>()))>;
@@ -418,7 +419,7 @@ std::vector<Parameter> channel_entries() {
   };
 }
 
-/// Lattices, and what repeats a run: seeds, boxes.
+/// Lattices, boxes, and seeds.
 std::vector<Parameter> period_entries() {
   return {
       entry("lattice", [](auto& run) -> auto& { return run.obstacles.lattice; },
@@ -754,7 +755,7 @@ std::vector<Parameter> verdict_entries() {
   };
 }
 
-/// The laboratory whose units results have.
+/// The laboratory in whose units results are given, too.
 std::vector<Parameter> laboratory_entries() {
   return {entry("laboratory", [](auto& run) -> auto& { return run.laboratory; },
                 {.column = "laboratory",
@@ -796,7 +797,7 @@ void check_range(const Parameter& parameter, double number, const ParameterValue
     refuse(parameter, value, upper->reason, upper->remedy);
 }
 
-/// A share is checked as the number that it represents.
+/// A share counts as the number that it represents.
 std::optional<double> number_of(const ParameterValue& value, ValueKind kind) {
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);

@@ -17,8 +17,8 @@ struct Polygon {
   Eigen::Index next(Eigen::Index i) const { return i + 1 < size() ? i + 1 : 0; }
   Eigen::Array2d vertex(Eigen::Index i) const { return {position[i], position[size() + i]}; }
 
-  /// Calls visit() with the other coordinate wherever the contour crosses the line on which coordinate `axis`
-  /// is `value`.
+  /// Wherever the contour crosses the line on which coordinate `axis` equals `value`, calls visit() with the
+  /// other coordinate.
   template <class Visit>
   void visit_crossings(int axis, double value, Visit visit) const {
     for (Eigen::Index i = 0; i < size(); ++i) {
@@ -51,8 +51,8 @@ std::vector<Post> posts_of(std::span<const Obstacle> circles) {
   return posts;
 }
 
-/// Whether the droplet hangs over a post. The interface then covers the upstream side, at most one radius
-/// away, and reaches beyond the post on both sides.
+/// Whether the droplet hangs over a post: the interface covers the post's upstream side at a distance of at
+/// most one radius, and reaches beyond the post on both sides.
 bool hangs_over(const Polygon& polygon, const Post& post) {
   const Obstacle& upstream = post.most_upstream();
   bool covers = false;
@@ -74,12 +74,12 @@ bool hangs_over(const Polygon& polygon, const Post& post) {
 struct Touched {
   double support = 0;
   bool is_wrapped = false;
-  std::vector<Obstacle> circles;  ///< of a post
+  std::vector<Obstacle> circles;  ///< the circles of a post
   std::optional<Wedge> wall;
   double longest_link = 0;  ///< longest touching edge divided by the radius at which it lies; 0 for walls
 };
 
-/// The obstacle that each edge overlaps most; -1: none.
+/// Finds the obstacle that each edge overlaps most (-1: none), and all touched obstacles.
 class Contacts {
  public:
   Contacts(const Polygon& polygon, double range)
@@ -111,7 +111,8 @@ class Contacts {
     bool is_touched = false;
     for (Eigen::Index i = 0; i < polygon.size(); ++i) {
       const Eigen::Array2d begin = polygon.vertex(i), end = polygon.vertex(polygon.next(i));
-      // The closest point to a flank is an end of the edge; to the rounded tip it may be between them.
+      // The point of the edge closest to a flank is one of its ends; the point closest to the tip may be
+      // between them.
       const auto distance = [&](const Eigen::Array2d& place) {
         return distance_to(wall, place - wall.centre());
       };
@@ -119,7 +120,8 @@ class Contacts {
           std::min({distance(begin), distance(end), distance(nearest_on_segment(wall.centre(), begin, end))},
                    [](const WedgeDistance& a, const WedgeDistance& b) { return a.distance < b.distance; });
       const double overlap = range_ - nearest.distance;
-      constexpr double round_off = 1e-12;  // of the normal of a wall along the flow, which supports nothing
+      // round-off in the normal of a wall along the flow; such a wall supports nothing
+      constexpr double round_off = 1e-12;
       const double upstream = std::abs(nearest.normal[0]) < round_off ? 0 : nearest.normal[0];
       is_touched |= take(i, overlap, overlap * upstream, touched);
     }
@@ -148,7 +150,8 @@ class Contacts {
   }
 };
 
-/// Whether there is no gap between two obstacles, because a post overlaps a wall.
+/// Whether one of two obstacles is a wall and the other a post that overlaps this wall, so that there is no
+/// gap between them.
 bool overlap(const Touched& one, const Touched& other) {
   if (!one.wall) return other.wall && overlap(other, one);
   return std::ranges::any_of(other.circles, [&](const Obstacle& circle) {
@@ -157,8 +160,8 @@ bool overlap(const Touched& one, const Touched& other) {
   });
 }
 
-/// A run of successive edges that touch the same obstacle, counter-clockwise. Edges between two circles of
-/// one post do not end the run.
+/// A chain of edges, counter-clockwise, that touch the same obstacle. Edges between two circles of one post
+/// also belong to the chain.
 struct Arc {
   int obstacle;
   Eigen::Index first_edge, last_edge;
@@ -220,8 +223,8 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& a
     const Arc& to = arcs[(i + 1) % arcs.size()];
     if (from.obstacle == to.obstacle) continue;
     if (overlap(contacts.touched()[from.obstacle], contacts.touched()[to.obstacle])) continue;
-    // One of the two obstacles must support the droplet. The other one may push across the flow, or a little
-    // downstream, and is a side of the gap all the same.
+    // One of the two obstacles must support the droplet. The other may push the droplet across the flow, or
+    // even a little downstream; it is a side of the gap all the same.
     const std::vector<Touched>& touched = contacts.touched();
     if (std::max(touched[from.obstacle].support, touched[to.obstacle].support) <= 0) continue;
     // The outward normal of a counter-clockwise contour points downstream where y grows.

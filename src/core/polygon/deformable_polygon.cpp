@@ -55,7 +55,8 @@ ContactReach contact_reach_of_polygon(const RunParameters& run) {
   return {.range = run.dp.contact_range.value(), .by_edges = run.dp.wall_contact == WallContact::edge};
 }
 
-/// The interface of a released droplet among obstacles is longer than a circle, but hardly twice as long.
+/// Upper bound of the energy of a released interface. The bound is generous: among obstacles the interface is
+/// hardly twice as long as a circle.
 double energy_of_interface(const RunParameters& run) {
   constexpr double excess_perimeter = 20;  // [sigma]
   const double spring =
@@ -87,7 +88,8 @@ Axes axes_of_interface(const DpParameters& dp, const DropletState& state) {
     axes.slide[i] = length;
   }
   axes.slide.normalize();
-  // Springs with an energy leave uneven edges and higher ripples, so following them to the end is worthwhile.
+  // Springs that carry tension leave uneven edges, which make the ripples of the energy along the slide
+  // higher. So in this case the search treats the slide like any other motion.
   if (dp.perimeter_spring != PerimeterSpring::along) axes.slide.resize(0);
   return axes;
 }  // NOLINT(clang-analyzer-unix.Malloc): the matrix owns this memory after the move
@@ -102,8 +104,8 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   std::optional<DropletState> rest = find_equilibrium(asked, state);
   if (!forces.has_anchors()) return rest;
   // Springs tie the droplet to walls, with anchors that stay fixed during a search. A wall whose limit is
-  // exceeded exerts its largest force, whatever the droplet does; the search continues until every wall bears
-  // its force.
+  // exceeded then exerts its largest force, wherever the droplet moves. Searches are repeated until every
+  // wall bears its force.
   constexpr int most_yields = 20;
   // If all walls can bear their forces, the excess after this many yields is below the first excess
   // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above, even after most_yields.

@@ -8,17 +8,19 @@
 namespace clog {
 namespace {
 
-/// A part of the droplet is a lobe if a circle of its area is at least this many times as wide as the neck.
-/// What a chord cuts off from a circle has at most half of the area of a circle as wide as the chord.
+/// A part of the droplet is a lobe if a circle of its area is at least this many times as wide as the neck. A
+/// chord cuts off from a circle at most half of the area of a circle as wide as the chord, which is too
+/// little for a lobe.
 constexpr double lobe_width = 2;
 /// A lobe also has at least this fraction of the droplet's area. A smaller part is only a bead: retracting
 /// films end in beads of a thousandth of the area.
 constexpr double lobe_share = 0.02;
 
-/// Cosine of an angle that counts as right. Without this tolerance round-off would decide which of the
-/// equally long segments across a bridge with straight sides is the shortest.
+/// Largest cosine of an angle that counts as a right angle. Across a bridge with straight sides, all segments
+/// are equally long; without this tolerance, round-off would decide which of them is the shortest.
 constexpr double round_off = 1e-9;
-/// Whether a cosine, or sine, times both lengths is at most the round-off. Avoids square roots.
+/// Whether a value, which is a cosine or sine times two lengths, is at most the round-off. Takes the squares
+/// of the lengths, to avoid square roots.
 bool is_hardly_positive(double value, double squared_lengths) {
   return value <= 0 || value * value <= round_off * round_off * squared_lengths;
 }
@@ -63,7 +65,7 @@ class Outline {
   }
   Array2d normal_at_vertex(Eigen::Index i) const { return normal_of_edge(before(i)) + normal_of_edge(i); }
 
-  /// Area between the outline from vertex `from` to a point of edge `to` and the segment back.
+  /// Area enclosed by the outline from vertex `from` to a point of edge `to`, and by the segment back.
   double area_behind(Eigen::Index from, Eigen::Index to, const Array2d& point) const {
     const double way = sectors_[to] - sectors_[from] + (to < from ? sectors_[n_] : 0);
     return way + 0.5 * (cross(vertex(to), point) + cross(point, vertex(from)));
@@ -126,12 +128,12 @@ bool parts_are_lobes(const Outline& outline, Eigen::Index vertex, const Foot& fo
   return part >= least && outline.area() - part >= least;
 }
 
-/// The widest possible neck, between parts of equal area.
+/// The widest possible neck: it divides the droplet into two equal areas.
 double widest_neck(const Outline& outline) {
   return std::sqrt(outline.area() / 2 / (std::numbers::pi / 4)) / lobe_width;
 }
 
-/// Edges `first` to `last`, exclusive, and their bounding rectangle.
+/// The edges from `first` to the one before `last`, and their bounding rectangle.
 struct Run {
   Eigen::Index first, last;
   Array2d low, high;

@@ -8,7 +8,7 @@
 namespace clog {
 namespace {
 
-/// Positions of an obstacle in two frames differ only by round-off [sigma].
+/// Positions of one obstacle in two frames differ by less than this, because of round-off [sigma].
 constexpr double same_place = 1e-6;
 /// Additional distance up to which obstacles are listed, so that lists are seldom renewed [sigma].
 constexpr double skin = 0.25;
@@ -21,7 +21,8 @@ double distance_to_edge(const Eigen::Array2d& point, const Eigen::Array2d& begin
   return (begin + place * edge - point).matrix().norm();
 }
 
-/// Distance from a circle's centre to the closest vertex, or to the closest point of its edges [sigma].
+/// Distance from a circle's centre to the closest vertex or, if edges meet walls, to the closest point of an
+/// edge [sigma].
 double distance_from(const Obstacle& circle, const DropletState& state, bool meets_edges) {
   const auto x = state.x();
   const auto y = state.y();
@@ -78,7 +79,8 @@ void ContactRecord::look_around(const DropletState& state, const ObstacleArray& 
   lower_ = lower - skin;
   upper_ = upper + skin;
   near_.clear();
-  // Also lists obstacles just out of reach, so that they count as left.
+  // The list also contains obstacles just out of reach, so that the loop below detects which ones the droplet
+  // left.
   obstacles.gather(
       {origin_[0], origin_[1], lower_[0], upper_[0], lower_[1], upper_[1], reach_.range + parting + 2 * skin},
       near_);

@@ -31,13 +31,13 @@ double first_search(const RunParameters& run) {
   const double coasting = farthest_rest / (relaxation_time(run) * run.drag.terminal_speed);  // divided by V_t
   return std::min(has_friction ? slow_with_friction : slow, coasting * coasting);
 }
-/// After a failed search, the next search waits until E_k/E_t has fallen by this factor,
+/// After a failed search, the next search waits until E_k/E_t has fallen by this factor.
 constexpr double fall_between_searches = 0.1;
-/// or, if E_k/E_t exceeds this multiple of the value of the first search, until the droplet slows down anew.
+/// If E_k/E_t rises above this multiple of the limit for the first search, this limit applies again.
 constexpr double rise_of_a_moving_droplet = 10;
 
 /// The run looks for crossings of the interface once in this number of steps, which takes less than 1 % of
-/// its time; parts of the interface that crossed stay crossed.
+/// its time. No crossing is missed, because parts of the interface that crossed stay crossed.
 constexpr std::int64_t steps_per_crossing_check = std::int64_t{32} * DropletRun::steps_per_check;
 
 /// Change this whenever the content of a snapshot changes.
@@ -237,7 +237,7 @@ bool DropletRun::is_passage() const { return scene_of(run_).finding == Finding::
 
 bool DropletRun::has_broken() {
   if (run_.dp.break_up_neck == 0) return false;
-  const double thinnest = std::fmin(neck_.width, no_neck);  // a NaN and a number give the number
+  const double thinnest = std::fmin(neck_.width, no_neck);  // fmin() of a NaN and a number gives the number
   const double width = model_of(run_).neck(droplet_->state(), thinnest);
   if (width < thinnest) neck_ = {.width = width, .distance = displacement()[0]};
   return width < run_.dp.break_up_neck;

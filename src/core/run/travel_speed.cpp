@@ -11,14 +11,15 @@ namespace {
 constexpr std::size_t batch_size = 5;
 constexpr std::size_t fewest_batches = 10;
 constexpr std::size_t fewest_for_error = 200;
-/// Relative standard error of a mean below which the transient is over: the rest may be round-off.
+/// If the relative standard error of a mean is below this, the transient is over, because the remaining
+/// variation may be round-off.
 constexpr double negligible_error = 1e-6;
 
 double mean_of(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Means of successive blocks of equal length; a shorter rest is excluded.
+/// Means of successive blocks of equal length; a shorter block at the end is excluded.
 std::vector<double> means_of_pieces(std::span<const double> values, std::size_t length) {
   std::vector<double> means;
   for (std::size_t begin = 0; begin + length <= values.size(); begin += length)

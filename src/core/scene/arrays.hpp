@@ -23,7 +23,7 @@ double smallest_diameter(const RunParameters& run);
 /// Releases the droplet in the void nearest to the centre. @throws Error if there is no room for it
 DropletState release_in_void(const RunParameters& run, const ObstacleArray& obstacles);
 
-/// A droplet never reaches the end of a periodic array, and never passes a wall.
+/// Infinite, because a droplet never reaches the end of a periodic array, and never passes a wall.
 double endless_way(const RunParameters& run, const Eigen::Array2d& start);
 
 }  // namespace clog

@@ -134,7 +134,8 @@ void check_gaps_at_walls(const RunParameters& run) {
                                place_of(circle), gap, edge));
 }
 
-/// Checks the period along the flow: side walls separate the droplet only from its images across the flow.
+/// Checks the period: side walls separate the droplet from its images across the flow, but not along the
+/// flow.
 void check_period(const ObstacleParameters& obstacles) {
   if (obstacles.side_walls == SideWalls::off) check_box(obstacles);
   const double length = obstacles.period().along();
@@ -213,7 +214,7 @@ void find_gap_and_density(RunParameters& run) {
   obstacles.density = static_cast<double>(examined(obstacles).num_posts) / obstacles.period().area();
 }
 
-/// Two random numbers in [0, 1); the constant keeps this stream apart from others.
+/// Two random numbers in [0, 1); the constant keeps this stream of numbers apart from other streams.
 Eigen::Array2d drawn_from(std::uint32_t seed) {
   std::seed_seq sequence{seed, std::uint32_t{0x0bc1c1e5}};
   std::mt19937_64 engine(sequence);

@@ -10,8 +10,8 @@ namespace clog {
 
 namespace {
 
-// A flat wall, and a circular droplet that touches it without weight: the displacement to rest under gravity
-// is the sag delta_s (Cheng et al., Fig. 7b).
+// In this scene a circular droplet without weight touches a flat wall. Then gravity acts; the droplet's
+// displacement until it rests is the sag delta_s (Cheng et al., Fig. 7b).
 
 void nothing_to_check(const RunParameters&) {}
 void nothing_to_resolve(RunParameters&) {}
@@ -33,8 +33,8 @@ const Scene wall_scene = {.finding = Finding::sag,
                           .gap_key = nullptr,
                           .check = nothing_to_check,
                           .resolve = nothing_to_resolve,
-                          // These are the automatic values of droplets among obstacles of the usual size,
-                          // with which sags are compared.
+                          // With this value, automatic parameters are those of droplets among obstacles of
+                          // the usual size, with which sags are compared.
                           .sharpest_bend = smallest_diameter,
                           .density = no_density,
                           .walls = flat_wall,

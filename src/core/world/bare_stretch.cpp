@@ -10,8 +10,8 @@ double width(const Stretch& stretch) { return stretch.end - stretch.begin; }
 
 constexpr double droplet = 1;  // diameter [sigma]
 
-/// Gaps between the projections of circles onto an axis, across the border of the period, too; the widest
-/// first.
+/// Gaps between the projections of circles onto an axis, the widest first. A gap may extend across the border
+/// of the period.
 std::vector<Stretch> bare_stretches(std::span<const Obstacle> circles, double Obstacle::*centre,
                                     double period) {
   std::vector<Stretch> shadows;

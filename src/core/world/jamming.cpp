@@ -9,8 +9,8 @@
 namespace clog {
 namespace {
 
-/// A disc of diameter + gap, its `spacing`, keeps the gap between surfaces if such discs do not overlap. So
-/// all numbers follow from the smallest and the widest spacing, and the area.
+/// Surfaces keep the gap if discs of diameter + gap, the `spacing`, do not overlap. So all numbers below
+/// follow from the smallest and the widest spacing, and from the area.
 struct Spacings {
   double smallest, widest;
   double edge;  // edge of a square of the same area
@@ -21,8 +21,8 @@ Spacings spacings_of(const ObstacleParameters& obstacles) {
           std::sqrt(obstacles.period().area())};
 }
 
-/// Mean density of saturated arrays. Measured from widest/smallest = 1 to 5, in boxes of at least 10 widest
-/// spacings (smaller boxes agree); the fit is up to 0.5 % below the measurements.
+/// Mean density of saturated arrays. It was measured for widest/smallest from 1 to 5, in boxes of at least 10
+/// widest spacings; smaller boxes agree. The fit is up to 0.5 % below the measurements.
 double mean_density(const Spacings& spacings) {
   const double x = portable::log(spacings.widest / spacings.smallest);
   return saturated_density(spacings.smallest, 0) / (1 + x * (0.59 + x * (0.1 - x * 0.032)));
@@ -38,10 +38,10 @@ double standard_deviation(const Spacings& spacings) {
   return of_number / (spacings.smallest * spacings.edge);
 }
 
-/// A lower bound of the density of saturated arrays. Where no smallest disc fits, every place is within
-/// (smallest + widest)/2 of a disc's centre, and circles that cover a plane have at least 2 pi/sqrt(27) times
-/// its area (Kershner, Am. J. Math. 61, 665 (1939)). 2/sqrt(27) is rounded down by more than coordinates
-/// are rounded.
+/// A lower bound of the density of saturated arrays. If not even a disc of the smallest size fits, every
+/// place is within (smallest + widest)/2 of a disc's centre. Circles that cover a plane have at least 2
+/// pi/sqrt(27) times its area (Kershner, Am. J. Math. 61, 665 (1939)). The constant below is 2/sqrt(27),
+/// rounded down by more than the rounding errors of coordinates.
 double covering_density(const Spacings& spacings) {
   const double reach = (spacings.smallest + spacings.widest) / 2;
   return 0.3848 / (reach * reach);

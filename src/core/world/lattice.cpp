@@ -20,12 +20,12 @@ namespace {
 
 using std::numbers::sqrt3;
 constexpr double degree = std::numbers::pi / 180;
-/// Smallest difference between angles of lattices that fit a box; equal ones differ only by rounding
-/// [degrees].
+/// Angles of different lattices that fit a box differ by more than this; smaller differences are rounding
+/// errors [degrees].
 constexpr double same_angle = 1e-9;
 constexpr double box_rounding = 1e-9;  // relative
-/// A droplet with this much room around its centre touches nothing, polygons of 64 vertices and more
-/// included.
+/// A droplet touches nothing if its centre is at least this far from every obstacle. This includes polygons
+/// of 64 vertices and more.
 constexpr double free_radius = 0.55 * units::droplet_diameter;
 
 /// tan t divided by q/p
@@ -61,7 +61,7 @@ CommensurateLattice lattice(const ObstacleParameters& obstacles, int p, int q) {
           portable::atan2(q * tangent_unit(obstacles.lattice), p) / degree};
 }
 
-/// The square lattice that has exactly this angle and box, if there is one. Then no search is needed.
+/// The square lattice that has exactly this angle and box, if there is one; it makes a search unnecessary.
 std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstacles) {
   const double steps = obstacles.box / obstacles.spacing();
   const auto p = std::lround(steps * portable::cos(obstacles.lattice_angle * degree));
@@ -73,8 +73,8 @@ std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstac
   return fits ? std::optional(fitting) : std::nullopt;
 }
 
-/// For each p, calls visit(lattice) for those lattices with allowed periods whose tilts are nearest to
-/// lattice_angle on both sides of it.
+/// For each p, calls visit(lattice) for two lattices with allowed periods: those whose tilts are nearest to
+/// lattice_angle, one below and one above it.
 template <class Visit>
 void for_each_near(const ObstacleParameters& obstacles, Visit visit) {
   const double spacing = obstacles.spacing();
@@ -98,10 +98,10 @@ void for_each_near(const ObstacleParameters& obstacles, Visit visit) {
 /// A lattice as integers, so that the points in its period are found exactly: point (i, j) lies at
 /// x = (x_of_i i + x_of_j j) length/end_x, y = (y_of_i i + y_of_j j) box/end_y.
 struct IntegerLattice {
-  long long p, q;  ///< tangent of the tilt, in tangent_unit(), is q/p
+  long long p, q;  ///< the tangent of the tilt is q/p times tangent_unit()
   long long x_of_i, x_of_j, y_of_i, y_of_j, end_x, end_y;
-  double cosine, sine;        ///< of the turn
-  double i_x, i_y, j_x, j_y;  ///< both vectors before the turn, in spacings
+  double cosine, sine;        ///< cosine and sine of the turn
+  double i_x, i_y, j_x, j_y;  ///< the two vectors before the turn, in spacings
 };
 
 IntegerLattice integer_lattice(const ObstacleParameters& obstacles) {
@@ -153,7 +153,7 @@ void for_each_point(const IntegerLattice& integers, Visit visit) {
   const auto& [p, q, x_of_i, x_of_j, y_of_i, y_of_j, end_x, end_y, cosine, sine, i_x, i_y, j_x, j_y] =
       integers;
   const long long area = x_of_i * y_of_j - x_of_j * y_of_i;
-  // The corners of the period, as multiples of both vectors.
+  // The corners of the period are written as multiples of the two vectors.
   const auto [first_i, last_i] =
       std::minmax({0LL, y_of_j * end_x, -x_of_j * end_y, y_of_j * end_x - x_of_j * end_y});
   const auto [first_j, last_j] =
@@ -165,8 +165,8 @@ void for_each_point(const IntegerLattice& integers, Visit visit) {
     }
 }
 
-/// A place in the unit cell around an obstacle at (0, 0), before the turn, in spacings: uniform over the
-/// places where a droplet touches no obstacle.
+/// A random place in the unit cell around an obstacle at (0, 0), before the turn, in spacings. It is
+/// uniformly distributed over the places where a droplet touches no obstacle.
 struct CellPlace {
   double along, across;
 };

@@ -24,9 +24,9 @@ int num_cells_in(double edge) { return std::max(1, static_cast<int>(edge / units
 
 /// Cells along one edge of a period.
 struct CellAxis {
-  double edge;       ///< of one box, or of the whole period [sigma]
-  int num_per_edge;  ///< cells
-  int number;        ///< cells in the period
+  double edge;       ///< length of one box, or of the whole period [sigma]
+  int num_per_edge;  ///< number of cells along this length
+  int number;        ///< number of cells in the period
 
   /// Index of the cell at a place, which may be outside the period. The limits keep the index of a diverged
   /// droplet within the range of int.
@@ -153,7 +153,7 @@ void ObstacleArray::gather(const Window& window, std::vector<Obstacle>& out) con
 }
 
 std::vector<std::uint32_t> ObstacleArray::posts() const {
-  // A forest: each circle points to another circle of its post, the root to itself.
+  // The posts form a forest: each circle points to another circle of its post, the root points to itself.
   std::vector<std::uint32_t> post(binned_.obstacles.size());
   std::iota(post.begin(), post.end(), 0u);
   const auto root_of = [&](std::uint32_t circle) {

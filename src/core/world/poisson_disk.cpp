@@ -32,16 +32,16 @@ namespace {
 
 /// Random sequential addition of discs with a smallest gap between surfaces, in a period.
 ///
-/// Each arriving disc draws its place and its radius; one without room is discarded. The space from which
+/// Each arriving disc draws its place and its radius; a disc without room is discarded. The space from which
 /// discs are drawn has three dimensions: the two coordinates of the place, and the `excess`, by which the
-/// radius exceeds the smallest radius. Discs of one size are the flat case, excess 0.
+/// radius exceeds the smallest radius. If all discs have one size, the excess is 0.
 ///
-/// Discs arrive as a Poisson process in squares that may still have room, at first the cells of a grid,
-/// independently in every round and every square. Discs are made square by square, in order of memory; only
-/// those with room among the points of earlier rounds are then tried in random order. After each round
-/// squares without room are dropped and the others cut into quarters. A square has a range of excesses, which
-/// is halved when it exceeds the square's width. Room means room for the smallest disc of the range, so no
-/// acceptable disc is excluded.
+/// In every round, discs arrive as independent Poisson processes in all squares that may still have room; at
+/// first these are the cells of a grid. Discs are made square by square, in the order of memory. Only discs
+/// that have room among the points of earlier rounds are then tried, in random order. After each round,
+/// squares without room are dropped, and the others are cut into quarters. A square has a range of excesses,
+/// which is halved when it exceeds the square's width. A square has room if the smallest disc of its range
+/// has room, so no acceptable disc is excluded.
 class SequentialAddition {
  public:
   /// @param distance  between the centres of two of the smallest discs
@@ -110,7 +110,7 @@ class SequentialAddition {
   /// Numbers of darts (arriving discs) per cell in the first rounds. They are small, because at first most
   /// darts have room. Any numbers give the same statistics; these are fast.
   static constexpr double first_rounds[] = {0.125, 0.25, 0.5, 1, 0.5};
-  static constexpr double darts_per_square = 1;  // in later rounds
+  static constexpr double darts_per_square = 1;  // number of darts per square in later rounds
   /// Number of a cell in the grid, whose margins repeat the opposite side.
   using Cell = std::int32_t;
   /// A square that may still have room, or a dart: its place from the corner of its cell, and the low end of
@@ -120,7 +120,7 @@ class SequentialAddition {
     Cell cell;
   };
 
-  /// Squares between two rounds; there are many, and only squares of a mixture differ in their excess.
+  /// The squares between two rounds. There are many, so an excess is stored only for a mixture.
   class Squares {
    public:
     void assign(std::span<const Square> squares, bool have_excess) {
@@ -155,14 +155,14 @@ class SequentialAddition {
   double cell_size_;
   int margin_;  // number of cells to the farthest point within the largest distance
   int row_length_;
-  bool are_alike_;  // all discs have one size, as usual
+  bool are_alike_;  // whether all discs have the same size, as usual
   /// The points, each relative to the corner of its cell. A cell has at most one point, because its diagonal
   /// is not longer than the smallest distance between two points.
   std::vector<Point> points_;
   std::vector<float> excess_;
   std::size_t num_points_ = 0;
-  float size_;          // of the squares
-  float range_;         // of their excesses
+  float size_;          // size of the squares
+  float range_;         // range of the squares' excesses
   int num_layers_ = 1;  // number of layers of excesses into which a square was cut
   std::vector<Square> parts_;
   std::ptrdiff_t num_parts_ = 0;
@@ -194,7 +194,7 @@ class SequentialAddition {
     return 0x1p-24F * static_cast<float>(static_cast<int>(bits & 0xffffff));
   }
 
-  /// Square of the distance that two discs must keep, (distance + both excesses)^2.
+  /// Square of the distance that two discs must keep: (distance + both excesses)^2.
   float reach2(float both_excesses) const {
     constexpr auto widened = static_cast<float>(1 + rounding);
     return distance2_ + widened * both_excesses * (2 * distance_ + both_excesses);
@@ -231,7 +231,7 @@ class SequentialAddition {
       place += spacing * exponential_(engine_);
     }
     auto kept = arriving_.begin();
-    for (const Square dart : arriving_) {  // no branch, as above
+    for (const Square dart : arriving_) {  // without a branch, see Surroundings
       *kept = dart;
       kept += has_room(dart);
     }
@@ -285,12 +285,12 @@ class SequentialAddition {
         near_x_[num_near] = points_[near].x + static_cast<float>(column) * cell_size;
         near_y_[num_near] = points_[near].y + static_cast<float>(row) * cell_size;
         near_excess_[num_near] = excess_[near];
-        num_near += is_taken(near);  // no branch, as above
+        num_near += is_taken(near);  // without a branch, see Surroundings
       }
     num_near_ = num_near;
   }
 
-  /// The squares' new size and range of excesses, for add_parts().
+  /// Computes the new size of the squares and their new range of excesses, for add_parts().
   void halve() {
     size_ /= 2;
     num_layers_ = range_ > size_ ? 2 : 1;
@@ -303,8 +303,8 @@ class SequentialAddition {
   }
 
   /// Adds the quarters of a square, in each layer of excesses, that do not lie wholly within the distance of
-  /// one point. Distances agree with has_room() to the last bit where squares reach the resolution of
-  /// numbers, so such a square has room or is dropped.
+  /// one point. The distances agree with those of has_room() to the last bit where squares are as small as
+  /// the resolution of numbers. So such a square either has room or is dropped.
   void add_parts(const Square& square) {
     if (is_taken(square.cell)) return;
     if (are_alike_) {
@@ -333,7 +333,7 @@ class SequentialAddition {
   void add_quarter(const Square& square, int quarter, float excess, bool has_room) {
     parts_[num_parts_] = {square.x + size_ * static_cast<float>(quarter & 1),
                           square.y + size_ * static_cast<float>(quarter >> 1), excess, square.cell};
-    num_parts_ += has_room;  // no branch, as above
+    num_parts_ += has_room;  // without a branch, see Surroundings
   }
 };
 

@@ -33,15 +33,15 @@ using Floats [[gnu::vector_size(lanes * sizeof(float))]] = float;
 using Integers [[gnu::vector_size(lanes * sizeof(float))]] = std::int32_t;
 
 /// The points around a cell whose discs have one size. No branch depends on the random pattern of taken
-/// cells: mispredicted ones would cost more than the work itself.
+/// cells, because mispredicted branches would cost more than the work itself.
 struct Surroundings {
   const Point* cell;
   std::ptrdiff_t row_length;
   float cell_size;
   float distance2;
 
-  /// Smallest size of a cell as a fraction of the distance: from the lower half of one, a search covers two
-  /// cells down and one up.
+  /// Smallest size of a cell as a fraction of the distance. With this size, a search from the lower half of a
+  /// cell covers two cells downwards and one upwards.
   static constexpr double smallest_cell = 1 / 1.49;
 
   /// Whether a point lies within the distance of a place in the cell.
@@ -55,8 +55,8 @@ struct Surroundings {
     return any(is_near) != 0;
   }
 
-  /// Tells which quarters, each of this size, of a square in the cell lie wholly within the distance of one
-  /// point. One bit for each quarter: first along x, then along y.
+  /// Finds the quarters of a square in the cell that lie wholly within the distance of one point. `size` is
+  /// the size of a quarter. The result has one bit for each quarter, first along x, then along y.
   std::int32_t cover_quarters(float square_x, float square_y, float size) const {
     const float half = size / 2;
     const auto far2 = [half](const Floats& from_corner) {
@@ -84,8 +84,8 @@ struct Surroundings {
     return bits;
   }
 
-  /// Calls visit(x, y), seen from the cell's corner, for the points that can be within the distance of a
-  /// place in the same quarter of the cell, 2 rows of 4 cells at a time.
+  /// Calls visit(x, y) for the points that can be within the distance of a place in the same quarter of the
+  /// cell, for 2 rows of 4 cells at a time. x and y are relative to the cell's corner.
   template <class Visit>
   void visit_points(float place_x, float place_y, Visit visit) const {
     const int first_column = -1 - static_cast<int>(place_x < cell_size / 2);

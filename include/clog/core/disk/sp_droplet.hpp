@@ -8,10 +8,10 @@
 
 namespace clog {
 
-/// Potential energy and force on a soft disk among obstacles, Cheng et al. Eq. 8: U_w = sum (E_w/2)(1 -
-/// 2d/sigma)^2 over obstacles and wedges with d < sigma/2, where d is the distance from the disk's centre to
-/// the surface of the obstacle or wedge (negative inside). The force stays finite; exactly at an obstacle's
-/// centre it is zero.
+/// Potential energy of a soft disk among obstacles (Cheng et al. Eq. 8), and the force that derives from it.
+/// Each obstacle or wedge whose surface is at a distance d < sigma/2 from the disk's centre (d < 0: the
+/// centre is inside) contributes (E_w/2)(1 - 2d/sigma)^2. The force is finite everywhere; exactly at an
+/// obstacle's centre it is zero.
 class SpForces {
  public:
   SpForces(const RunParameters& run, const ObstacleArray& obstacles);
@@ -32,7 +32,7 @@ class SpForces {
   double wall_stiffness_;
   Eigen::Array2d weight_;
   bool listed_ = false;
-  double skin_ = 0;  // of the present list
+  double skin_ = 0;  // distance that the disk may move before near_ must be renewed
   Eigen::Array2d reference_{0, 0};
   std::vector<Obstacle> near_;
 
@@ -42,9 +42,9 @@ class SpForces {
   void visit_wedges(const Eigen::Array2d& place, const LocalFrame& frame, Visit visit) const;
 };
 
-/// Soft disk: one point of mass M with drag -b_inf v. It has the integrator of DpDroplet, but the loop over
-/// steps keeps the displacement of half a step instead of the velocity, so that the longest chain of
-/// dependent operations in a step is one root, one division and a few sums.
+/// Soft disk: one point of mass M with drag -b_inf v. The integrator is that of DpDroplet, but the variable
+/// in its loop is the displacement in a step instead of the velocity. This shortens the longest chain of
+/// dependent operations in a step to one root, one division and a few sums.
 class SpDroplet final : public Droplet {
  public:
   SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial);

@@ -26,24 +26,24 @@ class Droplet {
   /// Restores what save() wrote for a droplet with the same parameters and obstacles.
   void restore(ByteReader& bytes);
 
-  /// Sub-steps done so far.
+  /// Number of steps done so far; each sub-step counts as one.
   std::int64_t num_integrated_steps() const { return num_integrated_steps_; }
   const DropletState& state() const { return state_; }
   /// [g rho sigma^3]
   virtual double kinetic_energy() const = 0;
-  /// The height in its gravity term is measured from the frame's origin.
+  /// The gravity term measures the height from the frame's origin.
   virtual PotentialEnergy potential_energy() const = 0;
   /// Centre of mass, local [sigma]: the centroid of the area if the weight acts on the area, otherwise the
   /// mean of the vertices.
   virtual Eigen::Array2d centre() const { return state_.centre(); }
-  /// The area's centroid, for any `gravity` [sigma], local.
+  /// Centroid of the area, local [sigma], whatever the parameter `gravity` is.
   virtual Eigen::Array2d area_centre() const { return state_.centre(); }
   /// [sqrt(sigma g)]
   virtual Eigen::Array2d centre_velocity() const { return state_.mean_velocity(); }
   /// Area and perimeter; a soft disk returns those of the undeformed disk.
   virtual PolygonShape shape() const = 0;
 
-  /// Adds up the work against the drag from now on. This costs a pass over the velocities per step.
+  /// From this call on, work() is summed up, which costs a pass over the velocities per step.
   void measure_dissipation() { measures_dissipation_ = true; }
   /// Work since measure_dissipation() [g rho sigma^3]: the energy lost to drag, and the work of the springs
   /// along the interface, whose force derives from no potential energy. Both are sums by the trapezoidal

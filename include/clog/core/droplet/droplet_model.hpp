@@ -14,24 +14,24 @@ namespace clog {
 
 inline constexpr double no_neck = std::numeric_limits<double>::infinity();
 
-/// Where and from which distance walls push a droplet.
+/// The points of a droplet that walls push, and the distance at which they begin to push.
 struct ContactReach {
   double range;   ///< distance from a wall's surface at which contact begins [sigma]
   bool by_edges;  ///< whether walls push edges as well as the points that move
 };
 
-/// The operations and properties of a droplet model; there is one object for each Model. A new model needs a
-/// word of Model, a folder beside `polygon` and `disk` that defines its DropletModel, a line in model.cpp,
-/// and the steps of docs/developer/add-a-model.md.
+/// The operations and properties of a droplet model; there is one object for each Model. A new model needs an
+/// enumerator of Model, a folder beside `polygon` and `disk` that defines its DropletModel, a line in
+/// model.cpp, and the steps of docs/developer/add-a-model.md.
 struct DropletModel {
   /// Key of the parameter that is the droplet's stiffness.
   const char* stiffness_key;
 
-  /// Chooses the number of moving points if it is not given.
-  /// @param obstacle_diameter  of the smallest obstacle over which the droplet can hang, infinite if there is
-  /// none [sigma]
+  /// Chooses the number of moving points, unless it is given.
+  /// @param obstacle_diameter  diameter of the smallest obstacle over which the droplet can hang; infinite if
+  /// there is none [sigma]
   void (*choose_points)(RunParameters& run, double obstacle_diameter);
-  /// Width below which the droplet's points do not resolve a passage [sigma].
+  /// Width of the narrowest passage that the droplet's points resolve [sigma].
   double (*narrowest)(const RunParameters& run);
   /// Computes the automatic values, and refuses given values that are impossible together with them.
   /// @param sharpest_bend  see Scene
@@ -43,16 +43,17 @@ struct DropletModel {
   int (*num_points)(const RunParameters& run);
   /// The droplet without walls and weight, around the origin: all x, then all y [sigma].
   Eigen::ArrayXd (*free_shape)(const RunParameters& run);
-  /// Distance from a free droplet's centre at which a wall begins to push it [sigma].
+  /// Distance between a free droplet's centre and a wall at which the wall begins to push the droplet
+  /// [sigma].
   double (*reach)(const RunParameters& run);
   ContactReach (*contact_reach)(const RunParameters& run);
   /// A droplet at rest, without weight, near the centre of the box.
-  /// @throws Error if there is no room for it, or it does not relax
+  /// @throws Error if there is no room for the droplet, or if it does not come to rest
   DropletState (*release)(const RunParameters& run, const ObstacleArray& obstacles);
   /// Largest energy that a droplet may have at its release, minus the energy of a free droplet [g rho
   /// sigma^3].
   double (*most_energy_at_release)(const RunParameters& run);
-  /// A moving droplet. The obstacles must outlive it.
+  /// A moving droplet. The obstacles must outlive this droplet.
   std::unique_ptr<Droplet> (*make)(const RunParameters& run, const ObstacleArray& obstacles,
                                    DropletState initial);
   /// The equilibrium that the droplet approaches, see find_equilibrium().

@@ -12,18 +12,19 @@
 namespace clog {
 
 /// Position of a droplet's local coordinates in the periodic plane: global = image * period + origin + local.
-/// The origin stays inside the first period and follows the droplet in whole units, so coordinates stay of
-/// order one at any distance, and a droplet one period further on feels the same forces, bit for bit.
+/// The origin follows the droplet in steps of whole units, so local coordinates stay of order one at any
+/// distance. The origin is always in the first period, so a droplet one period further on feels the same
+/// forces, bit for bit.
 struct LocalFrame {
-  Eigen::Array2d period{0, 0};                   ///< along and across the flow [sigma]
-  Eigen::Array2d origin{0, 0};                   ///< in the first period [sigma]
+  Eigen::Array2d period{0, 0};                   ///< lengths of the period along and across the flow [sigma]
+  Eigen::Array2d origin{0, 0};                   ///< a place in the first period [sigma]
   Eigen::Array<std::int64_t, 2, 1> image{0, 0};  ///< whole periods
 
   Eigen::Array2d global(const Eigen::Array2d& local) const {
     return image.cast<double>() * period + origin + local;
   }
-  /// Displacement to a local place from a place in another frame of the same period, computed without large
-  /// coordinates, which would lose digits.
+  /// Displacement from a place in another frame of the same period to a place in this frame. The computation
+  /// avoids large global coordinates, because these would lose digits.
   Eigen::Array2d displacement(const Eigen::Array2d& local, const LocalFrame& from,
                               const Eigen::Array2d& from_local) const {
     return (image - from.image).cast<double>() * period + (origin - from.origin) + (local - from_local);
@@ -55,10 +56,10 @@ struct Travel {
   double absolute = 0;
   double relative = 0;  ///< displacement relative to the mean of the points
 };
-/// Upper bound on the distance that a point of this speed covers in a time [t0]: more than twice the distance
-/// of a fall that begins with this speed.
+/// Upper bound on the distance that a point covers in a time [t0] if it begins with this speed. The bound is
+/// at least twice the distance of a free fall.
 inline double possible_way(double speed, double time) { return 2 * time * (speed + units::gravity * time); }
-/// Largest distance by which contact lists allow for motion [sigma]: a droplet that needs more has diverged.
+/// Largest motion for which contact lists allow [sigma]. A droplet that needs more has diverged.
 inline constexpr double widest_skin = 4;
 
 /// Points (the polygon's vertices, or the soft disk's centre) and their velocities. Coordinates are one
@@ -74,7 +75,7 @@ struct DropletState {
   auto x() const { return position.head(size()); }
   auto y() { return position.tail(size()); }
   auto y() const { return position.tail(size()); }
-  /// Mean of the points: the centre of mass, as the points carry equal masses [sigma].
+  /// Mean of the points [sigma]; this is the centre of mass, because all points have equal masses.
   Eigen::Array2d centre() const { return {x().mean(), y().mean()}; }
   Eigen::Array2d mean_velocity() const {
     return {velocity.head(size()).mean(), velocity.tail(size()).mean()};
@@ -103,9 +104,9 @@ struct DropletState {
     bytes.get(anchors);
   }
 
-  /// Keeps local coordinates of order one: moves the frame by whole units when the centre has left the unit
-  /// square around the origin. A diverged droplet, which may be infinitely far away, stays in its frame until
-  /// the next check of its run. Returns the shift (usually zero).
+  /// Keeps local coordinates of order one: if the centre is more than one diameter from the origin along
+  /// either axis, moves the frame by whole units. A diverged droplet, which may be infinitely far away, stays
+  /// in its frame. Returns the shift (usually zero).
   Eigen::Array2d recentre() {
     constexpr double diverged = 1e6;  // [sigma]
     const Eigen::Array2d centre_now = centre();

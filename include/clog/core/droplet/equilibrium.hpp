@@ -9,15 +9,15 @@
 
 namespace clog {
 
-/// An equilibrium counts as the one that the droplet approaches only if no coordinate of a vertex, or of the
-/// soft disk, is farther than this from its equilibrium value [sigma].
+/// Largest distance of any coordinate (of a vertex, or of the soft disk) from its equilibrium value [sigma].
+/// A droplet that is farther away is not assumed to approach this equilibrium.
 inline constexpr double farthest_rest = 0.03;
 /// Smallest stiffness that an equilibrium must have against any displacement [M g/sigma]: the restoring force
 /// divided by the displacement when the droplet moves as a whole.
 inline constexpr double least_stiffness = 1e-3;
 
-/// Coordinates of a displacement: the normal ones of all vertices (perpendicular to the chord between a
-/// vertex's neighbours), then the tangential ones. For the soft disk: x, y.
+/// Coordinates of a displacement: first the normal components of all vertices (perpendicular to the chord
+/// between a vertex's neighbours), then the tangential components. For the soft disk: x, y.
 struct Axes {
   Eigen::SparseMatrix<double> directions;  ///< orthonormal columns over all x, then all y
   /// Unit vector, in the tangential coordinates, of the motion in which all vertices slide along the
@@ -31,7 +31,7 @@ struct Axes {
 
 /// The forces on a droplet for the search.
 struct EquilibriumForces {
-  /// Updates the contact lists: they are valid while no point moves farther than `travel`.
+  /// Updates the contact lists, which are then valid while no point moves farther than `travel`.
   std::function<void(const DropletState& state, const Travel& travel)> update_contacts;
   /// Forces on all points, all x then all y [g rho sigma^2].
   std::function<void(const DropletState& state, Eigen::ArrayXd& force)> evaluate;
@@ -52,11 +52,11 @@ struct EquilibriumForces {
 /// The stable static equilibrium that a nearly stopped droplet approaches; nullopt if there is none, or if it
 /// is not certain that the droplet would reach it.
 ///
-/// Newton's method on the forces, down to round-off. The potential energy must be convex at the beginning, at
-/// the end, and wherever the search computes the stiffness in between, and all these places must be within
-/// `farthest_rest` of the initial one. Then the droplet and the equilibrium are assumed to be in the same
-/// basin. So the search returns nullopt for a droplet that balances on an obstacle, that could drift aside
-/// freely, or that creeps past a place where there is no equilibrium.
+/// The search applies Newton's method to the forces until these vanish within round-off. The potential energy
+/// must be convex at the beginning, at the end, and wherever the search computes the stiffness in between,
+/// and all these places must be within `farthest_rest` of the initial one. Then the droplet and the
+/// equilibrium are assumed to be in the same basin. So the search returns nullopt for a droplet that balances
+/// on an obstacle, that could drift aside freely, or that creeps past a place where there is no equilibrium.
 ///
 /// @param initial  the droplet; its velocities have no effect
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial);

@@ -10,10 +10,11 @@
 
 namespace clog {
 
-/// Steps of the two methods below, on all coordinates, compiled for several instruction sets.
+/// These functions do one step of the methods below for all coordinates. They are compiled for several
+/// instruction sets.
 namespace kernel {
 struct ForceSums {
-  double largest;                ///< |f_i|
+  double largest;                ///< largest |f_i|
   double power, speed2, force2;  ///< sum f v, sum v^2, sum f^2
 };
 ForceSums sum_forces(std::ptrdiff_t n, const double* force, const double* velocity);
@@ -26,7 +27,7 @@ void move_points(std::ptrdiff_t n, const PointMove& move, const double* force, d
 }  // namespace kernel
 
 struct FireOptions {
-  double mass = 1;             ///< of each point
+  double mass = 1;             ///< mass of each point
   double largest_step = 1e-3;  ///< [t0]; must be stable for velocity Verlet
   double force_tolerance = 0;  ///< stop when no force component exceeds this [g rho sigma^2]
   int max_iterations = 0;
@@ -42,8 +43,9 @@ struct FireResult {
 /// Contact lists are updated once in this number of iterations, before the forces are computed.
 inline constexpr int iterations_per_update = 3;
 
-/// How far points move between an update of the contact lists and the last forces before the next update;
-/// max_move bounds each coordinate.
+/// Bound on the motion of points between an update of the contact lists and the last computation of forces
+/// before the next update. max_move limits each coordinate, so a point may move farther by a factor of
+/// sqrt(2).
 inline Travel travel_between_updates(const FireOptions& options) {
   const double farthest = (iterations_per_update - 1) * options.max_move * std::numbers::sqrt2;
   return {.absolute = farthest, .relative = 2 * farthest};
@@ -92,9 +94,9 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   return result;
 }
 
-/// Relaxes the droplet by damped motion like that of a run. This is slower than FIRE, but may also bring the
-/// droplet to rest under forces that derive from no energy. Under such forces FIRE, which adapts to the work
-/// done, may cycle.
+/// Relaxes the droplet by damped motion like that of a run. This is slower than FIRE, but it may also bring
+/// the droplet to rest if the forces derive from no energy. With such forces, FIRE may cycle for ever,
+/// because it adapts to the work that the forces do.
 template <class Forces>
 FireResult settle(Forces& forces, DropletState& state, const FireOptions& options, double damping_rate) {
   const double dt = options.largest_step;

@@ -19,28 +19,29 @@ struct Words<ClogMechanism> {
 /// Geometry of a polygon at rest among obstacles; docs/explanation/clogged.md has the definitions.
 /// The flow is along +x.
 struct ClogGeometry {
-  /// Fraction of the obstacles' upstream support that comes from wrapped obstacles; NaN without support.
+  /// Fraction of the support that wrapped obstacles give; NaN without support. The support is the force of
+  /// the obstacles on the droplet against the flow.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
   int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
-  /// Number of gaps in front of the droplet. A gap is between two successive arcs (see num_arcs) on different
-  /// obstacles, if the chord from arc to arc faces downstream and at least one of the obstacles supports the
-  /// droplet.
+  /// Number of gaps in front of the droplet. Two successive arcs (see num_arcs) on different obstacles have a
+  /// gap between them if the chord from arc to arc faces downstream and at least one of the two obstacles
+  /// supports the droplet.
   int num_gaps = 0;
-  int num_arcs = 0;  ///< number of arcs, runs of successive edges that touch one obstacle (post or wall)
+  int num_arcs = 0;  ///< number of arcs; an arc is a chain of edges that touch one obstacle (post or wall)
   /// Largest part of the weight that the corners of the polygon can hold. Each wrapped obstacle contributes
   /// its part of the support times x^2/16, with x the length of the longest edge on the obstacle divided by
   /// the radius at which this edge lies. NaN without support.
   double mesh_hold = std::numeric_limits<double>::quiet_NaN();
 
-  /// Wrapped if wrapped obstacles give at least two thirds of the support, hybrid if they give more than a
-  /// third, otherwise squeezed if there is a gap.
+  /// `wrapped` if wrapped obstacles give at least two thirds of the support, `hybrid` if they give more than
+  /// a third, otherwise `squeezed` if there is a gap, and `none` if there is no gap.
   ClogMechanism mechanism() const;
 };
 
-/// The mechanism and its geometry.
+/// The mechanism that holds a droplet, and the geometry from which it follows.
 struct Hold {
   ClogMechanism mechanism = ClogMechanism::none;
-  ClogGeometry geometry;  ///< of a polygon
+  ClogGeometry geometry;  ///< geometry of a polygon; unset for a soft disk
 };
 
 }  // namespace clog

@@ -4,15 +4,15 @@
 
 namespace clog {
 
-/// The interface that walls meet is the polygon refined once by the four-point rule (Dubuc 1986; Dyn, Gregory
-/// and Levin 1987): the middle of an edge becomes the middle of the cubic through its two vertices and their
-/// two neighbours. A chord deviates from the curve through its ends by l^2/8 times the curvature; a refined
-/// edge, half as long, deviates by a quarter of that. The middle is w (q_i + q_(i+1)) + w' (q_(i-1) +
-/// q_(i+2)), with w = refined_near and w' = refined_far.
+/// Walls meet a refined interface. The four-point rule (Dubuc 1986; Dyn, Gregory and Levin 1987) refines the
+/// polygon once: to each edge it adds the middle of the cubic through the edge's two vertices and their two
+/// neighbours. The middle is w (q_i + q_(i+1)) + w' (q_(i-1) + q_(i+2)), with w = refined_near and w' =
+/// refined_far. A chord of length l deviates from the curve through its ends by l^2/8 times the curvature. A
+/// refined edge is half as long, so it deviates by a quarter of that.
 inline constexpr double refined_near = 9.0 / 16;
 inline constexpr double refined_far = -1.0 / 16;
 
-/// Largest distance that a middle can move if no vertex moves by more than 1.
+/// Largest displacement of a middle if no vertex moves by more than 1.
 inline constexpr double refined_sway = 2 * (refined_near - refined_far);
 
 /// Shape of a closed polygon given as one array, all x then all y, counter-clockwise.
@@ -30,19 +30,19 @@ PolygonShape polygon_shape(const Eigen::ArrayXd& position);
 /// coordinates.
 Eigen::ArrayXd regular_polygon(int num_vertices, double area);
 
-/// The polygon of vertices and middles in turn, 4N coordinates.
+/// The polygon refined by the four-point rule: vertices and middles alternate, which gives 4N coordinates.
 Eigen::ArrayXd refined(const Eigen::ArrayXd& position);
 
-/// Whether the polygon encloses the point. Even-odd rule.
+/// Whether the polygon encloses the point, by the even-odd rule.
 bool encloses(const Eigen::ArrayXd& position, double x, double y);
 
 /// Number of pairs of edges without a common vertex that cross each other.
 ///
-/// Edges cross if each has its ends strictly on both sides of the other; edges that only touch do not. Edges
-/// with a common vertex meet only there, unless they lie exactly on top of each other, which rounding
-/// prevents. If more than two edges fold back, other edges cross. Without a crossing and with a positive area
-/// the contour winds once around every point inside it: no pocket of it encloses negative area. (The converse
-/// does not hold: a contour may cross itself and wind twice around a part of its area.)
+/// Two edges cross if each has its ends strictly on both sides of the other; edges that only touch do not
+/// cross. Edges with a common vertex are not tested: they meet elsewhere only if one lies exactly on top of
+/// the other, which rounding prevents. If the contour has no crossing and a positive area, it winds once
+/// around every point inside it, so no pocket of it encloses negative area. (The converse does not hold: a
+/// contour may cross itself and wind twice around a part of its area.)
 int num_self_crossings(const Eigen::ArrayXd& position);
 
 /// Point of the segment from `begin` to `end` that is nearest to a point [sigma].

@@ -6,15 +6,15 @@
 
 namespace clog {
 
-/// A rate that the step has to resolve: the key on which it depends, the value of this key, and the square of
-/// the rate [1/t0^2].
+/// A rate that the time step has to resolve: the key on which the rate depends, the value of this key, and
+/// the square of the rate [1/t0^2].
 struct Rate {
   const char* key;
   double value;
   double squared;
 };
 
-/// Time in which the speed of a droplet far from walls follows the forces, S V_t/g [t0].
+/// Time constant with which the velocity of a droplet far from walls follows the forces, S V_t/g [t0].
 double relaxation_time(const RunParameters& run);
 
 /// Time step that resolves the drag's relaxation time [t0]: a fifth of this time, or a tenth if springs carry
@@ -22,7 +22,7 @@ double relaxation_time(const RunParameters& run);
 double drag_time_step(const RunParameters& run);
 
 /// Sets the automatic time step to `time_step`.
-/// @param rates  that this step resolves in addition to the rate of the drag
+/// @param rates  rates that this step resolves, besides the rate of the drag
 /// @throws Error if the step is too small to be useful; the message names the key of the fastest rate
 void choose_time_step(RunParameters& run, double time_step, std::vector<Rate> rates);
 

@@ -18,8 +18,8 @@ struct WallPlace {
   double radius = 0;        ///< [sigma]
   Eigen::Index wedge = -1;  ///< number of the wedge; -1: a circle
 
-  /// Whether both are the same wall. Two lists may give a wall's centre with different rounding; centres of
-  /// two walls differ by much more.
+  /// Whether both places are on the same wall. Two lists may give the centre of one wall with different
+  /// rounding errors; the centres of different walls differ by much more.
   bool is(const WallPlace& other) const {
     constexpr double rounding = 1e-6;
     return wedge == other.wedge && std::abs(x - other.x) < rounding && std::abs(y - other.y) < rounding;
@@ -41,23 +41,24 @@ inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> w
 /// to a droplet's state.
 struct WallAnchor {
   Eigen::Index holder;  ///< what the spring holds: a vertex, or the first (0) or last (1) end of an arc
-  WallPlace wall;       ///< to which the spring is tied
-  /// Place relative to the wall's centre; for an arc's end, x is its place along the wall [sigma].
+  WallPlace wall;       ///< the wall to which the spring is tied
+  /// Position relative to the wall's centre; for the end of an arc, x is the coordinate along the wall
+  /// [sigma].
   double x, y;
   double slip = 0;  ///< distance along the wall from the anchor to its holder at the last update [sigma]
-  /// 1: the wall yields, so `slip` determines the spring's force, wherever the holder moves. Used only while
-  /// the program searches for an equilibrium; a moving droplet updates its anchors at every step.
+  /// 1 if the wall yields: then the spring's force follows from `slip` alone, wherever the holder moves. Only
+  /// the search for an equilibrium uses this value; a moving droplet updates its anchors at every step.
   Eigen::Index yields = 0;
 
   double slip_of_force(double slip_now) const { return yields != 0 ? slip : slip_now; }
 };
 
-/// Finds anchors by the vertices or ends that they hold. The object keeps its memory between steps, so that a
-/// step allocates none.
+/// Finds anchors by the vertices or ends that they hold. Reuse the object, so that a step need not allocate
+/// memory.
 class KnownAnchors {
  public:
-  /// Takes the anchors out of `anchors`.
-  /// @param num_holders  find() ignores anchors of holders from this number on
+  /// Moves the anchors from `anchors` into this object.
+  /// @param num_holders  find() finds only anchors whose holder has a smaller number than this
   void take(std::vector<WallAnchor>& anchors, Eigen::Index num_holders) {
     std::swap(anchors_, anchors);
     anchors.clear();
@@ -67,7 +68,7 @@ class KnownAnchors {
       if (const Eigen::Index holder = anchors_[k].holder; holder >= 0 && holder < num_holders)
         next_[k] = std::exchange(first_[static_cast<std::size_t>(holder)], k);
   }
-  /// nullptr if there is none
+  /// The anchor that ties this holder to this wall; nullptr if there is none.
   WallAnchor* find(Eigen::Index holder, const WallPlace& wall) {
     std::size_t k = first_[static_cast<std::size_t>(holder)];
     while (k != none && !anchors_[k].wall.is(wall)) k = next_[k];
@@ -89,17 +90,17 @@ struct WallYield {
   double dissipated = 0;  ///< [g rho sigma^3]
   double excess = 0;      ///< largest amount by which a spring's force exceeds its limit [g rho sigma^2]
 
-  /// Counts the energy of a spring that its wall has released.
+  /// Counts the energy of the spring of a removed anchor as dissipated.
   void forget(const WallAnchor& anchor, double stiffness) {
     dissipated += 0.5 * stiffness * anchor.slip * anchor.slip;
     excess = std::max(excess, stiffness * std::abs(anchor.slip));
   }
-  /// Limits the slip to the range that the wall bears, `least` to `most`, and returns the limited slip. The
-  /// caller then moves the anchor by the difference.
+  /// Limits the slip to the range from `least` to `most`, which the wall bears, and returns the limited slip.
+  /// The caller then moves the anchor by the difference between `slip` and the limited slip.
   double hold(WallAnchor& anchor, double slip, double least, double most, double stiffness, Purpose purpose) {
     const double held = std::clamp(slip, least, most);
     excess = std::max(excess, stiffness * std::abs(held - anchor.slip_of_force(slip)));
-    // By the trapezoidal rule, like the integrator: the earlier force acts on half of the path.
+    // This is the trapezoidal rule, as in the integrator: the mean of the earlier and the present force acts.
     dissipated += stiffness * (anchor.slip + held) / 2 * (slip - held);
     anchor.slip = held;
     anchor.yields = purpose == Purpose::equilibrium && held != slip ? 1 : 0;

@@ -9,8 +9,8 @@
 namespace clog {
 
 /// Tension of the interface on a wall divided by Gamma. Unless it is given, it is minus the mean of the
-/// cosines of the receding and the advancing angle, which assumes that the wall resists both motions alike;
-/// without angles it is 1.
+/// cosines of the receding and the advancing angle. This assumes that the wall resists both motions alike.
+/// Without contact angles, the tension is 1.
 inline double wall_tension(const DpParameters& dp) {
   if (dp.wall_tension) return *dp.wall_tension;
   if (!dp.receding_angle || !dp.advancing_angle) return 1;
@@ -18,7 +18,7 @@ inline double wall_tension(const DpParameters& dp) {
   return -(cosine(*dp.receding_angle) + cosine(*dp.advancing_angle)) / 2;
 }
 
-/// Young's contact angle of the droplet's fluid, of which wall-tension is minus the cosine [degrees].
+/// Young's contact angle of the droplet's fluid [degrees]; minus its cosine is wall-tension.
 inline double young_angle(const DpParameters& dp) {
   const double tension = wall_tension(dp);
   return portable::atan2(std::sqrt(1 - tension * tension), -tension) * 180 / std::numbers::pi;

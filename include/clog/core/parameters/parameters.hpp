@@ -9,8 +9,8 @@
 
 namespace clog {
 
-/// Raise this whenever the same parameters begin to give other results: runs of different versions do not
-/// belong in one table.
+/// Increase this number whenever equal parameters begin to give other results: runs of different versions do
+/// not belong in one table.
 inline constexpr int model_version = 11;
 
 enum class Model { dp, sp };
@@ -18,9 +18,9 @@ template <>
 struct Words<Model> {
   static constexpr Worded<Model> all[] = {{Model::dp, "dp"}, {Model::sp, "sp"}};
 };
-/// The springs of the edges: they draw each edge to the rest length l0 (the paper) or to the current mean
-/// edge length, or act only `along` the interface. Springs `along` space the vertices evenly, but carry no
-/// tension.
+/// The springs of the edges. They pull each edge towards the rest length l0 (`rest`, as in the paper) or
+/// towards the current mean edge length (`mean`), or they act only `along` the interface. Springs `along` the
+/// interface space the vertices evenly, but carry no tension.
 enum class PerimeterSpring { rest, mean, along };
 template <>
 struct Words<PerimeterSpring> {
@@ -33,8 +33,8 @@ template <>
 struct Words<SelfContact> {
   static constexpr Worded<SelfContact> all[] = {{SelfContact::on, "on"}, {SelfContact::off, "off"}};
 };
-/// Whether wall friction acts only on the interface next to the wall, or through closed films also on the
-/// interfaces above the films.
+/// Whether wall friction acts only on the part of the interface next to the wall, or through closed films
+/// also on the parts of the interface above the films.
 enum class FilmFriction { off, on };
 template <>
 struct Words<FilmFriction> {
@@ -65,10 +65,11 @@ struct Words<ObstacleLayout> {
                                                    {ObstacleLayout::channel, "channel"},
                                                    {ObstacleLayout::wall, "wall"}};
 };
-/// Lattices by their vectors in units of the pitch, t being the tilt: square, turned by t: (1, 0) and (0, 1);
-/// triangular, turned by t: (1, 0) and (1/2, sqrt(3)/2); rhombic: (1, tan t) and (0, 1), not turned. The
-/// rhombic lattice is the sheared array of deterministic lateral displacement: columns of posts across the
-/// flow, each shifted by tan t (McGrath et al., Lab Chip 14, 4139 (2014)).
+/// Lattices, defined by two vectors in units of the pitch. The square lattice, (1, 0) and (0, 1), and the
+/// triangular lattice, (1, 0) and (1/2, sqrt(3)/2), are rotated by the tilt t. The rhombic lattice, (1, tan
+/// t) and (0, 1), is not rotated. It is the sheared array of deterministic lateral displacement, in which
+/// each column of posts across the flow is shifted by tan t relative to the column before it (McGrath et al.,
+/// Lab Chip 14, 4139 (2014)).
 enum class LatticeKind { square, triangular, rhombic };
 template <>
 struct Words<LatticeKind> {
@@ -76,8 +77,9 @@ struct Words<LatticeKind> {
                                                 {LatticeKind::triangular, "triangular"},
                                                 {LatticeKind::rhombic, "rhombic"}};
 };
-/// Start of a droplet among user-supplied circles: in the void nearest to the centre of the array, or near a
-/// place drawn from the seed, in the whole array or on a line across the flow.
+/// Where a droplet starts among user-supplied circles: in the void nearest to the centre of the array
+/// (`centre`), or near a random place, which the seed determines. The random place is in the whole array
+/// (`anywhere`) or on a line across the flow (`entrance`).
 enum class Release { centre, anywhere, entrance };
 template <>
 struct Words<Release> {
@@ -90,8 +92,8 @@ template <>
 struct Words<SideWalls> {
   static constexpr Worded<SideWalls> all[] = {{SideWalls::off, "off"}, {SideWalls::on, "on"}};
 };
-/// When a droplet counts as clogged: kinetic energy below a threshold, or, long before that, proof of a
-/// stable equilibrium nearby (equilibrium.hpp).
+/// The condition for a clog: the kinetic energy is below a threshold, or, long before that, a stable
+/// equilibrium is proved to exist nearby (equilibrium.hpp).
 enum class ClogDetection { threshold, certified };
 template <>
 struct Words<ClogDetection> {
@@ -99,13 +101,13 @@ struct Words<ClogDetection> {
                                                   {ClogDetection::threshold, "threshold"}};
 };
 
-/// Half a vertex diameter, and a vertex diameter, for the published number of 256 vertices [sigma].
+/// Half a vertex diameter and a vertex diameter for 256 vertices, the published number [sigma].
 inline constexpr double published_contact_range = 0.00614;
 inline constexpr double published_vertex_diameter = 0.01227;
 
-/// The tension changes to that of a wetted wall within this many vertex diameters. If it changes within one
-/// diameter, the contact angle is wrong for any number of vertices, and droplets of 128 vertices are up to 5
-/// % too tall; with two to four diameters the shapes agree.
+/// Width of the zone near a wall in which the tension changes from Gamma to that of the wetted wall, in
+/// vertex diameters. With a width of one diameter, the contact angle is wrong for any number of vertices, and
+/// droplets of 128 vertices are up to 5 % too tall. With widths of two to four diameters, the shapes agree.
 inline constexpr double wetting_width = 3;
 
 /// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
@@ -119,32 +121,32 @@ struct DpParameters {
   /// Distance from a wall's surface at which contact begins [sigma]; empty: half a vertex diameter, as
   /// published, which makes every gap narrower by a vertex diameter.
   std::optional<double> contact_range = 0;
-  /// Tension of the interface on a wall, divided by Gamma: (gamma_so - gamma_sw)/gamma_ow, which is
-  /// -cos of the contact angle (Young). 1: a film of water everywhere, as in the paper's figures. Empty: from
-  /// the measured angles, see wall_tension().
+  /// Tension of the interface on a wall, divided by Gamma: (gamma_so - gamma_sw)/gamma_ow, which is minus the
+  /// cosine of the contact angle (Young). It is 1 if a film of water covers all walls, as in the paper's
+  /// figures. If it is empty, wall_tension() computes it from the contact angles.
   std::optional<double> wall_tension;
-  /// Contact angles of the droplet's fluid, beyond which the end of a wetted arc recedes and advances
-  /// [degrees]. Empty: both are Young's angle, and ends are not held. Angles may be given only with springs
-  /// `along` the interface.
+  /// Contact angles of the droplet's fluid at which the end of a wetted arc begins to recede or to advance
+  /// [degrees]. If they are empty, both are Young's angle, and walls do not hold the ends. Angles may be
+  /// given only with springs `along` the interface.
   std::optional<double> receding_angle, advancing_angle;
-  double friction = 0;        ///< mu of walls; not with springs `along`
+  double friction = 0;        ///< friction coefficient mu of walls; 0 with springs `along`
   double yield_traction = 0;  ///< tau_y, force per length that a wall bears without any push [g rho sigma]
   SelfContact self_contact = SelfContact::on;
   /// Distance below which the interface repels itself: the thickness of a film between two parts of it
   /// [sigma].
   double self_contact_range = published_vertex_diameter;
-  /// Empty: on if there is friction and self-contact.
+  /// If it is empty, friction acts through films if there are friction and self-contact.
   std::optional<FilmFriction> film_friction;
   Gravity gravity = Gravity::area;
   std::optional<int> vertices;  ///< N_v; empty: automatic
-  /// S, inertial mass divided by the droplet's mass. Weight and drag do not depend on it. S only determines
-  /// how soon the droplet's speed follows the forces; steps may be sqrt(S) times as long.
+  /// S, inertial mass divided by the droplet's mass. With a larger S, the droplet's speed follows the forces
+  /// more slowly, and time steps may be sqrt(S) times as long; weight and drag stay the same.
   double inertia = 1;
-  /// A droplet with a thinner neck has broken up [sigma]; 0: none does.
+  /// Width of a neck below which a droplet has broken up [sigma]; 0: droplets do not break up.
   double break_up_neck = 0;
 };
 
-/// Width below which a box is so narrow that the droplet would touch its own periodic image [sigma].
+/// Smallest width of a box: in a narrower box a droplet could touch its own periodic image [sigma].
 inline constexpr double narrowest_period = 5;
 
 /// The rectangle after which an array repeats: square boxes in a row along the flow, or one box with a
@@ -153,10 +155,11 @@ struct Period {
   double box = 0;  ///< [sigma]
   int boxes = 1;
   double length = 0;  ///< period along the flow; 0: boxes times box [sigma]
-  double beside = 0;  ///< empty space beside the box, so that nothing meets images of the other side [sigma]
+  double beside = 0;  ///< width of the empty space beside the box; it keeps the droplet away from images of
+                      ///< the other side [sigma]
 
   Period() = default;
-  // Implicit: a single box is a period, so the conversion loses nothing.
+  // Implicit, because every box is a period of one box.
   Period(double edge, int number = 1) : box(edge), boxes(number) {}
 
   double along() const { return length > 0 ? length : boxes * box; }
@@ -168,12 +171,12 @@ struct Period {
 /// Density of a random array.
 struct ObstacleDensity {
   std::optional<double> per_area;  ///< obstacles per sigma^2
-  std::optional<double>
-      share;  ///< of the mean density of saturated arrays; resolve() converts it to per_area
+  /// Fraction of the mean density of saturated arrays; resolve() converts it to per_area.
+  std::optional<double> share;
 
-  /// Saturated: obstacles are added until no further one fits.
+  /// A saturated array: obstacles are added until no further one fits.
   ObstacleDensity() = default;
-  // Implicit: the number of obstacles per sigma^2 is the density, so the conversion loses nothing.
+  // Implicit, because every number of obstacles per sigma^2 is a density.
   ObstacleDensity(double number_per_area) : per_area(number_per_area) {}
   static ObstacleDensity share_of_saturated(double share) {
     ObstacleDensity density;
@@ -184,8 +187,8 @@ struct ObstacleDensity {
   bool operator==(const ObstacleDensity&) const = default;
 };
 
-/// Cheng et al. publish lambda = 24 +- 1 for Gamma = 1.09 and a gap of 0.2, but no density. This share of the
-/// saturated density reproduces it (docs/explanation/density.md).
+/// The share of the saturated density that reproduces lambda = 24 +- 1, which Cheng et al. publish for Gamma
+/// = 1.09 and a gap of 0.2 without a density (docs/explanation/density.md).
 inline constexpr double published_share_of_saturated = 0.125;
 
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
@@ -193,22 +196,22 @@ struct ObstacleParameters {
   double gap = 0.2;            ///< w_ob, smallest surface-to-surface distance [sigma]
   double diameter = 0.3;       ///< sigma_ob; of a mixture, the mean of the drawn diameters [sigma]
   double diameter_spread = 0;  ///< diameters are uniform in diameter (1 -+ spread)
-  /// The density of random arrays; that of a lattice or of user-supplied circles is not kept here.
+  /// The density of random arrays. That of a lattice or of user-supplied circles is not stored here.
   ObstacleDensity density = ObstacleDensity::share_of_saturated(published_share_of_saturated);
   double box = 500;  ///< period L across the flow [sigma]
   int boxes = 1;     ///< period along the flow divided by the period across it
   ObstacleLayout layout = ObstacleLayout::random;
   LatticeKind lattice = LatticeKind::square;
-  double pitch = 0;                    ///< of a lattice, instead of its gap; 0: diameter + gap [sigma]
-  double lattice_angle = 0;            ///< of the lattice's rows from +x to +y [degrees]
-  std::optional<OwnCircles> own = {};  ///< circles of layout file, which determine gap and density
+  double pitch = 0;                    ///< pitch of a lattice, instead of its gap; 0: diameter + gap [sigma]
+  double lattice_angle = 0;            ///< angle of the lattice's rows, from +x to +y [degrees]
+  std::optional<OwnCircles> own = {};  ///< circles of the layout `file`; they determine gap and density
   Release release = Release::centre;
   double length = 0;  ///< period along the flow; 0: boxes times box [sigma]
-  // For user-supplied circles, in their coordinates:
-  SideWalls side_walls = SideWalls::off;  ///< at y = 0 and y = box
+  // The members from here on are for user-supplied circles, in the coordinates of these circles.
+  SideWalls side_walls = SideWalls::off;  ///< straight walls at y = 0 and y = box
   double entrance = 0;                    ///< x of the line on which droplets are released [sigma]
   double entrance_from = 0;               ///< y at which the line begins [sigma]
-  double entrance_to = 0;                 ///< y at which it ends; 0: at y = box [sigma]
+  double entrance_to = 0;                 ///< y at which the line ends; 0: at y = box [sigma]
   double exit = 0;                        ///< x at which a droplet has passed; 0: there is no exit [sigma]
 
   double smallest_diameter() const { return diameter * (1 - diameter_spread); }
@@ -226,8 +229,8 @@ struct ObstacleParameters {
 /// from the line through the tips, positive downstream.
 struct ChannelParameters {
   double orifice = 0.7;      ///< w, distance between the tips [sigma]
-  double wedge_angle = 45;   ///< between the wedges' flanks and the flow [degrees]; 0: parallel walls
-  double tip_radius = 0.03;  ///< of the wedges' rounded tips [sigma]
+  double wedge_angle = 45;   ///< angle between the wedges' flanks and the flow [degrees]; 0: parallel walls
+  double tip_radius = 0.03;  ///< radius of the wedges' rounded tips [sigma]
   double start = -10;        ///< h at release [sigma]
   double end = 3;            ///< h at which the run is over [sigma]
 };
@@ -248,20 +251,20 @@ struct RunParameters {
   DpParameters dp;
   std::optional<double> wall_stiffness;  ///< E_w [g rho sigma^3]; empty: stiffest stable value (dp only)
   ObstacleParameters obstacles;
-  ChannelParameters channel;  ///< of layout channel
+  ChannelParameters channel;  ///< parameters of the layout `channel`
   DragParameters drag;
   std::optional<double> time_step;  ///< [t0]; empty: automatic
   double max_time = 2e5;            ///< [t0]
   std::optional<LaboratoryText> laboratory = {};
-  double dwell_length = 0.05;  ///< a droplet that advances by less counts as resting [sigma]
+  double dwell_length = 0.05;  ///< a droplet that advances by less than this counts as resting [sigma]
   double clog_energy = 1e-17;  ///< E_k/E_t below which a droplet counts as clogged
   ClogDetection clog_detection = ClogDetection::certified;
   std::uint32_t seed = 1;
 };
 
-/// Contact stiffness k_c, force over overlap [g rho sigma], of the wall energy U_w = (E_w/2)(1 - 2d/size)^2:
-/// k_c = 4 E_w / size^2. `size` is the vertex diameter (DP) or sigma (SP). The function below inverts this
-/// one.
+/// Contact stiffness k_c, force divided by overlap [g rho sigma]. The wall energy U_w = (E_w/2)(1 -
+/// 2d/size)^2 gives k_c = 4 E_w / size^2, where `size` is the vertex diameter (DP) or sigma (SP).
+/// wall_stiffness() is the inverse function.
 inline double contact_stiffness(double wall_stiffness, double size) {
   return 4 * wall_stiffness / (size * size);
 }

@@ -10,9 +10,9 @@
 
 #include "clog/core/parameters/parameters.hpp"
 
-/// Every parameter of a run, described once. Keys, their checks, columns, groups, labels and documentation
-/// follow from here: a new parameter is a member of RunParameters, an entry of parameter_schema(), and its
-/// physics.
+/// The schema describes every parameter of a run once. Keys, their checks, columns, groups, labels and
+/// documentation derive from this description. A new parameter needs a member of RunParameters, an entry of
+/// parameter_schema(), and its physics.
 namespace clog {
 
 /// The value of a parameter; `std::monostate` (unset) if the value is automatic, or if the parameter has no
@@ -57,30 +57,32 @@ struct ParameterRange {
 };
 
 struct Parameter {
-  const char* key;      ///< in config files and on command lines, e.g. "line-tension"
+  const char* key;      ///< name in config files and on command lines, e.g. "line-tension"
   const char* column;   ///< the column of the table of runs that holds its value
-  const char* symbol;   ///< as TeX writes it
+  const char* symbol;   ///< the symbol as TeX writes it
   const char* unit;     ///< e.g. "g rho sigma^2"; empty: a pure number, or a word
   const char* meaning;  ///< one line
   ParameterRole role;
   const ParameterScope* scope;
-  const ParameterScope* automatic_in;  ///< runs in which it follows from other parameters unless given
-  ParameterRange range;                ///< of numbers
-  bool has_own_column;                 ///< false: the column describes other parameters as well
-  bool shapes_array;                   ///< whether different values give different obstacle arrays
+  const ParameterScope*
+      automatic_in;      ///< runs in which the value, unless given, follows from other parameters
+  ParameterRange range;  ///< the range, if the values are numbers
+  bool has_own_column;   ///< false: the column describes other parameters as well
+  bool shapes_array;     ///< whether different values give different obstacle arrays
   /// The column's value for runs to which the parameter does not apply; usually unset.
   ParameterValue elsewhere;
   /// The value that the parameter has for all runs in files older than the parameter; unset if it is unknown.
   ParameterValue before;
 
   ValueKind kind;
-  std::vector<std::string> words;  ///< of a word: all its values; of a number: its words for `automatic`
+  /// All values of a word; for a number, the words that select an automatic value.
+  std::vector<std::string> words;
   ParameterValue (*get)(const RunParameters&);
   /// @throws Error if the value is out of the type's range, or the word is unknown
   void (*set)(RunParameters&, const ParameterValue&);
 
   bool applies_to(const RunParameters& run) const { return scope->holds(run); }
-  /// Whether the parameter's value follows from other parameters in such a run, unless it is given.
+  /// Whether the parameter's value, unless it is given, follows from other parameters of this run.
   bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
 };
 

@@ -19,11 +19,11 @@ struct Surroundings {
 /// Geometry of a droplet at rest among obstacles.
 /// @param position  counter-clockwise polygon, all x then all y [sigma]
 /// @param contact_range  distance from an obstacle's surface at which contact begins [sigma]
-/// @param links_per_edge  number of the polygon's edges for one edge of the droplet's mesh: 2 if it is
-/// refined
+/// @param links_per_edge  number of the polygon's edges for one edge of the droplet's mesh: 2 for a refined
+/// polygon
 ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& around, double contact_range,
                            int links_per_edge = 1);
-/// The same for a droplet in an array, from its refined interface. @param dp  resolved
+/// Geometry of a droplet in an array, from the droplet's refined interface. @param dp  resolved
 ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, const DpParameters& dp);
 
 }  // namespace clog

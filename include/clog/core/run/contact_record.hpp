@@ -17,18 +17,18 @@ struct Contacts {
   /// after the droplet has been farther than ContactRecord::parting away; its periodic images count as other
   /// obstacles.
   std::int64_t number = 0;
-  double first_distance =
-      std::numeric_limits<double>::quiet_NaN();  ///< at the first contact; NaN: none [sigma]
+  /// Distance of the droplet at the first contact; NaN if there was none [sigma].
+  double first_distance = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Detects at the checks of a run which obstacles touch its droplet. A contact that begins and ends between
-/// two checks is missed; in this time the droplet moves only by some thousandths of its diameter.
+/// two checks is missed; the droplet moves only by some thousandths of its diameter between two checks.
 class ContactRecord {
  public:
   /// Distance beyond which an obstacle counts as left [sigma].
   static constexpr double parting = 0.1;
 
-  /// @param reach  of the moving points, see DropletModel
+  /// @param reach  see DropletModel::contact_reach
   explicit ContactRecord(const ContactReach& reach) : reach_(reach) {}
 
   /// Call this once per check of a run.
@@ -49,14 +49,16 @@ class ContactRecord {
   };
   /// An obstacle near the droplet.
   struct Seen {
-    double gap = std::numeric_limits<double>::infinity();  ///< between its surface and the droplet [sigma]
-    Place nearest{0, 0};                                   ///< of its circles
-    bool is_met = false;                                   ///< one of its circles was in met_
+    /// Distance between the surface of the obstacle and the droplet [sigma].
+    double gap = std::numeric_limits<double>::infinity();
+    Place nearest{0, 0};  ///< the nearest circle of the obstacle
+    bool is_met = false;  ///< whether one of the obstacle's circles was in met_
   };
   ContactReach reach_;
   Contacts contacts_;
-  std::vector<Place> met_;  // met and not left since: the nearest circle of each obstacle
-  // Circles near the droplet, in its frame, and their posts; valid while the droplet stays within the window.
+  std::vector<Place> met_;  // the nearest circle of each obstacle that the droplet has met and not left since
+  // Circles near the droplet, in its frame, and their posts; valid while the droplet stays between lower_ and
+  // upper_.
   std::vector<Obstacle> near_;
   std::vector<int> post_of_;
   std::size_t num_posts_ = 0;
@@ -68,7 +70,7 @@ class ContactRecord {
                    const Eigen::Array2d& upper);
   /// Adds a circle, or a wedge, to the data of its obstacle, and removes it from met_.
   void include(Seen& obstacle, const Place& place, double gap);
-  /// Adds the obstacle to met_ again if the droplet touches it, or touched it and has not left it.
+  /// Adds the obstacle to met_ again if the droplet touches it, or has touched it and not left it since.
   void count(const Seen& obstacle, double distance);
 };
 

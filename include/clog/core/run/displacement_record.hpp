@@ -8,8 +8,8 @@
 
 namespace clog {
 
-/// r(t) of one run at evenly spaced times, in bounded memory: when it is full, every other sample is dropped
-/// and the spacing doubles.
+/// r(t) of one run at evenly spaced times, in bounded memory: when the memory is full, every other sample is
+/// dropped and the spacing doubles.
 class DisplacementRecord {
  public:
   /// Call this once per check of a run, at equal time intervals.

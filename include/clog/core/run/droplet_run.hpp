@@ -29,7 +29,8 @@ struct Words<RunStatus> {
       {RunStatus::failed, "failed"}};
 };
 
-/// E_k/E_t above which the integration has failed: free fall without drag over a whole box stays below it.
+/// E_k/E_t above which the integration has failed: a free fall without drag over a whole box stays below this
+/// ratio.
 inline constexpr double diverged_energy_ratio = 1e8;
 /// Relative error of the area above which the integration has failed: compressibility and line tension keep a
 /// droplet far below it.
@@ -57,12 +58,12 @@ struct RunResult {
   double distance = 0;  ///< displacement along the flow since release, certified: at rest [sigma]
   double lateral = 0;   ///< displacement across the flow, certified: at rest [sigma]
   double time = 0;      ///< [t0]
-  TravelSpeed speed;    ///< of the run so far
+  TravelSpeed speed;    ///< speed of the run so far
   Dwells dwells;
   Contacts contacts;
   double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
   double shape_parameter = 0;       ///< A at the end, certified: at rest
-  Hold hold;                        ///< of a clogged droplet, certified: at rest
+  Hold hold;                        ///< what holds a clogged droplet, certified: at rest
   Passage passage;                  ///< through a channel; NaN elsewhere
   Sag sag;                          ///< certified: at rest
   ThinnestNeck neck;
@@ -86,15 +87,16 @@ class DropletRun {
  public:
   /// Clogs and the end of the run are checked, and r(t) is recorded, once in this number of steps.
   static constexpr int steps_per_check = 64;
-  /// A snapshot is taken once in this number of steps: about every quarter of a second with 256 vertices.
+  /// A snapshot is taken once in this number of steps, which take about a quarter of a second with 256
+  /// vertices.
   static constexpr std::int64_t steps_per_snapshot = std::int64_t{4096} * steps_per_check;
 
   /// Releases the droplet as its scene defines. @param run  resolved parameters, here and below
   explicit DropletRun(const RunParameters& run);
-  /// The same, among given walls.
+  /// Releases the droplet in the same way, among given walls.
   DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
   /// @param initial  the droplet at its release
-  /// @param way  displacement along the flow at which the droplet has `passed` [sigma]
+  /// @param way  displacement along the flow after which the droplet has `passed` [sigma]
   DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
              double way = std::numeric_limits<double>::infinity());
 
@@ -114,14 +116,14 @@ class DropletRun {
   /// The run's result so far; status `running` while it is not over.
   RunResult result() const;
   double time() const { return static_cast<double>(steps_done_) * run_.time_step.value(); }
-  /// Along and across the flow since release [sigma].
+  /// Displacement along and across the flow since release [sigma].
   Eigen::Array2d displacement() const { return displacement_of(droplet_->centre()); }
   /// Displacement of a point, given in the droplet's frame, from the place of release [sigma].
   Eigen::Array2d displacement_of(const Eigen::Array2d& local) const {
     return droplet_->state().frame.displacement(local, start_frame_, start_);
   }
   double kinetic_energy_ratio() const;
-  /// The gravity term is relative to the place of release.
+  /// The gravity term measures the height from the place of release.
   PotentialEnergy potential_energy() const;
   /// Starts to add up the energy lost to drag, see Droplet::work().
   void measure_dissipation() { droplet_->measure_dissipation(); }
@@ -143,7 +145,7 @@ class DropletRun {
   RunStatus status_ = RunStatus::running;
   std::optional<ClogDetection> clogged_by_;
   double next_search_;                // E_k/E_t below which the run searches for an equilibrium
-  std::unique_ptr<Droplet> at_rest_;  // of a certified clog
+  std::unique_ptr<Droplet> at_rest_;  // the droplet at rest, if the clog is certified
   std::string message_;
   DisplacementRecord record_;
   DwellRecord dwells_;

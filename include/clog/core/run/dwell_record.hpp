@@ -10,28 +10,29 @@ namespace clog {
 
 /// A time in which the droplet advanced by at most dwell-length; NaN if there is none.
 struct Dwell {
-  double length = std::numeric_limits<double>::quiet_NaN();    ///< [t0]
-  double distance = std::numeric_limits<double>::quiet_NaN();  ///< along the flow, where it began [sigma]
-  double begin = std::numeric_limits<double>::quiet_NaN();     ///< [t0]
+  double length = std::numeric_limits<double>::quiet_NaN();  ///< duration [t0]
+  /// Distance along the flow at which the dwell began [sigma].
+  double distance = std::numeric_limits<double>::quiet_NaN();
+  double begin = std::numeric_limits<double>::quiet_NaN();  ///< time at which the dwell began [t0]
 };
 
 /// The dwells of a run that were longer than all before them.
 struct Dwells {
   static constexpr std::size_t most = 8;
 
-  /// The longest of all, the longest of those before it, and so on. If there are more than `most`, the
-  /// earliest are dropped.
+  /// The longest dwell of all, the longest of the dwells before that, and so on. If there are more than
+  /// `most`, the earliest are dropped.
   std::array<Dwell, most> longest;
-  /// first_longer() may be called for times from this one on [t0]; NaN: for no time, because dwells are
-  /// unknown.
+  /// Smallest time for which first_longer() may be called [t0]; NaN if the dwells are unknown.
   double known_from = std::numeric_limits<double>::quiet_NaN();
-  double last_distance = std::numeric_limits<double>::quiet_NaN();  ///< where the last dwell began [sigma]
-  double last_begin = std::numeric_limits<double>::quiet_NaN();     ///< and when [t0]
+  /// Distance [sigma] and time [t0] at which the last dwell began.
+  double last_distance = std::numeric_limits<double>::quiet_NaN();
+  double last_begin = std::numeric_limits<double>::quiet_NaN();
 
   /// The first dwell longer than `time`; nullptr if there was none.
   /// @param time  not less than known_from [t0]
   const Dwell* first_longer(double time) const;
-  /// @param dwell  later than all before
+  /// @param dwell  must be later than all dwells that were kept before
   void keep(const Dwell& dwell);
 };
 
@@ -50,8 +51,8 @@ class DwellRecord {
   /// Call this once per check of a run. @param displacement  along the flow since release [sigma]
   void add(double time, double displacement);
 
-  /// @param time  of the last check. An unfinished dwell counts with its length so far; in a clogged run it
-  /// does not count.
+  /// @param time  time of the last check [t0]. The unfinished dwell counts with its length so far, except in
+  /// a clogged run.
   Dwells found(double time, bool has_clogged) const;
 
   void save(ByteWriter& bytes) const { bytes.put(found_); }
@@ -59,7 +60,7 @@ class DwellRecord {
 
  private:
   double dwell_length_;
-  Dwells found_;  // those that have ended
+  Dwells found_;  // the dwells that have ended
 
   Dwell present(double time) const;
 };

@@ -6,7 +6,7 @@
 
 namespace clog {
 
-/// A value, and the h at which the droplet had it [sigma]; NaN if there is none.
+/// An extreme value, and the position h in the channel at which it occurred [sigma]; NaN if there is none.
 struct Extreme {
   double value = std::numeric_limits<double>::quiet_NaN();
   double place = std::numeric_limits<double>::quiet_NaN();
@@ -15,11 +15,11 @@ struct Extreme {
 /// The extremes of a passage through a channel.
 struct Passage {
   Extreme largest_shape_parameter;
-  Extreme largest_speed;  ///< along the flow [V_t]
-  /// Along the flow, except at the beginning, when the droplet falls from rest [V_t].
+  Extreme largest_speed;  ///< speed along the flow [V_t]
+  /// Speed along the flow [V_t]. The beginning is left out, because the droplet starts from rest.
   Extreme smallest_speed;
 
-  /// @param is_falling  whether the droplet has had time to reach its speed
+  /// @param is_falling  whether the droplet has had time to reach its terminal speed
   void add(double place, double shape_parameter, double speed, bool is_falling);
   void save(ByteWriter& bytes) const { bytes.put(*this); }
   void restore(ByteReader& bytes) { bytes.get(*this); }

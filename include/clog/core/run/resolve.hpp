@@ -4,8 +4,9 @@
 
 namespace clog {
 
-/// Replaces every `auto` (empty optional), and box and angle of a lattice, by the resulting value, then
-/// validates. @throws Error naming the field, its value, the reason and a remedy
+/// Replaces automatic values (each an empty `std::optional`), and the box and angle of a lattice, by the
+/// values that the run uses, and checks the result. @throws Error naming the field, its value, the reason and
+/// a remedy
 RunParameters resolve(RunParameters run);
 
 }  // namespace clog

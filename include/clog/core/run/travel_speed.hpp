@@ -10,7 +10,7 @@ namespace clog {
 /// A point of r(t).
 struct TravelSample {
   double time;          ///< [t0]
-  double displacement;  ///< along the flow [sigma]
+  double displacement;  ///< displacement along the flow [sigma]
 };
 
 /// Mean speed of one run after its transient; NaN if unknown.
@@ -23,8 +23,9 @@ struct TravelSpeed {
   double time = unknown;       ///< time over which the mean is taken [t0]
 };
 
-/// Mean of the speed after its transient, (r(t_e) - r(t_b))/(t_e - t_b), with t_e the last sample's time. All
-/// are NaN for fewer than 50 intervals, or if the transient takes more than half of the time.
+/// Mean of the speed after its transient, (r(t_e) - r(t_b))/(t_e - t_b), with t_b the end of the transient
+/// and t_e the last sample's time. All members are NaN for fewer than 50 intervals, or if the transient takes
+/// more than half of the time.
 /// @param samples  at evenly spaced times
 TravelSpeed travel_speed(std::span<const TravelSample> samples);
 

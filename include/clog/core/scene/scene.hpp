@@ -11,19 +11,20 @@ enum class Finding { clogging_length, passage, sag };
 
 /// The source of the walls.
 enum class WallsFrom {
-  parameters,  ///< of the obstacles alone; sampling an array may take long
-  circles,     ///< that a user gave
-  droplet      ///< whose parameters determine the places of the walls; making the walls takes no time
+  parameters,  ///< the parameters of the obstacles alone; sampling an array may take long
+  circles,     ///< circles that a user gave
+  droplet  ///< the droplet's parameters, which determine the places of the walls; making the walls takes no
+           ///< time
 };
 
 /// Which obstacles a droplet meets, where it starts, and where its path ends. There is one scene for each
-/// ObstacleLayout. A new scene needs a word of ObstacleLayout, a file that defines its Scene, a line in
-/// scene.cpp, and the steps of docs/developer/add-a-scene.md.
+/// ObstacleLayout. A new scene needs an enumerator of ObstacleLayout, a file that defines its Scene, a line
+/// in scene.cpp, and the steps of docs/developer/add-a-scene.md.
 struct Scene {
   Finding finding;
   WallsFrom walls_from;
-  /// Whether the array is random. Then the period limits the results, because after one period a droplet
-  /// meets the same obstacles again.
+  /// Whether the array is random. The period of a random array limits the results, because after one period a
+  /// droplet meets the same obstacles again.
   bool is_random;
   /// Key of the parameter that is the width of the gaps or the orifice; nullptr if there is none.
   const char* gap_key;

@@ -7,7 +7,7 @@
 
 namespace clog {
 
-/// Owns an open file or socket of the system, by its number.
+/// Owns a file descriptor of the system, the number of an open file or socket.
 class Descriptor {
  public:
   /// @param number  below 0: none is open

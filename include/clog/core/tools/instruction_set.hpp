@@ -5,8 +5,9 @@
 
 namespace clog {
 
-/// The instruction sets of all kernels that this processor supports, the widest first: of avx512, avx2,
-/// baseline. (On processors other than x86 the names are those of the Highway library.)
+/// Names of the instruction sets for which the kernels are compiled (avx512, avx2, baseline) and which this
+/// processor supports. The widest set comes first. (On processors other than x86 the names are those of the
+/// Highway library.)
 std::vector<std::string> instruction_sets();
 /// The instruction set for droplets made from now on, and for their release. Results of two sets differ by
 /// round-off (docs/explanation/numerics.md, "Reproducibility").

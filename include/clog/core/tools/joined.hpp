@@ -5,7 +5,7 @@
 
 namespace clog {
 
-/// Words in one line, with `between` between them. (g++ 12 with -O3 reports fmt::join as a write beyond an
+/// The words in one line, separated by `between`. (g++ 12 with -O3 reports fmt::join as a write beyond an
 /// array.)
 template <class Words>
 std::string joined(const Words& words, std::string_view between = ", ") {

@@ -30,7 +30,7 @@ inline std::string share_text(double share) {
   std::from_chars(digits, end, percent);
   return shortest(percent) + '%';
 }
-/// The share that such a text gives; NaN unless the text is a number and a `%`.
+/// The share that a text like `12.5%` gives; NaN unless the text is a number and a `%`.
 inline double share_of(std::string_view text) {
   double percent = 0;
   const char* const end = text.data() + text.size();

@@ -22,8 +22,8 @@ struct Stretch {
 std::optional<Stretch> conspicuous_bare_stretch(std::span<const Obstacle> circles, double Obstacle::*centre,
                                                 double period);
 
-/// Bare stretches across the flow that are wider than a droplet, the widest first: droplets sink through them
-/// without a contact. Empty for a period without circles.
+/// Bare stretches across the flow, the widest first. They are wider than a droplet, so droplets sink through
+/// them without a contact. Empty for a period without circles.
 /// @param period  of the array across the flow [sigma]
 std::vector<Stretch> bare_lanes(std::span<const Obstacle> circles, double period);
 

@@ -11,13 +11,14 @@ namespace clog {
 /// 5, 707 (1994)).
 double saturated_density(double diameter, double gap);
 
-/// Obstacles per area of a random array [1/sigma^2]; nullopt: as many as fit. A share is relative to the mean
-/// density of saturated arrays of these diameters and this gap, for any box.
+/// The density that a random array should have [1/sigma^2]; nullopt if as many obstacles as possible are
+/// wanted. A share is relative to the mean density of saturated arrays of these diameters and this gap, for
+/// any box.
 std::optional<double> wanted_density(const ObstacleParameters& obstacles);
 
-/// The largest density of a random array that every seed can reach [1/sigma^2]: eight standard deviations
-/// below the mean number of obstacles of saturated arrays of this box. In small boxes, where this number is
-/// almost zero, this is the smallest possible density of a saturated array.
+/// The largest density of a random array that every seed can reach [1/sigma^2]. It is eight standard
+/// deviations below the mean of saturated arrays of this box. In small boxes, where that would be almost
+/// zero, it is the smallest possible density of a saturated array.
 /// @param obstacles  of random layout
 double largest_density(const ObstacleParameters& obstacles);
 

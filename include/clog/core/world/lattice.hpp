@@ -10,9 +10,10 @@
 
 namespace clog {
 
-/// A lattice with a rectangular period along the flow. A lattice has one if its tilt t is rational: tan t =
-/// q/p with integers p and q; for a triangular lattice tan t = sqrt(3) q/p. With the lattice's vectors v1 and
-/// v2, p v1 - q v2 is then a period of the square lattice along the flow, of length a sqrt(p^2 + q^2).
+/// A lattice with a rectangular period along the flow. A lattice has such a period if its tilt t is rational:
+/// tan t = q/p with integers p and q, or tan t = sqrt(3) q/p for a triangular lattice. For the square lattice
+/// with the vectors v1 and v2, the vector p v1 - q v2 then points along the flow, and the period is as long
+/// as this vector: sqrt(p^2 + q^2) spacings.
 struct CommensurateLattice {
   int p = 1;
   int q = 0;
@@ -28,12 +29,13 @@ inline constexpr double largest_angle_error = 0.1;
 double largest_tilt(LatticeKind kind);
 
 /// The lattice whose tilt is nearest to lattice_angle, among those whose periods are at most `box` and
-/// `length` (0: `box`), and at least two spacings and `narrowest_period`. If several are equally near, this
-/// is the one with the largest box. nullopt if no lattice has such periods.
+/// `length` (0: `box`), and at least two spacings and `narrowest_period`. If several lattices are equally
+/// near, the one with the largest box is chosen. nullopt if no lattice has such periods.
 std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles);
 /// nearest_lattice(); nullopt if its tilt is more than largest_angle_error away from lattice_angle.
 std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);
-/// A whole-numbered box, larger than the given one, in which there is a fitting_lattice() [sigma].
+/// A box with a whole-numbered width, larger than the given one, in which there is a fitting_lattice()
+/// [sigma].
 double box_that_fits(const ObstacleParameters& obstacles);
 /// The nearest lattices on both sides of lattice_angle, if there are any.
 std::vector<CommensurateLattice> neighbouring_lattices(const ObstacleParameters& obstacles);
@@ -50,9 +52,9 @@ std::string tilt_text(LatticeKind kind, const CommensurateLattice& lattice);
 /// Pitch, row spacing, tilt and period, in words. @param obstacles  resolved
 std::string lattice_text(const ObstacleParameters& obstacles);
 
-/// Lattice of spacing diameter + gap. The seed shifts it: the box's centre, where droplets are released, is
-/// uniform in a unit cell among the places where a droplet touches no obstacle. If a droplet touches
-/// obstacles everywhere, it is uniform among all places.
+/// A lattice of spacing diameter + gap, which the seed shifts. After the shift, the box's centre, where
+/// droplets are released, is at a uniformly distributed place of the unit cell. Places where a droplet
+/// touches an obstacle are excluded, unless a droplet touches obstacles everywhere.
 /// @param parameters  resolved: box, length and angle are those of a CommensurateLattice
 ObstacleArray lattice_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
 

@@ -55,17 +55,18 @@ class ObstacleArray {
     Obstacle first, second;
     double gap;
   };
-  /// The post of each obstacle: circles of which one has its centre within the other form one post, which has
-  /// the outline of their union. Circles with exactly the same centre form separate posts.
+  /// The post of each obstacle: two circles belong to one post if the centre of one lies within the other. A
+  /// post has the outline of the union of its circles. Circles with exactly the same centre form separate
+  /// posts.
   std::vector<std::uint32_t> posts() const;
-  /// The two posts with the smallest gap, including their images, but not those beyond side walls. The gap is
+  /// The two posts with the smallest gap. Periodic images count, except those beyond side walls. The gap is
   /// infinite if no pair is nearer than a box.
   Pair closest_pair() const;
   double smallest_gap() const { return closest_pair().gap; }
 
  private:
   BinnedObstacles binned_;
-  std::shared_ptr<const void> memory_;  // of the obstacles
+  std::shared_ptr<const void> memory_;  // keeps the memory of the obstacles alive
   std::vector<Wedge> wedges_;
 
   std::uint32_t cell_of(double x, double y) const;
@@ -76,15 +77,16 @@ class ObstacleArray {
   void visit_window(const Window& window, Visit visit) const;
 };
 
-/// The post of each of a few circles, numbered from 0 in the order in which posts first appear: like
-/// ObstacleArray::posts(), but only through these circles. A post whose circles are connected only by circles
-/// that are not in the list counts as several posts.
+/// The post of each of a few circles. Posts are numbered from 0 in the order in which they first appear.
+/// Unlike ObstacleArray::posts(), this function considers only the given circles, so a post whose circles are
+/// connected only by other circles counts as several posts.
 std::vector<int> posts_among(std::span<const Obstacle> circles);
 
-/// A Poisson-disk sample by random sequential addition. Discs arrive one by one, with a diameter uniform in
-/// diameter (1 -+ spread) at a uniform place (periodic), and stay if all earlier surfaces are at least `gap`
-/// away; so in dense mixtures more of the discs are small than of the arriving discs. With a density, stops
-/// at round(density * area) obstacles; without, goes on until not even one of the smallest fits ("saturated",
+/// A Poisson-disk sample by random sequential addition. Discs are proposed one by one, at uniform places in
+/// the period and with diameters uniform in diameter (1 -+ spread). A disc is accepted if its surface is at
+/// least `gap` away from those of all earlier discs, so in dense mixtures small discs are more frequent among
+/// the accepted discs than among the proposed ones. With a density, sampling stops at round(density * area)
+/// obstacles. Without a density, it stops when not even a disc of the smallest diameter fits ("saturated",
 /// the jamming limit: discs of diameter + gap cover 0.547 of the plane, Feder, J. Theor. Biol. 87, 237
 /// (1980)). Voids are tracked on a flat quadtree as in Ebeida et al., Comput. Graph. Forum 31, 785 (2012).
 /// @throws Error if the density exceeds what fits; resolve() lets only densities pass that every seed reaches

@@ -15,24 +15,24 @@ struct Angle {
       : radians(in_radians), cos(portable::cos(in_radians)), sin(portable::sin(in_radians)) {}
 };
 
-/// Infinite convex wall: all points within `half_angle` of the axis, seen from the tip, rounded by a circle
-/// at the tip. Half a plane for half_angle = pi/2. A narrow channel is two of them, tip to tip (Cheng et al.,
-/// Fig. 1).
+/// Infinite convex wall: all points that, seen from the tip, lie within `half_angle` of the axis. A circle
+/// rounds the tip. With half_angle = pi/2 the wall is a half-plane. Two wedges, tip to tip, form a narrow
+/// channel (Cheng et al., Fig. 1).
 struct Wedge {
   Eigen::Array2d tip{0, 0};                 ///< place in the box [sigma]; wedges have no periodic images
   Eigen::Array2d axis{1, 0};                ///< unit vector from the tip into the wall
-  Angle half_angle = std::numbers::pi / 2;  ///< in (0, pi/2]
+  Angle half_angle = std::numbers::pi / 2;  ///< half of the opening angle, in (0, pi/2]
 
-  double radius = 0;  ///< of the rounded tip [sigma]
+  double radius = 0;  ///< radius of the rounded tip [sigma]
 
   /// Centre of the rounded tip. The wall is everything within `radius` of a sharp wedge with its tip there.
   Eigen::Array2d centre() const { return tip + radius * axis; }
   bool is_flat() const { return half_angle.radians >= std::numbers::pi / 2; }
 };
 
-/// Distance and direction of a wedge's surface from a point.
+/// Distance between a point and the surface of a wedge, and the direction of this surface.
 struct WedgeDistance {
-  double distance;        ///< to the nearest surface point, negative inside [sigma]
+  double distance;        ///< distance to the nearest surface point, negative inside [sigma]
   Eigen::Array2d normal;  ///< unit vector from the wall to the point
 };
 /// @param point  relative to the wedge's centre() [sigma]

@@ -29,7 +29,7 @@ HWY_INLINE V all(double value) { return hn::Set(D(), value); }
 HWY_INLINE V load(const double* p) { return hn::LoadU(D(), p); }
 HWY_INLINE V square(V x, V y) { return hn::MulAdd(x, x, hn::Mul(y, y)); }
 
-/// Calls visit(k) for every lane.
+/// Calls visit(k) for every lane k of the mask.
 template <class Visit>
 HWY_INLINE void for_lanes(M mask, Visit visit) {
   std::uint8_t bytes[8] = {};
@@ -58,7 +58,8 @@ class Search {
   std::vector<double>& groups_;
   std::vector<VertexPair>& pairs_;
 
-  /// Squared distance from each vertex to the one `ahead` along the contour.
+  /// Squared distances of the vertices from i on to the vertices that are `ahead` places further along the
+  /// contour.
   HWY_INLINE V distance2(int i, int ahead) const {
     return square(hn::Sub(load(c_.x + i + ahead), load(c_.x + i)),
                   hn::Sub(load(c_.y + i + ahead), load(c_.y + i)));
@@ -66,9 +67,9 @@ class Search {
 
   bool excluded_are_long() const { return (c_.exclusion - 1) * c_.longest_edge >= c_.arc; }
 
-  /// False only if no pair along the contour is close. Tests all vertices up to 7 apart. Vertices 9 apart,
-  /// with a reach longer by one edge, represent 8 to 10; vertices 13 apart, with a reach longer by two edges,
-  /// represent 11 to 15.
+  /// Returns false only if no pair along the contour is close. Tests all pairs up to 7 vertices apart. Pairs
+  /// 9 apart, with a reach longer by one edge, represent those 8 to 10 apart; pairs 13 apart, with a reach
+  /// longer by two edges, represent those 11 to 15 apart.
   bool along_may_meet() const {
     constexpr int last_tested = 7, third = 9, fifth = 13;
     if (c_.exclusion > last_tested || excluded_are_long()) return true;
@@ -86,7 +87,7 @@ class Search {
   }
 
   void list_along() {
-    // Pairs with the contour's other half are found from the other vertex.
+    // A pair that is more than half the contour apart is found from its other vertex.
     const int last = std::min(last_along, c_.n / 2);
     for (int k = excluded_are_long() ? 1 : c_.exclusion; k <= last; ++k) {
       const int end = 2 * k == c_.n ? k : c_.n;
@@ -103,8 +104,8 @@ class Search {
     }
   }
 
-  /// Bounding circles of groups of vertices: no point of an arc is farther from the midpoint of its ends than
-  /// half of its length.
+  /// Lists pairs whose groups are not neighbours, by means of bounding circles of the groups. No point of an
+  /// arc is farther from the midpoint of the arc's ends than half of the arc's length.
   void list_far() {
     const int num_groups = (c_.n + group_size - 1) / group_size;
     const int stride = num_groups + lanes;

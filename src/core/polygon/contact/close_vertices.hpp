@@ -8,8 +8,8 @@
 /// find the same pairs.
 namespace clog::kernel {
 
-/// A closed contour. Arrays repeat it beyond its end for `close_vertices_beyond` entries, where `along`
-/// continues.
+/// A closed contour. The arrays repeat its beginning in `close_vertices_beyond` entries beyond its end; there
+/// `along` continues to grow.
 struct CloseSearch {
   int n;
   const double *x, *y;
@@ -20,9 +20,9 @@ struct CloseSearch {
 };
 inline constexpr int close_vertices_beyond = 24;
 
-/// Finds all pairs of vertices within `reach` that are at least `exclusion` vertices, or at least `arc`,
-/// apart along the contour, each once.
-/// @param groups  memory
+/// Finds, once each, all pairs of vertices within `reach` of each other that are at least `exclusion`
+/// vertices apart along the contour, or at least the distance `arc`.
+/// @param groups  working memory
 void find_close_vertices(const CloseSearch& search, std::vector<double>& groups,
                          std::vector<VertexPair>& pairs);
 

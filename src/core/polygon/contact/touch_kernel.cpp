@@ -38,7 +38,7 @@ HWY_INLINE Vectors operator*(V factor, const Vectors& v) {
 }
 
 /// Half edges, from a vertex to the middle of its edge, in contact with a circle. NearestOnHalves in
-/// dp_step_circles-inl.hpp computes the same faster.
+/// dp_step_circles-inl.hpp computes the same points faster.
 struct Half {
   M touches;
   V length;
@@ -70,8 +70,7 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     const auto vertices = [&](int k) { return Vectors{load_at(x + i + k), load_at(y + i + k)}; };
     const Vectors begin = vertices(0), end = vertices(1);
     const Vectors middle = far * vertices(-1) + near * begin + near * end + far * vertices(2);
-    // No point of an edge's halves is farther from the vertex than half the length of the path through the
-    // middle.
+    // No point of a half edge is farther from the half's vertex than the half is long.
     const V first_way = hn::Sqrt((middle - begin).square()), second_way = hn::Sqrt((middle - end).square());
     const auto may_touch = [&](const Vectors& vertex, V way) {
       const V farthest = hn::Add(reach, way);
@@ -103,7 +102,8 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     keep(1, own(first) + by_middle(first, near) + by_middle(second, near));
     keep(2, by_middle(first, near) + own(second) + by_middle(second, near));
     keep(3, by_middle(first, far) + by_middle(second, far));
-    // A half's wetted length is its whole length; the middle belongs to both vertices.
+    // A half edge in contact is wetted over its whole length. The length next to the middle belongs to both
+    // vertices.
     const auto wetted = [&](double by_first, double by_second, double* p) {
       hn::Store(hn::Add(hn::IfThenElse(first.touches, hn::Mul(all(by_first), first.length), zero),
                         hn::IfThenElse(second.touches, hn::Mul(all(by_second), second.length), zero)),

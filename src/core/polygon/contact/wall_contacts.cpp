@@ -10,7 +10,8 @@ namespace clog {
 namespace {
 
 // A droplet moves 0.05 sigma in about 1000 steps, so renewals of the lists cost almost nothing. The list of
-// obstacles that may be nearest to a vertex gets longer with a thicker skin, so its skin is thinner.
+// obstacles that may be nearest to a vertex gets longer with a thicker skin, so this list has the thinner
+// one.
 constexpr double touching_skin = 0.05;
 constexpr double nearest_skin = 0.02;
 
@@ -57,7 +58,7 @@ void WallContacts::gather_nearby(const DropletState& state) {
                                range_ + skin_ + std::sqrt(longest2) / 8};
   nearby_.clear();
   array_->gather(window, nearby_);
-  // A wedge's flanks touch vertices first, but its tip may lie between two of them.
+  // A wedge's flanks touch a vertex first, but its tip may touch an edge between two vertices, like a circle.
   if (keep_ == Keep::touched_by_edge)
     for (const Wedge& wedge : array_->wedges())
       if (!wedge.is_flat()) {
@@ -99,8 +100,8 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   largest_radius_ = nearby_.empty() ? 0 : largest->radius;
 }
 
-/// Lists the edges of a group that a circle near the group's bounds can touch: an obstacle within range later
-/// is within range + skin now.
+/// Lists the edges of each group that a circle near the group's bounds may touch until the lists are renewed.
+/// An obstacle that gets within range before the renewal is within range + skin now.
 /// @param fine  the refined contour, see refined()
 void WallContacts::list_by_edge(const Eigen::ArrayXd& fine) {
   constexpr double rounding = 1e-12;
@@ -152,7 +153,9 @@ void WallContacts::measure_distances(const DropletState& state) {
   }
 }
 
-/// An obstacle that is the nearest later is within 2 skins of the nearest now.
+/// Lists the obstacles that a vertex may touch, or that may be its nearest, until the lists are renewed. An
+/// obstacle that becomes the nearest before the renewal is at most 2 skins farther away now than the present
+/// nearest one.
 void WallContacts::list_by_vertex(const DropletState& state) {
   measure_distances(state);
   candidates_.resize(num_points_);

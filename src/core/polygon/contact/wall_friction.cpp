@@ -29,7 +29,7 @@ double WallFriction::energy(const DropletState& state) const {
   return energy;
 }
 
-/// hold_group() in dp_step_holds-inl.hpp does the same for circles in contact with edges.
+/// hold_group() in dp_step_holds-inl.hpp is the version of this function for circles in contact with edges.
 WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
                                KnownAnchors& known, Eigen::ArrayXd* force) const {
   WallYield yield;

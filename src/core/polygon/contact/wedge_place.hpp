@@ -7,10 +7,10 @@ namespace clog::kernel {
 
 /// A wedge (see wedge.hpp) in the coordinates of the vertices.
 struct WedgePlace {
-  double x, y;  ///< its centre()
+  double x, y;  ///< place of the centre()
   double radius;
   double axis_x, axis_y;
-  double cos, sin;  ///< of the half angle
+  double cos, sin;  ///< cosine and sine of the half angle
 };
 
 inline WedgePlace place_in(const LocalFrame& frame, const Wedge& wedge) {

@@ -23,7 +23,7 @@ StiffModes stiff_modes_of_circle(const DpParameters& dp, double wall_stiffness) 
   return stiff_modes(dp, wall_stiffness, circumference, circumference / *dp.vertices);
 }
 
-/// The stiffness of an automatic contact, and all that follows from it, depends on the step; so only the
+/// The stiffness of an automatic contact, and with it that of friction, follows from the step. So only the
 /// other modes limit the step.
 double largest_step_with_automatic_contact(const DpParameters& dp) {
   const StiffModes modes = stiff_modes_of_circle(dp, 1);
@@ -58,7 +58,7 @@ double automatic_time_step(const RunParameters& run, double sharpest_bend) {
   return rounded_down(std::min({drag, stable, stiff_contact}));
 }
 
-/// Checks that the droplet keeps its area under its line tension.
+/// Checks that the line tension does not compress the droplet too much.
 void validate_compression(const DpParameters& dp, bool automatic_area) {
   constexpr double largest = 0.05;
   const double softest_per_tension = 1 / (units::droplet_diameter / 2) / (largest * units::rest_area);
@@ -78,11 +78,11 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
 
 /// Length l of the longest edges on an obstacle, times N_v [sigma]; measured (docs/explanation/wrapped.md).
 double length_over_obstacles(const RunParameters& run) {
-  // The whole interface, if the mesh is even.
+  // Length of the whole interface, for an even mesh.
   const double even = std::numbers::pi * units::droplet_diameter + 0.33 / run.dp.line_tension;
   if (run.dp.perimeter_spring != PerimeterSpring::rest) return even;
   const double stiffness = run.dp.perimeter_stiffness.value_or(automatic_perimeter_stiffness(run));
-  // Softer springs let the vertices slip.
+  // Softer springs let the vertices slip along the interface.
   if (stiffness < 0.02 * run.dp.line_tension) return even;
   return std::max(even, 0.2 * units::droplet_mass * units::gravity / stiffness);
 }
@@ -102,7 +102,9 @@ void resolve_contact_angles(DpParameters& dp) {
         "and the interface on a wall would buckle) use angles for at least {}",
         tension, smallest);
   });
-  const bool is_young = !dp.wall_tension && dp.receding_angle == dp.advancing_angle;  // up to round-off
+  const bool is_young =
+      !dp.wall_tension &&
+      dp.receding_angle == dp.advancing_angle;  // the given angles may differ from Young's by round-off
   if (is_young || !dp.receding_angle) dp.receding_angle = young;
   if (is_young || !dp.advancing_angle) dp.advancing_angle = young;
   dp.wall_tension = tension;
@@ -139,7 +141,7 @@ void resolve_film_friction(DpParameters& dp) {
 
 int automatic_vertices(const RunParameters& run, double obstacle_diameter) {
   constexpr int fewest = 128, most = 1024, group = 8;
-  constexpr double longest_edge = 0.28;  // divided by the obstacle's radius
+  constexpr double longest_edge = 0.28;  // in units of the obstacle's radius
   const double needed = length_over_obstacles(run) / (longest_edge * obstacle_diameter / 2);
   if (!(needed < most)) return most;
   return std::max(fewest, group * static_cast<int>(std::ceil(needed / group)));
@@ -212,8 +214,8 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
         "wall-stiffness={:.3g}) try {:.3g}",
         stiffest_omega_dt, *run.wall_stiffness, 0.99 * largest);
   });
-  // A contact too soft to carry the droplet lets obstacles sink into it. So a weight of M g on the vertices
-  // of an eighth of the circumference must compress it by less than half the contact range.
+  // A contact that is too soft to carry the droplet lets obstacles sink into it. So if the vertices of an
+  // eighth of the circumference carry the weight M g, they must sink by less than half the contact range.
   const double softest = units::droplet_mass / (*dp.vertices / 8.0) / (vertex_diameter / 4);
   require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness",
           *run.wall_stiffness, [&] {

@@ -49,11 +49,11 @@ Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
   return {state_at_rest(regular_polygon(n, area), place, {period.along(), period.across()}), area};
 }
 
-/// The droplet grows with all kinds of contact and evenly spread vertices, whatever its own interface is:
-/// bunched vertices make the interface too stiff for any step, and obstacles slip between vertices that are
-/// far apart. Springs along the interface have no energy, so they must be weak for the minimiser; under a
-/// large tension they must be strong, because contact then pulls vertices together at the corners of a
-/// squeezed droplet.
+/// The droplet grows with all kinds of contact and evenly spread vertices, whatever its own interface is.
+/// Bunched vertices would make the interface too stiff for any step, and obstacles would slip between
+/// vertices that are far apart. Springs along the interface have no energy, so they must be weak for the
+/// minimiser. Under a large tension they must be strong, because contact then pulls vertices together at the
+/// corners of a squeezed droplet.
 RunParameters with_growing_interface(RunParameters run) {
   run.dp.inertia = 1;  // the droplet starts at rest
   run.dp.perimeter_spring = PerimeterSpring::along;
@@ -92,7 +92,7 @@ void grow(const RunParameters& growing, double area, DpForces& forces, DropletSt
   }
 }
 
-constexpr double damping_rate = 3;  // near the softest modes' frequency [1/t0]
+constexpr double damping_rate = 3;  // near the frequency of the softest modes [1/t0]
 
 /// Relaxes the grown droplet. Returns whether it comes to rest.
 bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpForces& forces,

@@ -40,8 +40,8 @@ void RestForces::look(const DropletState& state, const Travel& travel) {
   wedges_ = wedges_in(state.frame, forces_->wedges());
 }
 
-/// Computes the force by a kick from rest, without drag, whose time is such that the velocity gained equals
-/// the force.
+/// Computes the force by a kick from rest, without drag. The time of the kick is such that the velocity
+/// gained equals the force.
 void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::StepArrays& a = memory_.arrays();
   memory_.load(state.position, a.position);
@@ -63,8 +63,8 @@ void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   }
 }
 
-/// Adds the forces of wetted walls and friction, which no kick contains, to the velocities.
-/// @param force  memory
+/// Sets the velocities to the forces of wetted walls and friction, which the kick does not contain.
+/// @param force  working memory
 void RestForces::start_from_forces_of_walls(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::StepArrays& a = memory_.arrays();
   const WettedWalls& walls = forces_->wetted_walls();

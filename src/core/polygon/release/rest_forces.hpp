@@ -34,9 +34,10 @@ class RestForces {
   std::vector<kernel::WedgePlace> wedges_;
   WettedWalls::Forces wetting_;
   NearContacts near_;
-  double way_ = 0;            // displacement for which the contacts are valid [sigma]
-  Eigen::ArrayXd looked_at_;  // vertices at the last update of the contacts, all x then all y, and room for a
-                              // whole vector
+  double way_ = 0;  // displacement up to which the contacts are valid [sigma]
+  // Positions at the last update of the contacts: all x, then all y, then unused numbers that fill the last
+  // vector.
+  Eigen::ArrayXd looked_at_;
 
   bool contacts_hold(const Travel& travel) const;
   void look(const DropletState& state, const Travel& travel);

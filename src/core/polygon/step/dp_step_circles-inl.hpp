@@ -1,4 +1,4 @@
-/// Circles that push the contour off; part of dp_step_kernel.cpp.
+/// Repulsion of the contour by circles; part of dp_step_kernel.cpp.
 
 #if defined(CLOG_DP_STEP_CIRCLES) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLOG_DP_STEP_CIRCLES
@@ -56,8 +56,8 @@ struct RefinedEdgeVectors {
 /// The points of half edges that are closest to a circle's centre. Half in touch_kernel.cpp computes the same
 /// more slowly, with the same bits on all processors; dp_step.test.cpp compares them.
 struct NearestOnHalves {
-  V fraction;  ///< of the half edge
-  V dx, dy;    ///< from the centre
+  V fraction;  ///< fraction of the half edge from its beginning to the point
+  V dx, dy;    ///< vector from the circle's centre
   V distance2;
 
   /// @param span  1: the whole half edge counts, 0: its beginning alone
@@ -81,7 +81,7 @@ struct NearestOnHalves {
   }
 };
 
-/// The point nearest to a circle's centre on each of the two halves of edges.
+/// Closest points of both halves of each edge to a circle's centre.
 struct HalvesAtCircle {
   NearestOnHalves first, second;
   HWY_INLINE HalvesAtCircle(const RefinedEdgeVectors& e, V x, V y, V span)
@@ -112,7 +112,8 @@ struct WindowPushes {
   }
 };
 
-/// Stores or adds to the arrays of the windows. @param p  entry of the first edge in the first array
+/// Stores the forces in the arrays of the windows, or adds them to these arrays. @param p  entry of the first
+/// edge in the first array
 template <bool adds>
 HWY_INLINE void keep_pushes(const WindowPushes& push, M listed, double* p, std::ptrdiff_t stride) {
   for (const V v : {push.begin.x, push.end.x, push.far.x, push.begin.y, push.end.y, push.far.y}) {
@@ -143,8 +144,8 @@ HWY_INLINE bool push_window(const WallWindow& window, V span, V stiffness, const
 }
 
 /// One coordinate of the windows' forces on the vertices from p on.
-/// @param p  the forces of edges on their first vertices; one stride behind these are the forces on the
-/// second vertices, and after another stride those on the two others
+/// @param p  the forces of edges on their first vertices; the forces on the second vertices are one stride
+/// behind, the forces on the two other vertices two strides behind
 HWY_INLINE V push_on_vertices(const double* p, std::ptrdiff_t stride) {
   const double *end = p + stride, *far = end + stride;
   const V far_before = load(far - lanes), far_here = load(far);
@@ -165,7 +166,7 @@ HWY_INLINE void gather_pushes(int group, const WindowPushArrays& pushes, const C
 
 /// Overwrites the forces on the vertices that windows may push.
 void push_off_circles(const WallWindows& given, const Contact& contact, const StepArrays& arrays) {
-  // Copies, because a store might change the originals.
+  // Local copies: the compiler would otherwise assume that every store may change these values.
   const WallWindows windows = given;
   const StepArrays a = arrays;
   const V span = all(contact.span), stiffness = all(contact.stiffness);

@@ -34,10 +34,10 @@ struct EdgeVectors {
       : begin(load(a.position, i)), tangent(load(a.tangent, i)), length(load(a.length + i)) {}
 };
 
-/// The points of edges that are closest to given points, one for each edge.
+/// For each edge of a vector, the point of the edge that is closest to a given point.
 struct NearestPoints {
   V along;   ///< distance of the point from the first vertex of its edge
-  V dx, dy;  ///< from the points given
+  V dx, dy;  ///< vector from the given point
   V distance2;
 
   HWY_INLINE NearestPoints(const EdgeVectors& edges, const Pair& point) {
@@ -55,8 +55,8 @@ struct NearestPoints {
 class EdgePushes {
  public:
   HWY_INLINE EdgePushes() : x_(all(0)), y_(all(0)), along_x_(all(0)), along_y_(all(0)) {}
-  /// Pushes edges off the points that they touch, with the force stiffness (reach - distance). The closest
-  /// point divides the force between the edge's two vertices.
+  /// Pushes edges off the points that they touch, with the force stiffness (reach - distance). The place of
+  /// the closest point on the edge determines how the edge's two vertices share the force.
   HWY_INLINE Pair add(const NearestPoints& nearest, M touch, V reach, V stiffness) {
     // For a point exactly on the edge, the direction is 0 and not NaN.
     const V inverse_distance = square_root(hn::Max(nearest.distance2, all(1e-300))).inverse;
@@ -108,8 +108,8 @@ class PairedVertices {
   }
   HWY_INLINE const Pair& place() const { return place_; }
 
-  /// Reaction on the vertices of the force on edges. Reads and writes whole aligned vectors: a load across
-  /// two vectors that were just stored would have to wait for the cache.
+  /// Adds to the vertices the reaction to the force on the edges. Reads and writes whole aligned vectors: a
+  /// load across two vectors that were just stored would have to wait for the cache.
   HWY_INLINE void push_back(const Pair& push, const StepArrays& a) const {
     const int beyond = first_ & (lanes - 1), aligned = first_ - beyond;
     const auto turned = hn::SetTableIndices(D(), order_ + lanes - beyond);
@@ -203,7 +203,8 @@ double push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, c
   return taken;
 }
 
-/// A wedge and vertices near it: distance_to() of wedge.hpp, for a vector of them.
+/// Distances from a wedge for a vector of vertices. distance_to() of wedge.hpp computes the same for one
+/// vertex.
 class WedgeVectors {
  public:
   explicit WedgeVectors(const WedgePlace& w)
@@ -215,10 +216,10 @@ class WedgeVectors {
         sin_(all(w.sin)) {}
 
   struct Seen {
-    V dx, dy;         ///< from the centre of the tip
+    V dx, dy;         ///< vector from the centre of the tip
     V across;         ///< distance from the axis, with its sign
     V to_flank;       ///< distance from the sharp wedge
-    M is_before_tip;  ///< where `to_flank` is not the distance
+    M is_before_tip;  ///< where the tip is nearer, so that `to_flank` is not the distance
 
     HWY_INLINE V distance2() const { return hn::MulAdd(dx, dx, hn::Mul(dy, dy)); }
   };

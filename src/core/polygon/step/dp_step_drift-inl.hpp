@@ -107,7 +107,7 @@ struct CouplingVectors {
 
   HWY_INLINE explicit CouplingVectors(const Coupling& k)
       : c{all(k.c_x), all(k.c_y)}, a{all(k.a_x), all(k.a_y)}, pressure(all(k.half_pressure)) {}
-  /// c - G^T a, and an implicit pressure.
+  /// The sum of c - G^T a and the term of an implicit pressure.
   HWY_INLINE Pair pull(int i, bool on_area, bool implicit_pressure, const StepArrays& arrays) const {
     Pair pull = c;
     if (on_area) {
@@ -181,7 +181,7 @@ Sums drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficie
     return to;
   };
   EdgeMeasure<elastic, on_area> edges{a};
-  // Edges follow one vector behind the vertices, so that the processor works on both at once.
+  // The loop handles edges one vector behind the vertices, so that the processor works on both at once.
   const Pair first = move(0);
   Pair here = first, next = n > lanes ? move(lanes) : first;
   int i = 0;

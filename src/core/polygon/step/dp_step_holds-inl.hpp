@@ -54,11 +54,11 @@ HWY_INLINE void fold_ends(const ContourPair& p, int n, int beyond = 2) {
 /// Whether friction acts through films, and whether films of several circles may overlap.
 enum class Films { none, those_of_one_circle, those_of_several };
 
-/// A circle and the vertices of a vector.
+/// Where the vertices of a vector are relative to a circle.
 struct CircleAtVertices {
   V normal_x, normal_y;
-  V inverse;   ///< of the distance from the centre
-  V distance;  ///< from the surface
+  V inverse;   ///< inverse of the distance from the centre
+  V distance;  ///< distance from the surface
 
   HWY_INLINE CircleAtVertices(const HoldingCircle& circle, std::ptrdiff_t i, const StepArrays& a) {
     const Pair place = load(a.position, i);
@@ -71,10 +71,10 @@ struct CircleAtVertices {
   }
 };
 
-/// Adds one circle's normal forces and friction to the forces on a group. With films, the sum is separate
-/// until all circles have read the forces of self-contact. Returns the work that the wall took. This function
-/// does for a vector of vertices what WallFriction::follow() does for a vertex; dp_step.test.cpp compares the
-/// two.
+/// Adds one circle's normal forces and friction to the forces on a group. With friction through films, the
+/// sum is kept apart until all circles have read the forces of self-contact. Returns the work that the wall
+/// took. This function does for a vector of vertices what WallFriction::follow() does for one vertex;
+/// dp_step.test.cpp compares the two.
 /// @param pushes  whether the circle touches vertices of the group
 template <bool wets, Films films, bool pushes = true>
 HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCircles& walls,
@@ -241,8 +241,8 @@ double hold_with_films(int n, const HoldingCircles& walls, const WallGrip& grip,
   return sum(taken);
 }
 
-/// The same if friction also acts through films (see FilmTouches). Before this call the forces are those of
-/// self-contact alone.
+/// Like push_off_and_hold(), but friction also acts through films (see FilmTouches). Before this call the
+/// forces are those of self-contact alone.
 template <bool wets>
 double push_off_and_hold_with_films(int n, const HoldingCircles& given, const WallGrip& grip,
                                     const Contact& contact, const StepArrays& a) {

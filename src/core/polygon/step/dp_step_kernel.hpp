@@ -16,8 +16,8 @@ namespace clog::kernel {
 /// Number of consecutive edges that are tested for contact at once, for any instruction set.
 inline constexpr int edges_per_group = WallContacts::edges_per_group;
 
-/// An entry for each vertex or edge, the first on a cache line. Valid from [-1] to [n + edges_per_group - 1]:
-/// the passes repeat the contour beyond its ends.
+/// An array with an entry for each vertex or edge. Entry 0 begins a cache line. Entries from [-1] to [n +
+/// edges_per_group - 1] are valid: the passes repeat the contour beyond its ends.
 struct ContourArray {
   double* first;
 
@@ -29,51 +29,52 @@ struct ContourPair {
 };
 struct StepArrays {
   ContourPair position, velocity;
-  ContourPair tangent;         ///< of the edges
-  ContourArray length;         ///< of the edges
+  ContourPair tangent;         ///< unit vectors along the edges
+  ContourArray length;         ///< lengths of the edges
   ContourPair push;            ///< kick of the vertices by contact
   ContourPair wetting;         ///< part of the kick by wetted walls that derives from no energy
-  ContourPair grad_x, grad_y;  ///< 6 a times the gradient of the centroid's x, of its y
+  ContourPair grad_x, grad_y;  ///< 6 a times the gradients of the centroid's x and of its y
   ContourArray rate;           ///< drag rate of a vertex [1/t0], if the rates differ
   ContourArray damping, kept;  ///< s and s (1 - h2 r), with the rate; see KickCoefficients
   ContourPair kicked;          ///< w, if keeps_kicked; see KickCoefficients
-  ContourPair chord;           ///< between a vertex's neighbours, for an implicit pressure
+  ContourPair chord;           ///< vector between a vertex's neighbours, for an implicit pressure
 };
 
 /// Sums over the edges.
 struct Sums {
   double area;
   double perimeter;
-  double moment_x;  ///< of the area, area times its centroid [sigma^3]
+  double moment_x;  ///< first moment of the area: the area times its centroid [sigma^3]
   double moment_y;
 };
 
-/// A kick is the change of a vertex' velocity by a force in half a time step: F below is the force times
+/// A kick is the change of a vertex's velocity by a force in half a time step h. F below is a force times
 /// h/(M/N_v).
 struct InterfaceKick {
-  double line_tension;  ///< tension at zero length of the spring
-  double spring;        ///< of springs that carry tension
-  double spreading;     ///< of springs along the interface
+  double line_tension;  ///< tension of the interface at zero length of the springs
+  double spring;        ///< stiffness of springs that carry tension
+  double spreading;     ///< stiffness of springs along the interface
   double half_pressure;
-  double vertex_weight;  ///< along +x
+  double vertex_weight;  ///< weight, along +x
 };
 /// A force on the area, spread over the vertices by the gradient of the area's centroid.
 struct AreaForce {
   double area;                ///< [sigma^2]
-  double centre_x, centre_y;  ///< of the area [sigma]
-  double x, y;                ///< kick, all but the reaction to the springs along the interface
+  double centre_x, centre_y;  ///< centroid of the area [sigma]
+  double x, y;                ///< kick, without the reaction to the springs along the interface
 };
 /// Coefficients of one kick. With r a vertex's drag rate and s = 1/(1 + h1 r),
-///   w = s (v + closing_ratio F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a):
-/// w is the velocity kicked by force and own drag, v' the next velocity once c and a are known (see
-/// Coupling). One kick thereby ends a time step and begins the next. q takes the place of the velocity.
+///   w = s (v + closing_ratio F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a).
+/// Here w is the velocity after the kick by the force and the vertex's own drag, and v' is the next velocity.
+/// c and a are known only after the sums over all vertices (see Coupling); until then, q takes the place of
+/// the velocity. So one kick ends a time step and begins the next.
 struct KickCoefficients {
   double closing_ratio;  ///< h1 / half_step: the half step that ends a time step, divided by the half step of
                          ///< the forces
   double h1, h2;         ///< [t0]
-  double weight;         ///< (h1 + h2) / half_step, h1 / half_step where no time step begins
-  double half_step;      ///< that of the forces [t0]
-  bool keeps_kicked;     ///< whether w is needed afterwards
+  double weight;         ///< (h1 + h2) / half_step, or h1 / half_step if no time step begins
+  double half_step;      ///< the half step of the forces [t0]
+  bool keeps_kicked;     ///< whether the kick stores w for power()
   /// For an implicit pressure: K_a half_step^2/(M/N_v), with K_a the area stiffness. A half kick that ends a
   /// step of another length uses the value of the step that begins.
   double softening = 0;
@@ -90,15 +91,15 @@ struct KickTerms {
 };
 /// Mean velocities, and what they contribute to the velocities of the vertices.
 ///
-/// An implicit pressure follows from the area after a time step with its present acceleration: A + dt^2
-/// d^2A/dt^2, with the acceleration by all forces on vertices and area, including the added pressure, and by
-/// the area's drag. It neglects the vertices' own drag and the change of the area's gradient. This is
-/// Newmark's method with beta = 1 for this one mode, while all others move by velocity Verlet: its frequency
-/// omega becomes omega/sqrt(1 + (omega dt)^2), stable for every step. If the area is not accelerated, at rest
-/// and in steady fall, nothing is added.
+/// An implicit pressure is that of the area A + dt^2 d^2A/dt^2, which the droplet would have if its present
+/// acceleration lasted for a time step. The acceleration contains all forces on vertices and area, including
+/// the added pressure, and the drag on the area; it neglects the vertices' own drag and the change of the
+/// area's gradient. For this one mode this is Newmark's method with beta = 1, while all other modes move by
+/// velocity Verlet. The mode's frequency omega becomes omega/sqrt(1 + (omega dt)^2), so it is stable for
+/// every step. If the area is not accelerated, as at rest and in steady fall, nothing is added.
 struct Coupling {
-  double mean_x = 0, mean_y = 0;  ///< of the vertices
-  double area_x = 0, area_y = 0;  ///< of the area's centroid
+  double mean_x = 0, mean_y = 0;  ///< mean velocity of the vertices
+  double area_x = 0, area_y = 0;  ///< velocity of the area's centroid
   double c_x = 0, c_y = 0;
   double a_x = 0, a_y = 0;   ///< includes the force on the area; divided by 6 a
   double half_pressure = 0;  ///< pressure that the implicit pressure adds, as a kick
@@ -109,15 +110,17 @@ struct Power {
   double spreading;           ///< sum F_i v_i, with F_i the kick that spreads vertices along the interface
   double spread_x, spread_y;  ///< sum F_i
 };
-/// A circle and the edges_per_group edges from `first` on; bits mark those that may touch it.
+/// A circle and the edges_per_group edges from `first` on; the bits of `edges` mark those that may touch the
+/// circle.
 struct WallWindow {
-  double x, y;   ///< of the circle's centre [sigma]
+  double x, y;   ///< circle's centre [sigma]
   double reach;  ///< radius + range [sigma]
   int first;
   std::uint8_t edges;
 };
-/// Forces of edges on their vertices as windows store them: six arrays, for x and then y the forces on the
-/// first vertex, on the second one, and on each of the two beyond them. Zero outside the windows.
+/// Forces of edges on their vertices, as windows store them. The first three of six arrays contain the x of
+/// the forces on an edge's first vertex, on its second vertex, and on each of the two vertices beyond them;
+/// the other three arrays contain the y. All entries outside the windows are zero.
 struct WindowPushArrays {
   double* first;  ///< entry of edge 0; readable from two groups before to two groups behind the windows
   std::ptrdiff_t stride;
@@ -126,10 +129,10 @@ inline constexpr int num_window_push_arrays = 6;
 /// Repulsion by circles; see WallPlan.
 struct WallWindows {
   const WallWindow* all;
-  int num_own;  ///< number of windows, the first ones, of which no two share an edge
+  int num_own;  ///< number of the first windows, of which no two share an edge
   int num_all;
-  /// Groups of vertices that windows may push. Group -1 and the one behind the last belong to the contour's
-  /// other end.
+  /// Groups of vertices that windows may push. Group -1 and the group behind the last one belong to the
+  /// contour's other end.
   const int* groups;
   int num_groups;
   WindowPushArrays pushes;
@@ -138,10 +141,12 @@ struct WallWindows {
 struct HoldingCircle {
   double x, y, radius;  ///< [sigma]
   int first_window, end_window;
-  int first_group, end_group;  ///< of vertices that it may push, by itself or through films
-  int end_own_group;           ///< end of the first groups, which the circle may push by itself
-  bool wraps;                  ///< whether it pushes vertices -1, n or n + 1, which belong to the other end
-  WindowPushArrays pushes;     ///< of this circle
+  /// Groups of vertices that the circle may push, by itself or through films.
+  int first_group, end_group;
+  int end_own_group;  ///< end of the groups that the circle may push by itself, which come first
+  /// Whether the circle pushes vertices -1, n or n + 1, which belong to the contour's other end.
+  bool wraps;
+  WindowPushArrays pushes;  ///< forces of this circle
 };
 /// Repulsion and friction of circles; see WallHold. Every group of vertices that a circle may push
 /// has edges_per_group entries of anchor_x, anchor_y, slip, and one of holds.
@@ -150,27 +155,30 @@ struct HoldingCircles {
   std::size_t num;
   const WallWindow* windows;
   const int* groups;
-  double *anchor_x, *anchor_y;  ///< from the circle's centre [sigma]
+  double *anchor_x, *anchor_y;  ///< place relative to the circle's centre [sigma]
   double* slip;                 ///< distance along the wall from the anchor to its vertex [sigma]
   std::uint8_t* holds;          ///< vertices that have an anchor, as bits
-  ContourPair push;             ///< on the vertices, by one circle; memory
-  ContourArray wetted;          ///< length of the interface on one circle [sigma]; memory
-  double *added_x, *added_y;    ///< what circles add to self-contact, an entry for each anchor; memory
-  ContourArray nearest;   ///< distance of the vertices from the nearest circle that pushes [sigma]; memory
-  std::uint8_t* touches;  ///< whether a circle pushes the droplet; memory
+  ContourPair push;             ///< push on the vertices, by one circle; working memory
+  ContourArray wetted;          ///< length of the interface on one circle [sigma]; working memory
+  /// What circles add to self-contact, with an entry for each anchor; working memory.
+  double *added_x, *added_y;
+  /// Distance of the vertices from the nearest circle that pushes [sigma]; working memory.
+  ContourArray nearest;
+  std::uint8_t* touches;  ///< whether a circle pushes the droplet; working memory
   bool are_close;         ///< whether a vertex may be in the film's reach of two circles
 };
 /// Limits of friction, as kicks.
 struct WallGrip {
-  double coefficient;      ///< of friction
-  double traction;         ///< for each sigma of wetted length
-  double stiffness;        ///< k_t of the springs between interface and wall
-  double film_reach;       ///< of friction through films, from the surface; 0: there is none [sigma]
+  double coefficient;  ///< coefficient of friction
+  double traction;     ///< yield traction for each sigma of wetted length
+  double stiffness;    ///< k_t of the springs between interface and wall
+  /// Distance from the surface up to which friction acts through films; 0: there is no such friction [sigma].
+  double film_reach;
   double least_film_push;  ///< smaller forces of self-contact count as zero
 };
 struct Contact {
   double stiffness;   ///< k_c as a kick
-  double span;        ///< of walls; 1: edges, 0: their first vertices alone
+  double span;        ///< 1: walls push edges, 0: they push only the first vertex of each edge
   double self_range;  ///< distance below which the interface repels itself [sigma]
 };
 /// Obstacles that may be nearest to the vertices.
@@ -178,53 +186,55 @@ struct NearWalls {
   const WallContacts::Item* items;  ///< circles, by group
   std::size_t num_items;
   double range;   ///< range that the items' reach includes [sigma]
-  bool alike;     ///< whether all circles have this radius
+  bool alike;     ///< whether all circles have the same radius
   double radius;  ///< [sigma]
   const WedgePlace* wedges;
   std::size_t num_wedges;
 };
 struct NearWallDrag {
-  double shortest;  ///< smaller distances count as this one [sigma]
+  double shortest;  ///< smaller distances count as this distance [sigma]
   double relative, near_wall, exponent;
   double far_rate;  ///< [1/t0]
 };
 
 /// Results of a survey between steps.
 struct Survey {
-  double perimeter, shortest;    ///< of the edges [sigma]
-  double speed, relative_speed;  ///< of the fastest vertex, and relative to their mean [sqrt(sigma g)]
+  double perimeter, shortest;  ///< perimeter, and length of the shortest edge [sigma]
+  /// Speed of the fastest vertex, and its largest value relative to the mean velocity [sqrt(sigma g)].
+  double speed, relative_speed;
   double moved, moved_relative;  ///< largest displacement of a vertex from the earlier positions, see
                                  ///< StepKernel::survey [sigma]
 };
 
 /// One instruction set's versions of the passes.
 struct StepKernel {
-  /// Edges and sums over them.
+  /// Computes the edges, and sums over them.
   Sums (*measure)(int n, const StepArrays& arrays);
   /// @param walls, self  earlier positions of the vertices, all x then all y, `self` relative to their mean;
   /// may be null
   Survey (*survey)(int n, const double* walls, const double* self, const StepArrays& arrays);
-  /// Gap between every edge of every item and the contact range of the item's circle, edges_per_group gaps
-  /// for each item; negative in contact [sigma]. Returns the smallest, at most 0.
+  /// Computes the gap between every edge of every item and the contact range of the item's circle:
+  /// edges_per_group gaps for each item, negative in contact [sigma]. Returns the smallest gap, or 0 if all
+  /// gaps are positive.
   double (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
                         const StepArrays& arrays, double* gaps);
   /// The edges of one item with a gap of at most `way`, as bits.
   std::uint8_t (*edges_within)(const double* gaps, double way);
-  /// Gap of every item's closest pair.
+  /// Computes the gap of every item's closest pair. Returns as circle_gaps().
   double (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                       const StepArrays& arrays, double* gaps);
-  /// clear_pushes() sets the pushes on all vertices to zero. push() finds those of circles, on the groups of
-  /// vertices that `walls` names, and those of the droplet on itself.
+  /// clear_pushes() sets the pushes on all vertices to zero. push() finds the pushes of circles, on the
+  /// groups of vertices that `walls` names, and the pushes of the droplet on itself.
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
                const Contact& contact, const StepArrays& arrays);
-  /// Like push(), but on all groups, and with friction of the circles. Returns the energy lost to walls,
-  /// divided by k_t [sigma^2].
+  /// Does the same as push(), but for all groups, and includes the circles' friction. Returns the energy lost
+  /// to walls, divided by k_t [sigma^2].
   double (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
                           const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
                           const StepArrays& arrays);
-  /// Adds the vertices' contact with wedges' surfaces up to `range` [sigma]. Edges need no test: they meet a
-  /// wedge's tip first, which is a circle.
+  /// Adds the forces of wedges on vertices that are nearer to a wedge's surface than `range` [sigma]. Edges
+  /// need no test: they meet a wedge's tip first, which is listed as a circle.
   void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
                           double stiffness, const StepArrays& arrays);
   /// Computes rate = far_rate (relative + near_wall (sigma/d)^exponent), with d a vertex's distance to the
@@ -234,8 +244,8 @@ struct StepKernel {
   /// First pass: forces and velocities.
   Coupling (*kick)(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays);
-  /// Powers at the end of a time step, from the w that the kick kept. Called between the passes, if
-  /// requested.
+  /// Powers at the end of a time step, from the velocities w that the kick kept in `kicked`. Called between
+  /// the passes, if requested.
   Power (*power)(int n, const KickTerms& terms, const InterfaceKick& interface,
                  const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays);
   /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges there. Sums include the perimeter

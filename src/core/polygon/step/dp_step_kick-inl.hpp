@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
-/// Sums for the coupled drag, with G 6 a times the centroid's gradient and s = 1/(1 + h r).
+/// Sums for the coupled drag, where G is 6 a times the centroid's gradient, and s = 1/(1 + h r).
 struct KickSums {
   double force_x, force_y;        ///< kick by the force on the area
   double w_x, w_y;                ///< sum w
@@ -28,15 +28,17 @@ struct KickSums {
   double ng_x = 0, ng_y = 0;  ///< sum G n
 };
 
-/// The coupled drag and the force on the area. With s_i = 1/(1 + h r_i) and w_i the velocity kicked by the
-/// force on the vertex and its own drag,
-///   v_i = w_i + s_i (e V - G_i^T (b V_a - R)),  V = mean v_i,  V_a = sum G_i v_i,
-/// e and b half a step's relative and area rate, R the kick by the force on the area: four linear equations
-/// for V and V_a, of which V is eliminated. They are implicit because the area's part is stiff for an
-/// elongated droplet: b sum |G_i|^2 grows with the square of its length and perimeter. An implicit pressure
-/// adds H n_i to the kick, n_i the chord turned outwards:
-///   H = -q/(1 + q sum n_j.n_j) (sum n_j.F_j + sum G_j n_j.(R - d V_a)),
-/// q the softening, R - d V_a the force on the area and its drag: the bracket is the area's acceleration.
+/// Computes the coupled drag and the force on the area. The velocities after the kick are
+///   v_i = w_i + s_i (e V - G_i^T (b V_a - R)),  V = mean v_i,  V_a = sum G_i v_i.
+/// Here s_i = 1/(1 + h r_i), w_i is the velocity after the kick by the force on the vertex and its own drag,
+/// e and b are half a step times the relative rate and the area rate, and R is the kick by the force on the
+/// area. These are four linear equations for V and V_a; V is eliminated. The drag is implicit because the
+/// part that acts on the area is stiff for an elongated droplet: b sum |G_i|^2 grows with the square of the
+/// droplet's length and perimeter. An implicit pressure adds H n_i to the kick, where n_i is the chord turned
+/// outwards:
+///   H = -q/(1 + q sum n_j.n_j) (sum n_j.F_j + sum G_j n_j.(R - d V_a)).
+/// Here q is the softening, and R - d V_a the force on the area with the area's drag. The last factor is the
+/// area's acceleration.
 template <bool implicit_pressure>
 HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force, const KickCoefficients& k,
                            const KickSums& sums) {
@@ -105,7 +107,7 @@ HWY_INLINE V spread_along_chord(V spreading, V length, V length_before, V tx, V 
   return hn::Mul(hn::Mul(spreading, hn::Mul(cosine, cosine)), unevenness);
 }
 
-/// Lengths and tangents of the edges before and after some vertices.
+/// Lengths and tangents of the edges before and after each vertex of a vector.
 struct Corner {
   V length, tx, ty, length_before, tx_before, ty_before;
   V ex, ey, ex_before, ey_before;
@@ -130,8 +132,9 @@ struct CentroidGradient {
   V xx, xy, yx, yy;
 };
 
-/// A vertex moves the area's centroid by the triangle between it and its neighbours: m n^T + k I, with m the
-/// sum of the three corners relative to the centroid, n the chord turned outwards, k twice the area.
+/// Computes G. A vertex moves the area's centroid through the triangle of the vertex and its neighbours, so G
+/// = m n^T + k I. Here m is the sum of the three corners relative to the centroid, n the chord turned
+/// outwards, and k twice the area of the triangle.
 /// @param centre  three times the centroid
 template <class Keep>
 HWY_INLINE CentroidGradient centroid_gradient(const Pair& place, const Pair& centre, const Corner& corner,
@@ -190,7 +193,7 @@ struct KickVectors {
     gg_yy = hn::MulAdd(sg.yx, g.yx, hn::MulAdd(sg.yy, g.yy, gg_yy));
   }
 
-  /// @param one_s  the common s of all vertices, which the sums exclude
+  /// @param one_s  s, if it is the same for all vertices; the sums up to here do not contain this factor
   template <bool implicit_pressure>
   HWY_INLINE KickSums total(int n, const AreaForce& force, double one_s) const {
     const auto w = sums(w_x, w_y, spread_x, spread_y);
@@ -285,7 +288,7 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
     // The chord between the neighbours. Turned outwards it is (y, -x).
     const Pair chord{hn::Add(corner.ex, corner.ex_before), hn::Add(corner.ey, corner.ey_before)};
     const auto [fx, fy] = kick_force<elastic, on_area>(corner, chord, load(a.push, i), along, total, keep);
-    // A common s is applied at the end.
+    // If s is the same for all vertices, it is applied at the end.
     const Pair before = load(a.velocity, i);
     const Pair w{hn::MulAdd(closing_ratio, fx, before.x), hn::MulAdd(closing_ratio, fy, before.y)};
     V s = same_s, kept = same_kept;
@@ -314,7 +317,7 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
 }
 
 /// Calls make() with the terms of kicks and drifts as compile-time constants: elastic, coupled, on_area,
-/// varying_rate, implicit_pressure. The last only occurs with constant rates.
+/// varying_rate, implicit_pressure. Only constant rates occur together with implicit_pressure.
 template <class Make>
 auto version(const KickTerms& terms, Make make) {
   constexpr std::true_type yes;

@@ -79,7 +79,7 @@ HWY_INLINE V shifted_back([[maybe_unused]] const double* p, [[maybe_unused]] V b
 #endif
 }
 
-/// Shifts every lane from the next one, and the first of `next` into the last.
+/// Moves every lane to the lane before it, and the first lane of `next` to the last lane.
 HWY_INLINE V shifted_forward([[maybe_unused]] V here, V next) {
 #if HWY_TARGET == HWY_AVX3
   const __m512i joined = _mm512_alignr_epi64(_mm512_castpd_si512(next.raw), _mm512_castpd_si512(here.raw), 1);
@@ -143,7 +143,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> truncated(V v) {
 #define CLOG_INLINE
 #endif
 
-/// For a vector that ends at or before the last vertex.
+/// Keeps all lanes, for a vector that ends at or before the last vertex.
 struct KeepAll {
   HWY_INLINE V operator()(V v) const { return v; }
 };

@@ -113,7 +113,7 @@ kernel::Survey DpStepper::survey() const {
                         memory_.arrays());
 }
 
-/// Renews the contact lists if they are invalid within this time, and selects from them the possible
+/// Renews the contact lists if they would become invalid within this time, and selects from them the possible
 /// contacts.
 void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now, double time,
                                  Droplet::Work* work) {
@@ -159,8 +159,8 @@ void DpStepper::finish(DropletState& state, Droplet::Work* work) {
   near_.hold.hand_back(state);
 }
 
-/// Evaluates the forces once, makes the half kicks on both sides, and drifts to the next evaluation; without
-/// a drift makes only the first half kick.
+/// Evaluates the forces once, makes the half kick that ends a step and the one that begins the next step, and
+/// drifts to the next evaluation. Without a drift, makes only the first of these half kicks.
 void DpStepper::kick_and_drift(DropletState& state, double half_step, double drift_time,
                                Droplet::Work* work) {
   kernel::StepArrays& a = memory_.arrays();
@@ -190,7 +190,8 @@ void DpStepper::kick_and_drift(DropletState& state, double half_step, double dri
     }
     open_.power = now;
   }
-  if (only_closes) std::swap(a.velocity, a.kicked);  // without a second half kick there is no w
+  if (only_closes)
+    std::swap(a.velocity, a.kicked);  // the last half kick leaves the new velocities in `kicked`
   sums_ = kernel.drift(n_, terms_, coefficients, coupling, drift_time, a);
   open_.length = drift_time;
 }
@@ -219,7 +220,7 @@ void DpStepper::push_off_everything(DropletState& state, const kernel::KickCoeff
   const std::vector<kernel::WedgePlace>& wedges = near_.wedges;
   const bool touches = !near_.contacts.walls().empty() || !wedges.empty() || !state.anchors.empty();
   const bool slides = forces_->friction().is_on() && !holds_circles_ && touches;
-  // Additions to vertices, also beyond the listed groups, are cleared before the next step.
+  // Friction and wetted walls also push vertices outside the listed groups, so all pushes are cleared here.
   if (!wedges.empty() || forces_->wetted_walls().is_on() || slides || friction_.has_pushed)
     kernel_.clear_pushes(n_, memory_.arrays());
   friction_.has_pushed = slides;
@@ -273,8 +274,8 @@ void DpStepper::add_wetting(DropletState& state, double impulse, Droplet::Work* 
   }
 }
 
-/// The interface slips along walls where the walls' limits are exceeded; there the limiting force acts on the
-/// vertices.
+/// Lets the interface slip along walls where the walls' limits are exceeded; there the limiting force acts on
+/// the vertices.
 void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
   const std::vector<WallTouch>& touches =

@@ -18,12 +18,13 @@ namespace clog {
 
 /// Contacts, speeds and stability are surveyed at least once in this number of steps.
 inline constexpr int most_steps_per_survey = 32;
-/// The rates of the near-wall drag are kept for at most this number of steps, in which no vertex moves by
-/// more than this fraction of the smallest distance (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
+/// The rates of the near-wall drag are kept for at most this number of steps, and no vertex may move farther
+/// in these steps than this fraction of the near-wall cutoff
+/// (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
 inline constexpr double most_steps_per_rate = 4, farthest_way_per_rate = 0.2;
 
-/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls a droplet is defined by
-/// its state.
+/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls, the DropletState alone
+/// determines how the droplet moves on.
 class DpStepper {
  public:
   /// @param run  resolved parameters
@@ -33,12 +34,13 @@ class DpStepper {
 
   /// Rebuilds the contact lists of a droplet.
   void start_afresh(const DropletState& state);
-  /// Moves a droplet by `num_steps` time steps of the run, in shorter ones if they would be unstable; stops
-  /// if it bursts. Returns the number of steps taken.
+  /// Moves a droplet by `num_steps` time steps of the run, or by more and shorter steps if these would be
+  /// unstable; stops if the droplet bursts. Returns the number of steps taken.
   /// @param work  if not null, the work of drag and springs is added to it
   std::int64_t move(DropletState& state, int num_steps, Droplet::Work* work);
-  /// The same with these steps, without regard to the run's time step and the bounds of stability. Possible
-  /// contacts are surveyed before each entry. An implicit pressure excludes near-wall drag.
+  /// Moves a droplet by the given steps, which need neither have the run's length nor be stable. Possible
+  /// contacts are surveyed before each entry of `all`. With near-wall drag, the pressure must not be
+  /// implicit.
   void move(DropletState& state, std::span<const Steps> all, Droplet::Work* work);
 
  private:
@@ -47,33 +49,33 @@ class DpStepper {
     NearContacts contacts{};
     WallPlan plan;                             // used if holds_circles_ is false
     WallHold hold;                             // used if holds_circles_ is true
-    std::vector<kernel::WedgePlace> wedges{};  // in the droplet's frame
+    std::vector<kernel::WedgePlace> wedges{};  // wedges in the droplet's frame
   };
   /// Friction on vertices; used if holds_circles_ is false.
   struct VertexFriction {
     WallTouches touches;
-    Eigen::ArrayXd force;     // all x then all y; zero between steps
+    Eigen::ArrayXd force;     // forces, all x then all y; zero between steps
     bool has_pushed = false;  // whether `force` acted in the last step
   };
   struct KeptRates {
-    double fastest = 0;  // speed of a vertex at the last survey [sqrt(sigma g)]
+    double fastest = 0;  // speed of the fastest vertex at the last survey [sqrt(sigma g)]
     int steps_left = 0;  // number of steps for which the present rates may still be used
     double h1 = 0, h2 = 0;
   };
   /// The step whose last half kick is pending.
   struct OpenStep {
-    double length = 0;  // 0: there is none
+    double length = 0;  // 0 if no half kick is pending
     Pressure pressure = Pressure::present;
-    Droplet::Work power;  // at its beginning
+    Droplet::Work power;  // power at the beginning of the step
   };
   RunParameters run_;
   DpForces* forces_;
   int n_;
-  bool holds_circles_;  // whether friction acts, and only at edges in contact with circles
+  bool holds_circles_;  // whether there is friction, and only at edges that touch circles
   int steps_per_survey_;
   Pressure most_pressure_;
   kernel::KickTerms terms_;
-  kernel::StepKernel kernel_, implicit_kernel_;  // the latter for an implicit pressure
+  kernel::StepKernel kernel_, implicit_kernel_;  // the second one is for an implicit pressure
   StepMemory memory_;
   kernel::Sums sums_{};
   Near near_;

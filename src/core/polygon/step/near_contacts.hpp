@@ -22,7 +22,7 @@ class NearContacts {
  private:
   std::vector<WallContacts::Item> walls_;
   std::vector<SelfContacts::Item> self_;
-  std::vector<double> wall_gaps_, self_gaps_;  // of the lists' items
+  std::vector<double> wall_gaps_, self_gaps_;  // gaps of the items of the lists
 };
 
 }  // namespace clog

@@ -12,7 +12,7 @@ namespace clog {
 kernel::KickTerms kick_terms(const RunParameters& run, double far_rate);
 /// @param impulse  kick of a vertex by a unit force
 kernel::Contact contact_as_kick(const RunParameters& run, const DpForces& forces, double impulse);
-/// The terms of the interface as kicks. @param impulse  as above
+/// The terms of the interface as kicks. @param impulse  kick of a vertex by a unit force
 kernel::InterfaceKick interface_kick(const InterfaceTerms& interface, double impulse);
 /// A force on the area as a kick, including the reaction of the springs along the interface.
 kernel::AreaForce area_force(const kernel::Sums& sums, const Eigen::Array2d& kick);

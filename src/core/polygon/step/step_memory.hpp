@@ -7,7 +7,7 @@
 
 namespace clog {
 
-/// The arrays of a step: zero, except for the lengths of edges, which are 1.
+/// The arrays of a step. At first they are zero, except for the lengths of edges, which are 1.
 class StepMemory {
  public:
   explicit StepMemory(int num_vertices);

@@ -92,7 +92,8 @@ void WallHold::find_films(const Near& near) {
                             all_[i].radius + all_[j].radius + 2 * film_reach_;
 }
 
-/// Adds the groups of vertices that a circle may push through films. @param reach  from its centre
+/// Adds the groups of vertices that a circle may push through films. @param reach  distance from the circle's
+/// centre up to which it may push
 void WallHold::add_film_groups(kernel::HoldingCircle& circle, double reach,
                                const kernel::ContourPair& vertices) {
   const auto& [x, y] = vertices;
@@ -128,8 +129,8 @@ void WallHold::clear_pushes() {
             kernel::edges_per_group, 0.0);
 }
 
-/// The memory begins with arrays of the whole contour, all of equal length: four for all circles, then those
-/// of each circle.
+/// The memory consists of arrays of the whole contour, all of equal length. The first four are for all
+/// circles together; the arrays of each circle follow.
 void WallHold::arrange_memory() {
   const std::size_t stride =
       (static_cast<std::size_t>(num_groups_) + before + behind) * kernel::edges_per_group;

@@ -40,7 +40,7 @@ class WallHold {
   const kernel::HoldingCircles& circles() const { return circles_; }
 
  private:
-  int num_vertices_, num_groups_;  // of edges
+  int num_vertices_, num_groups_;  // number of vertices, and of groups of edges
   double range_, film_reach_;
   bool has_anchors_ = false;
   struct Memory {
@@ -53,7 +53,7 @@ class WallHold {
   Memory anchors_;  // one entry for each vertex of groups_, and each circle
   std::vector<kernel::WallWindow> windows_;
   std::vector<kernel::HoldingCircle> all_;
-  std::vector<int> groups_;  // of vertices, circle after circle
+  std::vector<int> groups_;  // groups of vertices, circle after circle
   std::vector<std::uint8_t> holds_, is_pushed_, touches_;
   std::vector<std::uint8_t> touches_itself_;  // groups of vertices that self-contact may push
   kernel::HoldingCircles circles_{};

@@ -21,10 +21,10 @@ class WallPlan {
   const kernel::WallWindows& windows() const { return windows_; }
 
  private:
-  int num_groups_;  // of edges
+  int num_groups_;  // number of groups of edges
   hwy::AlignedFreeUniquePtr<double[]> memory_;
   std::vector<kernel::WallWindow> listed_, all_, sharing_;
-  std::vector<std::uint8_t> is_taken_;   // edges, by a window
+  std::vector<std::uint8_t> is_taken_;   // edges that a window contains
   std::vector<std::uint8_t> is_pushed_;  // groups of vertices, the first is the one before the contour
   std::vector<int> groups_;
   kernel::WallWindows windows_{};

@@ -55,14 +55,14 @@ bool has_hysteresis(const DpParameters& dp) {
 
 /// Position of a vertex relative to a wall.
 struct ContactLine::Beside {
-  Eigen::Array2d normal;   // away from the wall
-  Eigen::Array2d forward;  // the gradient of the place u, which goes against the sense of the contour
-  double on_wedge;  // u [sigma]; it is 0 on the axis, and goes on from the tip's circle along the flanks
+  Eigen::Array2d normal;   // unit vector away from the wall
+  Eigen::Array2d forward;  // gradient of the coordinate u along the wall; u decreases along the contour
+  double on_wedge;         // u on a wedge, measured along its surface from the axis [sigma]
 };
 
 namespace {
 
-/// The place u on the surface of a wedge, see Beside.
+/// The coordinate u of a point on the surface of a wedge, see Beside.
 double place_on(const Wedge& wedge, const Eigen::Array2d& from_centre) {
   const Eigen::Array2d across_axis{-wedge.axis[1], wedge.axis[0]};
   const double across = (from_centre * across_axis).sum();
@@ -155,7 +155,7 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
     return zone.wall.radius * turn_between(from.normal[0] * to.normal[1] - from.normal[1] * to.normal[0],
                                            (from.normal * to.normal).sum());
   };
-  // One end for each wetted vertex whose outward sum contains no other wetted vertex.
+  // There is one end for each wetted vertex whose outward sum contains no other wetted vertex.
   for (Index k = 0; k < num; ++k) {
     if (vertex(k).share < 1) continue;
     for (const Index side : {Index{0}, Index{1}}) {

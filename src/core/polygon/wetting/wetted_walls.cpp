@@ -101,11 +101,11 @@ void WettedWalls::find_near(const VertexPlaces& vertices, const LocalFrame& fram
   }
 }
 
-/// U_gamma = sum gamma_e l_e, gamma_e = Gamma + (Gamma_wall - Gamma) times the mean share of its two
-/// vertices: the three-tension energy, Cheng et al. Eq. 2, with the tensions of a wetted wall's two sides
-/// taken together. On a smooth interface its gradient has no part along the interface, because -d(gamma)/ds
-/// from the edges cancels the pull towards the wall; the part that a polygon has is an error of its finite
-/// edges.
+/// Adds the forces of U_gamma = sum gamma_e l_e, where the tension gamma_e of an edge is Gamma + (Gamma_wall
+/// - Gamma) times the mean share of the edge's two vertices. This is the three-tension energy of Cheng et al.
+/// Eq. 2, with the tensions of a wetted wall's two sides taken together. On a smooth interface the gradient
+/// of this energy has no component along the interface, because -d(gamma)/ds from the edges cancels the pull
+/// towards the wall. The component that it has on a polygon is an error of the finite edges.
 void WettedWalls::add_tension(const VertexPlaces& vertices, Forces& forces) const {
   const auto n = static_cast<int>(vertices.size);
   const auto of = [&](int i) -> const Forces::Vertex& {

@@ -19,13 +19,14 @@ struct VertexPair {
 /// Pairs of a vertex and an edge of the same droplet that may touch.
 ///
 /// Contact is between vertices and edges, so it also works if edges are longer than the vertex diameter.
-/// Every edge within reach pushes by itself, with its own nearest point: then energy and force are continuous
-/// wherever the vertex goes, also in a concave corner, where two edges are equally near. Edges close along
-/// the contour do not count as contact, because otherwise every vertex would touch its neighbours. Close
-/// means both of the following: less than three ranges away along the present contour, and fewer vertices
-/// away than make up three ranges at rest. In a compressed contour the number of vertices decides; this
-/// number is fixed, so that contacts there do not depend on when the pairs were made. In a stretched contour
-/// the length decides, so that long edges cannot cross in a sharp fold.
+/// Every edge within reach pushes by itself, with its own nearest point. So energy and force are continuous
+/// wherever the vertex goes, even in a concave corner, where two edges are equally near.
+///
+/// Edges close to a vertex along the contour do not count as contact, because otherwise every vertex would
+/// touch its neighbours. An edge is close if it is less than three ranges away along the present contour, and
+/// also fewer than exclusion() vertices away. In a compressed contour the number of vertices decides. This
+/// number is fixed, so contacts there do not depend on when the pairs were made. In a stretched contour the
+/// distance decides, so that long edges cannot cross in a sharp fold.
 class SelfContacts {
  public:
   struct Pair {
@@ -47,25 +48,25 @@ class SelfContacts {
   /// @param moved  bound on the displacement of any vertex since renew(), relative to the mean of all [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
-  /// Positions of the vertices at the last renew(), relative to their mean, all x then all y, followed by
-  /// room for a whole vector; null: there are no pairs.
+  /// Positions of the vertices at the last renew(), relative to their mean: all x, then all y, then unused
+  /// numbers that fill the last vector of the processor. Null if there are no pairs.
   const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
   const std::vector<Pair>& pairs() const { return pairs_; }
   double range() const { return range_; }
-  /// Number of vertices in three ranges at rest.
+  /// Number of vertices that make up three ranges of the contour at rest.
   int exclusion() const { return exclusion_; }
   /// Whether these vertices are too close along the contour to count as in contact.
   bool are_neighbours(int a, int b) const;
 
-  /// The same pairs for vectors: a group of WallContacts::edges_per_group edges and as many consecutive
-  /// vertices. Opposite strands run in opposite directions, so the last of these vertices is paired with the
-  /// first edge. In a strand that is compressed until it touches itself, the first vertex is paired with the
-  /// first edge.
+  /// The same pairs, arranged for vector instructions: an item has a group of WallContacts::edges_per_group
+  /// edges and as many consecutive vertices. Opposite strands of the contour run in opposite directions, so
+  /// the last of these vertices is paired with the first edge. In a strand that is compressed until it
+  /// touches itself, the directions are equal, so the first vertex is paired with the first edge.
   struct Item {
     int edges;           ///< first edge of a group
     int vertices;        ///< first vertex; numbers from N on stand for the contour's first vertices
     std::uint8_t pairs;  ///< bit b: edge `edges` + b and the b-th vertex
-    bool backwards;      ///< are vertices counted from the last?
+    bool backwards;      ///< whether the b-th vertex is counted from the last
   };
   const std::vector<Item>& items() const { return items_; }
 
@@ -76,16 +77,16 @@ class SelfContacts {
   Eigen::ArrayXd reference_;  // positions relative to their mean when the pairs were made
   std::vector<Pair> pairs_;
   std::vector<Item> items_;
-  std::vector<double>
-      along_;  // distance along the contour from vertex 0; behind the last entry, the length of the contour
+  // Distance of each vertex from vertex 0 along the contour, followed by the length of the contour.
+  std::vector<double> along_;
   std::vector<double> contour_;  // x, y and along_, with the beginning repeated; see kernel::CloseSearch
   std::vector<double> groups_;   // memory of the search
   std::vector<kernel::VertexPair> close_;
   std::vector<Pair> sorted_;       // memory of the sort
-  std::vector<int> end_of_group_;  // where the pairs of a group of edges end
-  std::vector<int> item_of_;       // by direction and first vertex
+  std::vector<int> end_of_group_;  // index of the end of the pairs of each group of edges
+  std::vector<int> item_of_;       // the latest item, by direction and first vertex
 
-  double skin_ = 0;  // of the present pairs
+  double skin_ = 0;  // skin with which the present pairs were made [sigma]
 
   /// Fills along_. Returns the length of the longest edge.
   double measure_edges(const double* x, const double* y, int n);
@@ -99,7 +100,7 @@ class SelfContacts {
 struct EdgeContact {
   double distance;  ///< [sigma]
   double fraction;  ///< the point's place on the edge, 0 at its first vertex, 1 at the next
-  double dx, dy;    ///< from the point to the vertex [sigma]
+  double dx, dy;    ///< vector from the point to the vertex [sigma]
 };
 inline EdgeContact nearest_point(const SelfContacts::Pair& pair, const double* x, const double* y,
                                  int num_vertices) {

@@ -9,13 +9,14 @@
 
 namespace clog {
 
-/// The obstacles that may touch each edge, or be nearest to each vertex, of a polygon until the list must be
-/// renewed.
+/// Lists of the obstacles near a polygon. `Keep` defines what is listed:
+/// - `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
+///   `range` + skin of the edge.
+/// - `touched_by_vertex`: vertex i lists every obstacle whose surface was within `range` + skin of the
+///   vertex.
+/// - `nearest_to_vertex`: vertex i lists every obstacle that could become its nearest.
 ///
-/// `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
-/// `range` + skin of it; `touched_by_vertex`: the same for vertex i. `nearest_to_vertex`: vertex i lists
-/// every obstacle that could become its nearest. Lists are valid while no vertex has moved by more than the
-/// skin.
+/// The lists are valid while no vertex has moved by more than the skin.
 class WallContacts {
  public:
   enum class Keep { touched_by_edge, touched_by_vertex, nearest_to_vertex };
@@ -23,16 +24,17 @@ class WallContacts {
   /// @param range  largest surface distance at which a wall force acts [sigma]
   WallContacts(const ObstacleArray& array, double range, Keep keep);
 
-  /// Renews the lists if a vertex may leave its skin before the next update.
+  /// Renews the lists if a vertex may move by more than the skin before the next update.
   void update(const DropletState& state, const Travel& travel);
-  /// Discards the lists: positions changed by more than a move (a new frame origin, a rescaled polygon).
+  /// Discards the lists. Call this when positions change without motion: by a new frame origin, or a rescaled
+  /// polygon.
   void invalidate() { reference_.resize(0); }
   /// Whether the lists stay valid until the next update. Does not change them.
   /// @param moved  bound on the displacement of any vertex since renew() [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
-  /// Positions of the vertices at the last renew(), all x then all y, followed by room for a whole vector;
-  /// null: there are no lists.
+  /// Positions of the vertices at the last renew(): all x, then all y, then unused numbers that fill the last
+  /// vector of the processor. Null if there are no lists.
   const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
 
   double range() const { return range_; }
@@ -40,9 +42,9 @@ class WallContacts {
   bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
   double largest_radius() const { return largest_radius_; }
 
-  /// The lists by obstacle. Each item is a circle and a group of `edges_per_group` edges (vertices), at least
-  /// one of which lists the circle. Items of edges are sorted by circle, then by group; items of vertices are
-  /// sorted by group.
+  /// The same lists, in the form of items. An item is a circle and a group of `edges_per_group` edges
+  /// (vertices), at least one of which lists the circle. Items of edges are sorted by circle, then by group;
+  /// items of vertices are sorted by group.
   struct Item {
     double x, y;   ///< centre, relative to the state's frame [sigma]
     double reach;  ///< radius + range [sigma]
@@ -56,7 +58,7 @@ class WallContacts {
   const ObstacleArray* array_;
   double range_;
   Keep keep_;
-  double skin_ = 0;  // of the present lists
+  double skin_ = 0;  // skin with which the present lists were made [sigma]
   Eigen::Index num_points_ = 0;
   Eigen::ArrayXd reference_;
   std::vector<Obstacle> nearby_;
@@ -64,9 +66,9 @@ class WallContacts {
   struct Bounds {
     Eigen::Array2d least, most;
   };
-  std::vector<Bounds> bounds_;        // of the groups of edges
-  Eigen::ArrayXXd distances_;         // of the vertices from the circles nearby, a column for each circle
-  Eigen::ArrayXd nearest_;            // distance of each vertex from its nearest circle
+  std::vector<Bounds> bounds_;  // bounds of each group of edges
+  Eigen::ArrayXXd distances_;   // distances of the vertices from the circles nearby, a column for each circle
+  Eigen::ArrayXd nearest_;      // distance of each vertex from its nearest circle
   std::vector<std::size_t> item_of_;  // the latest item of each circle
   std::vector<Item> items_;
   double smallest_radius_ = 0, largest_radius_ = 0;

@@ -8,16 +8,16 @@
 
 namespace clog {
 
-/// k_t/k_c, stiffness of the springs between interface and wall divided by that of the contact, as is usual
-/// for grains (Silbert et al., Phys. Rev. E 64, 051302 (2001)). A vertex then slips by mu k_c/k_t times the
-/// depth of the contact before its spring reaches the limit: 7 % of a vertex diameter for mu = 1.
+/// k_t/k_c, stiffness of the springs between interface and wall divided by that of the contact; the value is
+/// usual for grains (Silbert et al., Phys. Rev. E 64, 051302 (2001)). With it a vertex slips by mu k_c/k_t
+/// times the depth of the contact before its spring reaches the limit: 7 % of a vertex diameter for mu = 1.
 inline constexpr double friction_stiffness_ratio = 2.0 / 7;
 
-/// Dry friction of walls and a yield traction: a spring ties every vertex that a wall pushes to the place
-/// where it first touched (Cundall and Strack, Geotechnique 29, 47 (1979)), U = (k_t/2) |s_i - s*_i|^2, |f_i|
-/// <= mu N_i + tau_y w_i, with s_i the wall's closest point to vertex i, s* the anchor, N_i the wall's normal
-/// force, w_i the wetted length. Beyond this limit the spring pulls its anchor along, so that the force stays
-/// at the limit.
+/// Dry friction of walls, and a yield traction. When a wall begins to push a vertex, a spring ties the vertex
+/// to the place of this first touch (Cundall and Strack, Geotechnique 29, 47 (1979)). The spring has the
+/// energy U = (k_t/2) |s_i - s*_i|^2, and its force is at most mu N_i + tau_y w_i. Here s_i is the wall's
+/// closest point to vertex i, s*_i the anchor, N_i the wall's normal force, and w_i the wetted length. Beyond
+/// this limit the spring pulls its anchor along, so that the force stays at the limit.
 class WallFriction {
  public:
   /// @param stiffness  k_t [g rho sigma]  @param wedges  must outlive this

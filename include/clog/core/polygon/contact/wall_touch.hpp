@@ -8,8 +8,8 @@
 
 namespace clog {
 
-/// The wall's closest point to a vertex, relative to the wall's centre. If the vertex moves along `along`,
-/// this point moves `gradient` times as far.
+/// The wall's closest point to a vertex, relative to the wall's centre. If the vertex moves in the direction
+/// `along`, this point moves `gradient` times as far.
 struct WallFoot {
   Eigen::Array2d point, along;
   double gradient;
@@ -23,11 +23,11 @@ struct WallTouch {
   WallPlace wall;
   WallFoot foot;
   double push;    ///< force of the contacts on the vertex, away from the wall [g rho sigma^2]
-  double wetted;  ///< length of the interface on the wall that belongs to the vertex [sigma]
+  double wetted;  ///< length of the wetted part of the interface that belongs to the vertex [sigma]
 };
 
-/// A droplet's vertices. Readable from [-1] to [size + WallContacts::edges_per_group - 1]: entries beyond the
-/// ends repeat the contour.
+/// A droplet's vertices. `x` and `y` may be read from [-1] to [size + WallContacts::edges_per_group - 1]: the
+/// entries beyond the ends repeat the contour.
 struct Contour {
   int size;
   const double *x, *y;

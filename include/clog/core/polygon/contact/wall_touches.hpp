@@ -14,14 +14,14 @@
 
 namespace clog {
 
-/// Finds the vertices that walls push, and hold by friction. The contacts are those of DpForces.
+/// Finds the vertices that walls push, and which they hold by friction. The contacts are those of DpForces.
 class WallTouches {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this
   WallTouches(const RunParameters& run, const ObstacleArray& obstacles);
 
-  /// @param circles  all possible contacts
-  /// @param self  for friction through films
+  /// @param circles  circles that may touch the droplet
+  /// @param self  the contacts through which films transmit friction
   /// @return valid until the next call
   const std::vector<WallTouch>& find(const Contour& contour, const LocalFrame& frame,
                                      std::span<const WallContacts::Item> circles, const SelfContacts& self);
@@ -32,7 +32,7 @@ class WallTouches {
   KnownAnchors& known_anchors() { return known_anchors_; }
 
  private:
-  /// A vertex and a wall, while contacts are added up.
+  /// Sum over the contacts of one vertex with one wall.
   struct Part {
     int vertex;
     WallPlace wall;
@@ -44,7 +44,7 @@ class WallTouches {
   double range_, stiffness_;
   bool meets_edges_, acts_through_films_;
   FilmTouches films_;
-  std::vector<int> first_part_;  // of each vertex
+  std::vector<int> first_part_;  // first part of each vertex
   std::vector<Part> parts_;
   std::vector<WallPlace> wedges_;
   std::vector<WallTouch> touches_;

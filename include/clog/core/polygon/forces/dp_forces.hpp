@@ -25,8 +25,8 @@ struct InterfaceTerms {
 };
 
 /// Potential energy of a deformable polygon among obstacles, and the data from which the passes of a step
-/// (DpStepper, RestForces) compute its negative gradient. Contacts use lists: update_contacts() must have
-/// been called, and no point may have moved farther than its argument since then.
+/// (DpStepper, RestForces) compute its negative gradient. Call update_contacts() first: the contact lists are
+/// valid while no point moves farther than the argument of this call.
 class DpForces {
  public:
   /// @param run  resolved parameters (see resolve())
@@ -34,10 +34,11 @@ class DpForces {
 
   /// @param travel  bound on the displacement until the next call
   void update_contacts(const DropletState& state, const Travel& travel);
-  /// Whether update_contacts() would leave the lists unchanged. Also returns false if the answer depends on
-  /// more of the state than these bounds.
+  /// Whether update_contacts() would leave the lists unchanged. Returns false, too, if these bounds do not
+  /// suffice for an answer.
   /// @param moved  bound on the displacement of any vertex since walls() were renewed [sigma]
-  /// @param moved_relative  the same, relative to their mean, since self_contacts() were renewed [sigma]
+  /// @param moved_relative  bound on the displacement of any vertex relative to the mean of all, since
+  /// self_contacts() were renewed [sigma]
   bool contacts_hold(double moved, double moved_relative, const Travel& travel) const;
   /// Whether there are valid contact lists.
   bool has_contact_lists() const {
@@ -51,15 +52,15 @@ class DpForces {
 
   PotentialEnergy energy(const DropletState& state) const;
 
-  /// Deepest overlap of the interface with a wall's contact range [sigma], of edges or vertices according to
-  /// `wall-contact`.
+  /// Deepest overlap of the interface with a wall's contact range [sigma]. The key `wall-contact` determines
+  /// whether edges or vertices overlap.
   double deepest_overlap(const DropletState& state) const;
   /// Distance from an obstacle's surface at which contact begins [sigma].
   double contact_range() const { return walls_.range(); }
 
   double vertex_diameter() const { return vertex_diameter_; }
 
-  /// For the integrator: the terms of the interface at this area and perimeter, and the contacts.
+  /// The integrator needs the terms of the interface at this area and perimeter, and the contacts.
   InterfaceTerms interface(double area, double perimeter) const;
   double contact_stiffness() const { return contact_stiffness_; }
   const WallContacts& walls() const { return walls_; }
@@ -69,13 +70,13 @@ class DpForces {
   const WallFriction& friction() const { return friction_; }
   /// Moves the anchors of friction or of the contact line whose springs exceed their limits, see
   /// WallFriction::follow().
-  /// @param circles  all possible contacts
+  /// @param circles  circles that may touch the droplet
   WallYield let_walls_yield(DropletState& state, WallTouches& touches,
                             std::span<const WallContacts::Item> circles, Purpose purpose) const;
   bool has_anchors() const { return friction_.is_on() || wetted_walls_.hold_ends(); }
   const WettedWalls& wetted_walls() const { return wetted_walls_; }
 
-  /// For the release, during which the droplet grows without weight.
+  /// The release uses these functions: there the droplet grows without weight.
   void set_rest_area(double area);
   void set_weight(double weight) { weight_ = weight; }
   double weight() const { return weight_; }
@@ -95,8 +96,8 @@ class DpForces {
   SelfContacts self_;
   WallFriction friction_;
 
-  /// Calls visit(overlap) for every half edge (or vertex) and every listed circle, and for every vertex and
-  /// wedge [sigma]; the overlap is negative where they do not touch.
+  /// Calls visit(overlap) for every half edge (or vertex) with every listed circle, and for every vertex with
+  /// every wedge. The overlap [sigma] is negative where the two do not touch.
   template <class Visit>
   void visit_overlaps(const DropletState& state, Visit visit) const;
 };

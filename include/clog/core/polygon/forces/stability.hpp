@@ -7,15 +7,16 @@ namespace clog {
 /// Upper bounds on omega^2 [1/t0^2] of the stiff modes of a polygon with the given perimeter [sigma].
 /// Velocity Verlet is stable for omega dt < 2; the bounds are those of a chain of masses M/N_v.
 struct StiffModes {
-  double contact = 0;  ///< wall contact of one vertex, through both its edges if these count: 2 k_c N_v/M
-  /// Two strands against each other, each vertex between two edges and each edge between two vertices: 8 k_c
-  /// N_v/M.
+  /// One vertex in contact with a wall, through both its edges if walls push edges: 2 k_c N_v/M.
+  double contact = 0;
+  /// Contact of two strands, in which each vertex is between two edges and each edge between two vertices: 8
+  /// k_c N_v/M.
   double self_contact = 0;
   double area = 0;     ///< uniform pressure, K_a P^2/M
   double tension = 0;  ///< transverse zigzag, 4 Gamma N_v/(l M), l the shortest edge
   double spring = 0;   ///< longitudinal zigzag, 4 K_l N_v^2/M
-  double wetting =
-      0;  ///< a wall's pull or push where the tension changes, 6 |Gamma_wall - Gamma| l N_v/(w^2 M)
+  /// A wall's pull or push where the tension changes, 6 |Gamma_wall - Gamma| l N_v/(w^2 M)
+  double wetting = 0;
   double pinning = 0;   ///< spring that holds the end of a wetted arc
   double friction = 0;  ///< springs by which walls hold a vertex along them, k_t N_v/M
 
@@ -23,11 +24,12 @@ struct StiffModes {
   double sum() const { return contact + area + tension + spring + wetting + pinning + friction; }
 };
 
-/// (omega dt)^2 of the contact mode for the automatic E_w: keeps overlaps near 1e-2 vertex diameters for
-/// Gamma <= 1 and settles without chatter (contact is one-sided, so the linear bound of 4 is much too large).
+/// (omega dt)^2 of the contact mode for the automatic E_w. With this value, overlaps are about 1e-2 vertex
+/// diameters for Gamma <= 1, and droplets come to rest without chatter. (The bound of 4 for a linear spring
+/// is much too large, because contact pushes but never pulls.)
 inline constexpr double auto_contact_omega_dt2 = 0.5;
-/// Largest accepted (omega dt)^2 of the contact alone and of all modes together; above these, stopped
-/// droplets chattered instead of resting.
+/// Largest accepted (omega dt)^2 of the contact alone and of all modes together. With larger values, stopped
+/// droplets chattered instead of coming to rest.
 inline constexpr double max_contact_omega_dt2 = 1.0;
 inline constexpr double max_total_omega_dt2 = 3.0;
 /// Largest accepted (omega dt)^2 of all modes together for a droplet in contact with itself. This bound is
@@ -37,11 +39,11 @@ inline constexpr double max_total_with_self_omega_dt2 = 3.9;
 /// times as many droplets without drag diverged (docs/notes/2026-11-26-time-step.md).
 inline constexpr double max_area_omega_dt2 = 1.0;
 
-/// With the automatic step, the modes of a circle reach this fraction of their bounds.
+/// With the automatic step, the modes of a circle reach at most this fraction of their bounds.
 inline constexpr double auto_step_margin = 0.8;
 
 /// Stiff modes of a polygon with resolved parameters (see resolve()), for the given perimeter and shortest
-/// edge [sigma]. Vertices nearer than a hundredth of the mean edge count as that far apart.
+/// edge [sigma]. A shortest edge below a hundredth of the mean edge counts as a hundredth of the mean edge.
 StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double perimeter, double shortest_edge);
 
 /// Largest time step [t0] that keeps every bound above.
@@ -66,8 +68,8 @@ struct Steps {
   Pressure pressure = Pressure::present;
 };
 /// The fewest steps that cover `steps` time steps and keep every bound: at least `steps`, at most
-/// most_substeps times as many. The number is exact up to 2 `steps`; beyond, where shapes are far from the
-/// regular polygons of the bounds, it is a multiple of `steps`.
+/// most_substeps times as many. The number is exact up to 2 `steps`. A larger number is rounded up to a
+/// multiple of `steps`: such shapes are far from the regular polygons for which the bounds hold.
 /// @param most  Pressure::implicit: the pressure may be implicit if this saves steps
 Steps stable_steps(const StiffModes& modes, int steps, double time_step, Pressure most);
 

@@ -20,20 +20,20 @@ bool has_hysteresis(const DpParameters& dp);
 struct WettedShare {
   double share, slope;
 };
-/// The wetted fraction is a smooth step, so that energies and forces are continuous: it is 1 where contact
-/// begins, and 0 farther than `width` beyond this distance.
+/// The wetted fraction is 1 where contact begins, and 0 farther than `width` beyond this distance. It changes
+/// by a smooth step, so that energies and forces are continuous.
 inline WettedShare wetted_share(double distance, double contact_range, double width) {
   const double t = std::clamp((contact_range + width - distance) / width, 0.0, 1.0);
   return {t * t * t * (10 + t * (6 * t - 15)), -30 * t * t * (1 - t) * (1 - t) / width};
 }
 
-/// k_p in units of Gamma per vertex diameter, of the springs that hold the ends of wetted arcs. An end then
-/// slips by half a vertex diameter times the difference of the angles' cosines before its spring reaches the
-/// limit.
+/// Stiffness k_p of the springs that hold the ends of wetted arcs, in units of Gamma per vertex diameter.
+/// With this value, an end slips by half a vertex diameter times the difference of the angles' cosines before
+/// its spring reaches the limit.
 inline constexpr double pinning_stiffness = 2;
-/// Bound on the squared norm of the gradient of q (see ContactLine), which results from the wetted fractions
-/// of the last vertices and from the change of these fractions with the distances of the vertices from the
-/// wall.
+/// Bound on the squared norm of the gradient of q (see ContactLine). The gradient comes from the wetted
+/// fractions of the last vertices, and from the change of these fractions with the vertices' distances from
+/// the wall.
 inline constexpr double pinning_gradient2 = 1.5;
 
 /// The vertices of a droplet.
@@ -46,13 +46,15 @@ struct VertexPlaces {
       : size(num_vertices), x(all_x), y(all_y) {}
 };
 
-/// Contact-angle hysteresis. The end of a wetted arc is at q = u_m + sum share_e (u_e' - u_e) along the wall,
-/// with u the coordinate along the wall, summed over the edges e from a wetted vertex m outwards, share_e
-/// their wetted fraction; positive outwards. Where the interface is smooth, the gradient of q is normal to
-/// it, so q does not depend on the positions of vertices. A spring with the force f holds q: U = (k_p/2) (q -
-/// q*)^2, -Gamma (cos Y - cos A) <= f <= Gamma (cos R - cos Y), with Y, A, R Young's, the advancing and the
-/// receding angle. Beyond these limits the spring pulls its anchor q* along, so that the force stays at the
-/// limit.
+/// Contact-angle hysteresis. The end of a wetted arc has the coordinate q along the wall, positive outwards:
+///   q = u_m + sum share_e (u_e' - u_e).
+/// Here u is the coordinate of a vertex along the wall, and m a wetted vertex. The sum runs over the edges e
+/// from m outwards; share_e is an edge's wetted fraction, u_e and u_e' are the coordinates of its two ends.
+/// Where the interface is smooth, the gradient of q is normal to the interface, so q does not depend on where
+/// vertices are along it. A spring with the force f holds q:
+///   U = (k_p/2) (q - q*)^2,  -Gamma (cos Y - cos A) <= f <= Gamma (cos R - cos Y),
+/// with Young's angle Y, the advancing angle A and the receding angle R. Beyond these limits the spring pulls
+/// its anchor q* along, so that the force stays at the limit.
 class ContactLine {
  public:
   /// @param run  resolved parameters  @param wedges  must outlive this
@@ -63,16 +65,18 @@ class ContactLine {
   /// One end of a wetted arc.
   struct End {
     WallPlace wall;
-    Eigen::Index side;                          ///< 0: the arc's first, 1: its last along the contour
-    double place;                               ///< q, counted outwards [sigma]
-    std::size_t first_gradient, num_gradients;  ///< of q with respect to vertices, in Ends::gradients
+    Eigen::Index side;  ///< 0: the arc's first end along the contour, 1: its last end
+    double place;       ///< q, counted outwards [sigma]
+    /// Range in Ends::gradients of the derivatives of q with respect to vertices.
+    std::size_t first_gradient, num_gradients;
   };
   struct Gradient {
     Eigen::Index vertex;
     Eigen::Array2d by_place;
   };
   class Ends;
-  /// @param circles  all that may be wetted, by vertex @param ends  the result; its memory is reused
+  /// @param circles  circles that may be wetted, listed by vertex @param ends  the result; its memory is
+  /// reused
   void find_ends(const VertexPlaces& vertices, const LocalFrame& frame,
                  std::span<const WallContacts::Item> circles, Ends& ends) const;
 
@@ -80,9 +84,9 @@ class ContactLine {
   void add_forces(std::span<const WallAnchor> anchors, const Ends& ends, Eigen::ArrayXd& force) const;
   /// [g rho sigma^3]
   double energy(std::span<const WallAnchor> anchors, const Ends& ends) const;
-  /// Moves anchors whose springs exceed their limits. An end keeps the nearest anchor of its wall and side;
-  /// new ends get one of their own, and anchors of vanished ends are removed. Afterwards there is one anchor
-  /// for each end, in their order.
+  /// Moves anchors whose springs exceed their limits. An end keeps the nearest anchor of its wall and side. A
+  /// new end gets a new anchor, and anchors of vanished ends are removed. Afterwards there is one anchor for
+  /// each end, in the order of the ends.
   WallYield follow(std::vector<WallAnchor>& anchors, const Ends& ends, Purpose purpose) const;
 
  private:
@@ -112,7 +116,7 @@ struct ContactLine::Zone {
   std::vector<Vertex> vertices;
 };
 
-/// The ends of wetted arcs, with memory that finding and matching them needs.
+/// The ends of wetted arcs, and memory for finding these ends and for matching them with anchors.
 class ContactLine::Ends {
  public:
   const std::vector<End>& all() const { return all_; }

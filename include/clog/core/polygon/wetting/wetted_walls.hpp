@@ -13,8 +13,8 @@
 namespace clog {
 
 /// Walls whose tension differs from that of the interface, and walls that hold the ends of wetted arcs. The
-/// tension is Gamma far from a wall, and that of the wetted wall where contact begins. It changes by a smooth
-/// step, which keeps energy and force continuous and is wide enough for the edges to resolve.
+/// tension is Gamma far from a wall, and that of the wetted wall where contact begins. In between, it changes
+/// by a smooth step, which keeps energy and force continuous and is wide enough for the edges to resolve.
 class WettedWalls {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this
@@ -23,21 +23,21 @@ class WettedWalls {
   bool is_on() const { return extra_tension_ != 0 || line_.is_on(); }
   bool hold_ends() const { return line_.is_on(); }
 
-  /// Lists of the obstacles near the vertices, in use only if walls are wetted; see WallContacts.
+  /// Lists of the obstacles near the vertices, see WallContacts. They are used only if walls are wetted.
   WallContacts& lists() { return lists_; }
   const WallContacts& lists() const { return lists_; }
 
   /// Forces on the vertices, and memory to find them. All x, then all y [g rho sigma^2].
   struct Forces {
     Eigen::ArrayXd gradient;  ///< minus the gradient of the energy
-    /// Cancels the part of `gradient` along the interface if springs carry no tension (`along`), otherwise 0.
-    /// These forces derive from no energy.
+    /// If springs carry no tension (`along`), these forces cancel the component of `gradient` along the
+    /// interface; otherwise they are 0. They derive from no energy.
     Eigen::ArrayXd spreading;
-    std::vector<int> vertices;  ///< on all others both forces are 0
-    ContactLine::Ends ends;     ///< of wetted arcs
+    std::vector<int> vertices;  ///< the vertices on which these forces may differ from 0
+    ContactLine::Ends ends;     ///< ends of wetted arcs
 
-    /// The sum of `spreading`. Its reaction acts on the liquid, so it is subtracted from the weight on the
-    /// area.
+    /// The sum of `spreading`. Its reaction acts on the liquid, so this sum is subtracted from the weight
+    /// that acts on the area.
     Eigen::Array2d net_spreading{0, 0};
 
     explicit Forces(int num_vertices);
@@ -45,8 +45,8 @@ class WettedWalls {
    private:
     friend class WettedWalls;
     struct Vertex {
-      double distance;        // from the nearest wall
-      Eigen::Array2d normal;  // away from it
+      double distance;        // distance from the nearest wall
+      Eigen::Array2d normal;  // unit vector away from the nearest wall
       WettedShare share{0, 0};
       bool is_near = false, is_listed = false;
     };
@@ -56,10 +56,10 @@ class WettedWalls {
     void clear();
     void list_vertices();
   };
-  /// Finds the forces and the ends.
+  /// Finds the forces on the vertices, and the ends of wetted arcs.
   void find_forces(const VertexPlaces& vertices, const LocalFrame& frame, std::span<const WallAnchor> anchors,
                    Forces& forces) const;
-  /// The same for a moving droplet: first moves its anchors as follow() does.
+  /// Moves the anchors of a moving droplet as follow() does, and then finds the forces and the ends.
   WallYield follow_and_find_forces(const VertexPlaces& vertices, const LocalFrame& frame,
                                    std::vector<WallAnchor>& anchors, Forces& forces) const;
   /// Moves anchors whose springs exceed their limits, see ContactLine::follow().
@@ -70,7 +70,7 @@ class WettedWalls {
   double spring_energy(const DropletState& state) const;
 
  private:
-  double extra_tension_;  // of a wetted wall [g rho sigma^2]
+  double extra_tension_;  // Gamma_wall - Gamma, for a wetted wall [g rho sigma^2]
   bool spreads_;          // whether springs act only along the interface
   double contact_range_, width_;
   const ObstacleArray* obstacles_;
