@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Tests that a new parameter needs only a member of RunParameters, an entry in core/parameters/schema.cpp, and its
-physics. The patch quiet_checks.patch adds such a parameter.
+"""Tests that a new parameter needs only three additions: a member of RunParameters, an entry in
+core/parameters/schema.cpp, and its physics. The patch quiet_checks.patch adds such a parameter.
 
     tests/newcomer/add_parameter.py            # applies the patch to a copy, builds it, and looks for the parameter
-    tests/newcomer/add_parameter.py --check    # only checks that the patch still fits, which takes no time
+    tests/newcomer/add_parameter.py --check    # only checks that the patch still applies, which takes no time
 
 Building the copy without optimisation takes some minutes. Exit code 1: the parameter is missing somewhere.
 """
@@ -27,7 +27,7 @@ def output(*command, **options):
 
 
 def copy_of_tree(folder):
-    """Copies the files that git tracks, with their uncommitted changes."""
+    """Copies the files that git tracks or would add, with their uncommitted changes."""
     for name in output("git", "ls-files", "--cached", "--others", "--exclude-standard", cwd=ROOT).splitlines():
         if (ROOT / name).is_file():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -43,7 +43,7 @@ def build(folder):
 
 
 def findings(programs, folder):
-    """Names the places where the parameter is missing."""
+    """Names the places that lack the parameter."""
     schema = json.loads(output(programs / "clogsweep", "--schema"))
     yield "a key", any(key["key"] == "quiet-checks" and key["range"] == "at least 1, at most 1000" for key in schema["keys"])
     yield "a column", any(column["name"] == "quiet_checks" for column in schema["columns"])
