@@ -15,7 +15,8 @@ from __future__ import annotations
 import importlib
 import os
 
-TYPE_CHECKING = False  # Type checkers take it as true. Importing `typing` would take longer than this module.
+# Type checkers take TYPE_CHECKING as true. Importing it from `typing` would take longer than importing this module.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 

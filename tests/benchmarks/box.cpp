@@ -1,6 +1,6 @@
 /// Measures whether a step costs more in a larger box. The same droplet follows the same path through two
-/// arrays. One has the period 60. The other has the period 540 and consists of 81 copies of the first. Slices
-/// of the two runs alternate.
+/// arrays. The first array has the period 60. The second array has the period 540, and consists of 81 copies
+/// of the first. Slices of the two runs alternate.
 
 #include <algorithm>
 #include <cstdio>

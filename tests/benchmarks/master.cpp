@@ -1,9 +1,9 @@
 /// Measures how busy the master (rank 0) is with a thousand workers whose tasks take a second each. The work
-/// of the master depends only on the messages. It receives a thousand rows per second, and answers each row
-/// with a new task. Here a few workers send as many rows: their tasks only sleep, for less than a second.
-/// Everything else is as in clogsweep: the scheduler, MPI, and the table of runs on the disk.
+/// of the master depends only on the messages. The master receives a thousand rows per second, and answers
+/// each row with a new task. Here a few workers send as many rows: their tasks only sleep, for less than a
+/// second. Everything else is as in clogsweep: the scheduler, MPI, and the table of runs on the disk.
 ///   tests/mpirun.sh 5 bench_master [tasks per second] [seconds]
-/// With 0 tasks per second every worker sleeps in one long task. This measures the cost of waiting.
+/// With 0 tasks per second every worker sleeps in one long task. This case measures the cost of waiting.
 ///   bench_master rows 1000000
 /// Simulates a sweep of soft disks. Measures the memory per row, the longest time for which the master does
 /// not answer because it is busy with the table and its journal, and the times to stop and to restart the
@@ -58,7 +58,7 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// A job that sleeps instead of computing. It sleeps in slices like those of a run.
+/// A job that sleeps instead of computing, in slices like those of a run.
 class SleepingJob final : public sweep::Job {
  public:
   SleepingJob(const sweep::Plan& plan, std::int64_t task, double seconds)
@@ -79,7 +79,7 @@ class SleepingJob final : public sweep::Job {
   sweep::RunRow row_;
 };
 
-/// A sweep without workers. Its runs begin and end one after the other.
+/// A sweep without workers, in which runs begin and end one after the other.
 int measure_rows(std::int64_t num_rows) {
   const auto kilobytes = [num_rows, before = peak_kilobytes()] {
     return (peak_kilobytes() - before) / static_cast<double>(num_rows);

@@ -1,6 +1,6 @@
 /// Measures the cost of runs of real sweeps per vertex and step, and from release to verdict. For comparison,
-/// it measures a bare step on the same core. This consists of the two passes (kick and drift) of a step
-/// without contacts. No real step can be faster. Slices of the run and of the bare step alternate.
+/// it measures a bare step on the same core. The bare step consists of the two passes (kick and drift) of a
+/// step without contacts. No real step can be faster. Slices of the run and of the bare step alternate.
 
 #include <algorithm>
 #include <cmath>
@@ -134,8 +134,8 @@ RunParameters parameters(const Task& task, std::uint32_t seed) {
 
 struct Measured {
   double per_vertex_step;  ///< [ns]
-  double seconds;          ///< duration of a run, including its array and its release
-  double limit;            ///< cost per vertex and step of the two passes alone [ns]
+  double seconds;          ///< Duration of a run, including its array and its release.
+  double limit;            ///< Cost per vertex and step of the two passes alone [ns].
 };
 
 /// Measures a few runs one after another. Slices of each run alternate with the bare step.

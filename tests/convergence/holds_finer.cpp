@@ -2,9 +2,9 @@
 ///   build/release/tests/holds_finer sweep.h5 [PART PARTS]
 /// Repeats each run that clogged. Puts a vertex into the middle of each edge of the droplet at rest, removes
 /// the anchors by which walls hold the droplet, and lets the droplet move. Prints a line of CSV for each run.
-/// It has the droplet's distance after 600 t0, or its certified rest. For comparison, the line also has the
-/// result for the unchanged number of vertices without the anchors, because a droplet may need the anchors to
-/// stay at rest. PART and PARTS divide the runs among processes.
+/// The line has the droplet's distance after 600 t0, or its certified rest. For comparison, the line also has
+/// the result for the unchanged number of vertices without the anchors, because a droplet may need the
+/// anchors to stay at rest. PART and PARTS divide the runs among processes.
 
 #include <fmt/core.h>
 
@@ -35,7 +35,7 @@ void finish(DropletRun& run) {
   }
 }
 
-/// The middle of each edge. It lies on the cubic through the two ends of the edge and their other neighbours.
+/// The middle of each edge, on the cubic through the two ends of the edge and their other neighbours.
 Eigen::ArrayXd with_middles(const Eigen::Ref<const Eigen::ArrayXd>& coarse) {
   const Eigen::Index n = coarse.size();
   Eigen::ArrayXd fine(2 * n);

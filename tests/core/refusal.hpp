@@ -10,7 +10,7 @@
 
 namespace clog::test {
 
-/// The message with which resolve() refuses these parameters. It is empty if resolve() accepts them.
+/// The message with which resolve() refuses these parameters, or an empty text if resolve() accepts them.
 inline std::string refusal_of(const RunParameters& run) {
   try {
     resolve(run);

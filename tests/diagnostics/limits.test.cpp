@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A simulated host. It is a temporary folder with the files of /proc and /sys that the program reads. They
+/// A simulated host: a temporary folder with the files of /proc and /sys that the program reads. The files
 /// state that 8 GB of memory are available.
 class HostLimits : public testing::Test {
  protected:
@@ -74,8 +74,8 @@ TEST_F(HostLimits, AreNoLessThanNothing) {
 }
 
 TEST_F(HostLimits, AreSeenFromWithinAContainer) {
-  // In a container the control group of the process is mounted as the root. Its path in /proc/self/cgroup is
-  // the path on the host, or a path outside the mounted group.
+  // In a container the control group of the process is mounted as the root. The group's path in
+  // /proc/self/cgroup is the path on the host, or a path outside the mounted group.
   write("sys/fs/cgroup/cpu.max", "50000 100000\n");
   for (const char* path : {"0::/\n", "0::/kubepods/pod1\n", "0::/../other\n"}) {
     write("proc/self/cgroup", path);

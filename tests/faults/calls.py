@@ -15,8 +15,8 @@ LISTS = ["lin(0,1,3)", "lin(0,1,-3)", "lin(0,1,1e9)", "lin(0,1)", "lin(nan,1,3)"
 TEXTS = ["", " ", "auto", "saturated", "dp", "sp", "none", "yes", "=", "a=b", "--", "-", "#", "%", "%s%n", "x" * 300,
          "é", "\t", "a\nb", "\x1b[31mred", "\r", "\x7f", "\u202e", "nowhere.h5", ".", "/dev/null", "/", "~"]
 NOT_UTF_8 = [b"\xff\xfe", b"\xc3", b"1\x80", b"\xed\xa0\x80"]
-# Settings with which runs take a second. They include all values that could make a run long, and mistakes never change
-# them.
+# Settings with which runs take a second. The settings include all values that could make a run long, and mistakes never
+# change these values.
 SHORT = {"max-time": "0.5", "vertices": "32", "box": "13", "seeds": "1"}
 NAMES_OF_FILES = {"output", "frames", "obstacles", "write-obstacles"}
 OWN_OPTIONS = re.compile(r"^  --([a-z-]+)( arg)?", re.MULTILINE)

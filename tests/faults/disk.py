@@ -47,7 +47,8 @@ def may_mount(folder):
 
 
 def may_limit_memory():
-    """Whether memory can be limited. It cannot with sanitizers, which map more memory than any machine has."""
+    """Whether memory can be limited. A limit is impossible for programs with sanitizers, which map more memory than any
+    machine has."""
     return subprocess.run(command("clogfit", "--version"), capture_output=True,
                           preexec_fn=limit_memory(ENOUGH_MEMORY)).returncode == 0
 
@@ -87,7 +88,7 @@ class Faults:
         self.sweep_and_go_on(case, prepare=limit_memory(size), exit_codes={0, 2, LOADER_GAVE_UP})
 
     def sweep_and_go_on(self, case, prepare=None, make_room=lambda: None, exit_codes=frozenset({0, 2})):
-        """Runs a sweep on a full disk. Then makes room, and runs the same command again."""
+        """Runs a sweep on a full disk, and then runs the same command again with enough room."""
         run(case, "clogsweep", *self.sample.sweep, prepare=prepare, exit_codes=exit_codes)
         finished = finished_rows(case)
         make_room()

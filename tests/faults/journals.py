@@ -1,5 +1,5 @@
-"""Makes valid journals with wrong content. They come from another sweep or version, or contain rows and snapshots that
-no run has made."""
+"""Makes valid journals with wrong content. The records come from another sweep or version, or contain rows and
+snapshots that no run has made."""
 
 import struct
 import zlib
@@ -11,7 +11,7 @@ from launch import run
 from metadata import JOURNAL, STOPPED, Stopped
 from samples import FILE, REPORTS, VERIFY, check_complete, in_child, results, stored_rows
 
-# Settings of other sweeps. Their journals do not belong to this sweep.
+# Settings of other sweeps. The journals of these sweeps do not belong to this sweep.
 FOREIGN = ["max-time=9000", "vertices=48", "box=25"]
 FILE_HEADER = 24
 RECORD_HEADER = struct.Struct("<QII")  # the size and CRC-32 of row and snapshot, and a magic word

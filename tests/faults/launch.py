@@ -67,7 +67,7 @@ def run(case, name, *arguments, prepare=None, ranks=None, exit_codes=EXIT_CODES,
 
 
 def title(name, arguments):
-    """The name under which findings are counted. It is the program with its subcommand, such as clogsweep status."""
+    """The name under which findings are counted: the program with its subcommand, such as clogsweep status."""
     first = os.fsdecode(arguments[0]) if arguments else ""
     return f"{name} {first}" if first in SUBCOMMANDS else name
 

@@ -9,7 +9,7 @@ import time
 from support import children_of
 
 # Neither limit depends on how busy the machine is.
-CPU_SECONDS = 100  # limit for all processes of a program together; a sweep with sanitizers needs about 30
+CPU_SECONDS = 100  # Limit for all processes of a program together; a sweep with sanitizers needs about 30.
 IDLE_SECONDS = 100  # Limit on the time in which all processes wait. Waiting for a processor or a disk does not count.
 LOOK_SECONDS = 1
 BUSY = {"R", "D"}  # states of processes that run, or wait for a processor or a disk
@@ -37,8 +37,8 @@ def kill(pids):
 
 
 def status(folder):
-    """The state of a process or thread, and its processor time including that of its ended children. They are Z and 0
-    if it has ended."""
+    """The state of a process or thread, and its processor time including that of its ended children. For an ended
+    process these are Z and 0."""
     try:
         fields = (folder / "stat").read_text().rpartition(")")[2].split()
     except (FileNotFoundError, ProcessLookupError):
@@ -59,7 +59,7 @@ def is_alive(pid):
 
 class Limits:
     """Distinguishes processes that hang from processes that a busy machine slows down. Among slow processes at least
-    one always has work. Processes that hang all wait, or use too much processor time."""
+    one always has work. Processes that hang either all wait, or use too much processor time."""
 
     def __init__(self):
         self.idle_seconds = 0

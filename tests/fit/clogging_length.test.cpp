@@ -116,8 +116,8 @@ TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
 
 TEST(CloggingLength, IntervalsCoverTheTruthWhereRunsAreCensoredAfterSomeDistance) {
   // In these samples a quarter to nearly all of the runs have clogged. The coverage in 20000 samples has a
-  // standard error of 0.0015. The true coverage fluctuates because the number of clogs is a whole number,
-  // most if few clogs are expected (docs/explanation/statistics.md).
+  // standard error of 0.0015. The true coverage fluctuates because the number of clogs is a whole number. The
+  // fluctuation is largest if few clogs are expected (docs/explanation/statistics.md).
   std::mt19937_64 engine(2);
   std::exponential_distribution<double> distance(1);
   for (const double share : {0.25, 0.5, 0.75, 0.95}) {

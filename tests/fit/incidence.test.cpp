@@ -22,8 +22,8 @@ const std::vector<CompetingEnd> twenty_runs = {by(1, 1),  by(1, 2),  by(2, 2),  
                                                going(7),  by(2, 8),  by(1, 9),  by(2, 10), by(2, 10),
                                                going(11), by(1, 12), going(13), by(2, 14), by(1, 15)};
 
-/// The expected values come from statsmodels 0.13.5, CumIncidenceRight(time, status). Its errors are NaN at
-/// the last distance, where all runs have ended.
+/// The expected values come from statsmodels 0.13.5, CumIncidenceRight(time, status). The errors from
+/// statsmodels are NaN at the last distance, where all runs have ended.
 TEST(CumulativeIncidence, IsTheReferenceAnswer) {
   struct Expected {
     double distance, probability, error;

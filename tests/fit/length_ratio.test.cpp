@@ -13,8 +13,8 @@
 namespace clog::fit {
 namespace {
 
-/// Draws pairs of distances. Both follow exponential laws and have some clogs in common (Marshall and Olkin):
-/// some places hold both droplets of a pair, and other places hold only one of them.
+/// Draws pairs of distances. Both distances of a pair follow exponential laws and have some clogs in common
+/// (Marshall and Olkin): some places hold both droplets of a pair, and other places hold only one of them.
 std::vector<Pair> drawn_pairs(std::mt19937& engine, int number, double share, double ratio) {
   const double common_rate = share / std::max(1.0, ratio);
   const auto draw = [&](double rate) {

@@ -19,7 +19,7 @@ TEST(Migration, IsTheRatioOfTheSums) {
 TEST(Migration, HasTheErrorThatEnsemblesScatterBy) {
   // There are 2000 ensembles of 20 runs. Distances are from 5 to 50, and the displacements scatter by 2 about
   // the slope -0.3. The mean squared error of the slope must equal the mean of the squared standard errors to
-  // 5 %. This is the error of the linear approximation for 20 runs.
+  // 5 %. This tolerance is the error of the linear approximation for 20 runs.
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> distance(5, 50);
   std::normal_distribution<double> noise(0, 2);

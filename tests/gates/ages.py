@@ -16,7 +16,7 @@ NOTE = re.compile(r"\]\(\.\./notes/(([\d-]{10})-[\w-]+)\.md\)")
 
 
 def same_now(link, date):
-    """The pictures that the linked note found unchanged. There are none if the note is not later than `date`."""
+    """The pictures that the linked note found unchanged. The set is empty if the note is not later than `date`."""
     if not link or link[2] <= date:
         return set()
     with open(known.ROOT / f"docs/notes/{link[1]}.csv", newline="") as file:

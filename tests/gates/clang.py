@@ -47,8 +47,8 @@ def compile_commands():
 
 
 def source_of(header, sources):
-    """A source that includes this header. It is the source with the same name, or else the first that includes the
-    header. None if no source does."""
+    """A source that includes this header: the source with the same name, or else the first that includes the header.
+    None if no source includes it."""
     path = pathlib.PurePath(header)
     line = f'"{path.relative_to("include")}"' if path.parts[0] == "include" else f'{path.name}"'
     including = [source for source in sources if line in (known.ROOT / source).read_text()]
@@ -57,8 +57,8 @@ def source_of(header, sources):
 
 
 def chosen(sources, most):
-    """Chooses at most this number of sources. It chooses among the sources that changed or that include a changed
-    header, and prints the sources that it leaves out."""
+    """Chooses at most this number of the sources that changed or that include a changed header. Prints the sources that
+    it leaves out."""
     answer = known.changed()
     if answer is None:
         print(f"what changed is not known: all {len(sources)} sources are candidates")
@@ -87,7 +87,7 @@ def compiler_words(source, command):
 def tidy_words(source, command):
     words = ["clang-tidy", "--quiet", "--warnings-as-errors=*", "-p", BUILD, known.ROOT / source]
     done = subprocess.run(words, cwd=known.ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    # clang-tidy also counts warnings there that it does not show, so the standard error is used only after a failure.
+    # The standard error also counts warnings that clang-tidy does not show, so it is printed only after a failure.
     return source, done.returncode, done.stdout or (done.stderr if done.returncode else "")
 
 

@@ -18,8 +18,8 @@ def git(*arguments):
 
 
 def files(*patterns):
-    """The files that match these patterns (such as `*.md`), relative to the root. They are the files in git, and new
-    files that git does not ignore."""
+    """The files that match these patterns (such as `*.md`), relative to the root: the files in git, and new files that
+    git does not ignore."""
     listed = git("ls-files", "-z", "--cached", "--others", "--exclude-standard", "--", *patterns)
     if listed is None:
         sys.exit(f"{ROOT} is no git repository: which files to look at is not known")

@@ -2,8 +2,8 @@
 """Checks the spelling of prose with aspell: *.md, comments, docstrings, and messages of programs. The spelling is
 British, with -ise.
 
-Correct words that aspell does not know are in words.txt. Words that look like code are left out. These are `quoted`
-words, words with digits, underscores, slashes or equals signs, and words in CamelCase or CAPITALS.
+Correct words that aspell does not know are in words.txt. Words that look like code are left out. Such words are
+`quoted`, are in CamelCase or CAPITALS, or contain digits, underscores, slashes or equals signs.
 """
 
 import ast

@@ -50,8 +50,8 @@ def includes(root, layers):
 
 
 def circle_of(uses):
-    """A circle of names in which each name uses the next one. It is empty if there is none. @param uses  the names that
-    each name uses"""
+    """A circle of names in which each name uses the next one, or nothing if there is no circle. @param uses  the names
+    that each name uses"""
     try:
         graphlib.TopologicalSorter(uses).prepare()
     except graphlib.CycleError as error:

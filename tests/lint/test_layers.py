@@ -1,4 +1,4 @@
-"""Tests with small source trees which includes layers.py refuses.
+"""Tests on small source trees that layers.py refuses forbidden includes.
 
     tests/lint/test_layers.py
 """

@@ -1,5 +1,5 @@
-"""Tests jobs/mpi-settings.sh. It must set the variables of each version of Open MPI, but not the variables that the
-user has set."""
+"""Tests that jobs/mpi-settings.sh sets the variables of each version of Open MPI, but not the variables that the user
+has set."""
 
 import os
 import pathlib

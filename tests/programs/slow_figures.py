@@ -55,7 +55,8 @@ class Figures(test_figures.Drawn):
             for point, (_, row) in zip(drawn[-len(rows[sweep]):], rows[sweep].iterrows(), strict=True):
                 for column in ("largest_shape_parameter", "largest_shape_parameter_at", "smallest_relative_speed", "largest_relative_speed"):
                     self.assertEqual(float(point[column]), row[column])
-        # The stored path then does not belong to the sweep's row. So the run is repeated, or refused with --draw-only.
+        # After this exchange, the stored path does not belong to the sweep's row. So the run is repeated, or refused
+        # with --draw-only.
         way = self.folder / self.PLACE / "runs" / "vertices-1.h5"
         way.with_name("vertices-0.h5").replace(way)
         self.refuse_analysis("figures", "B1", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["vertices-0.h5", "not there"])

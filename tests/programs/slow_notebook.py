@@ -1,4 +1,4 @@
-"""Runs the notebook of the gallery. Its cells must succeed and print the stored outputs.
+"""Runs the notebook of the gallery. The cells must succeed and print the stored outputs.
 
 Numbers may differ, because they differ between compilers (docs/notes/2026-11-23-compilers.md).
 """

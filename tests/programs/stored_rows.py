@@ -1,5 +1,5 @@
-"""Changes results in a sweep's file, and makes the checksums correct again. This is a second implementation of the
-format, in Python."""
+"""Changes results in a sweep's file, and makes the checksums correct again. The module is a second implementation of
+the format, in Python."""
 
 import zlib
 

@@ -27,26 +27,27 @@ MPIRUN = ROOT / "tests" / "mpirun.sh"
 # minutes.
 LONGEST = 1500
 
-# Settings of small droplets in a small box. Their runs take some hundredths of a second.
+# Settings of small droplets in a small box. Runs with these settings take some hundredths of a second.
 SMALL = ["vertices=64", "box=20", "obstacle-density=saturated"]
 QUICK = [*SMALL, "max-time=60"]
 # A sweep that tests share, see shared_sweep(). Each of its two parameter sets has two droplets. Some of the droplets
 # clog.
 FEW = [*QUICK, "line-tension=1,3", "seeds=1..2"]
-# Long runs with several snapshots each. There are four snapshots per second.
+# Long runs with several snapshots each, four per second.
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
          "--report-seconds=0.1", "--output", "s.h5"]
 FEW_LONG = [word.replace("1..6", "1") for word in SWEEP]
-# Two runs that take seconds each. Both are in progress at the first snapshot.
+# Two runs that take seconds each. At the first snapshot both runs are in progress.
 SLOW = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05", "max-time=2e4", "seeds=1",
         "--report-seconds=0.1", "--output", "s.h5"]
-# The same runs for hours. They are in progress until something ends them, even if the test has to wait long for the
-# processor.
+# The same runs, but they take hours. The runs are in progress until something ends them, even if the test has to wait
+# long for the processor.
 ENDLESS = [word.replace("max-time=2e4", "max-time=1e9") for word in SLOW]
 # The obstacles are so close to each other that for some seeds (53 and 64 of 51..70) there is no void for the release of
 # the droplet.
 BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3", "obstacle-gap=0.06", "self-contact-range=0.1"]
-# Columns that may differ when the same run is recomputed. They state who computed it, and how long this took.
+# Columns that may differ when the same run is recomputed. The columns state who computed the run, and how long this
+# took.
 TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]
 
 
@@ -60,8 +61,8 @@ else:
 
 
 def shared_sweep(*arguments, program="clogsweep"):
-    """The file that the program writes for these arguments. It is computed once for all suites of a CTest run, and it
-    is read-only. A test that changes the file has to copy it first."""
+    """The file that the program writes for these arguments. The file is computed once for all suites of a CTest run,
+    and is read-only. A test that changes the file has to copy it first."""
     command = [program, *map(str, arguments)]
     path = SHARED / (hashlib.sha256("\0".join(command).encode()).hexdigest()[:16] + ".h5")
     with open(path.with_suffix(".lock"), "w") as lock:
@@ -170,8 +171,8 @@ class SweepTest(ProgramTest):
         return children
 
     def until_in_time(self, attempt):
-        """Repeats attempt() until it returns something. It returns nothing if the sweep ended too early for the test,
-        which may happen on a busy machine."""
+        """Repeats attempt() until it returns something. attempt() returns nothing if the sweep ended too early for the
+        test, which may happen on a busy machine."""
         for _ in range(20):
             if outcome := attempt():
                 return outcome

@@ -116,8 +116,7 @@ class Programs(ProgramTest):
             with h5py.File(self.folder / name) as file:
                 self.assertEqual(file.attrs["version"].decode(), version)
                 self.assertEqual(file.attrs["git_describe"].decode(), described)
-                # The attribute is a hash, followed by -dirty if the sources had uncommitted changes. It may also be
-                # `unknown`.
+                # The attribute is a hash, followed by -dirty if the sources had uncommitted changes, or `unknown`.
                 commit = file.attrs["git_hash"].decode()
                 self.assertRegex(commit, f"^({HASH}(-dirty)?|unknown)$")
         with h5py.File(self.folder / "s.h5") as file:

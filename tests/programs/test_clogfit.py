@@ -100,7 +100,7 @@ class Fit(ProgramTest):
         self.refuse("clogfit", "sweep.h5", "--pool=max-time,seeds", words=["invalid --pool=max-time,seeds", "runs that differ in seeds"])
 
     def test_it_gives_the_reference_answer(self):
-        # This is the classic leukaemia trial. It has 21 runs, of which 9 end, and a total distance of 359.
+        # The classic leukaemia trial has 21 runs, of which 9 end, and a total distance of 359.
         self.sweep("seeds=1..21", *FAR)
         times = [6, 6, 6, 6, 7, 9, 10, 10, 11, 13, 16, 17, 19, 20, 22, 23, 25, 32, 32, 34, 35]
         clogged = [1, 1, 1, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0]
@@ -137,7 +137,7 @@ class Fit(ProgramTest):
 
     def expected_endings(self, table, dwell):
         """The distance of each run until its droplet rested longer than `dwell`, and whether the droplet rested so
-        long. Both are computed only from the table."""
+        long. Both results are computed only from the table."""
         for row, dwells in zip(table.itertuples(), self.longest_first(table)):
             stood = [place for length, place in reversed(dwells) if length > dwell]
             is_clogged = row.status == "clogged"
@@ -351,8 +351,8 @@ class Fit(ProgramTest):
         self.assertEqual([group[name] for name in ("runs", "clogs", "broken", "flowing", "squeezed", "other")], [10, 4, 4, 2, 4, 0])
         self.assertEqual([group[name] for name in ("total_distance", "clogging_length", "break_up_length")], [55, 55 / 4, 55 / 4])
         self.assertTrue(group["break_up_length_lower"] < 55 / 4 < group["break_up_length_upper"])
-        # Computed by hand. Each end adds the value of P just before it, divided by the number of runs at risk. This is
-        # 1/10 until the first run is censored at 5, and 6/10 of 1/5 after that.
+        # Computed by hand: at each end, the incidence grows by the P just before the end, divided by the number of runs
+        # at risk. The growth is 1/10 until the first run is censored at 5, and then 6/10 of 1/5.
         broken = [(step["distance"], round(step["probability"], 12)) for step in group["incidence"]["broken"]]
         self.assertEqual(broken, [(2, 0.1), (3, 0.2), (7, 0.32), (8, 0.44)])
         clogged = [round(step["probability"], 12) for step in group["incidence"]["squeezed"]]

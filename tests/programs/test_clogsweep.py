@@ -15,7 +15,7 @@ import pandas
 import stored_rows
 from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest, SweepTest
 
-# Columns that are no results. They state where and how fast a row was computed.
+# Columns that are no results. These columns state where and how fast a row was computed.
 CIRCUMSTANCES = ["wall_seconds", "processor_seconds", "rank", "host"]
 # A library that writes to the file FORK_LOG which process has forked, and which has started MPI.
 FORK_LOGGER = r"""

@@ -46,7 +46,7 @@ def csv(scale=1.0):
 class Walls(Analysis):
     def slide(self, angle, tolerance):
         """Without friction, a droplet slides along a wall at its terminal speed times the cosine of the angle between
-        wall and flow. Its speed along the flow is the terminal speed times the square of the cosine."""
+        wall and flow. The droplet's speed along the flow is the terminal speed times the square of the cosine."""
         tangent = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
         for radius, spacing, vertices in ((0.05, 0.0167, 128), (0.1, 0.0333, 64)):
             normal = np.array([-tangent[1], tangent[0]])
@@ -483,7 +483,7 @@ class WrongDrawings(Analysis):
         self.assertIn("skipped: 2 LINE", told)
         with mock.patch.dict(sys.modules, {"shapely": None, "shapely.ops": None, "shapely.geometry": None}):
             told = self.said_of("other", circles=[(800, 300), (1600, 300)], lines=lines)
-        # These are lines of the device's edge.
+        # The lines are parts of the device's edge.
         self.assertIn("2 outlines or lines as long as the device are taken for walls", told)
         self.assertIn("skipped: 11 LINE", told)
         self.assertIn("install python3-shapely", told)
@@ -564,7 +564,7 @@ def record(kind, form=0, data=b""):
 
 
 def real(value):
-    """A number in GDSII. It consists of a sign, a power of 16, and 56 bits."""
+    """A number in GDSII, which consists of a sign, a power of 16, and 56 bits."""
     power = 0
     if value == 0:
         return bytes(8)

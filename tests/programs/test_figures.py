@@ -233,8 +233,8 @@ class Drawn(Analysis):
         self.assertIn("command_line: clogsweep", page)
 
     def assert_curves(self, names, *more):
-        """Checks figures with curves. @param names  by the name of each figure with numbers of clogfit, its sweep and
-        its quantity"""
+        """Checks figures with curves. @param names  for each figure with numbers of clogfit, by its name: the sweep and
+        the quantity"""
         done = self.figures(*names, *more, "--ranks", 1)
         self.assertNotIn("Warning", done.stderr)
         for name in [*names, *more]:
@@ -533,7 +533,7 @@ class Pictures(Analysis):
             self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, "--frames", film, "--output", "r.h5", words=["own4.", "it exists"])
         after = self.snapshot()
         self.assertEqual({name: after[name] for name in before}, before)
-        # The command replaces an earlier page or picture of its own.
+        # The command may replace a page or picture that it made earlier.
         self.write("report.html", "<!DOCTYPE html>\n<title>an earlier one</title>\n")
         self.draw("report", "s.h5", "--output", "report.html", "--programs", BIN, "--examples", 0)
         for _ in range(2):

@@ -18,7 +18,7 @@ from clogsweep.drawing import measured  # noqa: E402
 from clogsweep.results import fit  # noqa: E402
 from clogsweep.tools.errors import UserError  # noqa: E402
 
-# Times of survival after leukaemia, with and without maintenance chemotherapy. They are the data set `aml` of R's
+# Times of survival after leukaemia, with and without maintenance chemotherapy. The times are the data set `aml` of R's
 # package survival 3.5-3.
 AML = {"Maintained": "9 1, 13 1, 13 0, 18 1, 23 1, 28 0, 31 1, 34 1, 45 0, 48 1, 161 0",
        "Nonmaintained": "5 1, 5 1, 8 1, 8 1, 12 1, 16 0, 23 1, 27 1, 30 1, 33 1, 43 1, 45 1"}

@@ -1,5 +1,5 @@
-"""Tests that --until-precision adds seeds where lambda is not precise enough. It must add the same seeds after any
-interruption."""
+"""Tests that --until-precision adds seeds where lambda is not precise enough. The sweep must add the same seeds after
+any interruption."""
 
 import json
 import re

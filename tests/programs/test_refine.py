@@ -1,5 +1,5 @@
-"""Tests that python3 -m clogsweep refine adds values and seeds where the fitted curve needs them. It must add the same
-values and seeds after any interruption."""
+"""Tests that python3 -m clogsweep refine adds values and seeds where the fitted curve needs them. The command must add
+the same values and seeds after any interruption."""
 
 import contextlib
 import functools

@@ -24,7 +24,7 @@ class Resumed(SweepTest):
         return (int(found[1]), int(found[2])) if found else (0, 0)
 
     def stop_with_unfinished_runs(self, sweep):
-        """Stops the sweep while a run has a snapshot. This may take several attempts. @return the rows of unfinished
+        """Stops the sweep while a run has a snapshot, which may take several attempts. @return the rows of unfinished
         runs"""
         for attempt in range(100):
             # Each attempt runs longer than the one before, because on a busy machine a snapshot takes longer.

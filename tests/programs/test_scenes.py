@@ -1,5 +1,5 @@
-"""Tests sweeps of channels, flat walls and user-supplied circles. They have the same keys as single runs, and a row for
-each run."""
+"""Tests sweeps of channels, flat walls and user-supplied circles. Such sweeps have the same keys as single runs, and a
+row for each run."""
 
 import json
 import math

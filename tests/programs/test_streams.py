@@ -168,7 +168,8 @@ class Files(SweepTest):
                                      (["clogfit", "drag", "pipe"], -signal.SIGTERM)):
             with self.subTest(arguments):
                 process = subprocess.Popen([str(BIN / arguments[0]), *arguments[1:]], cwd=self.folder, stderr=subprocess.PIPE)
-                writer = os.open(self.folder / "pipe", os.O_WRONLY)  # This returns when the program has opened its end.
+                # The call returns when the program has opened its end.
+                writer = os.open(self.folder / "pipe", os.O_WRONLY)
                 process.terminate()
                 process.communicate(timeout=LONGEST)
                 os.close(writer)

@@ -4,8 +4,8 @@
     tests/reference/compare_rows.py BEFORE AFTER        (folders of the programs)
 
 In each case both builds make the same small run. Everything in the two files must be the same: datasets, columns, and
-attributes with their units and meanings. Only the circumstances of a run may differ. In at least one case, every key of
-AFTER's schema has a value other than its default. Every word of every key is also used. Exit code 1: something differs,
+attributes with their units and meanings. Only the circumstances of a run may differ. Every key of AFTER's schema has a
+value other than its default in at least one case, and every word of every key is used. Exit code 1: something differs,
 or no case covers a key.
 """
 
@@ -23,7 +23,7 @@ import time
 import h5py
 import numpy as np
 
-# These are not compared: columns, attributes of the root ("@"), and checksums of such columns.
+# The comparison leaves out columns, attributes of the root ("@"), and checksums of such columns.
 CIRCUMSTANCES = {*(f"runs/{name}" for name in ("wall_seconds", "processor_seconds", "rank", "host", "attempt")), "row_checksums",
                  *(f"@{name}" for name in ("version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "checksums",
                                            "start_time", "command_line", "sessions", "activity", "parts"))}

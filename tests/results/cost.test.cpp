@@ -196,9 +196,9 @@ double coverage(int num_sets) {
 }
 
 TEST(SweepCost, CoversTheTruthWhereShortAndLongRunsMix) {
-  EXPECT_GT(coverage(1), 0.8);   // the only set has the mixture
-  EXPECT_GT(coverage(3), 0.9);   // each kind of run is a set
-  EXPECT_GT(coverage(24), 0.9);  // one run of each set is known
+  EXPECT_GT(coverage(1), 0.8);   // The only set has the mixture.
+  EXPECT_GT(coverage(3), 0.9);   // Each kind of run is a set.
+  EXPECT_GT(coverage(24), 0.9);  // One run of each set is known.
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ sweep::Plan plan_of_both(const Parameter& parameter) {
   return sweep::Plan(settings);
 }
 
-/// The two runs. They come from two sweeps, because a list of values cannot contain words.
+/// The two runs. The runs come from two sweeps, because a list of values cannot contain words.
 std::vector<RunParameters> both_runs(const Parameter& parameter) {
   sweep::Settings settings = settings_for(parameter);
   const RunParameters one = sweep::Plan(settings).task(0);

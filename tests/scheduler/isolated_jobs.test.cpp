@@ -51,7 +51,7 @@ int oom_score_adj() {
   return score;
 }
 
-/// A job that crashes in its last slice if its task is one of `crashes`. Its row states which process
+/// A job that crashes in its last slice if its task is one of `crashes`. The job's row states which process
 /// computed it.
 class CrashingJob final : public SyntheticJob {
  public:
@@ -126,7 +126,7 @@ void a_crash_fails_its_task_and_no_other(const scheduler::Communicator& ranks,
     expect(!of_rank.contains(getpid()), "no rank computes itself");
     num_processes += of_rank.size();
   }
-  // Every task that crashes is tried twice. It is tried once more if its rank is doubted.
+  // Every task that crashes is tried twice, and once more if its rank is doubted.
   expect(num_processes <= ranks.size() + 3 * crashes.size(), "a process serves many tasks");
 }
 

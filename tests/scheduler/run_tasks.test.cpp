@@ -62,7 +62,7 @@ void a_stop_ends_running_tasks_as_interrupted(const scheduler::Communicator& ran
 }
 
 void running_tasks_report_and_go_on_from_there(const scheduler::Communicator& ranks) {
-  // The sweep is stopped at its first report. It resumes from the last report.
+  // The sweep is stopped at its first report, and resumes from the last report.
   std::map<std::int64_t, std::vector<std::byte>> snapshots;
   int num_reports = 0;
   bool stop = false;
@@ -151,7 +151,7 @@ sweep::JobFactory failing_on(const scheduler::Communicator& ranks,
 struct Outcome {
   scheduler::SweepEnd end;
   std::map<std::int64_t, std::string> status;     // by task
-  std::map<std::int64_t, std::int64_t> attempts;  // attempts that count, by task
+  std::map<std::int64_t, std::int64_t> attempts;  // Attempts that count, by task.
   std::map<std::int64_t, int> starts;
   std::set<int> set_aside;
 };

@@ -10,10 +10,10 @@ namespace clog::soundness {
 
 /// The behaviour of a droplet that has not clogged, at the end of its run.
 enum class Ending {
-  moving,      ///< the droplet travels: the mean speed of its centre is above `slowest_travel` V_t
-  decaying,    ///< the droplet has stopped, and its kinetic energy is falling
-  steady,      ///< the droplet has stopped, but its interface creeps on
-  chattering,  ///< the droplet has stopped, but its vertices shake about their places
+  moving,      ///< The droplet travels: the mean speed of its centre is above `slowest_travel` V_t.
+  decaying,    ///< The droplet has stopped, and its kinetic energy is falling.
+  steady,      ///< The droplet has stopped, but its interface creeps on.
+  chattering,  ///< The droplet has stopped, but its vertices shake about their places.
 };
 const char* name(Ending ending);
 
@@ -24,11 +24,13 @@ const char* name(Ending ending);
 ///   chattering  coherence < least_coherence: vertices move a much shorter distance than their speed permits
 ///   steady      none of the above
 struct Tail {
-  double mean_speed = 0;  ///< distance between the centre's first and last places, divided by the time [V_t]
-  double level = 0;       ///< median of log10(E_k/E_t) in the last quarter
-  double fall = 0;  ///< difference between the medians of log10(E_k/E_t) in the first and in the last quarter
-  double last_fall = 0;  ///< the same difference between the third and the last quarter
-  double band = 0;  ///< width of log10(E_k/E_t) in the last quarter: its 95 % quantile minus its 5 % quantile
+  double mean_speed = 0;  ///< Distance between the centre's first and last places, divided by the time [V_t].
+  double level = 0;       ///< Median of log10(E_k/E_t) in the last quarter.
+  double fall =
+      0;  ///< Difference between the medians of log10(E_k/E_t) in the first and in the last quarter.
+  double last_fall = 0;  ///< The same difference between the third and the last quarter.
+  double band =
+      0;  ///< Width of log10(E_k/E_t) in the last quarter: its 95 % quantile minus its 5 % quantile.
   /// The path of the vertices between two samples, divided by the path that follows from E_k.
   double coherence = 0;
 
@@ -56,10 +58,10 @@ class TailRecorder {
   double terminal_speed_;
   std::vector<double> log_energy_;
   double time_ = 0;
-  double expected_way_ = 0;      // since the last place [sigma]
-  double sum_expected_way_ = 0;  // until the last place [sigma]
+  double expected_way_ = 0;      // Since the last place [sigma].
+  double sum_expected_way_ = 0;  // Until the last place [sigma].
   double sum_way_ =
-      0;  // root mean square over the vertices, summed over the intervals between places [sigma]
+      0;  // Root mean square over the vertices, summed over the intervals between places [sigma].
   std::optional<DropletState> first_, last_;
 };
 

@@ -50,12 +50,13 @@ constexpr const char* usage =
 The exit code is 0 when all were sound, 1 when one was not, 75 when it was stopped before it knew.
 )";
 
-/// Number of checks of a run between two looks at its droplet. They take 2 t0 at the default time step.
+/// Number of checks of a run between two looks at its droplet. These checks take 2 t0 at the default time
+/// step.
 constexpr int checks_per_look = 32;
-/// The ending of a run is judged in its last part. This is the length of that part, as a fraction of the run.
+/// Length of the last part of a run, as a fraction of the run. The ending of the run is judged in this part.
 constexpr double tail_part = 0.2;
 
-/// CPU time of this thread [s]. It excludes other work on the machine.
+/// CPU time of this thread [s], which excludes other work on the machine.
 double cpu_seconds() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

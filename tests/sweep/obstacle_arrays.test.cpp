@@ -83,7 +83,8 @@ int num_sockets(pid_t process) {
   return number;
 }
 
-/// Another process. It works and reports. Then it waits until the test kills it, so it cannot clean up.
+/// Another process. The process works and reports. Then it waits until the test kills it, so it cannot clean
+/// up.
 class OtherProcess {
  public:
   /// @param work  returns the text that the process reports
@@ -333,7 +334,8 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
 }
 
 TEST(RunJob, GivesTheSameRowInASharedArray) {
-  // A run of a droplet that travels far among obstacles. Its outcome does not depend on the last bits.
+  // A run of a droplet that travels far among obstacles. The outcome of the run does not depend on the last
+  // bits.
   const Plan plan(settings_of({{"line-tension", "0.1"},
                                {"obstacle-density", "1"},
                                {"vertices", "64"},

@@ -72,9 +72,9 @@ TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
   EXPECT_GT(num_failed, 0);
 }
 
-/// A snapshot of the task in which `change` has changed the numbers of the dwells. These are a length, a
-/// distance and a beginning for each of eight dwells, and after them the smallest duration of dwells that are
-/// known.
+/// A snapshot of the task in which `change` has changed the numbers of the dwells. The numbers are a length,
+/// a distance and a beginning for each of eight dwells, and after them the smallest duration of dwells that
+/// are known.
 template <class Change>
 std::vector<std::byte> changed_snapshot(const RunParameters& run, Change change) {
   RunJob job(run, 0);

@@ -16,7 +16,7 @@ LEAST_LINEARITY = 0.99
 
 
 def bounds(group: Group) -> tuple[float, float]:
-    """The confidence interval of a clogging length. Its upper end is infinite if no run clogged."""
+    """The confidence interval of a clogging length. The upper end is infinite if no run clogged."""
     return group["clogging_length_lower"], math.inf if group["clogging_length_upper"] is None else group["clogging_length_upper"]
 
 

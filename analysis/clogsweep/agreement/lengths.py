@@ -71,8 +71,9 @@ def peak_moves(groups: list[Group]) -> Finding:
 
 
 def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
-    """The range of line tensions in which squeezed clogs replace wrapped ones. It begins at the largest line tension at
-    which more clogs are wrapped than squeezed, and ends at the next at which more are squeezed."""
+    """The range of line tensions in which squeezed clogs replace wrapped ones. The range begins at the largest line
+    tension at which more clogs are wrapped than squeezed. It ends at the next line tension at which more clogs are
+    squeezed than wrapped."""
     wrapped = max((point["line_tension"] for point in curve if point["wrapped"] > point["squeezed"]), default=math.inf)
     squeezed = [point["line_tension"] for point in curve if point["squeezed"] > point["wrapped"] and point["line_tension"] > wrapped]
     return (wrapped, min(squeezed)) if squeezed else None
@@ -218,7 +219,8 @@ def is_exponential(shop: Workshop) -> Finding:
 
 @statement("appendix C, figure C1", "E_k of a droplet that clogs decays exponentially to the threshold", "C1")
 def energy_decays(shop: Workshop) -> Finding:
-    """Judges the fit of a straight line to ln E_k from 1e10 times the threshold of the clog to the end."""
+    """Judges how well a straight line fits ln E_k at the end of the run, after E_k has fallen to 1e10 times the clog's
+    threshold."""
     run = arrays.energies(shop)[0.3]
     if run.word("status") != "clogged":
         return Finding(DOES_NOT, f"the droplet is {run.word('status')}")

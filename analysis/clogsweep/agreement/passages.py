@@ -1,5 +1,5 @@
 """Judges statements of section 4.1 and of appendices A and B, on measured quantities and on passages through channels.
-These passages contain nothing random, so there are no confidence intervals."""
+Nothing in such a passage is random, so there are no confidence intervals."""
 
 import math
 from typing import Any

@@ -23,7 +23,7 @@ class Finding:
     """What this program finds about a statement.
     @param value  text with numbers and their intervals
     @param variants  verdicts and values of other models
-    @param brief  verdicts of other models"""
+    @param brief  the same verdicts without values"""
 
     verdict: str
     value: str

@@ -10,7 +10,7 @@ from ..results import laboratory
 from ..tools.errors import ProgramFailed, UserError
 from .profiles import Scales
 
-# Values for quantities that clogfit units requires. They serve commands whose user did not give these quantities.
+# Values for quantities that clogfit units requires. The values serve commands whose user did not give these quantities.
 UNKNOWN = {"diameter": "1 mm", "angle": "90 deg"}
 
 

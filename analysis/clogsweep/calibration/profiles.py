@@ -15,7 +15,7 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
 FEWEST_FRAMES = 3
-# Only frames within this distance from the orifice are used of a simulated passage that is calibrated, as in an
+# If a simulated passage is calibrated, only its frames within this distance from the orifice are used, as in an
 # experiment [sigma].
 FARTHEST_FRAME = 1.5
 FRAMES_PER_DIAMETER = 20
@@ -27,13 +27,13 @@ class Profile(NamedTuple):
     """A droplet in a channel, frame by frame. The arrays have equal length. The frames of a simulation are in the order
     of time."""
 
-    h: Numbers  # distance of the centre of mass from the orifice, positive downstream [sigma]
-    speed: Numbers  # along the flow [v_t]
-    shape: Numbers  # A = perimeter^2/(4 pi area); NaN where unknown
+    h: Numbers  # Distance of the centre of mass from the orifice, positive downstream [sigma].
+    speed: Numbers  # Along the flow [v_t].
+    shape: Numbers  # A = perimeter^2/(4 pi area); NaN where unknown.
 
 
 class Scales(NamedTuple):
-    """Columns in laboratory units are divided by these [m, m/s]. A scale is 0 if it is unknown."""
+    """Divisors that convert columns in laboratory units to reduced units [m, m/s]. A divisor is 0 if it is unknown."""
 
     diameter: float = 0
     speed: float = 0
@@ -131,8 +131,8 @@ def read_run(path: str) -> tuple[Profile, np.void]:
 
 
 def at(profile: Profile, h: Numbers) -> Profile:
-    """The profile at the places h, interpolated linearly. Each value belongs to the first time at which the droplet
-    reaches h. It is NaN if the droplet never reaches h."""
+    """The profile at the places h, interpolated linearly. If the droplet reaches h several times, the first time
+    counts. Values are NaN where the droplet never reaches h."""
     first = profile.h >= np.maximum.accumulate(profile.h)
     return Profile(h, *(np.interp(h, profile.h[first], values[first], left=math.nan, right=math.nan) for values in profile[1:]))
 

@@ -1,10 +1,10 @@
-"""Searches the line tension and the near-wall drag of the simulation that is closest to a measured passage.
+"""Searches for the line tension and the near-wall drag with which the simulation is closest to a measured passage.
 
 Close to a line tension at which the droplet clogs, Delta_v has several minima, each about a percent of Gamma wide. The
-search begins on a coarse grid and descends from its best points by the simplex method. It brackets the line tension at
-which droplets clog, and descends again from several line tensions below this bracket. The distance from the bracket
-doubles from each of these to the next. At the end the search takes Gauss-Newton steps, and stops when neither these nor
-another simplex lower Delta_v further.
+search begins on a coarse grid and descends from its best points by the simplex method. The search then brackets the
+line tension at which droplets clog, and descends again from several line tensions below this bracket. The distance from
+the bracket doubles from each of these to the next. At the end the search takes Gauss-Newton steps, and stops when
+neither these nor another simplex lower Delta_v further.
 """
 
 import itertools
@@ -33,7 +33,7 @@ GRID_DRAGS = np.array([0, 0.01, 0.03, 0.1, 0.3]) * UPPER[1]
 LADDER_DISTANCES = (0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 LADDER_DRAGS = (0.9, 1, 1.1)
 NUM_STARTS = 3
-CLOG_WIDTH = 0.005  # width to which the bracket around this line tension is narrowed, in log Gamma
+CLOG_WIDTH = 0.005  # width to which the bracket around the line tension of a clog is narrowed, in log Gamma
 # Steps of the finite differences, in log Gamma and b_0/b_inf. If no droplet clogs, the residuals are linear over the
 # longest steps.
 LONGEST_STEP = np.array([0.05, 0.01])
@@ -67,7 +67,7 @@ class Calibration(NamedTuple):
     quantities."""
 
     line_tension: float  # [g rho sigma^2]
-    line_tension_error: float  # estimated from the scatter of the frames about the best run
+    line_tension_error: float  # Estimated from the scatter of the frames about the best run.
     near_wall_drag: float  # b_0/b_inf
     near_wall_drag_error: float
     delta_v: float
@@ -89,8 +89,8 @@ class Linearised(NamedTuple):
 
 
 class Search:
-    """The simulations of one profile, found by their places (log Gamma and b_0/b_inf). They run in parallel. A place
-    that was simulated before is seldom simulated again."""
+    """The simulations of one profile, stored by their places (log Gamma and b_0/b_inf). Simulations run in parallel. A
+    place that was simulated before is seldom simulated again."""
 
     def __init__(self, measured: Profile, simulate: Simulation, progress: Callable[[float, float, float], None]) -> None:
         self.measured, self.simulate, self.progress = measured, simulate, progress
@@ -159,8 +159,8 @@ class Search:
         return best, False
 
     def bracket_clog(self, grid: Sequence[Attempt], drag: float) -> tuple[float, float] | None:
-        """log Gamma of a droplet that reaches all frames, and of a slightly stiffer droplet that does not. None if
-        there is no such pair."""
+        """log Gamma of a droplet that reaches all frames, and of a slightly stiffer droplet that does not. The result
+        is None if there is no such pair."""
         brackets = [(softer.place[0], stiffer.place[0]) for softer, stiffer in zip(grid, grid[len(GRID_DRAGS):])
                     if softer.num_never_reached == 0 < stiffer.num_never_reached]
         if not brackets:

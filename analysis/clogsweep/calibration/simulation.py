@@ -65,7 +65,7 @@ class Clogrun:
 
     @contextlib.contextmanager
     def stoppable(self) -> Iterator[None]:
-        """Within this block, a stop signal ends all runs. Their calls then raise Stopped."""
+        """Within this block, a stop signal ends all runs. The calls that started these runs then raise Stopped."""
         def stop(_number: int, _frame: FrameType | None) -> None:
             self.stopping.set()
             for process in list(self.running):

@@ -16,8 +16,8 @@ INTERRUPTED = 75
 
 
 class Progress:
-    """Shows how close the best simulation of each trial is so far, by the trial with the largest deviation. Several
-    threads may report simulations."""
+    """Shows how close the best simulations are so far: the largest deviation among the best simulations of all trials.
+    Several threads may report simulations."""
 
     def __init__(self, num_trials: int) -> None:
         self.best = [(math.inf, 0.0, 0.0)] * num_trials  # Delta_v, Gamma, b_0/b_inf

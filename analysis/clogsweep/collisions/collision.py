@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from ..reading import programs, stored
 
-DIAMETER = 0.3  # of the obstacle [sigma]
+DIAMETER = 0.3  # Diameter of the obstacle [sigma].
 # Distance from the release to the obstacle's centre [sigma]. At this distance the obstacle does not displace the
 # release.
 FALL = 3
@@ -18,7 +18,8 @@ TENSIONS = (0.01, 0.6)
 PRECISION = 0.02
 STEPS = 6  # number of parts into which each sweep divides the range
 
-# The largest tried line tension at which the droplet breaks up, and the next larger one, at which it does not.
+# The largest tried line tension at which the droplet breaks up, and the smallest tried line tension above it, at which
+# the droplet does not break up.
 Threshold = tuple[float | None, float | None]
 
 

@@ -18,21 +18,23 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from .collision import BOX, FALL
 
-# Step between the gaps of the simulated pairs [sigma]. It is a twentieth of the range of gaps that can hold a droplet.
+# Step between the gaps of the simulated pairs [sigma]. The step is a twentieth of the range of gaps that can hold a
+# droplet.
 GAP_STEP = 0.04
 ANGLE_STEP = 3  # [degrees]
-DIAMETER_STEP = 0.1  # step between the mean diameters of the simulated pairs [sigma]
+DIAMETER_STEP = 0.1  # Step between the mean diameters of the simulated pairs [sigma].
 EXIT = 6  # Distance of the exit behind the obstacles [sigma]. Droplets that hang there do not reach the exit.
-LONGEST_FALL = 90  # A droplet that still moves after the time of such a fall at terminal speed counts as free [sigma].
+# Length of a fall [sigma]. A droplet that still moves after the time of this fall at terminal speed counts as free.
+LONGEST_FALL = 90
 # Precision of the half-width within which one obstacle holds a droplet [sigma], and number of parts into which each
 # step of the search divides its bracket.
 OFFSET_PRECISION, OFFSET_STEPS = 0.0001, 6
-SPEED = 0.03  # default terminal speed [sqrt(sigma g)]
+SPEED = 0.03  # Default terminal speed [sqrt(sigma g)].
 SMALLEST_LENGTH = 4  # Predictions below this length were too long by a third and more [sigma].
 # Smallest line tension that causes no warning. At 0.5 up to 42 % of all clogs hang on three obstacles, and at 0.3 up to
 # 85 % (docs/explanation/predicted.md).
 SOFTEST = 1
-ARRAYS, ARRAY_BOX = 4, 60  # number of random arrays in which pairs are counted, and their width [sigma]
+ARRAYS, ARRAY_BOX = 4, 60  # Number of random arrays in which pairs are counted, and their width [sigma].
 
 # Keys that describe the array. All other keys describe the droplet. `obstacle-diameter` describes both.
 OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacles", "lattice", "pitch", "lattice-angle", "box",
@@ -49,11 +51,12 @@ class Array:
 
     area: float  # [sigma^2]
     obstacles: int
-    mean_diameter: float  # of the obstacles [sigma]
-    diameters: Numbers  # mean diameter of the two obstacles of each pair [sigma]
-    separations: Numbers  # distance between the two centres of each pair [sigma]
-    angles: Numbers  # angle between the line through the two centres and the direction across the flow, 0 to 90 [degrees]
-    is_isotropic: bool  # whether all directions of pairs are equally likely, as in random arrays
+    mean_diameter: float  # Mean diameter of the obstacles [sigma].
+    diameters: Numbers  # Mean diameter of the two obstacles of each pair [sigma].
+    separations: Numbers  # Distance between the two centres of each pair [sigma].
+    # Angle between the line through the two centres and the direction across the flow, 0 to 90 [degrees].
+    angles: Numbers
+    is_isotropic: bool  # Whether all directions of pairs are equally likely, as in random arrays.
 
 
 def pairs_of(circles: Numbers, width: float, length: float) -> Iterator[Numbers]:
@@ -121,8 +124,8 @@ class Droplets:
         return {tension: [end in (b"squeezed", b"hybrid") for end in words] for tension, words in ends.items()}
 
     def half_width(self, diameter: float, tension: float) -> float:
-        """The largest offset from an obstacle's centre at which the obstacle holds the droplet [sigma]. It is 0 if the
-        offset is below OFFSET_PRECISION."""
+        """The largest offset from an obstacle's centre at which the obstacle holds the droplet [sigma]. An offset below
+        OFFSET_PRECISION is returned as 0."""
         low, high = 0.0, (1 + diameter) / 2
         while high - low > max(OFFSET_PRECISION, low / OFFSET_STEPS**2):
             offsets = [low + (high - low) * step / OFFSET_STEPS for step in range(OFFSET_STEPS + 1)]
@@ -156,8 +159,8 @@ class Prediction(NamedTuple):
 
     tension: float
     length: float
-    squeezed: float  # if only pairs held droplets
-    wrapped: float  # if only single obstacles held droplets
+    squeezed: float  # Clogging length if only pairs held droplets.
+    wrapped: float  # Clogging length if only single obstacles held droplets.
 
 
 def length_of(rate: float) -> float:

@@ -15,8 +15,8 @@ from ..tools.hints import AnyPath, Column, Group, Numbers
 from . import features, model, points
 
 ALL = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
-# Each cause is the name of clogfit's column with the number of runs that ended by it. The tuple has the columns of its
-# length and of the two ends of the interval.
+# The keys are clogfit's columns with the number of runs that each cause ended. The values are the columns of the
+# cause's length, and of the two ends of its interval.
 CAUSES = {cause: tuple(f"clogging_length_{cause}{end}" for end in ("", "_lower", "_upper")) for cause in ("wrapped", "squeezed", "hybrid", "other")}
 CAUSES["broken"] = ("break_up_length", "break_up_length_lower", "break_up_length_upper")
 

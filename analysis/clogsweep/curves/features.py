@@ -35,8 +35,8 @@ class Peak:
 
 @dataclasses.dataclass(frozen=True)
 class Crossing:
-    """The place at which a curve crosses a length, with its interval. Both are logarithms of the key. The interval ends
-    where the band crosses the length. An end is infinite if it would be beyond the places."""
+    """The place at which a curve crosses a length, with its interval. Place and interval are logarithms of the key. The
+    interval ends where the band crosses the length. An end is infinite if it would be beyond the places."""
 
     place: float
     lower: float
@@ -136,8 +136,8 @@ def find_crossings(curve: Curve, x: Numbers, length: float, confidence: float) -
     for i in np.flatnonzero((above[:-1] < 0) != (above[1:] < 0)):
         is_upward = bool(above[i] < 0)
         before, after = (above + half, above - half) if is_upward else (above - half, above + half)
-        # The places before the crossing at which the whole band is still on the side of the length on which the curve
-        # comes.
+        # The places before the crossing where the whole band is still below the length, or above the length if the
+        # curve falls.
         outside_before = np.flatnonzero((before[:i + 1] < 0) == is_upward)
         outside_after = np.flatnonzero((after[i + 1:] >= 0) == is_upward) + i + 1
         crossings.append(Crossing(zero(above, i), zero(before, outside_before[-1]) if outside_before.size else -np.inf,

@@ -4,8 +4,8 @@ Suppose that the runs at a place travelled the total distance S and clogged d ti
 exposure S. With f = log lambda the log likelihood is log L = -d f - S exp(-f), which is concave in f (Lawless,
 Statistical Models and Methods for Lifetime Data, chapter 4). The kernel is a product of Matern kernels with smoothness
 5/2, one for each key. The posterior is Laplace's approximation (Rasmussen and Williams, Gaussian Processes for Machine
-Learning, algorithms 3.1 and 3.2). It is averaged over amplitudes and correlation lengths, with the marginal likelihood
-as the weight.
+Learning, algorithms 3.1 and 3.2). The posterior is averaged over amplitudes and correlation lengths, with the marginal
+likelihood as the weight.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ LEVEL_VARIANCE = 100.0
 JITTER = 1e-8
 # Standard deviations of log lambda, equivalent to factors of lambda from 1.3 to 3000.
 AMPLITUDES = (0.25, 0.5, 1, 2, 4, 8)
-RANGE_FRACTIONS = (0.1, 0.16, 0.25, 0.4, 0.63, 1, 1.6, 3)  # correlation lengths, divided by the range of the places
+RANGE_FRACTIONS = (0.1, 0.16, 0.25, 0.4, 0.63, 1, 1.6, 3)  # Correlation lengths, divided by the range of the places.
 WEIGHT_USED = 0.98  # The most likely scales are used until their weights sum to this. The others change nothing.
 MOST_STEPS = 200
 MOST_HALVINGS = 40
@@ -90,10 +90,10 @@ class Mode:
     """The maximum of the posterior for given scales, and its curvature there."""
 
     scales: Scales
-    slopes: Numbers  # gradient of the log likelihood at the mode, equal to K^-1 f
+    slopes: Numbers  # Gradient of the log likelihood at the mode, equal to K^-1 f.
     # Square roots of the expected numbers of clogs, W = S exp(-f). The curvature of the log likelihood is -W.
     roots: Numbers
-    factor: Numbers  # lower triangular factor of the matrix 1 + W^1/2 K W^1/2
+    factor: Numbers  # Lower triangular factor of the matrix 1 + W^1/2 K W^1/2.
     log_evidence: float
 
 
@@ -158,15 +158,15 @@ def curve_of_scales(points: Points, scales: Scales, places: Numbers) -> Curve:
 
 
 def all_scales(places: Numbers) -> list[Scales]:
-    """All combinations of amplitudes and correlation lengths. Both are spread evenly on a logarithmic scale. The
-    correlation length of a key with a single value is arbitrary."""
+    """All combinations of amplitudes and correlation lengths. Amplitudes and lengths are spread evenly on a logarithmic
+    scale. The correlation length of a key with a single value is arbitrary."""
     ranges = np.ptp(places, axis=0)
     lengths = [[fraction * extent for fraction in RANGE_FRACTIONS] if extent > 0 else [1.0] for extent in ranges]
     return [Scales(amplitude, chosen) for amplitude in AMPLITUDES for chosen in itertools.product(*lengths)]
 
 
 def fit_curve(points: Points, places: Numbers) -> Curve:
-    """The curve at these places. It is averaged over the scales with the marginal likelihood as the weight.
+    """The curve at these places. The curve is averaged over the scales with the marginal likelihood as the weight.
     @param places  in the form of Points.places"""
     modes = [find_mode(points, scales) for scales in all_scales(np.concatenate([points.places, places]))]
     modes.sort(key=lambda mode: -mode.log_evidence)

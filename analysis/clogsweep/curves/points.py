@@ -2,8 +2,8 @@
 
 Groups with different physical parameters belong to different curves. A numerical parameter, such as `inertia` or `box`,
 separates curves only if the sweep varies it at the same physics, because some parameter sets need another box or more
-time than others. Values that follow from other parameters never separate curves. These are automatic values, the name
-of the preset, and the density of a saturated array.
+time than others. Values that follow from other parameters never separate curves. Such values are automatic values, the
+name of the preset, and the density of a saturated array.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Fit = dict[str, Any]  # clogfit's JSON
 
 @dataclasses.dataclass(frozen=True)
 class Members:
-    """The groups of one curve, as numbers of groups in clogfit's table, in the order of the keys' values."""
+    """The groups of one curve, as their indices in clogfit's table, in the order of the keys' values."""
 
     shared: dict[str, Any]  # parameters that distinguish this curve from the others
     groups: list[int]
@@ -50,7 +50,7 @@ def place_of(group: Group, keys: Iterable[Column]) -> list[float]:
 
 
 def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
-    """Whether the parameter's value follows from other parameters. Values that the sweep lists do not."""
+    """Whether the parameter's value follows from other parameters. A value that the sweep itself lists never does."""
     return column.get("automatic_in") in ("all", group["model"]) and column["name"] not in fit["lists"]
 
 
@@ -131,7 +131,7 @@ def crossed_numerics(fit: Fit, groups: Iterable[int], keys: Collection[Column]) 
 
 
 def why_too_few(fit: Fit, members: Members, keys: Sequence[Column]) -> str:
-    """The reason why these groups are too few for a curve. It is empty if they are enough."""
+    """The reason why these groups are too few for a curve. The text is empty if they are enough."""
     groups = [fit["groups"][index] for index in members.groups]
     names = " and ".join(key["key"] for key in keys)
     where = " with " + ", ".join(f"{name.replace('_', '-')}={told(value)}" for name, value in members.shared.items()) if members.shared else ""
@@ -211,7 +211,8 @@ def seeds_of_groups(fit: Fit, rows: Records) -> list[set[int]]:
 
 
 def have_common_obstacles(members: Members, keys: Iterable[Column], seeds: Sequence[set[int]]) -> bool:
-    """Whether the points of a curve share obstacles. They do if they share seeds and no key shapes the array."""
+    """Whether the points of a curve share obstacles. Points share obstacles if they share seeds and no key shapes the
+    array."""
     if any(key["shapes_array"] for key in keys):
         return False
     own = [seeds[index] for index in members.groups]

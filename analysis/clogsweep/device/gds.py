@@ -30,7 +30,7 @@ def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
     missing = {str(part.ref_cell) for part in references if not isinstance(part.ref_cell, gdspy.Cell)}
     if missing:
         raise UserError(f"cannot read {path} (it lacks the cells {', '.join(sorted(missing))}, to which it refers); save it with these")
-    # Such a version of gdspy does not call _create_array().
+    # A gdspy that leaves a CellArray here does not call _create_array().
     if any(isinstance(part, gdspy.CellArray) for part in references):
         raise UserError(f"cannot read {path} (gdspy {gdspy.__version__} may misplace its arrays of cells); flatten them in the layout program")
     cells = content.top_level()

@@ -35,8 +35,8 @@ class Rows:
     """The resulting posts. Lengths are in droplet diameters."""
 
     device: Device
-    corner: float  # the largest radius of circles in a row
-    farthest: float  # largest distance of a drawn outline from the circles, which do not fill its corners
+    corner: float  # The largest radius of circles in a row.
+    farthest: float  # Largest distance of a drawn outline from the circles, which do not fill its corners.
     roughness: float
 
 

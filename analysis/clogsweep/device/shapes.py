@@ -20,8 +20,8 @@ MARGIN = 0.5  # Distance between the posts and the edge of a device whose edge i
 NEAR = 0.01  # A line that is part of the edge may be this far outside the edge [sigma].
 SAME = 1e-3  # Two circles are the same if they differ by at most this fraction of the diameter.
 WINDOW = 1000  # Copies of a circle are searched for among this number of neighbours along x.
-LONGEST = 10000  # If a side of a device is longer, the unit of the drawing is probably wrong [sigma].
-Line = tuple[str, Numbers]  # the kind of an object in a drawing, and its points (n, 2)
+LONGEST = 10000  # A side of a device that is longer than this probably comes from a wrong unit [sigma].
+Line = tuple[str, Numbers]  # The kind of an object in a drawing, and its points (n, 2).
 
 
 @dataclasses.dataclass
@@ -31,23 +31,23 @@ class Drawing:
     circles: list[tuple[float, float, float]]  # x, y, diameter
     # Corners (n, 2). The last corner is joined to the first, unless the border of a picture cuts the outline.
     outlines: list[Numbers]
-    metres: float | None  # length of the drawing's unit [m]; None if the file does not state it
-    # left, bottom, right and top of a picture, or of the region that the user gave.
+    metres: float | None  # Length of the drawing's unit [m]; None if the file does not state it.
+    # Left, bottom, right and top of a picture, or of the region that the user gave.
     frame: tuple[float, float, float, float] | None = None
-    is_picture: bool = False  # whether the drawing consists of pixels
-    # Holes in outlines. They are no posts, but a hole may be the device's edge.
+    is_picture: bool = False  # Whether the drawing consists of pixels.
+    # Holes in outlines. Holes are no posts, but a hole may be the device's edge.
     holes: list[Numbers] = dataclasses.field(default_factory=list)
-    pieces: list[Line] = dataclasses.field(default_factory=list)  # open lines, before they are joined
-    lines: list[Line] = dataclasses.field(default_factory=list)  # the pieces that do not form a closed outline
-    objects: int = 0  # number of circles, outlines and lines that were read
-    joined: tuple[int, int] = (0, 0)  # number of pieces that were joined, and number of outlines that they became
-    united: tuple[int, int] = (0, 0)  # number of outlines that touched, and number of outlines that they became
-    duplicates: int = 0  # number of outlines and circles that were drawn twice
-    unit_hint: str = ""  # words that name a unit that the drawing may mean
-    notes: list[str] = dataclasses.field(default_factory=list)  # messages about how the drawing was read
-    outside: int = 0  # number of outlines, circles and lines outside the region that the user gave
+    pieces: list[Line] = dataclasses.field(default_factory=list)  # Open lines, before they are joined.
+    lines: list[Line] = dataclasses.field(default_factory=list)  # The pieces that do not form a closed outline.
+    objects: int = 0  # Number of circles, outlines and lines that were read.
+    joined: tuple[int, int] = (0, 0)  # Number of pieces that were joined, and number of outlines that they became.
+    united: tuple[int, int] = (0, 0)  # Number of outlines that touched, and number of outlines that they became.
+    duplicates: int = 0  # Number of outlines and circles that were drawn twice.
+    unit_hint: str = ""  # Words that name a unit that the drawing may mean.
+    notes: list[str] = dataclasses.field(default_factory=list)  # Messages about how the drawing was read.
+    outside: int = 0  # Number of outlines, circles and lines outside the region that the user gave.
     can_join: bool = True
-    unit_in_words: str | None = None  # name of the unit, if this is not the usual name of a length of `metres`
+    unit_in_words: str | None = None  # Name of the unit, if this is not the usual name of a length of `metres`.
     # Converts points (n, 2) from the coordinates of a drawing program to those of this object.
     from_own: Callable[[Any], Numbers] = np.asarray
     # Number of objects of each kind that are no posts. Lines are not counted here.
@@ -64,13 +64,13 @@ class Device:
     0)."""
 
     circles: Numbers  # (n, 3): x, y, diameter
-    others: list[Numbers]  # outlines that are not round
+    others: list[Numbers]  # Outlines that are not round.
     length: float
     width: float
     has_frame: bool
     droplet_metres: float
     post_of: Numbers | None = None  # Number of the post to which each circle belongs. If None, each circle is a post.
-    replaced: list[Numbers] = dataclasses.field(default_factory=list)  # outlines that were replaced by circles
+    replaced: list[Numbers] = dataclasses.field(default_factory=list)  # Outlines that were replaced by circles.
     # Outlines or lines beside the device that side-walls=on replaces.
     walls: list[Numbers] = dataclasses.field(default_factory=list)
     # Lines that neither form a closed outline nor are walls.
@@ -85,7 +85,7 @@ class Device:
         return self._gaps[1]
 
     def smallest_gap(self) -> float:
-        """The narrowest gap between two posts. It is infinite if there are fewer than two posts."""
+        """The narrowest gap between two posts. The gap is infinite if there are fewer than two posts."""
         return self._gaps[0]
 
     @functools.cached_property
@@ -113,7 +113,8 @@ class Device:
         return float(narrowest), sorted(touching.values())
 
     def gap_to_sides(self) -> float:
-        """The narrowest gap between a post and a side of the device. It is infinite if all posts overlap a side."""
+        """The narrowest gap between a post and a side of the device. The gap is infinite if all posts overlap a
+        side."""
         x, y, diameter = self.circles.T
         gaps = np.concatenate([y, self.width - y]) - np.tile(diameter / 2, 2)
         return float(gaps.min(initial=np.inf, where=gaps > 0))
@@ -167,7 +168,8 @@ def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_pi
 
 
 def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
-    """Evenly spaced points along the edges. The corners alone would not do: those of a square lie on a circle."""
+    """Evenly spaced points along the edges. The corners alone would not be enough, because the corners of a square lie
+    on a circle."""
     ends = np.vstack([outline, outline[:1]]) if is_closed else outline
     ways = np.hypot(*np.diff(ends, axis=0).T)
     places = np.concatenate([[0], np.cumsum(ways)])

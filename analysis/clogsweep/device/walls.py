@@ -1,4 +1,4 @@
-"""Finds side walls that are drawn as long, thin outlines or as lines. They are no posts: side-walls=on replaces
+"""Finds side walls that are drawn as long, thin outlines or as lines. Side walls are no posts: side-walls=on replaces
 them."""
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def is_wall(outline: Numbers, length: float) -> bool:
 
 
 def area(outline: Numbers) -> float:
-    """The area within a closed outline. It is positive if the outline is counter-clockwise."""
+    """The area within a closed outline. The area is positive if the outline is counter-clockwise."""
     x, y = outline.T
     return float(0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
 

@@ -19,7 +19,8 @@ def draw(found: dict[float, Threshold], shared: str) -> Figure:
     known = {offset: math.sqrt(low * high) for offset, (low, high) in sorted(found.items()) if low and high}
     axes.plot(*zip(*known.items()), marker="o", color=style.COLOURS[0])
     axes.set_yscale("log")
-    axes.set_ylim(bottom=axes.get_ylim()[0])  # The limit of the curve is kept, without the filled area.
+    # Keeps the lower limit that the curve alone gave, because the filled area would change it.
+    axes.set_ylim(bottom=axes.get_ylim()[0])
     style.plain_logarithmic(axes.yaxis)
     axes.fill_between(list(known), list(known.values()), 1e-9, color=style.COLOURS[0], alpha=0.13, linewidth=0)
     for x, y, word in ((0.05, 0.1, "droplets break up"), (0.95, 0.9, "droplets stay whole")):

@@ -60,10 +60,10 @@ class Clog:
     """A droplet at rest. In a notebook the object shows itself as a picture."""
 
     row: np.void  # the sweep's row
-    polygon: Numbers  # vertices of the interface that meets walls, 2 x N [sigma]
+    polygon: Numbers  # Vertices of the interface that meets walls, 2 x N [sigma].
     obstacles: Numbers  # n x 3: x, y, diameter [sigma]
-    wedges: Numbers  # side walls as in a trajectory's file, n x 6 [sigma]
-    source: str = ""  # provenance of the row, in words
+    wedges: Numbers  # Side walls as in a trajectory's file, n x 6 [sigma].
+    source: str = ""  # Provenance of the row, in words.
 
     @property
     def task(self) -> int:

@@ -27,8 +27,8 @@ T = TypeVar("T")
 MOST_PANELS = 6
 # Width of the colour bar, or of the legend without its text, and width of a letter of this text [inches].
 BESIDE, OF_LETTER = 0.9, 0.055
-STEP = 0.1  # distance between two points of the path of a free droplet [sigma]
-CELL = 0.1  # side of a cell of the map of passages [sigma]
+STEP = 0.1  # Distance between two points of the path of a free droplet [sigma].
+CELL = 0.1  # Side of a cell of the map of passages [sigma].
 
 
 @dataclasses.dataclass
@@ -80,8 +80,8 @@ class Part:
 
     label: str
     place: Place
-    lines: Sequence[Numbers] = ()  # paths of droplet centres that are drawn as lines (n, 2)
-    mapped: Sequence[Numbers] = ()  # paths of droplet centres that make up the map of passages (n, 2)
+    lines: Sequence[Numbers] = ()  # Paths of droplet centres that are drawn as lines (n, 2).
+    mapped: Sequence[Numbers] = ()  # Paths of droplet centres that make up the map of passages (n, 2).
 
 
 DEVICE_COLUMNS = ["obstacles", "obstacle_diameter", "box", "boxes", "length", "side_walls", "exit"]
@@ -126,7 +126,7 @@ def chosen(rows: Records, number: int) -> list[np.void]:
 
 
 def evenly(members: list[T], number: int) -> list[T]:
-    """At most `number` of the members. They are evenly spaced, and include the first and the last."""
+    """At most `number` of the members, evenly spaced, including the first and the last member."""
     if number == 0 or not members:
         return []
     return [members[i] for i in np.unique(np.linspace(0, len(members) - 1, min(number, len(members))).round().astype(int))]

@@ -18,8 +18,8 @@ from ..tools.hints import Numbers
 from ..tools.texts import literal
 from . import surroundings
 
-WIDEST, NARROWEST = 14.0, 5.0  # limits of a figure's width [inches]
-TALLEST = 11.0  # largest height of all panels together [inches]
+WIDEST, NARROWEST = 14.0, 5.0  # Limits of a figure's width [inches].
+TALLEST = 11.0  # Largest height of all panels together [inches].
 RED = "#D00000"
 
 

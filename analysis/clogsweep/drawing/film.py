@@ -33,7 +33,7 @@ FORMAT = (9.6, 5.4)  # inches
 SIZES = {"540p": 100, "1080p": 200, "2160p": 400}  # pixels per inch
 # Margin as a fraction of the figure. Without it, half of the line around the frame would be outside the picture.
 LINE = 0.002
-HEIGHT = 0.93  # height of the droplet's surroundings, as a fraction of the figure
+HEIGHT = 0.93  # Height of the droplet's surroundings, as a fraction of the figure.
 # Width of the droplet's surroundings as a fraction of the figure, with and without room for a colour bar.
 WIDTHS = {"speed": 0.91, "mechanism": 1 - 2 * LINE}
 # Largest distance that the droplet moves between two frames [sigma]. The eye cannot follow a droplet that moves
@@ -64,7 +64,7 @@ def smoothed(values: Numbers, width: int) -> Numbers:
 class Camera:
     """A view that follows the droplet smoothly, and zooms out if the droplet is long."""
 
-    HALF_HEIGHT = 2.0  # smallest half height of the view [sigma]
+    HALF_HEIGHT = 2.0  # Smallest half height of the view [sigma].
     LEAD = 0.12  # The centre of the view is ahead of the droplet by this fraction of the view's width.
 
     def __init__(self, polygons: Numbers, frames_of_a_turn: int, aspect: float) -> None:
@@ -74,7 +74,7 @@ class Camera:
         half_height = np.maximum(self.HALF_HEIGHT, 0.75 * np.maximum(length / aspect, height))
         self._aspect = aspect
         self._middle = np.stack([smoothed(middle, frames_of_a_turn) for middle in ((low + high) / 2).T], axis=1)
-        # The average of local maxima is never smaller than the droplet needs.
+        # The average of local maxima never makes the view too small for the droplet.
         self._half_height = smoothed(ndimage.maximum_filter1d(half_height, 2 * frames_of_a_turn + 1, mode="nearest"), frames_of_a_turn)
 
     def corners(self, frame: int) -> tuple[Numbers, Numbers]:
@@ -102,7 +102,7 @@ class Layer:
 
 
 def pixels_of(figure: Figure) -> Pixels:
-    """The pixels that are drawn so far. They are no copy: further drawing changes them."""
+    """The pixels that are drawn so far. The array is no copy: further drawing changes it."""
     return np.asarray(figure.canvas.buffer_rgba())
 
 
@@ -272,14 +272,15 @@ class Film:
 
 
 def size_for(path: pathlib.Path | None) -> str:
-    """The default size, a key of SIZES. It is smaller for a .gif, because such a file is large and is held in memory.
+    """The default size, a key of SIZES. For a .gif the size is smaller, because such a file is large and is held in
+    memory.
     @param path  of a film, or None for pictures"""
     return "540p" if path is not None and path.suffix == ".gif" else "1080p"
 
 
 def path_of(output: pathlib.Path) -> pathlib.Path:
-    """The file of a film. It has the requested ending; without one, it ends in .mp4 if ffmpeg is installed, and in .gif
-    otherwise.
+    """The file of a film. The file has the requested ending. If none is requested, it ends in .mp4 if ffmpeg is
+    installed, and in .gif otherwise.
     @throws UserError  if such a film cannot be made, or if the file exists"""
     outputs.refuse_ending(output, *ENDINGS)
     has_ffmpeg = shutil.which("ffmpeg") is not None
@@ -320,8 +321,8 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
 
 
 def palette_of(first: Pixels) -> Image.Image:
-    """One palette for all frames. It has the colours of the first frame, shades of the colour bar, greys, and colours
-    that only occur at the end."""
+    """One palette for all frames. The palette has the colours of the first frame, shades of the colour bar, greys, and
+    colours that only occur at the end."""
     seen = np.reshape(Image.fromarray(first[..., :3]).quantize(SHADES).getpalette()[:3 * SHADES], (-1, 3)) / 255
     bar = style.VIRIDIS(np.linspace(0, 1, SHADES))[:, :3]
     greys = np.repeat(np.linspace(0, 1, 32), 3).reshape(-1, 3)

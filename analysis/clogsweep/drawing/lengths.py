@@ -31,12 +31,12 @@ def reasons_for_hollow_marker(group: Group) -> list[str]:
 
 
 SPEED_NOTES = ["bars: standard errors"]
-NOTE_WIDTH = 100  # number of characters in a line below a picture
+NOTE_WIDTH = 100  # Number of characters in a line below a picture.
 # clogfit's name for distance divided by time, averaged over all runs whatever their distance.
 OF_ALL_RUNS = "relative_speed_all"
 THROUGH_BOUNDS = "_through bounds"  # The underscore hides a line from matplotlib's legends.
 FITTED = "_fitted"
-FITTED_TO_COMMON_OBSTACLES = "_fitted, common obstacles"  # for points that share seeds
+FITTED_TO_COMMON_OBSTACLES = "_fitted, common obstacles"  # Fitted curve through points that share seeds.
 
 
 def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> list[str]:
@@ -108,8 +108,8 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
 def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, column: str = "relative_speed") -> None:
     """Draws mean speeds relative to the terminal speed. If a group has several runs, its bar is the standard error from
     the scatter between runs.
-    @param column  "relative_speed" is the mean of the runs that went far enough to have a speed, as published. Others
-    are OF_ALL_RUNS and "lateral_slope"."""
+    @param column  "relative_speed" is the mean of the runs that went far enough to have a speed, as published. The
+    other columns are OF_ALL_RUNS and "lateral_slope"."""
     points = sorted(((place, group) for place, group in zip(places, groups) if group[column] is not None), key=lambda point: point[0])
     known = [group for _, group in points]
     drawn = axes.errorbar(
@@ -148,7 +148,7 @@ def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
 
 
 def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
-    """Adds a second scale in other units at a side, "top" or "right". The first scale must be complete before, because
+    """Adds a second scale in other units at a side, "top" or "right". The first scale must be complete first, because
     later changes would remove the ticks of the second scale."""
     upright = side == "right"
     second = (axes.secondary_yaxis if upright else axes.secondary_xaxis)(side, functions=(lambda value: value * factor, lambda value: value / factor))
@@ -160,8 +160,8 @@ def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
 
 
 def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> None:
-    """Draws each curve of the groups. @param draw_curve  draw_lengths or draw_speeds. It is called with the axes, the
-    places and groups of a curve, its index and its label"""
+    """Draws each curve of the groups. @param draw_curve  draw_lengths or draw_speeds. The function is called with the
+    axes, the places and groups of a curve, its index and its label"""
     curves = groups.curves()
     for index, (label, members) in enumerate(curves):
         with style.curve(axes, label):
@@ -170,7 +170,7 @@ def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> 
 
 
 def places(groups: Groups, members: Sequence[Group], index: int, num_curves: int) -> list[float]:
-    """The places of a curve's points. They are shifted so that their bars do not cover the bars of other curves."""
+    """The places of a curve's points. Points are shifted so that their bars do not cover the bars of other curves."""
     values = groups.values(groups.abscissa)
     if groups.is_logarithmic():
         return [group[groups.abscissa] * style.side_by_side(index, num_curves, values) for group in members]

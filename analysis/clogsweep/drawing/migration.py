@@ -15,7 +15,7 @@ from . import lengths
 
 
 def draw_rows(axes: Axes, groups: Groups) -> bool:
-    """Draws two lines: for a droplet that follows the rows, and for a droplet that moves straight on. @return whether
+    """Draws one line for a droplet that follows the rows, and one for a droplet that moves straight on. @return whether
     the line for the rows is drawn"""
     angles = [group["lattice_angle"] for group in groups.members]
     axes.axhline(0, color="0.6", linewidth=0.8, linestyle=":", zorder=1)

@@ -26,10 +26,10 @@ class Kind:
     """The headings, labels and columns for droplets in a channel, or for droplets on a wall."""
 
     heading: str
-    goal: str  # status of droplets that passed the channel, or came to rest on the wall
-    outcomes: dict[str, str]  # words for each status
-    curves: dict[str, str]  # columns that have a picture, with the labels of their axes
-    columns: dict[str, str]  # columns of the table, with their headings
+    goal: str  # Status of droplets that passed the channel, or came to rest on the wall.
+    outcomes: dict[str, str]  # Words for each status.
+    curves: dict[str, str]  # Columns that have a picture, with the labels of their axes.
+    columns: dict[str, str]  # Columns of the table, with their headings.
     outline: str
     about: str
 

@@ -1,5 +1,5 @@
-"""Draws predicted clogging lengths against the line tension, beside measured lengths. There is a line for pairs of
-obstacles, for single obstacles, and for both."""
+"""Draws predicted clogging lengths against the line tension, beside measured lengths. Pairs of obstacles, single
+obstacles, and both together have a line each."""
 
 import math
 from collections.abc import Sequence

@@ -17,8 +17,8 @@ Comparison = dict[str, Any]
 
 
 def abscissa_of(told: dict[str, Any]) -> str:
-    """The parameter for the abscissa: the number with the most values, and the line tension if several numbers have as
-    many. It is empty if nothing varies."""
+    """The parameter for the abscissa: the number with the most values. If several numbers have equally many values, it
+    is the line tension. The text is empty if nothing varies."""
     comparisons = told["comparisons"]
     numbers = [name for name in told["columns"] if all(is_number(str(one[name])) for one in comparisons)]
     return max(numbers, key=lambda name: (len({one[name] for one in comparisons}), name == "line_tension"), default="")

@@ -37,8 +37,8 @@ def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0)
 
 
 def draw_guides(axes: Axes) -> None:
-    """Draws a bar as long as a droplet is wide, and an arrow along the flow. Both keep their corners of the axes when
-    the view moves."""
+    """Draws a bar as long as a droplet is wide, and an arrow along the flow. Bar and arrow keep their corners of the
+    axes when the view moves."""
     draw_bar(axes)
     arrow = axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
                           arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})

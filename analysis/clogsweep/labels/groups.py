@@ -20,7 +20,7 @@ FINISHED = ("passed", "clogged", "broken", "flowing")
 
 
 class Groups:
-    """Those groups of one sweep that have runs. They are drawn against one parameter of the sweep."""
+    """Those groups of one sweep that have runs. The groups are drawn against one parameter of the sweep."""
 
     def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
         """@param fit  the JSON output of clogfit; @param circle_files  see stored.circle_files()"""
@@ -34,12 +34,13 @@ class Groups:
         self.confidence: float = fit["confidence"]
         # The model's units in the laboratory, if all groups have the same ones.
         self.laboratory: dict[str, float | None] = fit.get("laboratory", {})
-        self.laboratories: dict[str, str] = fit.get("laboratories", {})  # descriptions of the laboratories, by their checksums
+        # Descriptions of the laboratories, by their checksums.
+        self.laboratories: dict[str, str] = fit.get("laboratories", {})
         self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
         self.lists: Collection[str] = fit["lists"]
         self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # empty for files of older programs
         self._circle_files = circle_files or self._only_circle_file()
-        self.tells_what_all_share = True  # whether caption() describes the parameters that all groups share
+        self.tells_what_all_share = True  # Whether caption() describes the parameters that all groups share.
         self.abscissa = self._choose_abscissa() if self.members else ""  # Without members there is nothing to draw.
         self._ask_for_curves: Callable[[], dict[str, Any]] = lambda: NO_CURVES  # see fit_curves()
 
@@ -78,8 +79,8 @@ class Groups:
         return self._ask_for_curves()
 
     def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
-        """The fitted curve for these groups, if one exists. A fitted curve may contain groups of several drawn curves.
-        Then it belongs to the drawn curve that has its first point."""
+        """The fitted curve for these groups, if one exists. If a fitted curve contains groups of several drawn curves,
+        it belongs to the drawn curve that has its first point."""
         for curve in self._fitted["curves"]:
             if any(self._told[curve["points"][0]["group"]] is group for group in members):
                 return curve
@@ -128,11 +129,11 @@ class Groups:
         return self.columns[name]["kind"] != "word"
 
     def _is_automatic(self, name: str) -> bool:
-        """Whether values of the parameter can follow from other parameters. They cannot if the sweep gives a number or
-        a list for it."""
+        """Whether values of the parameter can follow from other parameters. Values cannot follow from others if the
+        sweep gives a number or a list for the parameter."""
         fillings = self.values("obstacle_filling")
         if name in ("obstacle_gap", "obstacle_density") and fillings == {"file"}:
-            return True  # Both follow from the circles and the length of their array.
+            return True  # Gap and density follow from the circles and the length of their array.
         if name in self.lists or self._is_given_number(name):
             return False
         of_filling = fillings <= {"saturated", *LATTICES} or bool(self._share_of_saturated())
@@ -140,12 +141,12 @@ class Groups:
         return from_array or all(name in group["automatic"] for group in self.members)
 
     def _is_of_preset(self, name: str) -> bool:
-        """Whether the parameter's value follows from the abscissa and the preset. This is so if the value is automatic
-        for some presets and a number for others."""
+        """Whether the parameter's value follows from the abscissa and the preset, because the value is automatic for
+        some presets and a number for others."""
         return any(name in group["automatic"] for group in self.members) and self.follows(name, [self.abscissa, "preset"])
 
     def _share_of_saturated(self) -> str:
-        """The filling of all random arrays, such as `12%`. It is empty if the arrays have different fillings."""
+        """The filling of all random arrays, such as `12%`. The text is empty if the arrays have different fillings."""
         share = self.settings.get("obstacle-density", "")
         return share if share.endswith("%") and is_number(share[:-1]) and self.values("obstacle_filling") == {"density"} else ""
 
@@ -192,18 +193,17 @@ class Groups:
         return "; ".join(own or parts[check_sum])
 
     def distinguishing(self) -> list[str]:
-        """Names of the parameters in which the groups differ. Suppose that the groups have several models, and that
-        only one model has a certain parameter, with a single value. Then this parameter is left out, because the
-        model's name implies it."""
+        """Names of the parameters in which the groups differ. If the groups have several models, some parameters are
+        left out: those that only one model has, with a single value. The model's name implies them."""
         names = [name for name in [self.abscissa, *self.curve_parameters()] if name != "model" and self.varies(name)]
         if not self.varies("model"):
             return names
         return ["model", *(name for name in names if len(self.values(name) - {None}) > 1)]
 
     def row_values(self, member: Group) -> dict[str, Any]:
-        """The values that identify the rows of a group. Some values are left out: values that clogfit does not know,
-        such as the density of a saturated array, because they follow from the others, and parameters that the model of
-        these runs lacks."""
+        """The values that identify the rows of a group. Values that clogfit does not know, such as the density of a
+        saturated array, are left out, because they follow from the others. Parameters that the model of these runs
+        lacks are also left out."""
         values = member.get("in_table", member)
         names = [name for name in self.distinguishing() if name not in fits.DROPLETS] + (["laboratory"] if self.are_in_mm else [])
         return {name: values[name] for name in names if values[name] is not None}
@@ -271,8 +271,8 @@ class Groups:
         return str(self.named("obstacles", *sums)) if len(sums) == 1 and sums <= self._circle_files.keys() else "a file" if len(sums) == 1 else "files"
 
     def _is_worth_a_word(self, name: str, value: Any) -> bool:
-        """Whether the caption names a parameter. It does if the parameter shapes the array, or differs from its
-        default."""
+        """Whether the caption names a parameter. The caption names a parameter that shapes the array, or that differs
+        from its default."""
         column = self.columns[name]
         if name == "obstacle_diameter" and self.values("obstacle_filling") == {"file"}:
             return False  # The parameter applies only to circles without a diameter of their own.

@@ -1,5 +1,5 @@
-"""Puts a figure into a page as a drawing. Its colours follow light and dark mode, and the elements that represent
-groups are marked.
+"""Puts a figure into a page as a drawing. The drawing's colours follow light and dark mode, and the elements that
+represent groups are marked.
 
 The drawing functions mark these elements with style.mark().
 """
@@ -56,7 +56,7 @@ def in_the_dark(colour: Colour) -> Colour:
 
 
 class Charts:
-    """The charts of one page. They share the shapes of letters, the markers and the colours.
+    """The charts of one page. The charts share the shapes of letters, the markers and the colours.
 
     @param labels  the label of each group
     """
@@ -97,8 +97,8 @@ class Charts:
         return declared(named.items()), declared((name, in_the_dark(colour)) for name, colour in named.items())
 
     def _rename(self, root: ElementTree.Element) -> None:
-        """Replaces colours by names, and removes unused names. It also renames clips, because a clip of another chart
-        may have the same name."""
+        """Replaces colours by names, and removes unused names. Also renames clips, because a clip of another chart may
+        have the same name."""
         for node in root.iter():
             node.text = node.tail = None  # line breaks
             if HREF in node.attrib:

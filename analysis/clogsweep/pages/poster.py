@@ -120,7 +120,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
 
 
 def of_laboratory(groups: Groups) -> str:
-    """A line with the model's units in the laboratory. It is empty without a laboratory."""
+    """A line with the model's units in the laboratory, or an empty text without a laboratory."""
     lab = groups.laboratory
     if not lab:
         return ""

@@ -183,7 +183,7 @@ def seeds_of(values: dict[str, Any], rows: pandas.DataFrame) -> str:
 
 
 def doubts_of(group: Group, sentences: dict[str, str]) -> str:
-    """The words for a group's doubts. Each word explains itself with a sentence."""
+    """The words for a group's doubts. Each word has a sentence that explains it."""
     return ", ".join(f'<abbr title="{html.escape(sentences[name])}">{name.replace("_", " ")}</abbr>' for name in style.doubts(group))
 
 

@@ -101,8 +101,8 @@ enter("E", "mean speed against line tension for three near-wall drags", "near-wa
 # Both models against the sag
 
 def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
-    """The sag delta_s of each group. It comes from one sweep of droplets on walls, with the line tension or stiffness
-    of each group."""
+    """The sag delta_s of each group. The sags come from one sweep of droplets on walls, with the line tension or
+    stiffness of each group."""
     is_polygon = groups[0]["model"] == "dp"
     column, key = ("line_tension", "line-tension") if is_polygon else ("wall_stiffness", "wall-stiffness")
     keys = shop.keys(config)

@@ -233,8 +233,8 @@ def near_wall_drag(shop: Workshop) -> Plate:
     alpha, strength = fit["near_wall_exponent"], fit["near_wall_drag"]
     axes.plot(d, d**alpha / strength, color=style.COLOURS[0], linewidth=1,
               label=rf"fit to these: exponent ${alpha:.2f}\pm{fit['near_wall_exponent_error'] or math.nan:.2f}$")
-    # v/(v_t - v) of a circle, computed from the drag on each vertex. It is the inverse of b_0/b_inf times the mean of
-    # d_i^-alpha over the vertices.
+    # v/(v_t - v) of a circle, computed from the drag on each vertex. The value is the inverse of b_0/b_inf times the
+    # mean of d_i^-alpha over the vertices.
     exponent, height = row["near_wall_exponent"], 0.5 * (1 - np.abs(np.sin(np.linspace(0, 2 * np.pi, row["vertices"], endpoint=False))))
     circle = 1 / (row["near_wall_drag"] * np.mean((d[:, None] + height) ** -exponent, axis=1))
     axes.plot(d, circle, ":", color="black", linewidth=1, label="sum over the vertices of a circle (no fit)")
@@ -249,8 +249,8 @@ def near_wall_drag(shop: Workshop) -> Plate:
 
 
 def meshes(shop: Workshop) -> dict[int, Trajectory]:
-    """The passages in Fig. B1 by their number of vertices. This number is at most a multiple of the number in the
-    config, because the finest run takes most of the time."""
+    """The passages in Fig. B1 by their number of vertices. The number of vertices is at most a multiple of the number
+    in the config, because the finest run takes most of the time."""
     line_tension, most = (1.08, 4) if shop.size == "full" else (0.83, 2)
     counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= most * int(shop.keys("channel")["vertices"])]
     return dict(zip(counts, profiles(shop, "vertices", orifice=0.7, line_tension=line_tension, near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)))

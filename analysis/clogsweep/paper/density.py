@@ -17,7 +17,8 @@ from .captions import describe
 from .plate import Plate, figure
 from .workshop import Workshop
 
-PUBLISHED_LENGTH, PUBLISHED_ERROR = 24.0, 1.0  # At Gamma = 1.09 and a minimum gap of 0.2 sigma [sigma]
+# The length and its error [sigma], at Gamma = 1.09 and a minimum gap of 0.2 sigma.
+PUBLISHED_LENGTH, PUBLISHED_ERROR = 24.0, 1.0
 NORMAL_QUANTILE = 1.96  # two-sided 95 %
 CONFIGS = {"density-robust": "constant tension", "density-elastic": "tension grows with the perimeter", "density-friction": r"likewise, wall friction $\mu = 0.05$"}
 
@@ -27,7 +28,8 @@ class DensityFit:
     """A parabola through log lambda as a function of log density, and the density at which the parabola has the
     published length.
 
-    A length from n clogs has a relative error of 1/sqrt(n). This is also the error of the logarithm of the length.
+    A length from n clogs has a relative error of 1/sqrt(n). The logarithm of the length has the same number as its
+    absolute error.
     """
 
     coefficients: np.ndarray[Any, Any]  # highest power first
@@ -35,7 +37,7 @@ class DensityFit:
     chi_squared: float
     degrees_of_freedom: int
     density: float  # [1/sigma^2]
-    lower: float  # lower end of the 95 % interval; the interval includes the error of the fit and the published error
+    lower: float  # Lower end of the 95 % interval; the interval includes the error of the fit and the published error.
     upper: float
 
     def length(self, density: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

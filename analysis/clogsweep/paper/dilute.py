@@ -23,8 +23,8 @@ from .captions import describe
 from .plate import Plate, figure
 from .workshop import Workshop
 
-# The only clogging length that was published as a number, with its error (appendix C). Its density was not published;
-# figure `density` finds the density from the length.
+# The only clogging length that was published as a number, with its error (appendix C). The density of the arrays was
+# not published; figure `density` finds it from the length.
 PUBLISHED = {"line_tension": 1.09, "obstacle_gap": 0.2, "clogging_length": 24.0, "error": 1.0, "obstacle_density": 0.35}
 ENOUGH_CLOGS = 10  # With at least this many clogs, clogfit tests whether P(r) is exponential.
 FINER = (0, (4, 2))
@@ -34,8 +34,7 @@ STAR = {"color": "black", "marker": "*", "markersize": 15, "markeredgewidth": 1.
 
 @dataclasses.dataclass(frozen=True)
 class Family:
-    """The curves for one law of walls. If a sweep contains several friction coefficients, they are those with one
-    coefficient."""
+    """The curves for one law of walls. A sweep may contain several friction coefficients; a family has one of them."""
 
     config: str
     name: str
@@ -81,7 +80,8 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
         for groups, options in drawn:
             for gap, curve in by(groups, "obstacle_gap"):
                 label = "_finer" if options else said(shop.columns(family.config)["obstacle_gap"], gap)
-                # A line across line tensions that only the other mesh has would hide a peak between its points.
+                # A line is interrupted where this mesh lacks line tensions of the other mesh, because a line could hide
+                # a peak there.
                 places = [tensions.index(group["line_tension"]) for group in curve]
                 for part in np.split(np.array(curve, dtype=object), np.flatnonzero(np.diff(places) > 1) + 1):
                     curves.append((list(part), gaps.index(gap), label, options))
@@ -113,8 +113,8 @@ MAPS = [Family("map-robust", "no friction, no corner pinning"), Family("map-fric
 
 
 def is_exponential(group: Group) -> bool | None:
-    """Whether P(r) is exponential. This is so if the shape of a Weibull law is compatible with 1, and lambda is longer
-    than the void of the release.
+    """Whether P(r) is exponential: the shape of a Weibull law is compatible with 1, and lambda is longer than the void
+    of the release.
     @return None if there are too few clogs to decide"""
     if group["clogs"] < ENOUGH_CLOGS or group["weibull_p_value"] is None:
         return None

@@ -228,8 +228,8 @@ class Workshop:
 
 
 def measured(path: pathlib.Path) -> pandas.DataFrame:
-    """The columns h, v and A of a measured passage in reduced units, in the format of clogfit calibrate. They are only
-    displayed."""
+    """The columns h, v and A of a measured passage in reduced units, in the format of clogfit calibrate. The columns
+    are only displayed."""
     import pandas  # pandas is slow to load, and seldom needed here.
 
     try:

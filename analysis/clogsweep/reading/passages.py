@@ -17,8 +17,7 @@ READING_SECONDS = 10  # Limit on the processor time of reading [s]. A passage ha
 
 
 def is_hdf5(path: str) -> bool:
-    """Whether the file is an HDF5 file. It is not if it is missing. Pipes count as no HDF5 files, because they may
-    never end."""
+    """Whether the path leads to an HDF5 file. Pipes are not opened, because reading from them may never end."""
     return os.path.isfile(path) and h5py.is_hdf5(path)
 
 
@@ -28,7 +27,8 @@ def read_samples(path: str) -> tuple[Records, np.void]:
             raise UserError(f"cannot read {path} (not a passage through a channel); give a file written by clogrun channel")
         stored.check_kind(path, file, stored.RUN)
         table = file["trajectory"]
-        if table.nbytes > table.id.get_storage_size():  # The table is not compressed.
+        # The table is never compressed, so all its bytes must be in the file.
+        if table.nbytes > table.id.get_storage_size():
             raise ValueError(f"the file cannot hold {len(table)} samples")
         return table[:], file["runs"][0]
 

@@ -35,8 +35,8 @@ def reason(text: str) -> str:
 
 
 def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
-    """The folder with clogsweep, clogrun and clogfit. It is `folder` if this is given. Otherwise it is the first that
-    exists of CLOG_BIN, the folder of clogsweep in the PATH, and the folder beside this package.
+    """The folder with clogsweep, clogrun and clogfit. If `folder` is given, it is this folder. Otherwise it is the
+    first that exists of CLOG_BIN, the folder of clogsweep in the PATH, and the folder beside this package.
 
     @throws UserError  if the programs are not there
     """

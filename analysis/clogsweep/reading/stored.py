@@ -136,8 +136,8 @@ def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None
 
 
 def attributes(file: h5py.File) -> dict[str, str]:
-    """The attributes of an open file as text. They state its provenance. A long attribute is stored in parts with the
-    names `config`, `config.2` and so on."""
+    """The attributes of an open file as text. Attributes state the provenance of the file. A long attribute is stored
+    in parts with the names `config`, `config.2` and so on."""
     parts = {name: text(value) for name, value in file.attrs.items()}
     for name in list(parts):
         if name not in parts:
@@ -199,14 +199,14 @@ def read_rows(path: AnyPath, folder: AnyPath | None = None) -> Records:
 
 
 def unit(meaning: str) -> str:
-    """The unit of a column, which the column's description has in brackets. It is empty for counts, ratios and
-    words."""
+    """The unit of a column, which the column's description has in brackets. Counts, ratios and words have an empty
+    unit."""
     found = re.search(r"\[(.*?)\]", meaning)
     return found[1] if found else ""
 
 
 def read_table(path: AnyPath, folder: AnyPath | None = None) -> pandas.DataFrame:
-    """Reads the table of runs for pandas, with text as strings. Its `attrs` contain `units` and `meanings`,
+    """Reads the table of runs for pandas, with text as strings. The table's `attrs` contain `units` and `meanings`,
     dictionaries by column name."""
     with opened(path, folder=folder) as file:
         return table_of(file)

@@ -16,7 +16,7 @@ NEARNESS = 1e-3
 
 
 def preferred_values(given: Sequence[float], most: int) -> list[float]:
-    """The given values, and preferred numbers of three digits between the outermost given values. There are at most
+    """The given values, and preferred numbers of three digits between the outermost given values. The list has at most
     `most` values, or one more than were given. Because of the preferred numbers, the files of two people have values in
     common."""
     values = sorted(given)
@@ -30,8 +30,8 @@ def preferred_values(given: Sequence[float], most: int) -> list[float]:
 
 
 def spread(values: Sequence[float], count: int) -> list[float]:
-    """Chooses `count` of the values, evenly spread on a logarithmic scale, including the outermost values. There are
-    fewer if some coincide."""
+    """Chooses `count` of the values, evenly spread on a logarithmic scale, including the outermost values. The list is
+    shorter if some chosen values coincide."""
     logs = np.log(values)
     nearest = [int(np.argmin(abs(logs - place))) for place in np.linspace(logs[0], logs[-1], count)]
     return [values[i] for i in dict.fromkeys(nearest)]

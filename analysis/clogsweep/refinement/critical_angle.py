@@ -1,4 +1,4 @@
-"""Searches the critical angle of a lattice. Up to this angle droplets follow the rows, and beyond it they leave the
+"""Searches for the critical angle of a lattice. Up to this angle droplets follow the rows, and beyond it they leave the
 rows."""
 
 import functools
@@ -14,7 +14,7 @@ from .driver import HOUR, UNFINISHED, Line, number_text
 from .membership import Membership, Values
 
 KEY = "lattice-angle"
-FOLLOWING = ("lattice_angle", "length", "box")  # the angle, and parameters that follow from it
+FOLLOWING = ("lattice_angle", "length", "box")  # The angle, and parameters that follow from it.
 SMALLEST_BOX = 5.0  # Smallest side of a box [sigma]. A box also has at least two spacings.
 ROUNDING = 1e-9
 DECIMALS = 6  # Decimals to which an angle is rounded. Angles of different lattices differ by far more.
@@ -40,9 +40,9 @@ def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
 
 
 def bracket(angles: pandas.DataFrame) -> tuple[float, float]:
-    """The bracket of the critical angle. Its upper end is the smallest angle at which some droplets leave the rows. Its
-    lower end is the largest angle below the upper end at which droplets follow the rows. An end is NaN if there is no
-    such angle."""
+    """The bracket of the critical angle. The upper end of the bracket is the smallest angle at which some droplets
+    leave the rows. The lower end is the largest angle below the upper end at which droplets follow the rows. An end is
+    NaN if there is no such angle."""
     upper = angles.index[angles["leaves"]].min()
     below = angles if math.isnan(upper) else angles[angles.index < upper]
     return below.index[below["follows"]].max(), upper
@@ -81,7 +81,7 @@ def nearest_lattice(spacing: float, angle: float, box: float, kind: str = "squar
         p, q = p // np.gcd(p, q), q // np.gcd(p, q)
         along = p if kind == "rhombic" else np.hypot(p, unit * q) * np.where((p - q) % 2, 1, 0.5)
         across = np.ones_like(p) if kind == "rhombic" else unit * along / np.where(p % 3, 1, 3)
-        # Multiples of the periods, as long as fit into the box.
+        # The longest multiples of the periods that fit into the box.
         periods = [period * np.floor(box * (1 + ROUNDING) / period) for period in (spacing * along, spacing * across)]
     fits = [(period >= max(SMALLEST_BOX, 2 * spacing) * (1 - ROUNDING)) & (period <= box * (1 + ROUNDING)) for period in periods]
     angles = np.degrees(np.arctan2(unit * q, p))[np.all(fits, axis=0)]
@@ -89,8 +89,8 @@ def nearest_lattice(spacing: float, angle: float, box: float, kind: str = "squar
 
 
 class AngleSearch:
-    """Plans rounds of up to three angles. They are between the largest angle at which droplets follow the rows and the
-    smallest angle at which droplets leave the rows."""
+    """Plans rounds of up to three angles. The angles are between the largest angle at which droplets follow the rows
+    and the smallest angle at which droplets leave the rows."""
 
     keys: Sequence[str] = (KEY,)
 
@@ -114,14 +114,14 @@ class AngleSearch:
         return sorted(rounded - {round(angle, DECIMALS) for angle in tried})
 
     def _look(self, rows: pandas.DataFrame, members: Membership) -> tuple[pandas.DataFrame, float]:
-        # The box is a period of the lattice, so it follows from the angle. Droplets do not notice the box, so it may
-        # differ between runs.
+        # The box is a period of the lattice, so it follows from the angle. The box has no effect on the droplet, so it
+        # may differ between runs.
         runs = members.of_curve(rows, lambda name: name not in FOLLOWING)
         runs = runs[~runs["status"].isin(UNFINISHED)]
         return tried_angles(runs), float(runs["processor_seconds"].sum()) / HOUR
 
     def next_round(self, rows: pandas.DataFrame, members: Membership) -> list[Line]:
-        """The points of the next round. There are none if the search has ended; `end` is then the reason."""
+        """The points of the next round. The list is empty if the search has ended; `end` is then the reason."""
         angles, hours = self._look(rows, members)
         lower, upper = bracket(angles)
         found: list[float] = []

@@ -1,4 +1,4 @@
-"""Searches a curve of lambda: chooses the values and seeds that the fitted curve needs."""
+"""Chooses the values and seeds whose runs improve the fitted curve of lambda most."""
 
 import itertools
 import math
@@ -26,15 +26,15 @@ SHARE_OF_ROUND = 0.5  # Work of a round, divided by the work of all earlier roun
 
 class Options(NamedTuple):
     goal: Goal
-    budget: float  # core-hours of all runs, possibly infinite
-    most_seeds: int  # largest number of seeds of one value
+    budget: float  # Core-hours of all runs, possibly infinite.
+    most_seeds: int  # Largest number of seeds of one value.
     same_seeds: bool
 
 
 class Known(NamedTuple):
     """What the search knows at one moment."""
 
-    runs: pandas.DataFrame  # sums over the runs of each value, including failed runs
+    runs: pandas.DataFrame  # Sums over the runs of each value, including failed runs.
     curve: Curve | None  # The curve at the candidates, or None if no run has covered any distance.
 
 
@@ -68,7 +68,7 @@ class CurveSearch:
         return [(values, (self._first_seed + i * step, self._block)) for i, values in enumerate(self._first)]
 
     def next_round(self, rows: pandas.DataFrame, members: Membership) -> list[Line]:
-        """The points of the next round. There are none if the search has ended; `end` is then the reason."""
+        """The points of the next round. The list is empty if the search has ended; `end` is then the reason."""
         known, options, block = self._look(rows, members), self._options, self._block
         if known.curve is None:
             self.end = "no run got anywhere"

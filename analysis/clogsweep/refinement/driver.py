@@ -19,13 +19,13 @@ from .membership import Membership, Values
 
 HOUR = 3600.0
 UNFINISHED = ("running", "interrupted")
-FAILED, USER_FAULT, INCOMPLETE = 1, 2, 75  # exit codes of clogsweep
+FAILED, USER_FAULT, INCOMPLETE = 1, 2, 75  # Exit codes of clogsweep.
 # Values of the keys, and the first seed with the number of seeds. None means the seeds of the config.
 Line = tuple[Values, tuple[int, int] | None]
 
 
 class Search(Protocol):
-    """A search plans the rounds. It is a CurveSearch or an AngleSearch."""
+    """A search plans the rounds. The two kinds of searches are CurveSearch and AngleSearch."""
 
     keys: Sequence[str]
     candidates: list[Values]

@@ -10,19 +10,19 @@ from ..curves.model import Curve
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
-CONFIDENCE = 0.95  # confidence of all intervals
+CONFIDENCE = 0.95  # Confidence of all intervals.
 EVEN_SHARE = 0.1  # This fraction of the weight is spread evenly over all places, so that each place gets some runs.
 TRY = "try curve=20%, peak=10%, crossing=10:5% or, for a lattice, critical-angle=0.5"
 
 
 class Goal(NamedTuple):
-    """The goal. `kind` is curve, peak, crossing or critical-angle. It is "" if only a budget ends the search."""
+    """The goal. `kind` is curve, peak, crossing or critical-angle, or "" if only a budget ends the search."""
 
     kind: str
     # Relative precision of lambda, or of the key at a peak or crossing. For critical-angle it is the width of the
     # bracket [degrees].
     precision: float = 0.0
-    length: float = 0.0  # value of lambda for a crossing [sigma]
+    length: float = 0.0  # Value of lambda for a crossing [sigma].
 
     def __str__(self) -> str:
         if self.kind == "critical-angle":

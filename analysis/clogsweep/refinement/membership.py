@@ -14,10 +14,10 @@ import pandas
 from ..tools.errors import UserError
 from ..tools.hints import Column
 
-Values = tuple[float, ...]  # one value for each key
+Values = tuple[float, ...]  # One value for each key.
 # Returns the tasks of some values, one row each. Throws UserError if clogsweep refuses the values.
 Resolve = Callable[[Sequence[Values]], pandas.DataFrame]
-MOST_TASKS = 1000  # largest number of tasks that clogsweep prints
+MOST_TASKS = 1000  # Largest number of tasks that clogsweep prints.
 
 
 def tasks_of(printed: str) -> pandas.DataFrame:

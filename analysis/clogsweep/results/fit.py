@@ -26,7 +26,7 @@ HDF5_BEGINNING = b"\x89HDF\r\n\x1a\n"
 class Fit:
     """The results of clogfit: clogging lengths and mean speeds, with a group for each set of parameters.
 
-    `groups` is a table with a row for each group. Its columns are those of clogfit: the clogging length and its
+    `groups` is a table with a row for each group. The columns are those of clogfit: the clogging length and its
     interval in droplet diameters, numbers of clogs by mechanism, doubts, and all parameters. `units` has the unit of
     each column. Groups of fewer than three runs have no mean speed.
     """
@@ -65,11 +65,11 @@ class Fit:
         """P(r) of a group: the probability that a droplet travels farther than r without a clog. The argument is the
         index of the group in `groups`.
 
-        The first row is for r = 0, with P = 1. There is one row for each `distance` r at which droplets clogged
-        [sigma]. If runs went beyond the last clog, the last row is for the longest distance. `at_risk` is the number of
-        runs that reached r, and `clogs` the number of them that clogged there. `probability` is P just beyond r, with
-        its `standard_error` (Greenwood) and the ends of its interval, `lower` and `upper`. These three are NaN where P
-        is 0, and where no droplet clogged.
+        The first row is for r = 0, with P = 1. One row follows for each `distance` r at which droplets clogged [sigma].
+        If runs went beyond the last clog, the last row is for the longest distance. `at_risk` is the number of runs
+        that reached r, and `clogs` the number of them that clogged there. `probability` is P just beyond r, with its
+        `standard_error` (Greenwood) and the ends of its interval, `lower` and `upper`. The error and both ends are NaN
+        where P is 0, and where no droplet clogged.
         @throws UserError  if there is no such group or no P(r)"""
         import pandas
 

@@ -35,8 +35,8 @@ class Film:
 
 
 class Run:
-    """A file that clogrun wrote with ``--output`` and ``--polygon-interval``. It contains the path of a droplet and its
-    outlines.
+    """A file that clogrun wrote with ``--output`` and ``--polygon-interval``. The file contains the path of a droplet
+    and its outlines.
 
     - `samples`: table of the path with time [t0], distance [sigma], speed [sqrt(sigma g)], energies and shape parameter
     - `polygons`: refined outlines, frames x 2 x points [sigma], at the `times` (frames) [t0]

@@ -77,8 +77,8 @@ class Sweep:
         return fit
 
     def fitted_curves(self, *keys: str, crossing: Sequence[float] = ()) -> dict[str, Any]:
-        """Smooth curves that are fitted to the clogging lengths, with bands, peaks and crossings. They have the form of
-        the output of `clogfit curve --format json`.
+        """Smooth curves that are fitted to the clogging lengths, with bands, peaks and crossings. The curves have the
+        form of the output of `clogfit curve --format json`.
 
         @param keys  one or two keys that the curves depend on; may be left out if only one key varies
         @param crossing  lengths that a curve may cross, in droplet diameters

@@ -99,7 +99,7 @@ def curve(axes: Axes, label: str) -> Iterator[None]:
 
 
 def mark(kind: str, groups: Collection[Group]) -> str | None:
-    """The name (`gid`) of artists that represent groups of a report. It is None outside reports, because only
+    """The name (`gid`) of artists that represent groups of a report. The name is None outside reports, because only
     report.write() numbers groups.
     @param kind  point, curve or legend"""
     numbers = [str(group["number"]) for group in groups if "number" in group]
@@ -191,8 +191,8 @@ def logarithmic_margin(values: Collection[float]) -> float:
 
 def side_by_side(index: int, num_curves: int, values: Collection[float]) -> float:
     """The factor by which the points of a curve are shifted on logarithmic abscissae, so that the bars of different
-    curves can be distinguished. The shift is a fraction of the axis. It is smaller if neighbouring values or the frame
-    are near."""
+    curves can be distinguished. The shift is a fraction of the axis. The shift is smaller if neighbouring values or the
+    frame are near."""
     ordered = sorted(set(values))
     outermost = max(num_curves - 1, 1) / 2
     nearest = min((b / a for a, b in zip(ordered, ordered[1:])), default=2.0)
@@ -227,8 +227,8 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
         low, high = (min(values), max(values)) if values else axes.get_xlim()
         plain_logarithmic(axis, high / low)
     if values:
-        # Ticks would determine the range of the axis and leave no margin. Then artists at the last tick would be on the
-        # frame.
+        # Ticks would determine the range of the axis and leave no margin, so that artists at the last tick would be on
+        # the frame.
         margin = logarithmic_margin(values)
         axes.set_xlim(min(values) / margin, max(values) * margin)
 
@@ -289,7 +289,7 @@ def finish(axes: Axes, up: str, shared: str, lines: Sequence[str], groups: Colle
 
 
 def notes(axes: Axes, lines: Sequence[str]) -> None:
-    """Writes notes below the label of the abscissa. They explain the marks."""
+    """Writes notes that explain the marks below the label of the abscissa."""
     axes.annotate("\n".join(lines), (0.5, 0), xycoords=axes.xaxis.label, xytext=(0, -4), textcoords="offset points", ha="center", va="top",
                   fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
 
@@ -331,8 +331,8 @@ def without_warnings() -> Iterator[None]:
 
 class Picture:
     """A picture. In a notebook the object shows itself. `figure` belongs to matplotlib and may be changed. `source`
-    states the origin of the numbers. It is saved as Description of the .png and as Subject of the .pdf. `caption` is
-    the text that for_journal() removes from the picture."""
+    states the origin of the numbers. The origin is saved as Description of the .png and as Subject of the .pdf.
+    `caption` is the text that for_journal() removes from the picture."""
 
     def __init__(self, figure: Figure, source: str = "") -> None:
         self.figure = figure

@@ -19,7 +19,7 @@ INCH = 2.54  # [cm]
 
 
 def in_lines(text: str, fits: Callable[[str], bool], between: str = ", ") -> str:
-    """Breaks the text into lines that fit. It is broken only between phrases, never within a formula."""
+    """Breaks the text into lines that fit. A line is broken only between phrases, never within a formula."""
     lines = []
     for line in re.sub(r"\$.*?\$", lambda formula: formula[0].replace(" ", "\0"), text.strip()).split("\n"):
         first, *others = line.split(between)
@@ -34,7 +34,7 @@ def in_lines(text: str, fits: Callable[[str], bool], between: str = ", ") -> str
 
 
 def fitting(figure: FigureBase, size: float, pixels: float) -> Callable[[str], bool]:
-    """Returns a function. It tells whether a line of text in letters of `size` points fits into this width."""
+    """Returns a function that tells whether a line of text in letters of `size` points fits into this width."""
     def fits(line: str) -> bool:
         text = figure.text(0, 0, line, fontsize=size)
         width = text.get_window_extent(figure.canvas.get_renderer()).width

@@ -15,4 +15,4 @@ Column = dict[str, Any]  # a parameter as clogsweep describes it, with its name,
 Group = dict[str, Any]  # a group in clogfit's JSON, with the common parameters of its runs and their results
 Numbers = npt.NDArray[np.float64]
 Point = Sequence[float] | Numbers  # x and y
-Records = npt.NDArray[np.void]  # rows of a table, whose columns have names
+Records = npt.NDArray[np.void]  # Rows of a table, whose columns have names.

@@ -14,8 +14,8 @@ BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-"
 
 
 def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> None:
-    """Checks that a file can be written, before minutes are spent on a computation. It may replace an earlier file of
-    the same kind, but no other file.
+    """Checks that a file can be written, before minutes are spent on a computation. The file may replace an earlier
+    file of the same kind, but no other file.
 
     @param kind  a key of BEGINNINGS
     @param inputs  files that the command reads

@@ -1,5 +1,5 @@
-"""Writes numbers as text. A count has its noun. Other numbers have as many figures as their uncertainty allows, but at
-least three."""
+"""Writes numbers as text. A count is followed by its noun. Other numbers have as many figures as their uncertainty
+allows, but at least three."""
 
 import math
 from typing import TypeGuard

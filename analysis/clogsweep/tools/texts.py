@@ -1,5 +1,5 @@
-"""Makes text from outside safe for terminals, pages and pictures. Such text is names of files, attributes, and words of
-a table."""
+"""Makes text from outside safe for terminals, pages and pictures. Such text includes names of files, attributes, and
+words of a table."""
 
 import difflib
 from collections.abc import Iterable
@@ -23,6 +23,6 @@ def literal(text: object) -> str:
 
 
 def did_you_mean(word: str, names: Iterable[str]) -> str:
-    """The end of a message about a mistyped word. It is empty if no known name is similar."""
+    """The end of a message about a mistyped word, or an empty text if no known name is similar."""
     near = difflib.get_close_matches(word, names, 1)
     return f"; did you mean {near[0]}?" if near else ""

@@ -12,8 +12,8 @@
 namespace clog {
 namespace {
 
-/// Counts the crossings of every pair of edges. It solves p + s u = q + t v for s and t, which is another
-/// formula than the tested one.
+/// Counts the crossings of every pair of edges by solving p + s u = q + t v for s and t. The tested function
+/// uses another formula.
 int crossings_of_every_pair(const Eigen::ArrayXd& position) {
   const int n = static_cast<int>(position.size() / 2);
   const auto point = [&](int i) { return Eigen::Array2d(position[i % n], position[n + i % n]); };
@@ -139,7 +139,7 @@ TEST(SelfCrossings, AreOneInAFigureOfEight) {
 }
 
 TEST(SelfCrossings, CountWhereAFilmIsPulledThroughItself) {
-  // A flat box. Its lower side bulges out through the upper side and back in.
+  // A flat box whose lower side bulges out through the upper side and back in.
   Eigen::ArrayXd position(12);
   position << 0, 1, 2, 3, 3, 0, 0, 0, 2, 0, 1, 1;
   EXPECT_EQ(num_self_crossings(position), 2);

@@ -154,8 +154,8 @@ TEST_P(Certified, ADropletOnAFlatWallCouldDriftAside) {
 }
 
 TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
-  // Two springs at an angle to the flow balance the weight. Each has the force k (r - d), so 2 k (r - d) (10
-  // - x)/d = M g.
+  // Two springs at an angle to the flow balance the weight. Each spring has the force k (r - d), so 2 k (r -
+  // d) (10 - x)/d = M g.
   const RunParameters run = resolve(soft_disk());
   const double k = 4 * 5;
   const auto pull = [&](double x) {
@@ -246,8 +246,8 @@ TEST(Equilibrium, IsFoundThoughContactsOpenAndCloseOnTheWay) {
 }
 
 TEST(Equilibrium, IsFoundAtTheFirstSearchEvenIfItsFirstStepsLeadAstray) {
-  // Half of these searches go astray at first. They return to their start, and find the place of rest with
-  // halved steps.
+  // Half of these searches go astray at first. Such a search returns to its start, and finds the place of
+  // rest with halved steps.
   int num_early = 0;
   for (const std::uint32_t seed : {3u, 7u, 11u, 14u, 16u}) {
     RunParameters run;

@@ -54,8 +54,8 @@ Eigen::ArrayXd with_short_edges(const std::vector<Eigen::Array2d>& corners) {
 constexpr double inner = radius + 0.5 * range;
 constexpr double outer = 0.45;
 
-/// A droplet that hangs over an obstacle at the origin. It consists of a half ring upstream of the obstacle,
-/// and of a lobe on each side. The arguments are the lengths of the lobes.
+/// A droplet that hangs over an obstacle at the origin. The droplet consists of a half ring upstream of the
+/// obstacle, and of a lobe on each side. The arguments are the lengths of the lobes.
 Scene horseshoe(double right_lobe, double left_lobe) {
   std::vector<Eigen::Array2d> corners;
   const auto add_half_circle = [&](double r, double from, double to) {
@@ -73,7 +73,7 @@ Scene horseshoe(double right_lobe, double left_lobe) {
   return {with_short_edges(corners), {{0, 0, radius}}};
 }
 
-/// The same droplet. Each of its lobes rests on two small obstacles.
+/// The same droplet, with each lobe resting on two small obstacles.
 Scene horseshoe_with_lobes_in_gaps() {
   Scene scene = horseshoe(0.4, 0.4);
   constexpr double small = 0.05, overlap = 1.2 * range;
@@ -96,7 +96,7 @@ TEST(ClogGeometry, ADiscOnTwoObstaclesIsSqueezed) {
 }
 
 TEST(ClogGeometry, ADiscWedgedAgainstAnObstacleBesideItIsSqueezed) {
-  // The second obstacle is beside the disc. It pushes the disc across the flow, or a little downstream.
+  // The second obstacle is beside the disc, and pushes the disc across the flow or a little downstream.
   for (const double beside : {-90.0, -100.0}) {
     const ClogGeometry geometry = disc_on({beside, 17}).geometry();
     expect_counts(geometry, 0, 1, 2);

@@ -112,8 +112,8 @@ TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
 }
 
 /// On the contour of this oval, the distances from two points at +-a have the product b^2. For a < b <
-/// sqrt(2) a the oval is 2 sqrt(b^2 - a^2) wide in the middle. An edge of length l is a chord there. Its
-/// distance from the contour is l^2/8 times the curvature of the contour.
+/// sqrt(2) a the oval is 2 sqrt(b^2 - a^2) wide in the middle. An edge of length l is a chord there. The
+/// distance of the chord from the contour is l^2/8 times the curvature of the contour.
 TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {
   const double a = 0.5;
   for (const double b : {0.5004, 0.502, 0.51}) {
@@ -167,8 +167,8 @@ TEST(ThinnestNeck, IsTheFilmAboveAnObstacleAndNotTheGapBetweenLobes) {
 }
 
 TEST(ThinnestNeck, HasOneLineOfSight) {
-  // Two parallel bars that are joined at one end. Their far sides face each other over both bars and the
-  // water between the bars.
+  // Two parallel bars that are joined at one end. The far sides of the bars face each other over both bars
+  // and the water between the bars.
   const Eigen::ArrayXd bars =
       polygon_of({{0, 0}, {2, 0}, {2, 0.3}, {0.5, 0.3}, {0.5, 0.35}, {2, 0.35}, {2, 0.65}, {0, 0.65}});
   EXPECT_NEAR(thinnest_neck(bars), 0.3, 1e-12);

@@ -14,8 +14,7 @@
 namespace clog {
 namespace {
 
-/// A round droplet that the test moves along the flow, among given circles. It starts at x = 2 and y =
-/// `across`.
+/// A round droplet that the test moves along the flow, among given circles, from x = 2 and y = `across`.
 class Passage {
  public:
   explicit Passage(std::vector<Obstacle> circles, double across = 5, double range = 0)

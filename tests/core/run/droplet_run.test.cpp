@@ -302,7 +302,7 @@ TEST(DropletRun, KeepsItsContactsShallowAndItsAreaOnTheWay) {
 }
 
 TEST(DropletRun, ADivergedRunIsAResult) {
-  // These parameters were not checked. Their step is too long for the contacts of this soft disk.
+  // These parameters were not checked: the step is too long for the contacts of this soft disk.
   RunParameters parameters = small_run();
   parameters.model = Model::sp;
   parameters.wall_stiffness = 1e9;
@@ -313,7 +313,7 @@ TEST(DropletRun, ADivergedRunIsAResult) {
 }
 
 TEST(DropletRun, ABurstPolygonIsAResultToo) {
-  // These parameters were not checked. Their step would have to be split into too many parts.
+  // These parameters were not checked: the step would have to be split into too many parts.
   RunParameters parameters = small_run();
   parameters.drag.terminal_speed = 100;
   parameters.time_step = 5;
@@ -429,9 +429,9 @@ TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
   EXPECT_EQ(same.kinetic_energy_ratio, broken.kinetic_energy_ratio);
 }
 
-/// The run starts from a droplet that hangs over an obstacle. Its neck still gets thinner, and its place of
-/// rest is known. If the neck is too thin at rest, the rest does not count as a clog. The droplet then breaks
-/// up as soon as its neck is too thin.
+/// The run starts from a droplet that hangs over an obstacle. The neck of the droplet still gets thinner, and
+/// its place of rest is known. If the neck is too thin at rest, the rest does not count as a clog. The
+/// droplet then breaks up as soon as its neck is too thin.
 TEST(BreakUp, ComesBeforeACertifiedClog) {
   RunParameters run;
   run.dp.perimeter_spring = PerimeterSpring::rest;

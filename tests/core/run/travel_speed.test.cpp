@@ -23,7 +23,8 @@ std::vector<double> correlated_noise(std::size_t size, double correlation, unsig
   return values;
 }
 
-/// The error of the mean of n = `size` such values. Its square is 1/n (1 + 2 sum_k (1 - k/n) c^k).
+/// The error of the mean of n = `size` such values. The square of the error is 1/n (1 + 2 sum_k (1 - k/n)
+/// c^k).
 double exact_error(std::size_t size, double correlation) {
   const double n = static_cast<double>(size);
   double sum = 1;

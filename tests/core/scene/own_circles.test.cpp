@@ -28,8 +28,8 @@ RunParameters among(std::vector<Obstacle> circles) {
 }
 
 TEST(OwnCircles, AreKnownByAStandardCheckSum) {
-  // The three numbers have 24 bytes: "123456789" and 15 zeros. Their CRC-64/XZ was computed bit by bit with
-  // Python.
+  // The three numbers have 24 bytes: "123456789" and 15 zeros. The CRC-64/XZ of these bytes was computed bit
+  // by bit with Python.
   Obstacle text;
   const char bytes[sizeof text] = "123456789";
   std::memcpy(&text, bytes, sizeof text);

@@ -36,10 +36,10 @@ DropletRun at_rest_on_a_wall(const RunParameters& run) {
   return droplet;
 }
 
-/// A two-dimensional drop on a wall. It follows from the Young-Laplace equation Gamma dphi/ds = Gamma kappa_0
-/// + z, which a Runge-Kutta method integrates. Here z is the depth below the apex, and phi is the angle of
-/// the slope. The angle is 0 at the apex and the contact angle at the wall. On a wall that is not wetted the
-/// contact angle is pi.
+/// A two-dimensional drop on a wall. The shape follows from the Young-Laplace equation Gamma dphi/ds = Gamma
+/// kappa_0 + z, which a Runge-Kutta method integrates. Here z is the depth below the apex, and phi is the
+/// angle of the slope. The angle is 0 at the apex and the contact angle at the wall. On a wall that is not
+/// wetted the contact angle is pi.
 struct SessileDrop {
   double height = 0, area = 0, half_width = 0, depth_of_centroid = 0;
 };
@@ -202,9 +202,9 @@ TEST(OnAWall, TheShapeOnAWettedWallHangsNeitherOnTheSpringsNorOnTheVertices) {
   EXPECT_NEAR(size_on_a_wetted_wall(run, 0.3).first / height, 1, 0.01);
 }
 
-/// The shape parameter of a droplet in an orifice with rounded tips. It is made of two equal caps of circles,
-/// which touch the tips from both sides, and of the arcs of the tips between the caps. Each quarter is
-/// computed alone. Let h be the distance of a tip's centre from the axis, and c the distance of a cap's
+/// The shape parameter of a droplet in an orifice with rounded tips. The droplet is made of two equal caps of
+/// circles, which touch the tips from both sides, and of the arcs of the tips between the caps. Each quarter
+/// is computed alone. Let h be the distance of a tip's centre from the axis, and c the distance of a cap's
 /// centre from the orifice. Then the radius of the cap is R = sqrt(c^2 + h^2) - tip_radius. The quarter
 /// consists of the cap's sector and the triangle of the three centres, without the tip's sector.
 double shape_of_two_caps(double orifice, double tip_radius) {
@@ -265,9 +265,9 @@ TEST(InAChannel, TheLiteralContactLetsTheTipSinkIn) {
   EXPECT_LT(largest_shape_parameter(run, 0.7), shape_of_two_caps(narrowed, tip_radius) - 0.005);
 }
 
-/// The largest Gamma at which the weight can push a droplet of two caps through a chord. It is (M g)/max
-/// dP/dh, where P is the perimeter and h is the distance of the centroid from the chord. The maximum is taken
-/// over all pairs of caps that have the droplet's area and fit between flanks of 45 degrees.
+/// The largest Gamma at which the weight can push a droplet of two caps through a chord. This Gamma is (M
+/// g)/max dP/dh, where P is the perimeter and h is the distance of the centroid from the chord. The maximum
+/// is taken over all pairs of caps that have the droplet's area and fit between flanks of 45 degrees.
 double largest_line_tension_that_passes(double chord) {
   struct Cap {
     double area, length, moment;  // moment is the area times the centroid's distance from the chord

@@ -81,8 +81,8 @@ TEST(SampleObstacles, FillsALongArrayAsASquareOne) {
   EXPECT_EQ(array.period().across(), 10);
   EXPECT_GE(brute_force_gap(array), 0.4);
   EXPECT_DOUBLE_EQ(array.smallest_gap(), brute_force_gap(array));
-  // The expected number follows from Feder's coverage. Its scatter is 0.2 times the square root of the area
-  // divided by the spacing, which is 18 here.
+  // The expected number follows from Feder's coverage. The number scatters by 18 here, which is 0.2 times the
+  // square root of the area divided by the spacing.
   const double expected = 0.547069 * 4000 / (std::numbers::pi / 4 * 0.49);
   EXPECT_NEAR(static_cast<double>(array.obstacles().size()), expected, 5 * 18);
   expect_no_room(array);
@@ -131,7 +131,7 @@ TEST(SampleObstacles, PlacesADilutedArrayUniformly) {
   EXPECT_LT(chi2, 99.6);
 }
 
-/// An FNV hash of all bits. It depends on the order of the obstacles, too.
+/// An FNV hash of all bits, which also depends on the order of the obstacles.
 std::uint64_t digest(const ObstacleArray& array) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const Obstacle& obstacle : array.obstacles())
@@ -182,8 +182,8 @@ TEST(SampleObstacles, LeavesNoRoomForEvenTheSmallestOfAMixture) {
 }
 
 TEST(SampleObstacles, DrawsTheDiametersOfADilutedMixtureUniformly) {
-  // The counts of 4000 diameters in ten bins give a chi-squared with 9 degrees of freedom. It must stay below
-  // its 99.9 % quantile.
+  // The counts of 4000 diameters in ten bins give a chi-squared with 9 degrees of freedom. The chi-squared
+  // must stay below its 99.9 % quantile.
   double counts[10] = {};
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     const ObstacleArray array = sample_obstacles(mixture(0.5, 50, 0.16), seed);

@@ -101,9 +101,9 @@ TEST(FilmTouches, EndWhereTheWallDoesNotPushAnyInterface) {
   EXPECT_EQ(held[0] + held[1], 0);
 }
 
-/// Two ropes over half of a disc, one on top of the other. Their straight ends hang along +x. The ropes
-/// represent the two parts of the interface of a droplet that hangs over a post. Forces at the ends replace
-/// the lobes.
+/// Two ropes over half of a disc, one on top of the other. The straight ends of the ropes hang along +x. The
+/// ropes represent the two parts of the interface of a droplet that hangs over a post. Forces at the ends
+/// replace the lobes.
 class Band {
  public:
   static constexpr double radius = 0.5, film = 0.02;
@@ -148,7 +148,7 @@ class Band {
     constexpr int loading = 6000, waiting = 16000;
     double lower = 0, upper = 0;
     for (int step = 0; step < loading + waiting; ++step) {
-      // All forces grow in proportion until they are complete. So no rope slides before.
+      // All forces grow in proportion, so that no rope slides before the forces are complete.
       move(pulls, std::min(1.0, static_cast<double>(step) / loading));
       if (step == loading + waiting / 2) lower = state_.position[each_ - 1], upper = state_.position[each_];
     }
@@ -266,8 +266,8 @@ TEST(BandOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
 TEST(BandOverADisc, IsHeldByCornersAloneIfNothingHoldsItsUpperRope) {
   // The two ropes together bear the weights of two lobes, and one lobe is heavier than the other. Without
   // friction through the film the upper rope yields at once, however strongly the lower rope is held. Only
-  // the corners of the lower rope then hold the upper rope. Their force falls with the square of the edge
-  // length.
+  // the corners of the lower rope then hold the upper rope. The force of the corners falls with the square of
+  // the edge length.
   const auto upper_slides = [](Band::Law law, int edges, double imbalance) {
     return Band(law, edges, 0).slides({1, 1 + imbalance, 1, 1 + imbalance}).upper;
   };

@@ -90,8 +90,8 @@ TEST(WallTouches, PushesAddUpToTheContactsForce) {
 /// Describes how well the sum of two energies is conserved: the energy of a held droplet, and the dissipated
 /// energy.
 struct Balance {
-  double worst = 0;  ///< largest difference between the sum and its first value
-  double rise = 0;   ///< largest rise of the droplet's energy alone between two times
+  double worst = 0;  ///< Largest difference between the sum and its first value.
+  double rise = 0;   ///< Largest rise of the droplet's energy alone between two times.
   double anchors = 0, dissipated = 0;
 };
 Balance balance(RunParameters run, const ObstacleArray& wall, const Eigen::ArrayXd& initial,
@@ -186,9 +186,9 @@ TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
   expect_balance(run, ObstacleArray(20, {}, {incline}), 0.2);
 }
 
-/// A rope over half of a disc, made of vertices that stiff springs join. Its straight ends hang along +x. The
-/// disc pushes the vertices off, and holds them by friction. Forces pull at both ends until the rope rests or
-/// slides.
+/// A rope over half of a disc, made of vertices that stiff springs join. The straight ends of the rope hang
+/// along +x. The disc pushes the vertices off, and holds them by friction. Forces pull at both ends until the
+/// rope rests or slides.
 class Rope {
  public:
   static constexpr double radius = 0.5;
@@ -219,7 +219,7 @@ class Rope {
     double before = 0;
     for (int step = 0; step < loading + waiting; ++step) {
       const double share = std::min(1.0, static_cast<double>(step) / loading);
-      // Both pulls grow in proportion until they are complete. So the rope does not slide before.
+      // Both pulls grow in proportion, so that the rope does not slide before the pulls are complete.
       move(share * first_pull, share * second_pull, share * weight_);
       if (step == loading + waiting / 2) before = state_.position[n_ - 1];
     }

@@ -24,8 +24,8 @@ RunParameters only(void (*switch_on)(RunParameters&), int vertices = 64) {
   return run;
 }
 
-/// The tests take the central difference of an energy of order one with the step h = 1e-6. Its rounding error
-/// is about 1e-9, and its truncation error h^2 U''' is smaller.
+/// The tests take the central difference of an energy of order one with the step h = 1e-6. The difference has
+/// a rounding error of about 1e-9, and a smaller truncation error, h^2 U'''.
 constexpr double difference_tolerance = 2e-7;
 
 double free_force_error(const RunParameters& run, double weight = 0) {
@@ -185,8 +185,8 @@ TEST(DpForces, LaplacePressureOfACircleIsLineTensionOverRadius) {
 }
 
 class ContactLists : public testing::TestWithParam<double> {};
-// The smallest speed is that of a sinking droplet. At the largest, a droplet moves by more than the usual
-// skin between two updates. The skin is the margin of the contact lists.
+// The smallest speed is that of a sinking droplet. At the largest speed, a droplet moves by more than the
+// usual skin between two updates. The skin is the margin of the contact lists.
 INSTANTIATE_TEST_SUITE_P(Speeds, ContactLists, testing::Values(0.05, 0.8, 5.0));
 
 TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
@@ -266,7 +266,7 @@ TEST(DpForces, VertexContactIsTheGradientOfItsEnergy) {
   EXPECT_LT(force_error(forces, state), 1e-5);
 }
 
-/// Two wedges. One presses into the droplet with its tip, and the other with its flank.
+/// Two wedges: one presses into the droplet with its tip, the other with its flank.
 ObstacleArray two_wedges(double radius) {
   return ObstacleArray(20, {},
                        {{.tip = {0.02, 0.47}, .axis = {0, 1}, .half_angle = 0.6, .radius = radius},
@@ -378,7 +378,7 @@ TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
 }
 
 TEST(DpForces, AnObstacleBetweenTwoVerticesIsPushedOffByTheirEdge) {
-  // A box. Its lower edge spans an obstacle that touches no vertex.
+  // A box whose lower edge spans an obstacle that touches no vertex.
   Eigen::ArrayXd position(32);
   for (int i = 0; i < 16; ++i) {
     const int side = i / 4;

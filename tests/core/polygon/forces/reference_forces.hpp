@@ -49,11 +49,11 @@ class ReferenceForces : public DpForces {
   }
 
   /// Distance of each vertex from the nearest obstacle at the last evaluate(), but at least the cutoff of the
-  /// near-wall drag [sigma]. It is empty without near-wall drag.
+  /// near-wall drag [sigma]. The array is empty without near-wall drag.
   const Eigen::ArrayXd& wall_distance() const { return wall_distance_; }
   /// Derivatives d(X, Y)/d(x_i, y_i) at the last evaluate(). X and Y are the coordinates of the area's
-  /// centroid. The array contains dX/dx, dX/dy, dY/dx and dY/dy, each of length N_v. It is zero if the weight
-  /// acts on the vertices.
+  /// centroid. The array contains dX/dx, dX/dy, dY/dx and dY/dy, each of length N_v. The array is zero if the
+  /// weight acts on the vertices.
   const Eigen::ArrayXd& centroid_gradient() const { return centroid_gradient_; }
 
  private:

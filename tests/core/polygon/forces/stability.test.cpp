@@ -11,8 +11,8 @@ namespace {
 
 using namespace test;
 
-/// The largest omega^2 of small motions about a shape. It comes from power iteration on the Hessian divided
-/// by the mass. Finite differences give the Hessian.
+/// The largest omega^2 of small motions about a shape. The value comes from power iteration on the Hessian
+/// divided by the mass. Finite differences give the Hessian.
 double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
                        const ObstacleArray& obstacles = no_obstacles()) {
   const int n = *run.dp.vertices;
@@ -37,8 +37,8 @@ double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
 }
 
 TEST(StiffModes, BoundTheStiffestModeOfTheDroplet) {
-  // The shapes are a circle, and two lobes with a waist. Their vertices are evenly spread, because springs
-  // keep them so.
+  // The shapes are a circle, and two lobes with a waist. The vertices are evenly spread, because springs keep
+  // them so.
   for (const Eigen::ArrayXd& position : {regular_polygon(128, units::rest_area), dumbbell(128, 0.2)})
     for (const double line_tension : {0.05, 1.0, 10.0}) {
       RunParameters run = bare_parameters(128);
@@ -65,8 +65,8 @@ TEST(StiffModes, BoundTwoFilmsThatTouch) {
   EXPECT_GT(stiffest, 0.5 * modes.self_contact) << "the film touches itself";
 }
 
-/// A droplet that hangs over a circle around the origin. It is a horseshoe of thickness 0.4. The vertices are
-/// evenly spread. Those on the inner side are at the distance `inner` from the origin.
+/// A droplet that hangs over a circle around the origin. The droplet is a horseshoe of thickness 0.4. The
+/// vertices are evenly spread. The vertices on the inner side are at the distance `inner` from the origin.
 Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
   constexpr double open = 2, thick = 0.4;  // half the opening angle [rad]; thickness [sigma]
   const double outer = inner + thick;

@@ -155,8 +155,8 @@ TEST(DpDroplet, RelativeDragDampsChangesOfShapeOnly) {
 }
 
 TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
-  // The sum of E_k, U and the work against the drag is conserved through a collision with an obstacle. This
-  // must hold for every kind of drag, on dry and on wetted walls.
+  // The sum of E_k, U and the work against the drag must be conserved through a collision with an obstacle,
+  // for every kind of drag, on dry and on wetted walls.
   const ObstacleArray wall(20, {{0.775, 0.05, 0.15}});
   for (const Gravity gravity : {Gravity::vertex, Gravity::area})
     for (const auto& [near_wall, wall_tension, inertia] :
@@ -226,8 +226,8 @@ TEST(DpDroplet, ConservesEnergyWithoutDragToSecondOrder) {
 
 TEST(DpDroplet, SwingsAtTheFrequencyOfACapillaryMode) {
   // Let a circle with the line density mu = M/P have a small wave r = R + e cos 2 phi that keeps the area.
-  // The energy of the wave is (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R). It moves the mass pi mu
-  // R, so omega^2 = 3 gamma/(mu R^2).
+  // The energy of the wave is (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R). The wave moves the mass
+  // pi mu R, so omega^2 = 3 gamma/(mu R^2).
   RunParameters run = bare_parameters(128);
   run.drag.terminal_speed = no_drag;
   run.dp.perimeter_stiffness = 0;

@@ -222,8 +222,8 @@ TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
 }
 
 TEST_P(Step, MeetsCirclesThatShareEdges) {
-  // The circles around the droplet are so close together that most edges touch two of them. This includes the
-  // edges where the contour begins and ends, and contours of few vertices.
+  // The circles around the droplet are so close together that most edges touch two of them. The edges where
+  // the contour begins and ends are among these edges. Some contours have few vertices.
   std::size_t num_compared = 0;
   for (const int vertices : {16, 30, 64, 101}) {
     RunParameters run = parameters(64);

@@ -47,8 +47,8 @@ TEST(ImplicitPressure, LetsACircleBreatheAtTheFrequencyOfNewmarksMethod) {
     }
 }
 
-/// The parameters of a film that falls and contracts. Its area mode is so stiff that steps of 0.002 need an
-/// implicit pressure.
+/// The parameters of a film that falls and contracts. The area mode of the film is so stiff that steps of
+/// 0.002 need an implicit pressure.
 RunParameters film_parameters(Gravity gravity) {
   RunParameters run = bare_parameters(128);
   run.dp.line_tension = 0.1;

@@ -50,8 +50,8 @@ class ReadableDroplet {
   WallTouches touches_;
   DropletState state_;
   Eigen::ArrayXd force_;
-  Eigen::ArrayXd rate_;  // rate of the drag on each vertex
-  double fastest_ = 0;   // speed of the fastest vertex when the contacts were last updated
+  Eigen::ArrayXd rate_;  // Rate of the drag on each vertex.
+  double fastest_ = 0;   // Speed of the fastest vertex when the contacts were last updated.
   int num_evaluations_ = 0, num_kept_ = 0;
 
   /// Lets the walls that hold the droplet yield, and then finds the forces.

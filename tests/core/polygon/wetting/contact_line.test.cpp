@@ -96,7 +96,7 @@ RunParameters sticky(const Angles& angles, int vertices, double line_tension = 1
 
 class OnAnIncline : public testing::TestWithParam<Angles> {
  protected:
-  /// A drop on an inclined wall. Its weight along the wall is `share` times the weight that Furmidge's
+  /// A drop on an inclined wall. The drop's weight along the wall is `share` times the weight that Furmidge's
   /// equation allows.
   static DropletRun drop(double share, int vertices) {
     const Angles angles = GetParam();
