@@ -68,8 +68,8 @@ TEST_F(HostLimits, CountsWhatTheKernelKeepsOfFilesAsAvailable) {
 TEST_F(HostLimits, AreNoLessThanNothing) {
   write("proc/self/cgroup", "0::/job\n");
   write("sys/fs/cgroup/job/memory.max", "1000000\n");
-  write("sys/fs/cgroup/job/memory.current",
-        "1004096\n");  // more than the limit, because the limit has been lowered
+  // More than the limit, because the limit has been lowered.
+  write("sys/fs/cgroup/job/memory.current", "1004096\n");
   EXPECT_EQ(available_memory(root_), 0);
 }
 

@@ -32,8 +32,8 @@ TEST(SpeedRatio, WeighsRunsByTheirTime) {
   const MeanSpeed fit = fit_pooled_speed(std::vector<Travel>{{1, 1}, {9, 3}, {NAN, NAN}});
   EXPECT_EQ(fit.num_runs, 2);
   EXPECT_DOUBLE_EQ(fit.mean, 2.5);
-  EXPECT_DOUBLE_EQ(fit.standard_error,
-                   1);  // the mean without the first run is 3, and without the second run it is 1
+  // The mean without the first run is 3, and without the second run it is 1.
+  EXPECT_DOUBLE_EQ(fit.standard_error, 1);
 }
 
 TEST(SpeedRatio, OfEqualTimesIsTheMeanWithItsError) {
@@ -84,8 +84,8 @@ TEST(SpeedRatio, ScattersAsItsErrorSays) {
     const MeanSpeed fit = fit_pooled_speed(scattered_runs(20, engine));
     squares += std::pow(fit.mean - 0.5, 2);
     squared_errors += std::pow(fit.standard_error, 2);
-    covered +=
-        std::abs(fit.mean - 0.5) < 2.093 * fit.standard_error;  // Student's t with 19 degrees of freedom
+    // Student's t with 19 degrees of freedom.
+    covered += std::abs(fit.mean - 0.5) < 2.093 * fit.standard_error;
   }
   EXPECT_NEAR(squared_errors / squares, 1, 0.06);
   EXPECT_NEAR(static_cast<double>(covered) / samples, 0.95, 0.015);

@@ -130,8 +130,8 @@ class Fit(ProgramTest):
     DWELLING = ["seeds=1..8", "line-tension=0.05,0.3", "max-time=400"]
 
     def longest_first(self, table):
-        """The dwells of every row with their lengths and places. Longer dwells come first; among equally long ones,
-        earlier dwells come first."""
+        """The dwells of every row with their lengths and places. The longest dwell comes first, and each of the others
+        is earlier and shorter than the one before."""
         names = ["longest_dwell", *(f"earlier_dwell_{i}" for i in range(1, 8))]
         return [[(row[name], row[name + "_at"]) for name in names if row[name] > 0] for _, row in table.iterrows()]
 
@@ -180,11 +180,13 @@ class Fit(ProgramTest):
                 self.assertGreaterEqual(longer_way, way)
                 self.assertLessEqual(fewer_clogs, clogs)
         self.assertLess(results[0], results[-1])
-        # No run can have rested for its whole duration, so the numbers are the same as without the option.
+        # No run can have rested for its whole duration, so with these dwells the numbers are the same as without
+        # --dwell.
         usual = self.fit()["groups"]
         for dwell in (400, 1e9):
             self.assertEqual(self.fit("--dwell", dwell)["groups"], usual)
-        # The usual distances are longer by at most one dwell for each droplet that was still moving.
+        # This fit loses at most 0.05 for each droplet that was still moving, because a droplet that moves by less
+        # counts as resting.
         for (way, clogs), group in zip(results[-3], usual):
             self.assertEqual(clogs, group["clogs"])
             self.assertLess(group["total_distance"] - way, 0.05 * (group["flowing"] + 1))

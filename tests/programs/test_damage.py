@@ -184,7 +184,7 @@ class Damage(ProgramTest):
             chunks = {name: file[name].id.get_chunk_info(0) for name in ("runs", "row_checksums")}
             num_rows, row_size = len(file["runs"]), file["runs"].dtype.itemsize
         self.assertIn("all undamaged", self.succeed("clogsweep", "verify", "copy.h5").stdout)
-        # Offset of the last byte of the chunk's checksum.
+        # Offsets of the last bytes of the checksums of the chunks.
         last = {name: chunk.byte_offset + chunk.size - 1 for name, chunk in chunks.items()}
         for place in (*last.values(), chunks["runs"].byte_offset + num_rows * row_size):
             content = bytearray(whole)

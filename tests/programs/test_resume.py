@@ -40,7 +40,7 @@ class Resumed(SweepTest):
         self.fail("no stop met a run with a snapshot")
 
     def stop_with_a_snapshot(self, sweep, signal_number, **options):
-        """Stops a sweep. @return the sweep's process and its messages, or nothing if the sweep ended before"""
+        """Stops a sweep. @return the sweep's process and its messages, or nothing if the sweep ended earlier"""
         process = self.start(*sweep, **options)
         self.wait_for(lambda: process.poll() is not None or (self.folder / "s.h5").exists() and
                       (table(self.folder / "s.h5").query("status == 'running'").steps > STEPS_PER_SNAPSHOT).any())
@@ -96,7 +96,7 @@ class Resumed(SweepTest):
 
     def hold_while_it_runs(self, ranks):
         """Starts a sweep and stops its ranks. @return the sweep's process and the processes of the ranks, or nothing if
-        the sweep ended before"""
+        the sweep ended earlier"""
         process = self.start(*SLOW, ranks=ranks)
 
         def runs():
@@ -190,7 +190,7 @@ class Resumed(SweepTest):
 
     def kill_with_records(self, number):
         """Kills a sweep with records in its journal. @return whether the journal had this number of records; otherwise
-        the sweep ended before"""
+        the sweep ended earlier"""
         process = self.start(*SLOW)
         self.wait_for(lambda: process.poll() is not None or self.journal()[0] >= number)
         self.kill_all(process)
@@ -405,7 +405,7 @@ class Batch(ProgramTest):
         return ["vertices=64", "box=20", "obstacle-gap=1.2", "seeds=1..20", *more, "--output", str(self.folder / "s.h5")]
 
     def warn(self, process, signal_number=signal.SIGUSR1):
-        """Checks that a warning interrupts the runs of the job, and that the job queues again."""
+        """Checks that a warning interrupts the runs of the job, and that the job is queued again."""
         self.wait_for(lambda: process.poll() is not None or (
             (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()))
         process.send_signal(signal_number)

@@ -118,8 +118,8 @@ TEST(CostLeft, HasWhatUnfinishedRunsStillTake) {
   for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, finished(seconds, 100)));
   begun.push_back(of_set(1, unfinished(0.4, 100)));
   const SweepCost left = cost_left(begun, {});
-  EXPECT_GT(left.expected,
-            0.2);  // the remaining run is short, and its cost is estimated from the other short runs
+  // The remaining run is short, and its cost is estimated from the other short runs.
+  EXPECT_GT(left.expected, 0.2);
   EXPECT_LT(left.expected, 2);
   EXPECT_GT(left.upper, left.expected);
   EXPECT_LT(left.lower, left.expected);

@@ -20,8 +20,8 @@ TEST(SeedRule, AsksForMoreOnlyWhereTheIntervalIsWide) {
   SeedRule rule(0.6, 2, 16, 100);
   const std::vector<std::int64_t> next = rule.next_round(has_clogged);
   EXPECT_EQ(rule.num_reached(), 1);
-  ASSERT_EQ(next.size(),
-            16u);  // the set has only 16 runs, so no more are added, although 4 clogs of 16 require 40 more
+  // The set has only 16 runs, so no more are added, although 4 clogs of 16 require 40 more.
+  ASSERT_EQ(next.size(), 16u);
   for (std::size_t i = 0; i < next.size(); ++i) EXPECT_EQ(next[i], 2 * (16 + static_cast<int>(i)) + 1);
   EXPECT_EQ(rule.next_round(has_clogged).size(), 24u);  // 8 of 32 runs clogged, so 56 seeds are needed
   EXPECT_TRUE(rule.next_round(has_clogged).empty());

@@ -34,8 +34,8 @@ class SyntheticJob : public sweep::Job {
     return --slices_left_ <= 0;
   }
   std::vector<std::byte> snapshot() const override {
-    return std::vector<std::byte>(
-        1 + task_ * 7 % 5 - slices_left_);  // the number of bytes is one more than the number of slices done
+    // The number of bytes is one more than the number of slices done.
+    return std::vector<std::byte>(1 + task_ * 7 % 5 - slices_left_);
   }
   sweep::RunRow row() const override {
     sweep::RunRow row;

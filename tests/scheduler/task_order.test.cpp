@@ -83,8 +83,8 @@ TEST(TaskOrder, HandsOutTheLongestOfAllGroups) {
   std::mt19937 random(7);
   double now = 0;
   for (int i = 0; i < num_tasks; ++i, now += 0.125) {
-    // The group with the longest mean time of its ended tasks comes first. Among equal groups, the group with
-    // the fewest begun tasks comes first.
+    // The group with the longest time per ended task comes first. The times of running tasks count, too.
+    // Among equal groups, the group with the fewest begun tasks comes first.
     const auto turn = [&](const Known& group) {
       double time = group.time_ended;
       for (const auto& [task, start] : group.starts) time += now - start;

@@ -26,11 +26,9 @@ const char* name(Ending ending);
 struct Tail {
   double mean_speed = 0;  ///< Distance between the centre's first and last places, divided by the time [V_t].
   double level = 0;       ///< Median of log10(E_k/E_t) in the last quarter.
-  double fall =
-      0;  ///< Difference between the medians of log10(E_k/E_t) in the first and in the last quarter.
-  double last_fall = 0;  ///< The same difference between the third and the last quarter.
-  double band =
-      0;  ///< Width of log10(E_k/E_t) in the last quarter: its 95 % quantile minus its 5 % quantile.
+  double fall = 0;        ///< Fall of the median of log10(E_k/E_t) from the first quarter to the last.
+  double last_fall = 0;   ///< Fall of this median from the third quarter to the last.
+  double band = 0;        ///< Width of log10(E_k/E_t) in the last quarter: 95 % minus 5 % quantile.
   /// The path of the vertices between two samples, divided by the path that follows from E_k.
   double coherence = 0;
 
@@ -58,10 +56,10 @@ class TailRecorder {
   double terminal_speed_;
   std::vector<double> log_energy_;
   double time_ = 0;
-  double expected_way_ = 0;      // Since the last place [sigma].
-  double sum_expected_way_ = 0;  // Until the last place [sigma].
-  double sum_way_ =
-      0;  // Root mean square over the vertices, summed over the intervals between places [sigma].
+  double expected_way_ = 0;      // Expected path since the last place [sigma].
+  double sum_expected_way_ = 0;  // Expected path until the last place [sigma].
+  // Root mean square path of the vertices, summed over the intervals between places [sigma].
+  double sum_way_ = 0;
   std::optional<DropletState> first_, last_;
 };
 

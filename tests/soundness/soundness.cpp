@@ -70,8 +70,8 @@ struct CaseReport {
   Findings worst;
   double unsound_since = -1;  ///< time [t0], or negative if the droplet was always sound
   RunResult result;
-  double release_force =
-      0;  ///< largest component of the force after a release, without the weight [weight of a vertex]
+  /// Largest component of the force after a release, without the weight [weight of a vertex].
+  double release_force = 0;
   std::optional<Tail> tail;
   double seconds = 0;  ///< CPU time of the integration, or of the release [s]
 

@@ -89,8 +89,8 @@ TEST(Ending, IsMovingWhenTheCentreTravelsAcrossFrames) {
   const Tail tail =
       tail_of([](DropletState& state, double time) { state.x() += 0.03 * time; }, [](double) { return 1.0; });
   EXPECT_EQ(tail.ending(), Ending::moving);
-  EXPECT_NEAR(tail.mean_speed, 1,
-              0.05);  // the tolerance is needed because no place was added at the end of the last interval
+  // The tolerance is needed because no place was added at the end of the last interval.
+  EXPECT_NEAR(tail.mean_speed, 1, 0.05);
   EXPECT_NEAR(tail.coherence, 1, 1e-6);
 }
 

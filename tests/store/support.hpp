@@ -65,8 +65,8 @@ inline void publish(const std::string& path, const std::vector<sweep::RunRow>& r
   try {
     action();
   } catch (const Error& error) {
-    setrlimit(RLIMIT_FSIZE,
-              &before);  // the limit ends before the printing, because the error stream may be a file
+    // The limit ends before the printing, because the error stream may be a file.
+    setrlimit(RLIMIT_FSIZE, &before);
     std::fputs(error.what(), stderr);
     std::_Exit(2);
   }

@@ -225,8 +225,8 @@ TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
       builds.get(run_in(slow, seed));
       for (;;) pause();
     }
-    while (num_sockets(builder) <= num_sockets(getpid()))
-      usleep(1000);  // waits until the builder has the lock
+    // Waits until the builder has the lock.
+    while (num_sockets(builder) <= num_sockets(getpid())) usleep(1000);
     kill(builder, SIGSTOP);
     return builder;
   };

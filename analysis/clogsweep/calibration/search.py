@@ -29,7 +29,7 @@ LOWER = np.array([math.log(0.02), 0])
 UPPER = np.array([math.log(10), 2])
 GRID_TENSIONS = LOWER[0] + (UPPER[0] - LOWER[0]) * (np.arange(7) + 0.5) / 7
 GRID_DRAGS = np.array([0, 0.01, 0.03, 0.1, 0.3]) * UPPER[1]
-# Distances of the starts from the line tension at which droplets clog, in log Gamma.
+# Starting points of the second descents: their distances from the line tension at which droplets clog, in log Gamma.
 LADDER_DISTANCES = (0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 LADDER_DRAGS = (0.9, 1, 1.1)
 NUM_STARTS = 3

@@ -1,9 +1,9 @@
 """Decides which groups of clogfit's table belong to a curve, and why others do not.
 
 Groups with different physical parameters belong to different curves. A numerical parameter, such as `inertia` or `box`,
-separates curves only if the sweep varies it at the same physics, because some parameter sets need another box or more
-time than others. Values that follow from other parameters never separate curves. Such values are automatic values, the
-name of the preset, and the density of a saturated array.
+usually does not separate curves, because some parameter sets need another box or more time than others. It separates
+curves if the sweep varies this parameter while the physics stays the same. Values that follow from other parameters
+never separate curves. Such values are automatic values, the name of the preset, and the density of a saturated array.
 """
 
 from __future__ import annotations

@@ -122,8 +122,8 @@ def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
 
 
 def cut(drawing: Drawing, region: tuple[float, float, float, float], tolerance: float) -> None:
-    """Keeps the part of the drawing that is in a region. The region becomes the frame. Round posts that cross its
-    border stay whole; other outlines and lines are cut at the border.
+    """Keeps the part of the drawing that is in a region. The region becomes the frame. Round posts that cross the
+    region's border stay whole; other outlines and lines are cut at the border.
     @param region  left, bottom, right, top
     @param tolerance  as in fitted_circle()"""
     geometry = library("shapely.geometry", "python3-shapely")

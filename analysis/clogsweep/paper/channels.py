@@ -28,8 +28,8 @@ def passages(shop: Workshop, name: str, **keys: object) -> list[np.void]:
 def profiles(shop: Workshop, name: str, outlines: bool = False, **keys: object) -> list[Trajectory]:
     """Replays passages. Each replay has h, v and A along the path, and outlines if they are requested."""
     rows = passages(shop, name, **keys)
-    # Between two frames, a droplet at terminal speed moves by a fiftieth of a diameter. Between two samples it moves by
-    # a fifth of this.
+    # Between two frames, a droplet at terminal speed moves by a fiftieth of a diameter. Between two samples the droplet
+    # moves by a fifth of this distance.
     frame = 0.02 / rows[0]["terminal_speed"]
     return shop.ways(name, rows, frame / 5, frame if outlines else None)
 

@@ -34,8 +34,7 @@ WRITERS: dict[str | None, str] = {
 
 
 def is_sealed(path: AnyPath) -> bool:
-    """Whether the file has a seal that matches its content. False if it has no seal. @throws Damaged  if the seal does
-    not match"""
+    """Whether the file has a seal. @throws Damaged  if the seal does not match the content"""
     with open(path, "rb") as file:
         content = file.read()
     seal = SEAL.fullmatch(content[-SEAL_SIZE:])

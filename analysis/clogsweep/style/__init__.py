@@ -252,8 +252,8 @@ def logarithmic_ordinate(axes: Axes) -> None:
 
 
 def plain_logarithmic(axis: Axis, span: float = 1.0) -> None:
-    """Puts plain numbers at 1, 2 and 5 of each decade, or only at the beginning of each decade if there are many.
-    @param span  last number divided by the first"""
+    """Puts plain numbers at 1, 2 and 5 of each decade, or only at the beginning of each decade if there are many
+    decades. @param span  last number divided by the first"""
     axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0) if span < 2000 else (1.0,)))
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(matplotlib.ticker.NullFormatter())

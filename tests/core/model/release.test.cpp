@@ -58,7 +58,7 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
 TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
   // Springs along the interface have no energy, so the minimiser may follow a cycle without end. In three of
   // these cases it does so with the springs with which the droplet grows, and in one case with the springs of
-  // the run. One case needs weaker springs than these.
+  // the run. One case also needs weaker springs.
   for (const auto& [vertices, line_tension, seed] :
        {std::tuple{64, 0.1, 141u}, {64, 0.05, 113u}, {64, 0.05, 141u}, {32, 0.1, 76u}, {32, 0.05, 303u}}) {
     SCOPED_TRACE(std::to_string(vertices) + " vertices, seed " + std::to_string(seed));

@@ -239,8 +239,8 @@ TEST(ClogGeometry, AHorseshoeWhoseLobesStandInGapsIsHybrid) {
 /// the flow.
 TEST(ClogGeometry, WeighsSupportByTheForceAgainstTheFlow) {
   Scene scene = horseshoe(0.4, 0.4);
-  scene.obstacles.push_back(
-      {0.4 + radius, 0.3, radius});  // under one lobe, with an overlap of the whole range
+  // Under one lobe, with an overlap of the whole range.
+  scene.obstacles.push_back({0.4 + radius, 0.3, radius});
   const double before = horseshoe(0.4, 0.4).geometry().wrapped_support;
   EXPECT_EQ(before, 1);
   // The half ring has the overlap range/2 along a width of 2 inner. The flat end of the lobe is at the

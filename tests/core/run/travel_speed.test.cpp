@@ -145,8 +145,8 @@ TEST(BlockedError, CoversTheTruthNearlyAsOftenAsItSays) {
 TEST(BlockedError, IsNotKnownWhenTheCorrelationOutlastsTheValues) {
   EXPECT_TRUE(std::isnan(blocked_error(correlated_noise(200, 0.999, 1))));
   EXPECT_TRUE(std::isnan(blocked_error(std::vector<double>{1})));
-  EXPECT_TRUE(
-      std::isnan(blocked_error(std::vector<double>(199, 0.1))));  // there are too few values for an estimate
+  // There are too few values for an estimate.
+  EXPECT_TRUE(std::isnan(blocked_error(std::vector<double>(199, 0.1))));
   EXPECT_EQ(blocked_error(std::vector<double>(200, 0.1)), 0);
 }
 

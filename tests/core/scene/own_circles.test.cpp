@@ -84,8 +84,8 @@ TEST(OwnCircles, InARowAreOnePostThatMayGrowOutOfAWall) {
   const RunParameters run = resolve(between_walls(row));
   EXPECT_NEAR(run.obstacles.gap, std::hypot(3, 3 - 1.95) - 0.5, 1e-12);
   EXPECT_DOUBLE_EQ(run.obstacles.density.per_area.value(), 2 / 235.0) << "two posts";
-  for (Obstacle& circle : row)
-    circle.y += 0.155;  // the gap between the first circle and the wall becomes 0.005
+  // The gap between the first circle and the wall becomes 0.005.
+  for (Obstacle& circle : row) circle.y += 0.155;
   test::expect_refused(between_walls(row), "at the wall");
 }
 

@@ -167,8 +167,8 @@ TEST(WallAnchors, OfFrictionThroughAFilmBalanceTheEnergyToSecondOrder) {
   run.dp.film_friction = FilmFriction::on;
   const double film = 0.9 * run.dp.self_contact_range;
   expect_balance(run, ObstacleArray(20, {{0.15 + *run.dp.contact_range + film / 2, 0.1, 0.15}}), 0.5,
-                 lobes_side_by_side(film),
-                 1e-5);  // the tolerance is larger because the contact of the film is stiffer
+                 // The tolerance is larger because the contact of the film is stiffer.
+                 lobes_side_by_side(film), 1e-5);
 }
 
 TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
@@ -282,7 +282,7 @@ double threshold(const std::function<bool(double)>& slides, double low, double h
   return (low + high) / 2;
 }
 
-/// Expects that the error is much smaller with 32 edges on the disc than with 16.
+/// Expects that the error is small with 32 edges on the disc, and smaller than with 16 edges.
 void expect_convergence(const std::function<double(int)>& error) {
   const double coarse = error(16), fine = error(32);
   std::printf("error of the threshold: %+.4f with 16, %+.4f with 32 edges on half a turn\n", coarse, fine);
@@ -304,8 +304,8 @@ TEST(RopeOverADisc, WithoutWeightSlidesAtExpMuTheta) {
 
 TEST(RopeOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
   // The tension follows dT/dphi = mu (T + w R sin phi) + w R cos phi over half a turn. The solution is L_2 =
-  // exp(mu pi) L_1 + 2 mu R (1 + exp(mu pi))/(1 + mu^2). Forces at the ends replace the weight of missing
-  // lengths.
+  // exp(mu pi) L_1 + 2 mu R (1 + exp(mu pi))/(1 + mu^2). The ends of the rope are longer or shorter than
+  // these overhangs. Forces at the ends make up for the difference in weight.
   const double mu = 0.5, weight = 2;
   const double grip = std::exp(mu * pi);
   const double hanging = 0.3 * 0.5 * pi;

@@ -86,8 +86,8 @@ TEST(DpForces, WallContactIsTheGradientOfItsEnergy) {
   const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
   forces.update_contacts(state, {});
   ASSERT_GT(forces.energy(state).wall, 0);
-  EXPECT_LT(force_error(forces, state),
-            1e-5);  // the rounding error, multiplied by the contact's stiffness of 1000
+  // The rounding error, multiplied by the contact's stiffness of 1000.
+  EXPECT_LT(force_error(forces, state), 1e-5);
 }
 
 TEST(DpForces, SelfContactIsTheGradientOfItsEnergy) {
@@ -149,8 +149,8 @@ TEST(DpForces, AMirroredDropletFeelsMirroredForces) {
   const ObstacleArray wall(20, {{0.2, 0.3, 0.15}});
   const ObstacleArray mirrored_wall(20, {{0.2, -0.3, 0.15}});
   const Eigen::ArrayXd position = shaken(dumbbell(n, 0.006), 1e-4);
-  Eigen::ArrayXd mirrored(
-      2 * n);  // y is reversed, and so is the order of the vertices, to keep it counter-clockwise
+  // y is reversed, and so is the order of the vertices, to keep it counter-clockwise.
+  Eigen::ArrayXd mirrored(2 * n);
   mirrored.head(n) = position.head(n).reverse();
   mirrored.tail(n) = -position.tail(n).reverse();
   const auto force_on = [](const ObstacleArray& obstacles, const Eigen::ArrayXd& p) {
@@ -190,8 +190,7 @@ class ContactLists : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Speeds, ContactLists, testing::Values(0.05, 0.8, 5.0));
 
 TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
-  // Compares the droplet's contacts with those from a search of all obstacles and their images. The droplet
-  // drifts through the array.
+  // Compares the forces with those of all obstacles and their images. The droplet drifts through the array.
   ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 12.5};
   const ObstacleArray array = sample_obstacles(parameters, 5);
   RunParameters run = only([](RunParameters& r) { r.drag.near_wall = 0.1; });
@@ -338,7 +337,7 @@ TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {
   const DropletState uneven = state_of(shaken(regular_polygon(64, 0.8), 0.01));
   forces.evaluate(uneven, force);
   EXPECT_GT(force.abs().maxCoeff(), 0.01);
-  // One vertex at a time moves along the chord of its neighbours.
+  // The force on each vertex is along the chord of its neighbours.
   for (int i = 0; i < 64; ++i) {
     const int before = (i + 63) % 64, after = (i + 1) % 64;
     const double chord_x = uneven.x()[after] - uneven.x()[before];
