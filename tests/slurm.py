@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "tests" / "programs"))
 
 from support import BIN, MPIRUN, STEPS_PER_SNAPSHOT, SWEEP, SweepTest, table  # noqa: E402
 
-# Runs that are so long that the job still runs when Slurm acts on it.
+# Runs that are long enough for a job to be still running when Slurm acts on it.
 KEYS = [word.replace("max-time=4000", "max-time=2e4") for word in SWEEP[:-2]]
 # Runs that together take a minute or more on two ranks.
 LONG = [word.replace("max-time=2e4", "max-time=1e5") for word in KEYS]

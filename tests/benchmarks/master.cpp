@@ -1,7 +1,8 @@
 /// Measures how busy the master (rank 0) is with a thousand workers whose tasks take a second each. The work
 /// of the master depends only on the messages. The master receives a thousand rows per second, and answers
-/// each row with a new task. Here a few workers send as many rows: their tasks only sleep, for less than a
-/// second. Everything else is as in clogsweep: the scheduler, MPI, and the table of runs on the disk.
+/// each row with a new task. Here a few workers send as many rows, because their tasks only sleep, and for
+/// less than a second. Everything else is as in clogsweep: the scheduler, MPI, and the table of runs on the
+/// disk.
 ///   tests/mpirun.sh 5 bench_master [tasks per second] [seconds]
 /// With 0 tasks per second every worker sleeps in one long task. This case measures the cost of waiting.
 ///   bench_master rows 1000000

@@ -11,7 +11,8 @@ from processes import Hung, are_gone, descend, kill, send, wait_for
 from samples import FILE, check_complete, finished_rows, stored_rows
 from support import SMALL, TIMING
 
-# A task may be killed many times before it ends. With so many --attempts these kills do not make the task fail.
+# A task may be killed many times before it ends. The number of --attempts is so large that these kills do not make the
+# task fail.
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=2000", "seeds=1..2", "--attempts=1000",
          "--report-seconds=0.1", "--output", FILE]
 RANKS = 2

@@ -77,7 +77,7 @@ def results(rows, ignored=TIMING):
 
 
 def finished_rows(case):
-    """The results of runs that have ended. Without a table there are none."""
+    """The results of runs that have ended. The result is empty if there is no table yet."""
     path = case.folder / FILE
     if not path.exists():
         return {}

@@ -51,7 +51,8 @@ def browser(scheme):
 
 
 def wait_for(driver, condition):
-    """Waits until a script returns true, but at most half a minute. If it never does, later checks fail."""
+    """Waits until a script returns true, but at most half a minute. If the script never returns true, later checks
+    fail."""
     end = time.monotonic() + 30
     while not driver.execute_script(f"return !!({condition})") and time.monotonic() < end:
         time.sleep(0.1)

@@ -366,7 +366,7 @@ class Fit(ProgramTest):
         self.assertIn("lambda_b: mean distance before break-up", text)
         self.assertNotIn("w/s/h/o", text)
         # The run of a droplet that rested for long ends at the place of this rest, even if the droplet broke later.
-        # Otherwise it ends where the droplet broke.
+        # Otherwise the run ends where the droplet broke.
         dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5") if name.startswith(("longest_dwell", "earlier_dwell"))]
         self.change(**{name: np.nan for name in dwells})
         self.assertEqual(self.fit("--dwell", 0.9)["groups"][0]["broken"], 4)

@@ -19,7 +19,7 @@ import clogsweep  # noqa: E402
 # Droplets of these runs can travel a hundred diameters. So a test may give the rows any distance up to this.
 FAR = ["max-time=1", "terminal-speed=100", "seeds=1..6"]
 TENSIONS = [0.03, 0.1, 0.3, 1.0, 3.0]
-LENGTHS = [0.1, 1.0, 10.0, 1.0, 0.1]  # the peak is at 0.3
+LENGTHS = [0.1, 1.0, 10.0, 1.0, 0.1]  # The peak is at 0.3.
 # The distances of these six runs follow the exponential law exactly.
 EXPONENTIAL = -np.log(1 - (np.arange(6) + 0.5) / 6)
 PEAKED = [*FAR, "line-tension=" + ",".join(map(str, TENSIONS))]

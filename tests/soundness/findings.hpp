@@ -7,7 +7,7 @@ namespace clog::soundness {
 
 /// Measures of a deformable droplet at one moment, or the worst values at several moments.
 struct Findings {
-  int crossings = 0;  ///< see num_self_crossings()
+  int crossings = 0;  ///< Number of self-crossings, see num_self_crossings().
   int enclosed = 0;   ///< Number of obstacles whose centre is inside the droplet.
   /// Depth of an obstacle's surface inside the interface [vertex diameters; on meshes finer than 128 vertices
   /// those of 128 vertices].

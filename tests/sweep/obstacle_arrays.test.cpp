@@ -315,7 +315,7 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
     return std::make_unique<OtherProcess>([&name, as_another] {
       static const NameLock lock(name);
       // /proc shows whether a process belongs to another user. Without root the test cannot start a process
-      // of another user. But it can make its own process look like one.
+      // of another user. But the test can make its own process look like a process of another user.
       const bool is_root = geteuid() == 0;
       constexpr uid_t nobody = 65534;
       if (as_another && is_root && setuid(nobody) != 0) return std::string("cannot become another");

@@ -248,7 +248,7 @@ def over_the_sag(shop: Workshop, config: str, groups: Sequence[Group]) -> list[t
 
 def compared(shop: Workshop, family: Family, is_beyond: bool) -> Finding:
     """Compares the lengths of polygons with those of disks with the same sag. With `is_beyond` the sags are larger than
-    APART, and the lengths should differ; otherwise they are smaller, and the lengths should agree. Lengths agree if
+    APART, and the lengths should differ; otherwise the sags are smaller, and the lengths should agree. Lengths agree if
     their intervals overlap, or if their ratio is at most ALIKE. If no droplet clogged, the lower bound serves as the
     length."""
     disks = over_the_sag(shop, "clogging-sp", shop.sweep("clogging-sp"))

@@ -41,7 +41,7 @@ class Scales(NamedTuple):
 
 class Channel(NamedTuple):
     """The conditions of a passage, except for those of the droplet. Each field has the name of a column. With hyphens
-    for underscores, this is also the name of a key."""
+    for underscores, the name of a column is also that of a key."""
 
     orifice: float
     wedge_angle: float

@@ -33,7 +33,7 @@ GRID_DRAGS = np.array([0, 0.01, 0.03, 0.1, 0.3]) * UPPER[1]
 LADDER_DISTANCES = (0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 LADDER_DRAGS = (0.9, 1, 1.1)
 NUM_STARTS = 3
-CLOG_WIDTH = 0.005  # width to which the bracket around the line tension of a clog is narrowed, in log Gamma
+CLOG_WIDTH = 0.005  # Width to which the bracket around the line tension of a clog is narrowed, in log Gamma.
 # Steps of the finite differences, in log Gamma and b_0/b_inf. If no droplet clogs, the residuals are linear over the
 # longest steps.
 LONGEST_STEP = np.array([0.05, 0.01])
@@ -75,7 +75,8 @@ class Calibration(NamedTuple):
     speed_correlation: float
     shape_correlation: float
     converged: bool
-    # Droplets of this line tension or a larger one do not reach all frames. NaN if all tried droplets do, or none does.
+    # Droplets of this line tension or a larger one do not reach all frames. The value is NaN if all tried droplets
+    # reach all frames, or if none does.
     clogging_tension: float
     simulations: int
     warnings: list[str]

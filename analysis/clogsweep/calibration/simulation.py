@@ -23,9 +23,9 @@ Simulation = Callable[[float, float], Profile]  # its arguments are line tension
 APPROACH = 0.5
 # A droplet that starts here is usually clear of the wedges [sigma].
 USUAL_START = -2.0
-# The run is so long that a droplet whose mean speed is 1/30 of its terminal speed passes.
+# The run is long enough for a droplet with a mean speed of 1/30 of its terminal speed to pass.
 SLOWEST = 30
-# This is shorter than any step, so clogrun stores as many samples as it can: one every 64 steps.
+# This interval is shorter than any step, so clogrun stores as many samples as it can: one every 64 steps.
 SAMPLE_INTERVAL = 1e-9
 
 

@@ -50,7 +50,8 @@ def place_of(group: Group, keys: Iterable[Column]) -> list[float]:
 
 
 def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
-    """Whether the parameter's value follows from other parameters. A value that the sweep itself lists never does."""
+    """Whether the parameter's value follows from other parameters. A value that the sweep itself lists never follows
+    from others."""
     return column.get("automatic_in") in ("all", group["model"]) and column["name"] not in fit["lists"]
 
 
@@ -159,8 +160,8 @@ def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Exclude
         if not (group["total_distance"] or 0) > 0:
             excluded.append(Excluded(index, "no run of it has covered any distance"))
         elif group["exit"]:
-            # In a short device only few places hold droplets. So its clogs tell nothing about values of the key that
-            # were not run.
+            # In a short device only few places hold droplets. So the clogs in this device tell nothing about values of
+            # the key that were not run.
             excluded.append(Excluded(index, "the array ends at an exit, so its clogs are not at random places"))
         else:
             useful.append(index)

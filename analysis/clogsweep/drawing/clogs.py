@@ -1,4 +1,4 @@
-"""Draws clogged droplets of a sweep, which are replayed until they rest, and their mechanisms."""
+"""Draws clogged droplets of a sweep and their mechanisms. The droplets are replayed until they rest."""
 
 from __future__ import annotations
 

@@ -31,7 +31,8 @@ Pixels = npt.NDArray[np.uint8]  # height x width x 4, for red, green, blue and a
 
 FORMAT = (9.6, 5.4)  # inches
 SIZES = {"540p": 100, "1080p": 200, "2160p": 400}  # pixels per inch
-# Margin as a fraction of the figure. Without it, half of the line around the frame would be outside the picture.
+# Margin as a fraction of the figure. Without the margin, half of the line around the frame would be outside the
+# picture.
 LINE = 0.002
 HEIGHT = 0.93  # Height of the droplet's surroundings, as a fraction of the figure.
 # Width of the droplet's surroundings as a fraction of the figure, with and without room for a colour bar.

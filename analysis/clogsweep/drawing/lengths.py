@@ -148,8 +148,8 @@ def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
 
 
 def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
-    """Adds a second scale in other units at a side, "top" or "right". The first scale must be complete first, because
-    later changes would remove the ticks of the second scale."""
+    """Adds a second scale in other units at a side, "top" or "right". Complete the first scale before this call,
+    because later changes would remove the ticks of the second scale."""
     upright = side == "right"
     second = (axes.secondary_yaxis if upright else axes.secondary_xaxis)(side, functions=(lambda value: value * factor, lambda value: value / factor))
     axis = second.yaxis if upright else second.xaxis

@@ -1,5 +1,4 @@
-"""The groups of a fit. Decides which parameters vary between the groups and which is the abscissa, and makes all
-labels."""
+"""The groups of a fit. Decides which parameters vary between the groups, chooses the abscissa, and makes all labels."""
 
 from __future__ import annotations
 

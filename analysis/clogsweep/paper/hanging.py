@@ -84,7 +84,7 @@ def interfaces(vertices: Numbers) -> Iterator[Numbers]:
 def tensions_over_a_post(shop: Workshop) -> Plate:
     held, slides = over_a_post(shop, "on"), over_a_post(shop, "off")
     drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 3.8), width_ratios=[1.3, 1])
-    last = held.polygons[-1][:, ::2]  # without the middles of the edges
+    last = held.polygons[-1][:, ::2]  # Without the middles of the edges.
     # The moment at which the other droplet, which slides, passes the position at which this droplet is held.
     passing = slides.polygons[int(np.argmin(np.abs(slides.polygons[:, 0].mean(axis=1) - held.polygons[-1][0].mean())))][:, ::2]
     edges = np.stack([last.T, np.roll(last, -1, axis=1).T], axis=1) - POST[:2]

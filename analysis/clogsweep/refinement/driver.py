@@ -89,7 +89,8 @@ class Launcher:
         may have been stopped"""
         if self.is_warned():
             return INCOMPLETE
-        # The launcher has its own session. So it receives Ctrl-C from a terminal only once, through this process.
+        # The launcher has its own session. So the launcher receives Ctrl-C from a terminal only once, through this
+        # process.
         self._process = subprocess.Popen([*self._words, *map(str, arguments)], start_new_session=True)
         if self.is_warned():  # The warning came while the launcher started.
             self._process.send_signal(signal.SIGUSR1)

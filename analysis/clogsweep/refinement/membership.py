@@ -2,7 +2,7 @@
 
 A row does not store the parameters as they were given, but as clogsweep resolved them. For instance, the density of a
 saturated array follows from the gap, and the box of a lattice follows from its angle. So clogsweep itself resolves the
-values of the search: `--points ... --dry-run` prints the columns in which its tasks differ. A row belongs to a value if
+values of the search: `--points ... --dry-run` prints the columns in which the tasks differ. A row belongs to a value if
 all its parameters are those that clogsweep gives to this value.
 """
 

@@ -69,7 +69,7 @@ void make_symmetric(DropletState& state, int first) {
   }
 }
 
-/// A droplet at rest whose lobes are forced to be equal. Without this constraint it would slide off.
+/// A droplet at rest whose lobes are forced to be equal. Without this constraint the droplet would slide off.
 struct Hanging {
   double energy = 0;
   ClogGeometry geometry;

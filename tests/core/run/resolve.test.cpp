@@ -227,8 +227,8 @@ TEST(Resolve, TakesShorterStepsWithStrongerDragOrElasticInterface) {
 }
 
 TEST(Resolve, TakesStepsAsLongAsTheRootOfTheInertia) {
-  // Contact, area and springs keep their stiffness. If drag limits the step, the step grows faster as the
-  // inertia grows.
+  // Contact, area and springs keep their stiffness. If drag limited the step instead, the step would grow
+  // faster than the root of the inertia.
   RunParameters run;
   run.dp.line_tension = 0.3;
   run.drag.terminal_speed = 0.1;

@@ -255,7 +255,7 @@ class Rope {
       if (r >= radius) continue;
       const double push = contact_ * (radius - r);
       force[i] += push * x[i] / r, force[n_ + i] += push * y[i] / r;
-      // An edge is on the disc if both of its ends are.
+      // An edge is on the disc if both of its ends are on the disc.
       double wetted = 0;
       if (!touches.empty() && touches.back().vertex == i - 1) {
         touches.back().wetted += edge_ / 2;
