@@ -1,6 +1,7 @@
 /// Measures the cost of runs of real sweeps per vertex and step, and from release to verdict. For comparison,
-/// it measures a bare step on the same core. The bare step consists of the two passes (kick and drift) of a
-/// step without contacts. No real step can be faster. Slices of the run and of the bare step alternate.
+/// the program measures a bare step on the same core. The bare step consists of the two passes (kick and
+/// drift) of a step without contacts. No real step can be faster. Slices of the run and of the bare step
+/// alternate.
 
 #include <algorithm>
 #include <cmath>

@@ -908,7 +908,7 @@ class OtherTools(Analysis):
         for x, y in [(800, 300), (1600, 900), (3300, 600), (1000, 290)]:
             space.add_circle((x, y), 50)
         space.add_circle((200, 600), 150)  # a port
-        space.add_lwpolyline(box(300, 250, 3300, 950), close=True)  # the channel
+        space.add_lwpolyline(box(300, 250, 3300, 950), close=True)  # The channel.
         space.add_lwpolyline([(3590, 10), (3580, 10), (3580, 30)], close=True)  # a mark
         space.add_line((3400, 0), (3400, 1200))
         device = self.saved(drawing, region=(500, 1200, 2000, 0))

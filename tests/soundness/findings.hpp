@@ -15,7 +15,7 @@ struct Findings {
   double area_error = 0;  ///< |area/rest area - 1|
   double edge_ratio = 1;  ///< Longest over shortest edge.
   double perimeter = 0;   ///< In units of the circle's.
-  double shape = 1;       ///< shape parameter
+  double shape = 1;       ///< Shape parameter.
   /// Number of parts into which a time step is split, averaged over the interval between two checks.
   double substeps = 1;
 

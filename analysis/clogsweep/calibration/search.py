@@ -55,7 +55,7 @@ class Attempt(NamedTuple):
     place: tuple[float, float]
     simulated: Profile
     residuals: Numbers  # of the speed
-    num_never_reached: int  # frames
+    num_never_reached: int  # Frames.
 
     @property
     def delta(self) -> float:

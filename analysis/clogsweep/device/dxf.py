@@ -22,7 +22,7 @@ CURVES = ("LINE", "ARC", "LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE", "SOLID",
 FILLED = ("SOLID", "TRACE")
 HATCHES = ("HATCH", "MPOLYGON")
 HATCH_IGNORES_HOLES = 2  # a value of hatch_style
-SEGMENTS = 256  # Number of straight pieces of a full circle. The arcs of wide lines are divided accordingly.
+SEGMENTS = 256  # Number of straight pieces of a full circle. An arc of a wide line has a proportional number of pieces.
 
 
 def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:

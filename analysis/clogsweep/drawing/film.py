@@ -29,8 +29,8 @@ from . import surroundings
 
 Pixels = npt.NDArray[np.uint8]  # height x width x 4, for red, green, blue and alpha
 
-FORMAT = (9.6, 5.4)  # inches
-SIZES = {"540p": 100, "1080p": 200, "2160p": 400}  # pixels per inch
+FORMAT = (9.6, 5.4)  # Inches.
+SIZES = {"540p": 100, "1080p": 200, "2160p": 400}  # Pixels per inch.
 # Margin as a fraction of the figure. Without the margin, half of the line around the frame would be outside the
 # picture.
 LINE = 0.002

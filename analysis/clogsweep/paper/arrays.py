@@ -252,7 +252,7 @@ def two_ways(shop: Workshop) -> Plate:
     for mechanism in ("wrapped", "squeezed"):
         run, row = example(shop, mechanism)
         final = run.polygons[-1].mean(axis=1)
-        # This is the last diameter and a half of the path.
+        # These are the frames of the last one and a half diameters of the path.
         near = np.flatnonzero(np.hypot(*(run.polygons.mean(axis=2) - final).T) > 1.5)
         first = near[-1] + 1 if len(near) else 0
         kinds.append((run, row, first + trajectory.along_the_way(run.polygons[first:], 4)[-4:]))

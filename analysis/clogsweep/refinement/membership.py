@@ -101,7 +101,7 @@ class Membership:
         values = self._candidates + new
         try:
             tasks = self._resolve(values)
-        except UserError:  # clogsweep refuses one of the values, so its rows come from other settings.
+        except UserError:  # clogsweep refuses one of the values, so the rows with this value come from other settings.
             tasks = pandas.DataFrame()
         if len(tasks) == len(values):
             self._tables.append((values, tasks))

@@ -119,7 +119,7 @@ TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {
   for (const double b : {0.5004, 0.502, 0.51}) {
     const double exact = 2 * std::sqrt(b * b - a * a);
     double last_error = INFINITY;
-    for (const int num_vertices : {130, 258, 514, 1026}) {  // so that there is no vertex in the middle
+    for (const int num_vertices : {130, 258, 514, 1026}) {  // these numbers leave no vertex in the middle
       const double neck = thinnest_neck(closed_curve(num_vertices, [=](double t) {
         const double s = std::sin(2 * t);
         const double r =

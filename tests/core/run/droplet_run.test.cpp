@@ -455,8 +455,7 @@ TEST(BreakUp, ComesBeforeACertifiedClog) {
   ASSERT_LT(at_rest, now);
   run.max_time = 1000;
   const auto obstacles = std::make_shared<const ObstacleArray>(sample_obstacles(run.obstacles, run.seed));
-  // So that the limit is below or above the width of the neck at rest.
-  for (const double share : {-0.5, 0.5}) {
+  for (const double share : {-0.5, 0.5}) {  // The limit is below or above the width of the neck at rest.
     run.dp.break_up_neck = at_rest + share * (now - at_rest);
     DropletRun on(run, obstacles, state);
     while (!on.advance(1000)) continue;

@@ -172,8 +172,8 @@ class Band {
   bool is_lower(int i) const { return i < each_; }
   int along(int i) const { return is_lower(i) ? i : n_ - 1 - i; }
   double radius_of(int i) const { return is_lower(i) ? radius : radius + film; }
-  // The upper rope has one edge more than the lower rope. So the positions of its corners between those of
-  // the lower rope change along the disc, and the ropes do not interlock.
+  // The upper rope has one edge more than the lower rope. So along the disc the corners of the upper rope are
+  // at changing positions between those of the lower rope, and the ropes do not interlock.
   int edges_of(int i) const { return is_lower(i) ? on_disc_ : on_disc_ + 1; }
   double edge_of(int i) const { return pi * radius_of(i) / edges_of(i); }
 

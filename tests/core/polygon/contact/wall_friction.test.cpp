@@ -313,7 +313,7 @@ TEST(RopeOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
       grip * hanging + 2 * mu * Rope::radius * (1 + grip) / (1 + mu * mu);  // length of the longer overhang
   expect_convergence([&](int edges) {
     const double edge = pi * Rope::radius / edges;
-    const double length = (std::round(hanging / edge) + 0.5) * edge;  // so that the disc begins at a vertex
+    const double length = (std::round(hanging / edge) + 0.5) * edge;  // the disc then begins at a vertex
     const auto slides = [&](double overhang) {
       return Rope({.friction = mu}, edges, weight, hanging, hanging)
           .slides(weight * (hanging - length), weight * (overhang - length));

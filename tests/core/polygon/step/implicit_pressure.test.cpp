@@ -24,7 +24,7 @@ TEST(ImplicitPressure, LetsACircleBreatheAtTheFrequencyOfNewmarksMethod) {
   run.drag.terminal_speed = no_drag;
   run.dp.line_tension = 1e-9;
   run.dp.perimeter_stiffness = 0;
-  run.dp.area_stiffness = 1e8;  // so that the motion ends before gravity has changed the shape
+  run.dp.area_stiffness = 1e8;  // the motion then ends before gravity has changed the shape
   const Eigen::ArrayXd circle = regular_polygon(vertices, units::rest_area);
   const double radius = circle[0];
   const double omega =
