@@ -60,8 +60,8 @@ class Faults:
         case.chance.choice([self.harm_a_table, self.harm_a_table, self.harm_a_journal])(case)
 
     def harm_a_table(self, case):
-        """Damages a file that a sweep wrote, or a copy of it by another program. Such a copy has no seal, so nothing
-        shows that a part is missing."""
+        """Damages a file that a sweep wrote, or another program's copy of this file. Such a copy has no seal, so
+        nothing shows that a part is missing."""
         sample = case.chance.choice(self.samples)
         end = case.chance.choice([len(sample.content), sample.content.rindex(SEAL)])
         places = [place for place in self.places[sample.name] if place < end]

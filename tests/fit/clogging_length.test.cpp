@@ -198,8 +198,8 @@ TEST(CloggingLength, RefusesAnImpossibleConfidence) {
 /// A sweep on some workers, observed when a given fraction of its runs is done. All droplets travel at the
 /// same speed, and clog at exponentially distributed distances.
 struct LiveSweep {
-  double of_finished = 0;  ///< lambda from finished runs alone, divided by the true value
-  double of_all = 0;  ///< lambda from all runs, with runs in progress as censored, divided by the true value
+  double of_finished = 0;  ///< Clogging length from finished runs alone, divided by the true value.
+  double of_all = 0;       ///< The same from all runs; those in progress are censored.
 };
 LiveSweep look_at(int num_workers, int num_runs, double share_done, std::mt19937& engine) {
   std::exponential_distribution<double> distance(1);

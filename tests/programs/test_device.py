@@ -907,9 +907,9 @@ class OtherTools(Analysis):
         drawing, space = self.dxf()
         for x, y in [(800, 300), (1600, 900), (3300, 600), (1000, 290)]:
             space.add_circle((x, y), 50)
-        space.add_circle((200, 600), 150)  # a port
+        space.add_circle((200, 600), 150)  # A port.
         space.add_lwpolyline(box(300, 250, 3300, 950), close=True)  # The channel.
-        space.add_lwpolyline([(3590, 10), (3580, 10), (3580, 30)], close=True)  # a mark
+        space.add_lwpolyline([(3590, 10), (3580, 10), (3580, 30)], close=True)  # A mark.
         space.add_line((3400, 0), (3400, 1200))
         device = self.saved(drawing, region=(500, 1200, 2000, 0))
         np.testing.assert_allclose(device, [(300, 50, 100), (500, 40, 100), (1100, 650, 100)], atol=1e-9)

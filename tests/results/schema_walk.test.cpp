@@ -149,9 +149,9 @@ TEST_P(EveryKey, MakesTwoArraysIfItShapesThem) {
   EXPECT_EQ(sweep::array_key(runs[0]) != sweep::array_key(runs[1]), GetParam().shapes_array);
 }
 
-/// ObstacleArrays keeps the walls of the last run. In a device with side walls they depend on how far the
-/// droplet reaches, because this limits where droplets may start. So a run with another droplet must get its
-/// own walls.
+/// ObstacleArrays keeps the walls of the last run. In a device with side walls the walls depend on how far
+/// the droplet reaches, because this limits where droplets may start. So a run with another droplet must get
+/// its own walls.
 TEST_P(EveryKey, LeavesTheNextRunOfADeviceItsOwnWalls) {
   sweep::Settings settings;
   settings.attach("one.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.3}}));

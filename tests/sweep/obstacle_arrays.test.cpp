@@ -279,7 +279,7 @@ TEST(ObstacleArrays, AreBuiltAtOnceWhereNothingCanBeLocked) {
     rlimit usual;
     getrlimit(RLIMIT_NOFILE, &usual);
     // The thread must begin before the limit is set, because sanitizers open a file to inspect a new thread.
-    // If the process waited until the limit is lifted, it would find the array.
+    // If the process waited until the limit was lifted, it would find the array.
     std::atomic<bool> has_begun = false;
     std::thread later([&] {
       has_begun = true;
