@@ -55,15 +55,16 @@ Letters in the last column are doubts: reasons why a length may be wrong. The me
 speed; its error comes from the scatter between runs. For lattices, "lateral/r" is the lateral displacement per distance
 travelled, the tangent of the migration angle, positive towards +y. "along rows" is lateral/r divided by the tangent of
 the rows' angle: 1 for droplets that follow the rows (bump mode), 0 for droplets that go straight on (zigzag).
---row-angle adds these columns for other arrays. csv and json also contain intervals by profile likelihood, the
-published least squares (biased), Weibull's shape with its p-value and capillary numbers; json also contains P(r).
+--row-angle adds these columns for other arrays. The formats csv and json also contain intervals by profile likelihood,
+lambda by least squares (as published, biased), Weibull's shape with its p-value, and capillary numbers; json also
+contains the survival P(r).
 
 In rows with the same array, runs of the same seed met the same obstacles, so the errors of these rows are correlated,
 and overlapping intervals do not mean that the lengths agree. Use clogfit compare, which pairs runs by seed.
 
-An experiment calls a droplet clogged if it has not moved for a waiting time. --dwell applies this rule: a droplet that
-advanced by at most dwell-length (0.05 sigma by default) for longer than this time counts as clogged where it first did
-so, even if it moved on.
+An experiment calls a droplet clogged if it has not moved for a waiting time. --dwell T applies this rule: a droplet
+that advanced by at most dwell-length (0.05 sigma by default) for longer than T counts as clogged at the place of its
+first such rest, even if it moved on later.
 )";
 
 /// Runs python3 -m clogsweep COMMAND, which calls these programs for numbers.
@@ -96,7 +97,7 @@ int clogfit(int argc, const char* const* argv) {
       .option("confidence", "confidence level of the intervals", "0.95")
       .flag("all-parameters", "also list parameters that have their defaults in all runs")
       .option("from-distance",
-              "count lambda from this distance on; runs that ended before are excluded [sigma]")
+              "count paths only from this distance on; runs that ended before it are excluded [sigma]")
       .option("lab",
               "file that describes the laboratory, see clogfit units; the table then has lengths, speeds and "
               "times in laboratory units, too")
@@ -128,7 +129,7 @@ int clogfit(int argc, const char* const* argv) {
   if (sweep.rows.empty()) throw Error(joined(paths) + " has no runs yet; let the sweep finish some first");
   if (line.has("dwell") && !results::has_clogging_length(sweep.rows.front()))
     throw Error(
-        "no place for --dwell (droplets in a channel or on a wall have no clogging length) leave it out");
+        "no place for --dwell (droplets in a channel or on a wall have no clogging length); leave it out");
   const std::vector<const sweep::Column*> pooled =
       line.has("pool") ? results::pooled_columns(line.get("pool")) : std::vector<const sweep::Column*>();
   const std::vector<double> lines = line.get_positives("lines");

@@ -29,17 +29,18 @@ constexpr const char* compare_usage =
   clogfit compare robust.h5 elastic.h5 --picture ratio.png
   clogfit compare own.csv sweep.h5 --lab lab.cfg      measured distances (see clogfit lengths) and simulated ones
 
-Every file is compared with the first file, or every value of the key --by with the smallest value, for equal values of
-all other parameters. Two runs of the same seed form a pair: they met the same obstacles. If the two lengths are
-correlated, the interval of their ratio comes from the pairs and is narrower than for two independent lengths. The
-interval comes from the numbers of clogs if fewer than ten pairs differ, if the correlation is uncertain, or if --by
-changes the array, so that equal seeds share no obstacles.
+Every file is compared with the first file. With --by KEY, every value of KEY is compared with the smallest value. All
+other parameters are the same on both sides of a comparison. Two runs of the same seed form a pair: they met the same
+obstacles. If the two lengths are correlated, the interval of their ratio comes from the pairs and is narrower than for
+two independent lengths. The interval comes from the numbers of clogs if fewer than ten pairs differ, if the correlation
+is uncertain, or if --by changes the array, so that equal seeds share no obstacles.
 )";
 
 std::vector<results::Side> sides(const cli::CommandLine& line, const std::vector<std::string>& paths) {
   if (line.has("by")) return results::sides_of_column(line.get("by"), results::read_together(paths));
   if (paths.size() < 2)
-    throw Error("nothing to compare this file with; give a second one, or --by and a key that varies in it");
+    throw Error(
+        "nothing to compare this file with; give a second file, or --by and a key that varies in this file");
   return results::sides_of_files(paths);
 }
 
@@ -81,14 +82,16 @@ int clogfit_compare(int argc, const char* const* argv) {
   cli::CommandLine line("clogfit compare", compare_usage);
   line.words("file", "sweep files")
       .option("by", "key whose values are compared with each other")
-      .option("within",
-              "clogs of a pair within this distance are at the same place (half of obstacle diameter plus "
-              "gap) [sigma]")
+      .option(
+          "within",
+          "clogs of a pair within this distance are at the same place (half the sum of obstacle diameter and "
+          "gap) [sigma]")
       .option("format", "text, csv or json", "text")
       .option("picture", "draw a picture with this name, as .png and .pdf")
-      .option("lab",
-              "file that describes the laboratory, see clogfit units; lengths of sweeps are then in mm like "
-              "measured lengths")
+      .option(
+          "lab",
+          "file that describes the laboratory, see clogfit units; lengths of sweeps are then printed in mm, "
+          "as measured lengths are")
       .option("confidence", "confidence level of the intervals", "0.95");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
   const std::vector<std::string> paths = line.require_all("file");

@@ -32,7 +32,8 @@ The first line of the table names its columns, and each further line is one drop
   120,0,glass
 
 distance: how far the droplet travelled, in nm, um, mm, cm, m or sigma (droplet diameters); clogged: 1 if the
-droplet clogged, 0 if it left the picture or was still moving (censored). All other columns separate groups.
+droplet clogged, 0 if it left the picture or was still moving (censored). Droplets with the same values in all other
+columns form a group.
 )";
 
 }  // namespace

@@ -34,7 +34,7 @@ constexpr const char* clogrun_usage = R"(clogrun follows one droplet and records
   clogrun replay sweep.h5 12 --output run.h5 --polygon-interval 1     replays a run of a sweep
   clogrun sag line-tension=0.1,0.3,1          prints how far the droplet sinks on a flat wall
 
-In an array, the same keys and seed as a row of a sweep give that row's run, bit for bit.
+clogrun array with the keys and the seed of a row of a sweep repeats the run of this row, bit for bit.
 )";
 
 bool is_film(const std::filesystem::path& name) {
@@ -65,7 +65,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
               "also make a film of the polygons; give the film's name, which may end in .mp4 or .gif")
       .option("most-frames",
               "largest number of frames of the film (600); the film of a longer run skips frames, or shows "
-              "only the end")
+              "only the end if the droplet would move too far between frames")
       .flag("dry-run", "print the config and an upper bound of the run's duration, run nothing")
       .option("write-obstacles", "array: write the obstacles as a CSV file");
   line.add_commands({"array", "channel", "sag", "replay"});

@@ -32,8 +32,9 @@ void print_merged(const std::string& output, const std::vector<std::string>& pat
   if (merged.num_shared > 0)
     std::cout << ", " << sweep::counted(merged.num_shared, "run") << " in more than one of them";
   if (merged.num_differing > 0)
-    std::cout << " (" << merged.num_differing
-              << " with results that differ by instruction set: those of the file named first were kept)";
+    std::cout
+        << " (" << merged.num_differing
+        << " with results that differ by instruction set: the results of the file named first were kept)";
   if (merged.num_faulty > 0)
     std::cout << "; " << sweep::counted(merged.num_faulty, "row") << " left out as physically impossible";
   if (!merged.snapshots.empty())

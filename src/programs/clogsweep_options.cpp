@@ -156,7 +156,8 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
       .option("master-computes", "whether rank 0 also runs tasks: auto (with up to 16 ranks), yes, no",
               "auto")
       .option("max-hours",
-              "stop after this number of hours, as after a signal; the same command resumes the sweep")
+              "stop after this number of hours in the same way as after a signal; the same command resumes "
+              "the sweep")
       .option("points",
               "CSV file with parameter sets in place of lists: the first line names keys, each further line "
               "has their values")

@@ -20,7 +20,7 @@ int clogsweep_replay(int argc, const char* const* argv) {
   clogsweep replay sweep.h5 12
 
 The exit code is 0 if all bits are the same, 1 if results differ, and 2 if the run cannot be replayed. The run uses the
-row's instruction set; a run that resumed with another set cannot be repeated.
+row's instruction set; a run that was resumed with another instruction set cannot be repeated.
 )");
   line.word("file", "sweep file").word("task", "task, the number of a row");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;

@@ -18,9 +18,9 @@ constexpr const char* salvage_usage =
 
   clogsweep salvage sweep.h5 --output whole.h5
 
-Damaged or useless rows and attributes are not copied, and a message lists them. Results and snapshots that only the
-journal beside the file has are copied, too. The sweep's own command, with --output whole.h5, then recomputes the
-missing runs and restores missing attributes.
+Rows and attributes that are damaged, or that clogsweep verify refuses, are not copied; a message lists them. Results
+and snapshots that exist only in the journal beside the file are copied, too. The sweep's own command, with --output
+whole.h5, then recomputes the missing runs and restores missing attributes.
 )";
 
 }  // namespace

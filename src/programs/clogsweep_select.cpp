@@ -21,8 +21,8 @@ int clogsweep_select(int argc, const char* const* argv) {
   clogsweep select sweep.h5 'line_tension>=0.5' --output stiff.h5
   clogsweep select sweep.h5 preset=robust,elastic 'seed<=10' --output some.h5
 
-A condition is a column, one of = != < <= > >=, and a value; = and != take a list. The new file is
-a sweep of these runs. To fit, select by parameters: rows selected by their results are not a fair sample.
+A condition is a column, one of = != < <= > >=, and a value; = and != take a list. The new file is a sweep of these
+runs. For a fit, select rows by parameters: rows selected by their results are a biased sample.
 )");
   line.word("file", "sweep file").option("output", "HDF5 file to make").words("where", "condition");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;

@@ -93,8 +93,8 @@ int clogsweep_status(int argc, const char* const* argv) {
   line.word("file", "sweep file")
       .flag("watch", "print again every two seconds, until the sweep ends")
       .flag("follow",
-            "with --format json: print a line for every start, end, new attempt and round, until the sweep "
-            "ends")
+            "with --format json: print a line for every start, end and new attempt of a task, and for every "
+            "round, until the sweep ends")
       .option("format", "text or json", "text")
       .option("confidence", "confidence level of the intervals", "0.95")
       .flag("all-parameters", "also list parameters that have their defaults in all runs");

@@ -32,10 +32,10 @@ Key preset_key() {
           .words = preset_names(),
           .default_text = "robust",
           .help =
-              "sets all keys of the interface that are not given separately: robust (weight on the liquid), "
-              "heavy-interface (weight on the interface), elastic (weight on an interface that stretches "
-              "like rubber, K_l = 0.1 Gamma; elastic with friction shows the published trends), literal (the "
-              "published equations)",
+              "sets all keys of the interface that are not given separately: robust (weight acts on the "
+              "liquid), heavy-interface (weight acts on the interface), elastic (weight acts on an interface "
+              "that stretches like rubber, K_l = 0.1 Gamma; elastic with friction shows the published "
+              "trends), literal (the published equations)",
           .parameter = nullptr};
 }
 

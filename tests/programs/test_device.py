@@ -484,7 +484,7 @@ class WrongDrawings(Analysis):
         with mock.patch.dict(sys.modules, {"shapely": None, "shapely.ops": None, "shapely.geometry": None}):
             told = self.said_of("other", circles=[(800, 300), (1600, 300)], lines=lines)
         # The lines are parts of the device's edge.
-        self.assertIn("2 outlines or lines as long as the device are taken for walls", told)
+        self.assertIn("2 outlines or lines extend along the whole device and are taken for walls", told)
         self.assertIn("skipped: 11 LINE", told)
         self.assertIn("install python3-shapely", told)
 
@@ -510,20 +510,20 @@ class WrongDrawings(Analysis):
     def test_walls_drawn_as_outlines_are_no_posts(self):
         walls, post = [box(0, -20, 3600, 0), box(0, 1200, 3600, 1220)], box(1500, 500, 1600, 600)
         told = self.said_of("posts", "--as-rows", circles=[(800, 300), (800, 900)], outlines=[*walls, post])
-        self.assertIn("2 outlines or lines as long as the device are taken for walls: side-walls=on", told)
+        self.assertIn("2 outlines or lines extend along the whole device and are taken for walls: side-walls=on", told)
         self.assertIn("3 posts, device 18 x 6 droplet diameters (between its walls)", told)
         self.assertNotIn("no edge is drawn", told)
         self.assertIn(", to a side 1.25 (250 um), in droplet diameters", told)
         self.assertIn("side-walls=on", self.run_printed(told))
         told = self.said_of("one", circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 1200), walls[0]])
-        self.assertIn("1 outline or line as long as the device is taken for a wall", told)
+        self.assertIn("1 outline or line extends along the whole device and is taken for a wall", told)
         self.assertIn("box=6 length=18", told)
         told = self.said_of("down", "--flow", "down", circles=[(300, 800), (900, 800)], outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
         self.assertIn("box=5.95 length=18", told)
         with self.subTest("walls are single lines"):
             sides = [((0, 0), (3600, 0)), ((3600, 1200), (0, 1200))]
             told = self.said_of("lines", circles=[(800, 300), (800, 900)], lines=[*sides, ((2500, 300), (2900, 700))])
-            for words in ("2 outlines or lines as long as the device are taken for walls", "2 posts, device 18 x 6", "skipped: 1 LINE (lines red", "box=6 length=18"):
+            for words in ("2 outlines or lines extend along the whole device and are taken for walls", "2 posts, device 18 x 6", "skipped: 1 LINE (lines red", "box=6 length=18"):
                 self.assertIn(words, told)
 
         posts, edge = [(800, 300), (800, 900)], box(0, 0, 3600, 1200)

@@ -3,10 +3,10 @@
     python3 -m clogsweep agreement
     python3 -m clogsweep agreement --run --format csv
 
-Judges every statement from the sweeps of the figures, and prints the result with its interval, the results with other
-laws of walls, and the verdict: agrees, qualitatively, agrees with an added force (wall friction), artefact of the mesh,
-by construction (a parameter was fitted to the published number), does not agree, not known, not run. All rows must have
-the same model version.
+The sweeps of the figures decide whether a statement holds. The command prints our result with its interval, the results
+with other laws of the walls, and a verdict: agrees, qualitatively, agrees with an added force (wall friction), artefact
+of the mesh, by construction (a parameter was fitted to the published number), does not agree, not known, not run. All
+rows must have the same model version.
 """
 
 import argparse

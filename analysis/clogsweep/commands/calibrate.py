@@ -1,20 +1,20 @@
-"""Finds the line tension Gamma and the near-wall drag b_0/b_inf of the simulated droplet that passes a
-channel most like a measured one: those that minimise Delta_v, the relative root-mean-square deviation of the speeds.
-One file per trial.
+"""Finds the line tension Gamma and the near-wall drag b_0/b_inf with which a simulated droplet passes a channel most
+like a measured droplet, that is, with the smallest relative root-mean-square deviation Delta_v of the speeds. Each
+trial is one file.
 
   clogfit calibrate trial1.csv trial2.csv orifice=0.7 terminal-speed=0.032
   clogfit calibrate channel.h5 orifice=0.7 terminal-speed=0.032
   clogfit calibrate trial*.csv orifice=0.4 --diameter 3.5mm --speed 7mm/s --angle 28deg
   ... --tension 10mN/m --other "1.98mm 8.5deg"
 
-A profile is a CSV file with the header h [sigma], v [v_t], A or, with --diameter and --speed, in laboratory units such
-as h [mm], v [mm/s], A; or what clogrun channel has written. With --angle the terminal speed V_t follows from the laboratory's
-quantities.
+A profile is a file of clogrun channel, or a CSV file with the header h [sigma], v [v_t], A. With --diameter and --speed
+the CSV file may have laboratory units, such as h [mm], v [mm/s], A. With --angle the terminal speed V_t follows from
+the laboratory's quantities.
 
 Keys of the droplet and its channel (clogrun channel --help) are given as KEY=VALUE or as options.
 
-Errors (+-) come from the scatter of a trial's frames about the best run, treated as independent noise. They exclude
-errors of the model or its mesh, so without noise they are too small.
+Errors (+-) come from the scatter of a trial's frames about the best run, as if the frames were independent. The errors
+exclude those of the model and its mesh, so without noise they are too small.
 """
 
 import argparse
@@ -45,14 +45,14 @@ def options() -> command_line.Parser:
     parser.add_argument("profiles", nargs="*", help="CSV files, or files written by clogrun channel, one per trial; and KEY=VALUE")
     for name, meaning in QUANTITIES.items():
         parser.add_argument(f"--{name}", help=meaning)
-    parser.add_argument("--other", help="diameter and angle of another experiment, for which Gamma is scaled")
+    parser.add_argument("--other", help="diameter and angle of another experiment, to which Gamma is scaled")
     command_line.add_format(parser)
     programs.add_option(parser)
     return parser
 
 
 def split(words: Sequence[str]) -> tuple[list[str], list[str]]:
-    """@return words for the parser, and keys for clogrun channel, in any order and also as options"""
+    """Separates the keys of clogrun channel, which may stand anywhere and may be options. @return words for the parser, keys"""
     own: list[str] = []
     keys: list[str] = []
     rest = iter(words)
@@ -86,8 +86,8 @@ def refuse_other_channel(file: str, stored: Channel | None, simulated: Channel, 
     """Refuses keys that contradict the channel stored with a simulated passage. A measured passage needs the channel as
     keys, because Gamma depends on it."""
     if stored is None and "orifice" not in names:
-        raise UserError("missing orifice (the line tension that is found depends on the channel) give its width in droplet diameters, "
-                        "e.g. orifice=0.8, and wedge-angle, tip-radius unless they are those of --help")
+        raise UserError("missing orifice (the fitted line tension depends on the channel); give its width in droplet diameters, e.g. orifice=0.8, "
+                        "and wedge-angle and tip-radius if they differ from the defaults of clogrun channel")
     for name, was, given in zip(Channel._fields, stored or (), simulated):
         key = name.replace("_", "-")
         if not math.isclose(was, given, rel_tol=1e-12):
@@ -116,7 +116,7 @@ def print_table(files: Sequence[str], found: Sequence[Calibration], mean: dict[s
     if len(found) > 1:
         print("\nmean of {} trials and their standard deviation: Gamma* = {:.3g} +- {:.2g}, b_0*/b_inf = {:.3g} +- {:.2g}".format(len(found), *mean.values()))
     else:
-        print("\none trial: errors are from the scatter of its frames")
+        print("\none trial: the errors come from the scatter of its frames")
 
 
 def body() -> int:

@@ -44,7 +44,7 @@ def options() -> argparse.Namespace:
     parser.add_argument("--posts", choices=("dark", "bright"), help="brightness of the posts in a picture (dark, unless its border and most of its area are dark)")
     parser.add_argument("--region", type=region_of, help="x0,y0,x1,y1: use only this rectangle, in the unit and coordinates that the drawing program shows")
     parser.add_argument("--flow", choices=TURNS, default="right", help="direction of the flow in the drawing (right)")
-    parser.add_argument("--tolerance", type=command_line.between(0.001, 0.5, "a part of the radius"), default=0.04, help="largest deviation of a post from a circle, as a fraction of its radius (0.04)")
+    parser.add_argument("--tolerance", type=command_line.between(0.001, 0.5, "a fraction of the radius"), default=0.04, help="largest deviation of a post from a circle, as a fraction of its radius (0.04)")
     others = parser.add_mutually_exclusive_group()
     others.add_argument("--as-rows", action="store_true", help="replace posts that are not round by rows of circles along their outlines")
     others.add_argument("--as-circles", action="store_true", help="replace posts that are not round by circles of the same area")
@@ -115,7 +115,7 @@ def told(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> list[
     if not device.has_frame and len(device.walls) < 2:
         words.append("no edge is drawn: the device ends half a droplet diameter beyond the posts" + (", or where a wall ends" if device.walls else " on every side; leave out side-walls=on if it has no walls"))
     if number := len(device.walls):
-        are = "outline or line as long as the device is taken for a wall" if number == 1 else "outlines or lines as long as the device are taken for walls"
+        are = "outline or line extends along the whole device and is taken for a wall" if number == 1 else "outlines or lines extend along the whole device and are taken for walls"
         words.append(f"{number} {are}: side-walls=on")
     return [*words, summary(device, drawing, metres)]
 

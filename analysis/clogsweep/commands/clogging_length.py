@@ -5,9 +5,10 @@ lattices it draws the lateral displacement per distance against the angle of the
     python3 -m clogsweep clogging-length sweep.h5 --with own.csv --lab lab.cfg     # beside measured distances, see clogfit lengths
     clogfit sweep.h5 --format json | python3 -m clogsweep clogging-length /dev/stdin --output clogging-length     # points only
 
-Every length comes from clogfit. Bars are its confidence intervals; smooth lines with bands are the curves of clogfit
-curve, which need the sweep itself. Each marker shows the most frequent mechanism of its clogs. A hollow marker means a doubt, which the
-picture explains. A triangle pointing up is a lower bound, because no run clogged.
+Every length and its confidence interval (the bar) come from clogfit. Smooth lines with bands are the curves of clogfit
+curve; they are drawn only from a sweep file. Each marker shows the most frequent mechanism of its clogs. A hollow
+marker means a doubt, which the picture explains. An arrow pointing up starts at a lower bound:
+no run clogged.
 """
 
 import argparse

@@ -5,7 +5,7 @@ centre.
     python3 -m clogsweep collision --output fine vertices=512 break-up-neck=0.05 --offsets 0,0.1,0.3
 
 For each offset, droplets of several line tensions fall onto a circle of diameter 0.3 sigma. Repeated sweeps bracket the
-largest line tension at which they break up. KEY=VALUE are keys of clogsweep for all of these sweeps. In the CSV, the
+largest line tension at which droplets break up. KEY=VALUE are keys of clogsweep for all of these sweeps. In the CSV, the
 line along the flow through the obstacle's centre divides the droplet into two parts; the symmetry S of a collision is
 the area of the smaller part divided by that of the larger part. The capillary number Ca is weight divided by tension,
 pi/(4 Gamma). The upper axis of the picture is the fraction of collisions that break a droplet of the curve's line

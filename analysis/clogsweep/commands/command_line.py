@@ -179,7 +179,7 @@ def quieten_libraries() -> None:
 
 @contextlib.contextmanager
 def needs_modules() -> Iterator[None]:
-    """A block that loads modules. If one of them is missing, the error says which package to install."""
+    """Context manager of a block that loads modules. If a module is missing, the error says which package to install."""
     quieten_libraries()
     try:
         yield

@@ -33,7 +33,7 @@ def read_angles(path: pathlib.Path, columns: Container[str]) -> pandas.DataFrame
     try:
         table = pandas.read_csv(path, comment="#")
         table = table.astype(dict.fromkeys(critical_angles.FOUND, float))
-    except (ValueError, KeyError):  # UnicodeDecodeError and pandas' own are ValueErrors
+    except (ValueError, KeyError):  # UnicodeDecodeError and the errors of pandas are ValueErrors
         table = pandas.DataFrame()
     if table.empty or not all(name in columns for name in table if name not in critical_angles.FOUND):
         raise UserError(f"cannot read {path} (not a table of this command); give a sweep, or its table")

@@ -13,7 +13,8 @@ no curve are listed with the reason. The formats csv and json contain the whole 
 with two keys), and the curve of each mechanism; peaks is a CSV table of the peaks alone.
 
 Runs of the same seed met the same obstacles at every value of a key that does not change the array. Then the errors of
-the points are correlated, but the band assumes that they are independent. Different seeds at each value avoid this.
+the points are correlated, but the band assumes that they are independent. Different seeds at each value avoid this
+correlation.
 """
 
 import argparse

@@ -1,5 +1,5 @@
-"""Prints Delta_v and Delta_A, the relative root-mean-square deviations of speed and shape of a measured passage through
-a channel from simulated ones, as JSON.
+"""Compares a measured passage through a channel with simulated passages. Prints Delta_v and Delta_A, the relative
+root-mean-square deviations of speed and shape, as JSON.
 
   clogfit deviation measured.csv simulated1.csv simulated2.csv
 

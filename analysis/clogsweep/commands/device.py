@@ -1,4 +1,4 @@
-"""Draws the circles of a sweep as one device: releases, clogs by mechanism, some paths.
+"""Draws the circles of a sweep as one device, with releases, clogs by mechanism and some paths.
 
     clogsweep obstacles=posts.csv box=8 length=20 side-walls=on release=entrance exit=20 seeds=1..20 --output sweep.h5
     python3 -m clogsweep device sweep.h5                 # sweep-device.png, sweep-device.pdf

@@ -4,8 +4,9 @@
 
 In an experiment a droplet counts as clogged if it has not moved for a waiting time, although it might move on. The
 longer this time is, the longer is the clogging length. Each group of runs has a curve, which clogfit --dwell computes.
-The first waiting time is the shortest one for which every row records its dwells. The last one is the duration of the
-runs, at which only clogs count. Bars are confidence intervals; an arrow begins at a lower bound where no run clogged.
+The first waiting time is the shortest one for which every row records its dwells. The last waiting time is the duration
+of the runs; with this time only runs with the status clogged count. Bars are confidence intervals; an arrow begins at a
+lower bound where no run clogged.
 """
 
 from ..drawing import dwell

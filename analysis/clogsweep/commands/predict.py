@@ -1,15 +1,16 @@
-"""Predicts the clogging lengths of an array without runs in it, from droplets that fall onto one or two obstacles.
+"""Predicts the clogging lengths of an array from droplets that fall onto one or two obstacles, without runs in the
+array.
 
     python3 -m clogsweep predict obstacle-gap=0.3 obstacle-density=0.3 line-tension=1,3
     python3 -m clogsweep predict obstacles=posts.csv box=20 line-tension=2
     python3 -m clogsweep predict preset=elastic friction=0.05 line-tension=0.05,0.07,0.1,0.5,1,3 --output curve --with sweep.h5
 
-KEY=VALUE are keys of clogsweep. One droplet falls onto each pair of obstacles, for all gaps and directions. Others fall
-onto a single obstacle, to find the offset from which on it no longer holds a wrapped droplet. This takes half a minute
-for a large line tension. Then the obstacles and pairs of the array are counted. The command prints lengths as CSV, with
-the reasons to doubt them: soft (line tension below 1: clogs on three obstacles and more are not predicted), crowded
-(length below 4 sigma: the prediction is too long, because other obstacles come between). docs/explanation/predicted.md
-says where the predictions hold.
+KEY=VALUE are keys of clogsweep. For each gap and direction a droplet falls onto a pair of obstacles. Other droplets
+fall onto a single obstacle at several offsets, to find the largest offset at which the obstacle holds a wrapped
+droplet. These runs take half a minute for a large line tension. Then the command counts the obstacles and pairs of the
+array. It prints lengths as CSV, with the reasons to doubt them: soft (line tension below 1: clogs on three obstacles
+and more are not predicted), crowded (length below 4 sigma: the prediction is too long, because other obstacles come
+between). docs/explanation/predicted.md says where the predictions hold.
 """
 
 import argparse

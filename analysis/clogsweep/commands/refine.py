@@ -7,8 +7,8 @@
     python3 -m clogsweep refine lattice-angle --config lattice.cfg --output lattice.h5 --until critical-angle=0.5
 
 The words after -- start clogsweep; without these words clogsweep runs on one core. The points of a round are stored
-beside the output (OUTPUT.refine-*.csv) before it starts. The same command resumes a stopped search; exit codes are
-those of clogsweep.
+beside the output (OUTPUT.refine-*.csv) before the round starts. The same command resumes a stopped search; exit codes
+are those of clogsweep.
 """
 
 import argparse
@@ -33,7 +33,7 @@ from ..tools.errors import ProgramFailed, UserError
 from . import command_line
 
 PASSED_ON = ("lab", "attempts", "isolate", "report-seconds", "master-computes", "instruction-set")
-BLOCKS_OF_A_VALUE = 50  # largest number of blocks of seeds of one value, without --most-seeds
+BLOCKS_OF_A_VALUE = 50  # largest number of blocks of seeds of one value, unless --most-seeds is given
 SPACED = re.compile(r"(lin|log)\(([^,()]+),([^,()]+),\s*(\d+)\s*\)")
 
 
@@ -47,7 +47,7 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
                         help="curve=20%%, peak=10%%, crossing=10:5%% or, for a lattice, critical-angle=0.5")
     parser.add_argument("--budget", metavar="H", help="largest number of core-hours of all runs together, e.g. 10h")
     parser.add_argument("--max-hours", type=command_line.between(0, 1e9, "hours"), default=math.inf, metavar="H",
-                        help="stop after this number of hours, as after a signal")
+                        help="stop after this number of hours in the same way as after a signal")
     parser.add_argument("--most-seeds", type=command_line.whole(1), metavar="N",
                         help=f"largest number of seeds of a value ({BLOCKS_OF_A_VALUE} times `seeds`)")
     parser.add_argument("--same-seeds", action="store_true", help="use the same seeds for all values")
@@ -145,7 +145,7 @@ def printed_tasks(*command: object) -> str:
 
 
 def _alone() -> dict[str, str]:
-    """The environment for a run on one rank, which clogsweep would refuse in an allocation of several tasks."""
+    """The environment without SLURM_NTASKS, with which clogsweep would refuse to run on one rank."""
     return {name: value for name, value in os.environ.items() if name != "SLURM_NTASKS"}
 
 

@@ -1,10 +1,10 @@
-"""One page about a sweep: curves, table, example clogs or outlines, doubts, the origin of its numbers. Opens offline in
-any browser.
+"""Writes a page about a sweep: curves, table, example clogs or outlines, doubts, the origin of its numbers. The page
+opens offline in any browser.
 
     clogfit report sweep.h5 --output report.html      # is python3 -m clogsweep report
 
 Every number comes from clogfit. Example clogs are replayed by clogrun until they rest, in a temporary folder. For
-droplets in a channel or on a wall it shows the passage or the sag vs the varied parameter, and some outlines.
+droplets in a channel or on a wall the page shows the passage or the sag vs the varied parameter, and some outlines.
 """
 
 import pathlib

@@ -275,8 +275,9 @@ std::vector<Parameter> array_entries() {
             {.column = "obstacle_density",
              .symbol = R"(\rho_\mathrm{ob})",
              .unit = "1/sigma^2",
-             .meaning = "obstacles per area, or a share of the mean density of saturated arrays; saturated: "
-                        "as many obstacles as fit. A density that some seed cannot reach is refused",
+             .meaning =
+                 "obstacles per area, or a share of the mean density of saturated arrays; saturated: "
+                 "as many obstacles as fit. A density that is too high for the array of a seed is refused",
              .scope = &arrays,
              .automatic_in = &arrays,
              .range = {positive, {}},
@@ -306,8 +307,8 @@ std::vector<Parameter> own_circle_entries() {
       entry("release", [](auto& run) -> auto& { return run.obstacles.release; },
             {.column = "release",
              .meaning = "where droplets start among user-supplied circles; centre: near the centre of the "
-                        "array; anywhere: near a place in the array, entrance: near a place on the line of "
-                        "the entrance; the seed determines this place",
+                        "array; anywhere: near a random place in the array; entrance: near a random place on "
+                        "the line of the entrance; the seed determines the random place",
              .scope = &own_circles,
              .shapes_array = true}),
       entry("length", [](auto& run) -> auto& { return run.obstacles.length; },
@@ -677,8 +678,8 @@ std::vector<Parameter> wall_entries() {
             {.column = "yield_traction",
              .symbol = R"(\tau_\mathrm{y})",
              .unit = "g rho sigma",
-             .meaning = "tau_y, yield traction of walls: tangential force per wetted length that walls bear "
-                        "in addition to friction; not with perimeter-spring=along",
+             .meaning = "tau_y, yield traction of walls: largest tangential force per wetted length, in "
+                        "addition to friction; not with perimeter-spring=along",
              .scope = &polygons,
              .range = {not_negative, to(1000, "no droplet would ever move", "try 0.1")},
              .elsewhere = 0.0}),
