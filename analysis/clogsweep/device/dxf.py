@@ -21,7 +21,7 @@ FLATNESS = 1e-4  # Largest deviation of straight pieces from a curve, as a fract
 CURVES = ("LINE", "ARC", "LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE", "SOLID", "TRACE")
 FILLED = ("SOLID", "TRACE")
 HATCHES = ("HATCH", "MPOLYGON")
-HATCH_IGNORES_HOLES = 2  # a value of hatch_style
+HATCH_IGNORES_HOLES = 2  # A value of hatch_style.
 SEGMENTS = 256  # Number of straight pieces of a full circle. An arc of a wide line has a proportional number of pieces.
 
 

@@ -28,7 +28,7 @@ Line = tuple[str, Numbers]  # The kind of an object in a drawing, and its points
 class Drawing:
     """A drawing as read from its file. Lengths are in the drawing's own unit, and y points upwards."""
 
-    circles: list[tuple[float, float, float]]  # x, y, diameter
+    circles: list[tuple[float, float, float]]  # Each has x, y and diameter.
     # Corners (n, 2). The last corner is joined to the first, unless the border of a picture cuts the outline.
     outlines: list[Numbers]
     metres: float | None  # Length of the drawing's unit [m]; None if the file does not state it.
@@ -63,7 +63,7 @@ class Device:
     """The posts of a device. Lengths are in droplet diameters, the flow goes along +x, and the frame begins at (0,
     0)."""
 
-    circles: Numbers  # (n, 3): x, y, diameter
+    circles: Numbers  # Array (n, 3) of x, y and diameter.
     others: list[Numbers]  # Outlines that are not round.
     length: float
     width: float

@@ -59,9 +59,9 @@ def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: C
 class Clog:
     """A droplet at rest. In a notebook the object shows itself as a picture."""
 
-    row: np.void  # the sweep's row
+    row: np.void  # The sweep's row.
     polygon: Numbers  # Vertices of the interface that meets walls, 2 x N [sigma].
-    obstacles: Numbers  # n x 3: x, y, diameter [sigma]
+    obstacles: Numbers  # Array n x 3 of x, y and diameter [sigma].
     wedges: Numbers  # Side walls as in a trajectory's file, n x 6 [sigma].
     source: str = ""  # Provenance of the row, in words.
 
