@@ -186,7 +186,7 @@ class Groups:
         return self._circle_files.get(value, value) if name == "obstacles" else value
 
     def laboratory_label(self, check_sum: str) -> str:
-        """The entries in which a laboratory differs from the other laboratories, or all entries if there are no others."""
+        """The entries in which a laboratory differs from the others, or all entries if it is the only laboratory."""
         parts = {one: text.split("; ") for one, text in self.laboratories.items()}
         own = [part for part in parts[check_sum] if not all(part in other for other in parts.values())]
         return "; ".join(own or parts[check_sum])
