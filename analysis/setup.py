@@ -1,5 +1,5 @@
-"""Adds files of ../jobs to the package: the configs of the figures and the settings of mpirun. Git has only one copy of
-them."""
+"""Adds files of ../jobs to the package: the configs of the figures, and the settings of mpirun. So git needs only one
+copy of these files."""
 
 import pathlib
 import shutil
@@ -20,7 +20,7 @@ class BuildWithJobs(build_py):
             shutil.copy(source, copy)
 
 
-# The build folder is elsewhere, so that nothing remains in the source tree, and no file of an earlier build gets into
-# the package.
+# The build folder is outside the source tree. So nothing remains in the source tree, and no file of an earlier build
+# gets into the package.
 with tempfile.TemporaryDirectory(prefix="clogsweep_build_") as scratch:
     setup(cmdclass={"build_py": BuildWithJobs}, options={"build": {"build_base": scratch}, "egg_info": {"egg_base": scratch}})

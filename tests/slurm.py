@@ -1,5 +1,5 @@
-"""Tests sweeps as jobs of a real Slurm that are warned, queued again or cancelled, or lose a node. Their rows must be
-those of an undisturbed sweep.
+"""Tests sweeps that are jobs of a real Slurm. Slurm warns, requeues or cancels the jobs, or a job loses a node. The
+rows must be those of an undisturbed sweep.
 
     tests/slurm.sh [slurm.Slurm.test_...]    # also starts the Slurm that these tests need
 """
@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "tests" / "programs"))
 
 from support import BIN, MPIRUN, STEPS_PER_SNAPSHOT, SWEEP, SweepTest, table  # noqa: E402
 
-# Long enough that a job still runs when Slurm acts on it.
+# Runs that are long enough for a job to be still running when Slurm acts on it.
 KEYS = [word.replace("max-time=4000", "max-time=2e4") for word in SWEEP[:-2]]
 # Runs that together take a minute or more on two ranks.
 LONG = [word.replace("max-time=2e4", "max-time=1e5") for word in KEYS]
@@ -53,7 +53,7 @@ class Slurm(SweepTest):
         self.wait_for(lambda: all(described("node", node)["State"] == "IDLE" for node in NODES))
 
     def submit(self, *options, script=ROOT / "jobs" / "slurm.sh", keys=KEYS):
-        """Submits a job of two ranks that runs a sweep to s.h5. @return the job's number"""
+        """Submits a job of two ranks that runs a sweep. The sweep writes to s.h5. @return the number of the job"""
         words = slurm("sbatch", "--parsable", f"--chdir={self.folder}", "--output=job.log", "--ntasks=2", *options,
                       script, *keys, "--output", "s.h5")
         job = words.strip()
@@ -72,7 +72,7 @@ class Slurm(SweepTest):
         self.assertNotIn(now, {"COMPLETED", "CANCELLED", "FAILED", "TIMEOUT", "NODE_FAIL"} - {state}, self.log())
 
     def wait_for_runs_with_snapshots(self):
-        """Waits until some tasks have snapshots, and some have ended."""
+        """Waits until some tasks have snapshots, and other tasks have ended."""
         def seen():
             if not (self.folder / "s.h5").exists():
                 return False
@@ -87,7 +87,7 @@ class Slurm(SweepTest):
         self.check_equal("s.h5", self.whole)
 
     def check_went_on(self):
-        """Checks that the last session resumed the sweep, and did not restart it."""
+        """Checks that the last session resumed the sweep and did not restart it."""
         self.assertRegex(self.log(), r"s\.h5 has [1-9]\d* of 24 runs\n")
 
     def resume(self, node):
@@ -100,8 +100,8 @@ class Slurm(SweepTest):
         self.assertEqual(set(zip(rows["rank"], rows.host)), {(0, "node1"), (1, "node2")})
 
     def test_a_job_is_warned_before_its_time_is_up_and_queues_itself_again(self):
-        # Slurm checks the time limit twice a minute, and warns half a minute early. So the warning comes after 20 to 50
-        # s.
+        # Slurm checks the time limit twice a minute, and warns half a minute before the limit. So the warning comes
+        # after 20 to 50 s.
         job = self.submit("--nodes=2", "--ntasks-per-node=1", "--time=1", "--signal=B:USR1@10", keys=LONG)
         self.wait_for(lambda: described("job", job)["Restarts"] != "0" or self.ended_otherwise(job, "RUNNING"))
         slurm("scontrol", "update", f"jobid={job}", "timelimit=60")
@@ -162,7 +162,7 @@ class Slurm(SweepTest):
         self.assertIn("not complete after 1 requeues, as many as MAX_REQUEUES allows", self.log())
 
     def preempt(self, partition):
-        """@return the number of the job that an urgent job has preempted"""
+        """Lets an urgent job preempt a job. @return the number of the preempted job"""
         job = self.submit("--nodes=2", "--ntasks-per-node=1", f"--partition={partition}")
         self.wait_for_runs_with_snapshots()
         urgent = slurm("sbatch", "--parsable", "--partition=urgent", "--nodes=2", "--ntasks-per-node=2", "--output=/dev/null", "--wrap=sleep 5").strip()
@@ -170,7 +170,7 @@ class Slurm(SweepTest):
         return job
 
     def configure(self, old, new):
-        """Changes Slurm's configuration until the test ends."""
+        """Changes the configuration of Slurm until the end of the test."""
         path = pathlib.Path(os.environ["SLURM_CONF"])
 
         def put(text):
@@ -181,7 +181,7 @@ class Slurm(SweepTest):
 
     def test_a_preempted_job_queues_again(self):
         user_signal = "SlurmctldParameters=preempt_send_user_signal\n"
-        # Without preempt_send_user_signal only the daemon on the other node is warned.
+        # Without preempt_send_user_signal, only the daemon on the other node receives a warning.
         for partition, removed, warned in [("requeue", "", False), ("cancel", "", True), ("cancel", user_signal, False)]:
             with self.subTest(partition=partition, removed=removed):
                 self.setUp()  # makes an empty folder

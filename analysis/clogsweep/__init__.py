@@ -1,4 +1,4 @@
-"""Results of clogsweep in Python: tables, fits, curves, clogs, films::
+"""Gives Python the results of clogsweep as tables, fits, curves, pictures of clogs, and films::
 
     import clogsweep
     sweep = clogsweep.open("sweep.h5")
@@ -7,7 +7,7 @@
     sweep.fit().curve()       # draws itself in a notebook
     clogsweep.units("lab.cfg")  # what the model's units are in a laboratory
 
-The programs do all fits and simulations.
+The C++ programs run the simulations and fit the clogging lengths.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from __future__ import annotations
 import importlib
 import os
 
-TYPE_CHECKING = False  # true for type checkers; importing `typing` takes longer than this module
+# Type checkers take TYPE_CHECKING as true. Importing it from `typing` would take longer than importing this module.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
@@ -44,7 +45,8 @@ def __getattr__(name: str) -> Any:
 
 
 def _loaded(module: str) -> Any:
-    """A module of this package. @throws ImportError  whose single line names what is missing on this machine"""
+    """Imports a module of this package.
+    @throws ImportError  with a single line that names what is missing on this machine"""
     try:
         return importlib.import_module(f".{module}", __name__)
     except ImportError as error:
@@ -58,8 +60,8 @@ def __dir__() -> list[str]:
 
 
 def open(path: str | os.PathLike[str] | list[str | os.PathLike[str]], programs: str | os.PathLike[str] | None = None) -> Sweep | Run:
-    """A file of clogsweep, or of clogrun; a list of several files of clogsweep is read as one sweep, as `clogsweep
-    merge` would join them.
+    """Opens a file of clogsweep or clogrun. Several files of clogsweep, given as a list, are read as one sweep, as
+    `clogsweep merge` would join them.
 
     @param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module
     @throws UserError  for any other file; Damaged if the content has changed since the program wrote it

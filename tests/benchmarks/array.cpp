@@ -1,6 +1,6 @@
-/// Measures what a saturated obstacle array costs: the time and the memory for building it, and the memory
-/// that it keeps.
-/// bench_array [box [boxes]]
+/// Measures what a saturated obstacle array costs: the time to build it, the memory to build it, and the
+/// memory that it keeps.
+///   bench_array [box [boxes]]
 
 #include <sys/resource.h>
 

@@ -1,6 +1,6 @@
-/// Measures whether a step costs more in a larger box. The same droplet follows the same path through an
-/// array of period 60, and through an array of period 540 made of 81 copies of the first one. Slices of the
-/// two runs alternate.
+/// Measures whether a step costs more in a larger box. The same droplet follows the same path through two
+/// arrays. The first array has the period 60. The second array has the period 540, and consists of 81 copies
+/// of the first. Slices of the two runs alternate.
 
 #include <algorithm>
 #include <cstdio>
@@ -16,7 +16,7 @@ namespace {
 using namespace clog;
 
 constexpr double small_box = 60;
-constexpr int copies = 9;  // odd, so that the centres of both boxes have the same surroundings
+constexpr int copies = 9;  // an odd number, so that the centres of both boxes have the same surroundings
 
 std::shared_ptr<const ObstacleArray> tiled(const ObstacleArray& array) {
   std::vector<Obstacle> all;
@@ -48,7 +48,7 @@ void compare(const char* name, RunParameters parameters, int num_checks) {
   parameters.clog_energy = 1e-300;
   parameters = resolve(parameters);
   const auto array = std::make_shared<ObstacleArray>(sample_obstacles(parameters.obstacles, 1));
-  // The addresses of a run's arrays affect its time by some percent, so there are several runs of each kind.
+  // The addresses of a run's arrays change its time by some percent, so there are several runs of each kind.
   constexpr int num_twins = 6;
   RunParameters in_large = parameters;
   in_large.obstacles.box = small_box * copies;

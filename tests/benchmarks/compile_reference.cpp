@@ -1,5 +1,5 @@
 // This file never changes. tests/benchmarks/build.sh divides compile times by the time for this file, so that
-// machines can be compared. The file uses the libraries whose headers take longest.
+// different machines can be compared. The file uses the libraries whose headers take longest to compile.
 
 #include <Eigen/Dense>
 #include <boost/program_options.hpp>

@@ -1,12 +1,13 @@
 /// Measures how busy the master (rank 0) is with a thousand workers whose tasks take a second each. The work
-/// of the master depends only on the messages: it receives a thousand rows per second, and answers each with
-/// a new task. Here a few workers send as many rows, because their tasks only sleep, for less than a second.
-/// Everything else is as in clogsweep: the scheduler, MPI, the table of runs on the disk.
+/// of the master depends only on the messages. The master receives a thousand rows per second, and answers
+/// each row with a new task. Here a few workers send as many rows, because their tasks only sleep, and for
+/// less than a second. Everything else is as in clogsweep: the scheduler, MPI, and the table of runs on the
+/// disk.
 ///   tests/mpirun.sh 5 bench_master [tasks per second] [seconds]
-/// With 0 tasks per second every worker sleeps in one long task; this measures the cost of waiting.
+/// With 0 tasks per second every worker sleeps in one long task. This case measures the cost of waiting.
 ///   bench_master rows 1000000
-/// Measures the memory per row in a sweep of soft disks, the longest time for which the master does not
-/// answer because it is busy with the table and its journal, and the times for a stop and a restart of the
+/// Simulates a sweep of soft disks. Measures the memory per row, the longest time for which the master does
+/// not answer because it is busy with the table and its journal, and the times to stop and to restart the
 /// sweep.
 
 #include <sys/resource.h>
@@ -47,7 +48,7 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Returns the largest resident memory so far.
+/// The largest resident memory so far.
 double peak_kilobytes() {
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
@@ -144,7 +145,7 @@ int main(int argc, char** argv) {
   const std::string path =
       (std::filesystem::temp_directory_path() / ("bench_master_" + std::to_string(getpid()) + ".h5"))
           .string();
-  sweep::Settings settings;  // as many tasks as requested, in a hundred parameter sets, like a large sweep
+  sweep::Settings settings;  // like a large sweep: as many tasks as requested, in a hundred parameter sets
   const std::int64_t num_groups = std::min<std::int64_t>(num_tasks, 100);
   settings.set("line-tension", "lin(0.1,10," + std::to_string(num_groups) + ")");
   settings.set("seeds", "1.." + std::to_string(num_tasks / num_groups));

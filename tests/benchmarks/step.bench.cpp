@@ -1,5 +1,5 @@
-/// Measures the cost of a step. Compare the values of `time per vertex-step`, but only within one execution
-/// of this program.
+/// Measures the cost of a step. The values of `time per vertex-step` can be compared only within one
+/// execution of this program.
 
 #include <benchmark/benchmark.h>
 
@@ -73,7 +73,7 @@ BENCHMARK(polygon_avx2)->Unit(benchmark::kMillisecond);
 void polygon_baseline(benchmark::State& state) { with_instruction_set(state, "baseline"); }
 BENCHMARK(polygon_baseline)->Unit(benchmark::kMillisecond);
 
-/// All terms act on single vertices, except for the pressure, which couples all of them.
+/// Each term acts on single vertices. The exception is the pressure, which couples all vertices.
 void heavy_interface(benchmark::State& state) {
   RunParameters run =
       flowing_droplet(static_cast<int>(state.range(0)), 0.01 * static_cast<double>(state.range(1)));
@@ -101,8 +101,8 @@ void wrapped_polygon(benchmark::State& state) {
 }
 BENCHMARK(wrapped_polygon)->Unit(benchmark::kMillisecond);
 
-/// The search for necks (break-up-neck), which takes place once in DropletRun::steps_per_check steps, for a
-/// soft droplet that moves.
+/// The search for necks (break-up-neck) in a soft droplet that moves. A run searches once in
+/// DropletRun::steps_per_check steps.
 void neck_of_a_droplet(benchmark::State& state) {
   RunParameters run = flowing_droplet(static_cast<int>(state.range(0)), 0);
   run.dp.line_tension = 0.05;
@@ -116,8 +116,8 @@ void neck_of_a_droplet(benchmark::State& state) {
 }
 BENCHMARK(neck_of_a_droplet)->ArgName("vertices")->Arg(128)->Arg(512)->Unit(benchmark::kMicrosecond);
 
-/// Settings of the figures: the elastic interface, the automatic step, and gaps that the droplet passes by
-/// wrapping around obstacles.
+/// The settings of the figures: the elastic interface, the automatic step, and gaps that the droplet passes
+/// by wrapping around obstacles.
 void elastic_polygon(benchmark::State& state) {
   RunParameters run;
   run.dp.vertices = 128;
@@ -139,7 +139,8 @@ BENCHMARK(elastic_polygon)
     ->Arg(30)
     ->Unit(benchmark::kMillisecond);
 
-/// The run of a droplet to a channel and through it, as in clogrun, including the work against the drag.
+/// The run of a droplet to a channel and through it, as in clogrun, with the computation of the work against
+/// the drag.
 void polygon_in_channel(benchmark::State& state) {
   RunParameters run = flowing_droplet(256, 0.01 * static_cast<double>(state.range(0)));
   run.drag.terminal_speed = 0.032;

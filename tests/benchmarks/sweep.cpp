@@ -1,6 +1,7 @@
-/// Measures the cost of runs of real sweeps: per vertex and step, and from release to verdict. For
-/// comparison, it measures on the same core a bare step, that is the two passes (kick and drift) of a step
-/// without contacts. No real step can be faster. Slices of the run and of the bare step alternate.
+/// Measures the cost of runs of real sweeps per vertex and step, and from release to verdict. For comparison,
+/// the program measures a bare step on the same core. The bare step consists of the two passes (kick and
+/// drift) of a step without contacts. No real step can be faster. Slices of the run and of the bare step
+/// alternate.
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +33,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Kick and drift of a free circle at rest, with the terms of a run.
+/// The kick and the drift of a free circle at rest, with the terms of a run.
 class BareStep {
  public:
   explicit BareStep(RunParameters run)
@@ -49,7 +50,7 @@ class BareStep {
     sums_ = kernel_.measure(n_, a_);
   }
 
-  /// @return nanoseconds for each vertex and step
+  /// @return duration of one step divided by the number of vertices [ns]
   double time(int steps) {
     constexpr double time_step = 1e-3;
     const kernel::KickCoefficients coefficients{.closing_ratio = 1,
@@ -134,11 +135,11 @@ RunParameters parameters(const Task& task, std::uint32_t seed) {
 
 struct Measured {
   double per_vertex_step;  ///< [ns]
-  double seconds;          ///< duration of a run, with its array and release
-  double limit;            ///< cost per vertex and step of the two passes alone [ns]
+  double seconds;          ///< Duration of a run, including its array and its release.
+  double limit;            ///< Cost per vertex and step of the two passes alone [ns].
 };
 
-/// Measures a few runs one after another, each in slices that alternate with the bare step.
+/// Measures a few runs one after another. Slices of each run alternate with the bare step.
 Measured measure(const Task& task) {
   constexpr std::uint32_t num_runs = 3;
   constexpr int checks_per_slice = 400, bare_steps = 3000;

@@ -1,6 +1,5 @@
-/// Measures how the order of the tasks affects the end of a sweep, with 64 simulated workers and the run
-/// lengths of a real sweep. Workers take tasks as the scheduler's workers do, from the scheduler's own
-/// TaskOrder.
+/// Measures how the order of the tasks affects the end of a sweep. The lengths of the runs come from a real
+/// sweep. 64 simulated workers take tasks from the scheduler's own TaskOrder, as real workers do.
 ///   bench_tail run-lengths-dp.csv [workers] [seeds]
 
 #include <algorithm>
@@ -34,7 +33,7 @@ std::vector<double> read_lengths(const char* path) {
   return lengths;
 }
 
-/// Time at which the last task is done.
+/// The time at which the last task is done.
 double finish_time(const std::vector<double>& lengths, int num_workers, TaskOrder tasks) {
   using Running = std::pair<double, std::int64_t>;  // end, task
   std::priority_queue<Running, std::vector<Running>, std::greater<>> running;
@@ -60,7 +59,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// A random sweep, for which the lengths of every group are drawn from the group's recorded lengths.
+/// A random sweep. The lengths of each group are drawn from the group's recorded lengths.
 std::vector<double> resample(const std::vector<double>& recorded, std::int64_t num_seeds,
                              std::mt19937_64& engine) {
   const boost::random::uniform_int_distribution<std::int64_t> pick(
@@ -86,8 +85,8 @@ int main(int argc, char** argv) {
   for (int sample = 0; sample < 101; ++sample) {
     std::vector<double> lengths = resample(recorded, num_seeds, engine);
     const auto num_tasks = static_cast<std::int64_t>(lengths.size());
-    // A lower bound for every order of the tasks. It is seldom reached, because workers are seldom all busy
-    // to the end.
+    // No order of the tasks can take less time. This bound is seldom reached, because some workers are
+    // usually idle at the end.
     const double least = std::max(std::accumulate(lengths.begin(), lengths.end(), 0.0) / num_workers,
                                   *std::max_element(lengths.begin(), lengths.end()));
     planned.push_back(finish_time(lengths, num_workers, order_of(num_tasks)) / least);

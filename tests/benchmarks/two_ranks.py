@@ -1,4 +1,5 @@
-"""Compares two ranks with one rank. Both compute the same sweep of runs of equal length, in turn, several times.
+"""Compares the speed of two ranks with that of one rank. The two ranks and the one rank compute the same sweep, whose
+runs have equal lengths. Their computations alternate several times.
 
     two_ranks.py FOLDER_OF_PROGRAMS
 
@@ -22,7 +23,7 @@ REPEATS = 3
 
 
 def measure(clogsweep, num_ranks):
-    """Steps per second, and per second of CPU time, both in millions."""
+    """Steps per second, and steps per second of CPU time, both in millions."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "s.h5"
 

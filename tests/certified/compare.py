@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Compares the same runs with clog-detection=threshold and certified: verdicts, places, steps, seconds.
+"""Compares the verdicts, distances, steps and seconds of the same runs with clog-detection=threshold and certified.
 
     compare.py threshold.h5 certified.h5
 
-Prints a row per group of runs, and a line for every run with another verdict, or a distance that differs by more than
-1e-3 sigma; exit code 1 if there is one. A run that the threshold has not decided by max-time counts as flowing: repeat
-it with a larger max-time.
+Prints a row per group of runs. Prints a line for every run with another verdict, or with a distance that differs by
+more than 1e-3 sigma; the exit code is then 1. A run that the threshold has not decided by max-time counts as flowing.
+Repeat such a run with a larger max-time.
 """
 
 import sys

@@ -61,7 +61,7 @@ TEST_F(Csv, TakesQuotesOff) {
 }
 
 TEST_F(Csv, TakesOtherBlanksAndLatin1AsSpreadsheetsWriteThem) {
-  write("\xc2\xa0x\xe2\x80\xaf,y [\xb5m]\n");  // not UTF-8, because of the last one
+  write("\xc2\xa0x\xe2\x80\xaf,y [\xb5m]\n");  // not UTF-8, because of the last character
   EXPECT_EQ(cells()[0][1], "y [\xc2\xb5m]");
   write("\xc2\xa0x\xe2\x80\xaf,y [\xc2\xb5m]\n");
   EXPECT_EQ(cells(), (Cells{{"x", "y [\xc2\xb5m]"}}));

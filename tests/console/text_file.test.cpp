@@ -39,7 +39,7 @@ TEST_F(TextFile, MayBeginWithAByteOrderMark) {
 }
 
 TEST_F(TextFile, MayBeInUtf16) {
-  const std::string text = "a=\xc2\xb5\xf0\x9f\x92\xa7\n";  // characters of two and of four bytes
+  const std::string text = "a=\xc2\xb5\xf0\x9f\x92\xa7\n";  // contains characters of two and of four bytes
   write(path("a.cfg"), std::string("\xff\xfe"
                                    "a\0=\0\xb5\0\x3d\xd8\xa7\xdc\n\0",
                                    14));
@@ -59,7 +59,7 @@ TEST_F(TextFile, MayHaveTheLineEndsOfWindowsAndOldMacs) {
 
 TEST_F(TextFile, MayBeAPipe) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-  const std::string text(200'000, '#');  // more than the pipe holds
+  const std::string text(200'000, '#');  // longer than the pipe can hold
   std::thread writer([&] { write(path("pipe"), text); });
   EXPECT_EQ(read_text(path("pipe")), text);
   writer.join();

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Compares the runs of sweeps over `vertices` with the runs of the most vertices: verdicts, places of clogs, lambda.
+"""Compares the runs of sweeps over `vertices` with the runs of the most vertices: their verdicts, the places of clogs,
+and lambda.
 
     compare.py --clogfit build/release/bin/clogfit sweep.h5 [sweep.h5 ...]
 
-Two runs count as the same if both clogged within 0.02 sigma of each other, or neither clogged. Prints a row per preset,
-gap and line tension, with a cell per number of vertices: the number of same runs, the median distance between the two
-clogs of a seed [sigma], and lambda with its 95 % interval by clogfit [sigma]. The last rows have the sums, and the time
-that the runs took.
+Two runs count as the same if both clogged within 0.02 sigma of each other, or if neither clogged. Prints a row per
+preset, gap and line tension, with a cell per number of vertices. A cell contains the number of same runs, the median
+distance between the two clogs of a seed [sigma], and lambda with its 95 % interval from clogfit [sigma]. The last rows
+contain the sums, and the time that the runs took.
 """
 
 import argparse

@@ -1,10 +1,10 @@
 /// Tests whether a finer polygon rests where a coarser one clogged.
-/// build/release/tests/holds_finer sweep.h5 [PART PARTS]
-/// Repeats each run that clogged, puts a vertex into the middle of each edge of the droplet at rest, removes
-/// the anchors by which walls hold the droplet, and lets the droplet move. Prints a line of CSV for each run:
-/// the droplet's distance after 600 t0, or its certified rest. For comparison, the line also has the results
-/// for the unchanged number of vertices without the anchors, because a droplet may need these to stay at
-/// rest. PART and PARTS divide the runs among processes.
+///   build/release/tests/holds_finer sweep.h5 [PART PARTS]
+/// Repeats each run that clogged. Puts a vertex into the middle of each edge of the droplet at rest, removes
+/// the anchors by which walls hold the droplet, and lets the droplet move. Prints a line of CSV for each run.
+/// The line has the droplet's distance after 600 t0, or its certified rest. For comparison, the line also has
+/// the result for the unchanged number of vertices without the anchors, because a droplet may need the
+/// anchors to stay at rest. PART and PARTS divide the runs among processes.
 
 #include <fmt/core.h>
 
@@ -35,7 +35,7 @@ void finish(DropletRun& run) {
   }
 }
 
-/// The middle of each edge, on the cubic through the edge's ends and their other neighbours.
+/// The middle of each edge, on the cubic through the two ends of the edge and their other neighbours.
 Eigen::ArrayXd with_middles(const Eigen::Ref<const Eigen::ArrayXd>& coarse) {
   const Eigen::Index n = coarse.size();
   Eigen::ArrayXd fine(2 * n);
@@ -63,8 +63,8 @@ DropletState without_memory(DropletState state) {
   return state;
 }
 
-/// The same run with another number of vertices. Stiffnesses and time step become automatic again, because
-/// they depend on this number.
+/// The same run with another number of vertices. Stiffnesses and the time step become automatic again,
+/// because they depend on this number.
 RunParameters with_vertices(RunParameters run, int vertices) {
   run.dp.vertices = vertices;
   run.wall_stiffness.reset();

@@ -10,7 +10,7 @@
 
 namespace clog::test {
 
-/// The message with which resolve() refuses these parameters; empty if it accepts them.
+/// The message with which resolve() refuses these parameters, or an empty text if resolve() accepts them.
 inline std::string refusal_of(const RunParameters& run) {
   try {
     resolve(run);
@@ -20,7 +20,7 @@ inline std::string refusal_of(const RunParameters& run) {
   return "";
 }
 
-/// Expects that resolve() refuses these parameters with a message of one line that contains the words.
+/// Expects that resolve() refuses these parameters. The message must be one line that contains the words.
 inline void expect_refused(const RunParameters& run, std::string_view words) {
   const std::string message = refusal_of(run);
   EXPECT_NE(message.find(words), std::string::npos) << words << "\nis not in\n" << message;

@@ -15,7 +15,7 @@
 
 namespace clog::test {
 
-/// Parameters with a number for every automatic value. They are not checked by resolve(), so that tests can
+/// Parameters with a number for every automatic value. resolve() does not check them, so that tests can
 /// switch terms off.
 inline RunParameters bare_parameters(int vertices = 64) {
   RunParameters run;
@@ -23,19 +23,19 @@ inline RunParameters bare_parameters(int vertices = 64) {
   run.time_step = 1e-3;
   run.dp.area_stiffness = 1e4;
   run.dp.perimeter_stiffness = 1.0;
-  // Springs with an energy, because tests compare forces with its gradient.
+  // These springs have an energy, because tests compare forces with the gradient of the energy.
   run.dp.perimeter_spring = PerimeterSpring::mean;
   run.dp.gravity = Gravity::vertex;
   const double l0 = units::regular_edge_length(vertices);
   run.wall_stiffness = wall_stiffness(1000, l0);
-  // The published ranges of contacts, so that tests cover these, too.
+  // These are the published ranges of contacts, so that tests cover them, too.
   run.dp.contact_range = l0 / 2;
   run.dp.self_contact_range = l0;
   run.obstacles.box = 20;
   return run;
 }
 
-/// The same droplet in another scene, resolved.
+/// The same droplet in a channel, with resolved parameters.
 inline RunParameters in_channel(RunParameters run, const ChannelParameters& channel) {
   run.obstacles = {};
   run.obstacles.layout = ObstacleLayout::channel;
@@ -58,7 +58,7 @@ inline DropletState state_of(const Eigen::ArrayXd& position, double box = 20) {
   return state;
 }
 
-/// The polygon with every coordinate moved at random by up to `amount`.
+/// The polygon after every coordinate was moved at random by up to `amount`.
 inline Eigen::ArrayXd shaken(Eigen::ArrayXd position, double amount, unsigned seed = 1) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> uniform(-amount, amount);
@@ -68,7 +68,7 @@ inline Eigen::ArrayXd shaken(Eigen::ArrayXd position, double amount, unsigned se
 
 inline constexpr double no_drag = 1e200;  // a terminal speed so large that there is no drag
 
-/// An ellipse of the droplet's area: it swings under line tension.
+/// An ellipse with the droplet's area. Line tension makes it swing.
 inline Eigen::ArrayXd ellipse(int n, double stretch) {
   Eigen::ArrayXd position = regular_polygon(n, units::rest_area);
   position.head(n) *= stretch;
@@ -76,7 +76,7 @@ inline Eigen::ArrayXd ellipse(int n, double stretch) {
   return position;
 }
 
-/// Two lobes joined by a neck of the given width, counter-clockwise; vertices evenly spread along the
+/// Two lobes joined by a neck of the given width, counter-clockwise. The vertices are evenly spread along the
 /// contour, so that no edge is much shorter than the others.
 inline Eigen::ArrayXd dumbbell(int num_vertices, double neck) {
   const auto point = [neck](double t) {
@@ -100,7 +100,7 @@ inline Eigen::ArrayXd dumbbell(int num_vertices, double neck) {
   return position;
 }
 
-/// The same contour, whose numbering begins with another vertex.
+/// The same contour, numbered from another vertex.
 inline Eigen::ArrayXd renumbered(const Eigen::ArrayXd& position, int first) {
   const Eigen::Index n = position.size() / 2;
   Eigen::ArrayXd result(position.size());
@@ -111,7 +111,7 @@ inline Eigen::ArrayXd renumbered(const Eigen::ArrayXd& position, int first) {
   return result;
 }
 
-/// Number of vertices that walls hold without touching them.
+/// The number of vertices that walls hold without touching them.
 inline int num_behind_films(const DropletState& state, double contact_range) {
   return static_cast<int>(std::ranges::count_if(state.anchors, [&](const WallAnchor& one) {
     return std::hypot(state.x()[one.holder] - one.wall.x, state.y()[one.holder] - one.wall.y) >

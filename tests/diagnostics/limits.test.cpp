@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A simulated host: a temporary folder with the files of /proc and /sys that the program reads. They state 8
-/// GB of available memory.
+/// A simulated host: a temporary folder with the files of /proc and /sys that the program reads. The files
+/// state that 8 GB of memory are available.
 class HostLimits : public testing::Test {
  protected:
   HostLimits() {
@@ -52,7 +52,7 @@ TEST_F(HostLimits, AreTheTightestFromTheOwnControlGroupUp) {
   write("sys/fs/cgroup/system.slice/job_7/memory.current", "3000000000\n");
   write("sys/fs/cgroup/system.slice/job_7/step_0/memory.max", "2000000000\n");
   write("sys/fs/cgroup/system.slice/job_7/step_0/memory.current", "500000000\n");
-  write("sys/fs/cgroup/system.slice/job_8/cpu.max", "1000 100000\n");  // another job's limit
+  write("sys/fs/cgroup/system.slice/job_8/cpu.max", "1000 100000\n");  // the limit of another job
   EXPECT_EQ(granted_cores(root_), 1.5);
   EXPECT_EQ(available_memory(root_), 1e9);
 }
@@ -68,13 +68,14 @@ TEST_F(HostLimits, CountsWhatTheKernelKeepsOfFilesAsAvailable) {
 TEST_F(HostLimits, AreNoLessThanNothing) {
   write("proc/self/cgroup", "0::/job\n");
   write("sys/fs/cgroup/job/memory.max", "1000000\n");
-  write("sys/fs/cgroup/job/memory.current", "1004096\n");  // more than the limit, which has been lowered
+  // More than the limit, because the limit has been lowered.
+  write("sys/fs/cgroup/job/memory.current", "1004096\n");
   EXPECT_EQ(available_memory(root_), 0);
 }
 
 TEST_F(HostLimits, AreSeenFromWithinAContainer) {
-  // In a container the process's control group is mounted as the root, but its path in /proc/self/cgroup is
-  // the path on the host, or a path outside the mounted group.
+  // In a container the control group of the process is mounted as the root. The group's path in
+  // /proc/self/cgroup is the path on the host, or a path outside the mounted group.
   write("sys/fs/cgroup/cpu.max", "50000 100000\n");
   for (const char* path : {"0::/\n", "0::/kubepods/pod1\n", "0::/../other\n"}) {
     write("proc/self/cgroup", path);

@@ -1,4 +1,4 @@
-"""Damages one attribute of a sweep's file: of the file itself, or of one of its columns."""
+"""Damages one attribute of a sweep's file. The attribute belongs to the file itself or to one of its columns."""
 
 import h5py
 
@@ -24,7 +24,7 @@ class Faults:
             way = case.chance.choice([self.flip, self.empty, self.remove])
             way(case.chance, file[place].attrs, name)
         content = path.read_bytes()
-        if case.chance.random() < 0.5 and SEAL in content:  # another program's copy has no seal
+        if case.chance.random() < 0.5 and SEAL in content:  # A copy by another program has no seal.
             path.write_bytes(content[:content.rindex(SEAL)])
         case.note(f"{sample.name}: {way.__name__} {place} {name}")
         check_readers(case, sample)
@@ -34,7 +34,8 @@ class Faults:
 
     @staticmethod
     def check_salvaged(case, sample):
-        """All rows are intact, so salvage keeps all of them, and the sweep's command restores the rest of the file."""
+        """Checks what salvage keeps. All rows are intact, so salvage keeps all of them. The sweep's command restores
+        the rest of the file."""
         salvaged = case.folder / SALVAGED
         salvaged.unlink(missing_ok=True)
         run(case, "clogsweep", "salvage", FILE, "--output", SALVAGED)

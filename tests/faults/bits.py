@@ -1,4 +1,4 @@
-"""Flips one bit of a finished sweep's file: in a row, in the description of the rows, or anywhere."""
+"""Flips one bit of a finished sweep's file. The bit is in a row, in the description of the rows, or anywhere."""
 
 from samples import FILE, check_readers, check_resumed, rows_place, samples
 

@@ -1,4 +1,4 @@
-"""Makes valid calls from the programs' own descriptions, adds mistakes to the calls or to files, and runs the calls."""
+"""Makes valid calls from the programs' own descriptions. Adds mistakes to the calls or to files, and runs the calls."""
 
 import re
 import subprocess
@@ -15,7 +15,8 @@ LISTS = ["lin(0,1,3)", "lin(0,1,-3)", "lin(0,1,1e9)", "lin(0,1)", "lin(nan,1,3)"
 TEXTS = ["", " ", "auto", "saturated", "dp", "sp", "none", "yes", "=", "a=b", "--", "-", "#", "%", "%s%n", "x" * 300,
          "é", "\t", "a\nb", "\x1b[31mred", "\r", "\x7f", "\u202e", "nowhere.h5", ".", "/dev/null", "/", "~"]
 NOT_UTF_8 = [b"\xff\xfe", b"\xc3", b"1\x80", b"\xed\xa0\x80"]
-# Runs take a second: the call sets all values that could make a run long, and mistakes never change these values.
+# Settings with which runs take a second. The settings include all values that could make a run long, and mistakes never
+# change these values.
 SHORT = {"max-time": "0.5", "vertices": "32", "box": "13", "seeds": "1"}
 NAMES_OF_FILES = {"output", "frames", "obstacles", "write-obstacles"}
 OWN_OPTIONS = re.compile(r"^  --([a-z-]+)( arg)?", re.MULTILINE)
@@ -38,7 +39,7 @@ class Faults:
         self.sample = Sample("disks", folder)
 
     def own_options(self, *words):
-        """The options of a command that are not keys, and whether they take a value."""
+        """Those options of a command that are not keys, and whether each takes a value."""
         return {name: bool(value) for name, value in OWN_OPTIONS.findall(printed(*words, "--help"))
                 if name not in self.keys}
 
@@ -56,7 +57,7 @@ class Faults:
 
     @staticmethod
     def check_refusal(case, outcome):
-        """A refusal is one line without control characters."""
+        """Checks that a refusal is one line without control characters."""
         name = outcome.name
         is_line = outcome.error.count(b"\n") == 1 and outcome.error.endswith(b"\n")
         case.expect(is_line, f"{name}: refuses, but not in one line")
@@ -71,7 +72,7 @@ class Faults:
     # Valid calls, before mistakes are added
 
     def preview(self, case):
-        """A sweep that only prints its plan or config."""
+        """Calls a sweep that only prints its plan or its config."""
         own = self.options[("clogsweep",)]
         return ["clogsweep", *self.some_keys(case, self.keys), *self.some_options(case, own),
                 *case.chance.choice([[], ["--config", "s.cfg"]]), case.chance.choice(["--dry-run", "--print-config"])]
@@ -87,7 +88,7 @@ class Faults:
         return [*words, self.file_name(case), *more, *self.some_options(case, options)]
 
     def droplet(self, case):
-        """A run so short that it ends at once."""
+        """Calls a run that is so short that it ends at once."""
         system = case.chance.choice(["array", "channel", "sag"])
         keys = {name: value for name, value in self.keys.items() if name not in SHORT}
         more = case.chance.choice([[], ["--obstacles", "o.csv"]]) if system == "array" else []
@@ -131,7 +132,7 @@ class Faults:
         return word[:place] + case.chance.choice("abz0.-=,( ") + word[place + case.chance.randrange(2):]
 
     def disorder(self, case, words):
-        """The words, of which one may be left out, repeated or misspelt."""
+        """The words of a call after a mistake: one of them may be left out, repeated or misspelt."""
         program, *words = map(as_bytes, words)
         deed = case.chance.randrange(8)
         if words and deed < 3:
@@ -146,7 +147,7 @@ class Faults:
 
     @staticmethod
     def scatter(case, content):
-        """A file's bytes with a few of them replaced, omitted, or repeated."""
+        """The bytes of a file, of which a few are replaced, left out or repeated."""
         content = bytearray(content)
         for _ in range(case.chance.randint(1, 8)):
             place = case.chance.randrange(len(content) + 1)

@@ -1,4 +1,4 @@
-"""Ways to damage bytes."""
+"""Damages bytes in several ways."""
 
 NUMBERS = [0, 1, 2, 63, 64, 255, 2**15, 2**16 - 1, 2**31 - 1, 2**31, 2**32 - 1, 2**63 - 1, 2**63, 2**64 - 1]
 
@@ -9,7 +9,7 @@ def overwrite(chance, content, places):
 
 
 def put_a_number(chance, content, places):
-    """Overwrites some bytes with a number that could be read as a wrong offset, size or count."""
+    """Overwrites some bytes with a number. A reader could take it for an offset, a size or a count."""
     width = chance.choice([1, 2, 4, 8])
     number = chance.choice([*NUMBERS, len(content), chance.randrange(2 * len(content))]) % 256**width
     begin = chance.choice(places) // width * width
@@ -44,7 +44,7 @@ def piece(chance, places, longest):
 
 
 def harm(chance, content, places):
-    """Damages the bytes at some of the places in one of the ways. @return the way's name and the bytes"""
+    """Damages the bytes at some of the places, in a random way. @return the name of the way, and the bytes"""
     way = chance.choice(WAYS)
     harmed = bytearray(content)
     way(chance, harmed, places)

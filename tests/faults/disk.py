@@ -1,4 +1,5 @@
-"""Runs programs while the disk gets full, a file reaches its size limit, or memory runs out at a random moment."""
+"""Runs programs while a resource runs out: the disk gets full, a file reaches its size limit, or memory is exhausted at
+a random moment."""
 
 import contextlib
 import os
@@ -12,13 +13,14 @@ from support import QUICK
 TRAJECTORY = ["array", *QUICK, "--sample-interval=0.1", "--polygon-interval=0.5", "--output", "r.h5"]
 MEGABYTE = 2**20
 ENOUGH_MEMORY = 2048 * MEGABYTE
-LOADER_GAVE_UP = 127  # the loader found no memory for libraries, so the program did not begin
+LOADER_GAVE_UP = 127  # The loader found no memory for the libraries, so the program did not begin.
 
 
 def limit_files(size):
-    """Limits the size of files: writes beyond it fail, as on a full disk."""
+    """Limits the size of files. Writing beyond the limit fails, as on a full disk."""
     def prepare():
-        os.environ["UCX_TLS"] = "self,tcp"  # the limit would also apply to the shared memory of MPICH, which consists of files
+        # The shared memory of MPICH consists of files, so the limit would apply to it, too.
+        os.environ["UCX_TLS"] = "self,tcp"
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
     return prepare
 
@@ -45,7 +47,8 @@ def may_mount(folder):
 
 
 def may_limit_memory():
-    """False for programs with sanitizers, which map more memory than any machine has."""
+    """Whether memory can be limited. A limit is impossible for programs with sanitizers, which map more memory than any
+    machine has."""
     return subprocess.run(command("clogfit", "--version"), capture_output=True,
                           preexec_fn=limit_memory(ENOUGH_MEMORY)).returncode == 0
 
@@ -73,7 +76,7 @@ class Faults:
         self.sweep_and_go_on(case, prepare=limit_files(size))
 
     def sweep_on_a_small_disk(self, case):
-        size = (1 + self.size(case) // 4096) * 4096 * 2  # a draft of the table may exist beside it
+        size = (1 + self.size(case) // 4096) * 4096 * 2  # A draft of the table may exist beside the table.
         case.note(f"sweep, disk of {size} bytes")
         with small_disk(case.folder, size):
             self.sweep_and_go_on(case, make_room=lambda: subprocess.run(
@@ -85,7 +88,7 @@ class Faults:
         self.sweep_and_go_on(case, prepare=limit_memory(size), exit_codes={0, 2, LOADER_GAVE_UP})
 
     def sweep_and_go_on(self, case, prepare=None, make_room=lambda: None, exit_codes=frozenset({0, 2})):
-        """Runs a sweep without room, and then the same command with room."""
+        """Runs a sweep on a full disk, and then runs the same command again with enough room."""
         run(case, "clogsweep", *self.sample.sweep, prepare=prepare, exit_codes=exit_codes)
         finished = finished_rows(case)
         make_room()
@@ -104,7 +107,7 @@ class Faults:
                     f"{outcome.name}: exit code {outcome.code}, and leaves {', '.join(files) or 'no file'}")
 
     def limited_output(self, case):
-        """Prints to a file of limited size. Exit code 0 must mean that everything was written."""
+        """Prints to a file of limited size. Exit code 0 is correct only if everything was written."""
         words = case.chance.choice([["clogsweep", "--help"], ["clogsweep", *self.sample.sweep, "--dry-run"],
                                     ["clogsweep", "status", FILE], ["clogfit", FILE, "--format", "json"],
                                     ["clogrun", "--help"]])

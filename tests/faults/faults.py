@@ -3,8 +3,8 @@
 
     tests/faults/faults.py bits --count 200 --seed 1 --bin build/release/bin
 
-Exit code 0: the programs handled all faults. 1: some were handled wrongly; the command that repeats each of these is
-printed.
+Exit code 0: the programs handled all faults. Exit code 1: some faults were handled wrongly. For each of these, the
+command that repeats it is printed.
 """
 
 import argparse
@@ -31,7 +31,7 @@ KINDS = {
 
 
 class Case:
-    """One fault: its description, and the program's wrong reactions."""
+    """One fault, with its description and the wrong reactions of the programs."""
 
     def __init__(self, chance, folder):
         self.chance = chance
@@ -81,7 +81,8 @@ def report(case, options, number):
 
 def main():
     options = arguments()
-    os.environ["CLOG_BIN"] = str(options.bin.resolve())  # where tests/programs/support.py looks for the programs
+    # tests/programs/support.py looks for the programs in this folder.
+    os.environ["CLOG_BIN"] = str(options.bin.resolve())
     sys.path[:0] = [str(ROOT / "tests" / "programs"), str(ROOT / "analysis")]
     numbers = range(options.count) if options.case is None else [options.case]
     found = collections.Counter()

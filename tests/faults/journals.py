@@ -1,4 +1,5 @@
-"""Valid journals with wrong content: of another sweep or version, or with rows and snapshots that no run has made."""
+"""Makes valid journals with wrong content. The records come from another sweep or version, or contain rows and
+snapshots that no run has made."""
 
 import struct
 import zlib
@@ -10,15 +11,15 @@ from launch import run
 from metadata import JOURNAL, STOPPED, Stopped
 from samples import FILE, REPORTS, VERIFY, check_complete, in_child, results, stored_rows
 
-# Settings of sweeps whose journals do not belong to this sweep.
+# Settings of other sweeps. The journals of these sweeps do not belong to this sweep.
 FOREIGN = ["max-time=9000", "vertices=48", "box=25"]
 FILE_HEADER = 24
-RECORD_HEADER = struct.Struct("<QII")  # size and CRC-32 of row and snapshot, a magic word
+RECORD_HEADER = struct.Struct("<QII")  # the size and CRC-32 of row and snapshot, and a magic word
 SPECIAL = [0.0, -0.0, -1.0, 1e-308, 1e308, -1e308, float("inf"), float("-inf"), float("nan"), 1e9, 1e17]
 
 
 def split(content, row_size):
-    """The records of a journal, each as its row and its snapshot."""
+    """The records of a journal, as pairs of a row and a snapshot."""
     records = []
     place = FILE_HEADER
     while place < len(content):
@@ -30,14 +31,14 @@ def split(content, row_size):
 
 
 def join(content, records):
-    """A journal of these records, with correct checksums."""
+    """A journal that consists of these records, with correct checksums."""
     magic = RECORD_HEADER.unpack_from(content, FILE_HEADER)[2]
     payloads = [row + snapshot for row, snapshot in records]
     return content[:FILE_HEADER] + b"".join(RECORD_HEADER.pack(len(payload), zlib.crc32(payload), magic) + payload for payload in payloads)
 
 
 def replaced(setting):
-    """The stopped sweep with another value of a key."""
+    """The command of the stopped sweep, with another value of a key."""
     key = setting.split("=")[0] + "="
     return [setting if word.startswith(key) else word for word in STOPPED]
 
@@ -55,13 +56,14 @@ class Faults:
         case.chance.choice([self.foreign, self.hostile_row, self.hostile_snapshot, self.hostile_snapshot])(case)
 
     def foreign(self, case):
-        """A foreign journal is refused, and changes nothing. When it has been moved away, the sweep resumes."""
+        """Checks that a foreign journal is refused and changes nothing, and that the sweep resumes when this journal
+        has been moved away."""
         origin = case.chance.choice([*self.others, "another version"])
         if origin in self.others:
             records = split(self.others[origin].files[JOURNAL], self.row.itemsize)
         else:
             records = [(self.edited(row, "model_version", 1), snapshot) for row, snapshot in self.own]
-        if case.chance.random() < 0.5:  # a mixture of both sweeps' records
+        if case.chance.random() < 0.5:  # a mixture of records of both sweeps
             records = case.chance.sample([*records, *self.own], len(records) + len(self.own))
         case.note(f"journal of {origin}, {len(records)} records")
         self.put(case, records, case.chance.choice([self.stopped.files[FILE], self.complete, None]))
@@ -96,7 +98,7 @@ class Faults:
         self.check(case, number, (row, bytes(harmed)))
 
     def check(self, case, number, record):
-        """A forged record may affect only its own run; every other row stays the same."""
+        """Checks that a forged record affects no run except its own. The rows of all other runs stay the same."""
         task = int(numpy.frombuffer(self.own[number][0], self.row)[0]["task"])
         self.put(case, [*self.own[:number], record, *self.own[number + 1:]], self.stopped.files[FILE])
         for report in (VERIFY, *REPORTS):
@@ -117,8 +119,8 @@ class Faults:
             (case.folder / FILE).write_bytes(table)
 
     def go_on(self, case):
-        """Runs the sweep's command. If the command refuses the journal, runs it again without the journal. @return
-        whether it refused"""
+        """Runs the sweep's command. If the command refuses the journal, it is run again without the journal. @return
+        whether the command refused the journal"""
         before = {path.name: path.read_bytes() for path in case.folder.iterdir()}
         outcome = run(case, "clogsweep", *STOPPED, exit_codes={0, 2})
         if outcome.code != 2:
@@ -135,7 +137,7 @@ class Faults:
 
     @staticmethod
     def hostile_value(chance, kind):
-        """A column's value: a number that no run can have, or any bytes."""
+        """A value for a column: a number that no run can have, or random bytes."""
         if kind.kind == "f" and chance.random() < 0.7:
             return chance.choice(SPECIAL)
         if kind.kind in "iu" and chance.random() < 0.7:

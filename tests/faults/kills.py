@@ -1,4 +1,5 @@
-"""Sends signals to processes of a sweep on two ranks at random moments; the same command must then complete it."""
+"""Sends signals to processes of a sweep on two ranks at random moments. The same command must then complete the
+sweep."""
 
 import os
 import signal
@@ -10,16 +11,19 @@ from processes import Hung, are_gone, descend, kill, send, wait_for
 from samples import FILE, check_complete, finished_rows, stored_rows
 from support import SMALL, TIMING
 
-# A task may be killed many times before it ends. --attempts is so large that these kills do not make it fail.
+# A task may be killed many times before it ends. The number of --attempts is so large that these kills do not make the
+# task fail.
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=2000", "seeds=1..2", "--attempts=1000",
          "--report-seconds=0.1", "--output", FILE]
 RANKS = 2
 GENERATIONS = ["mpirun", "a rank", "a helper", "a computing process"]
 SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGSTOP]
-# Exit codes of a sweep if only its mpirun got this signal: docs/reference/exit-codes.md. On SIGINT mpirun chooses the
-# code itself.
+# Exit codes of a sweep if only its mpirun received this signal (docs/reference/exit-codes.md). On SIGINT mpirun itself
+# chooses the code.
 CODES_OF_MPIRUN = {signal.SIGTERM: {0, 1, 75}, signal.SIGSTOP: {0}}
-PATIENCE = 5  # seconds that processes have to end after others were lost; then the test kills them, as a batch system would
+# Seconds in which processes have to end after others were lost. After that the test kills them, as a batch system
+# would.
+PATIENCE = 5
 
 
 class Faults:
@@ -42,13 +46,13 @@ class Faults:
         case.expect(os.listdir(case.folder) == [FILE], "a finished sweep leaves a journal or a draft")
 
     def disturb(self, case):
-        """Starts or resumes the sweep, and sends signals to one or two of its processes."""
+        """Starts or resumes the sweep. Sends signals to one or two of its processes."""
         process = subprocess.Popen(command("clogsweep", *SWEEP, ranks=RANKS), cwd=case.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         time.sleep(case.chance.uniform(0, self.duration))
         generations = descend(process.pid)
         sent = [self.send_one(case, generations) for _ in range(case.chance.randint(1, 2))]
-        generations += descend(process.pid)  # processes that have begun since then
+        generations += descend(process.pid)  # processes that have begun since the first list
         pids = {pid for generation in generations for pid in generation}
         self.wait(case, process, sent)
         kill(pid for generation in descend(process.pid) for pid in generation)
@@ -58,7 +62,7 @@ class Faults:
 
     @staticmethod
     def send_one(case, generations):
-        """Sends a signal to a process of any generation. @return the process and the signal"""
+        """Sends a signal to a process of a random generation. @return the process and the signal"""
         generation = case.chance.randrange(len(generations))
         victim = case.chance.choice(generations[generation])
         number = case.chance.choice(SIGNALS)
@@ -72,7 +76,7 @@ class Faults:
 
     @staticmethod
     def wait(case, process, sent):
-        """Waits for the end of a process. If it was not killed, it must end by itself, with a code of
+        """Waits for the end of a process. Unless the process was killed, it must end by itself with an exit code of
         docs/reference/exit-codes.md."""
         is_killed = any(number == signal.SIGKILL for _, number in sent)
         try:

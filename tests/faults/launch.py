@@ -1,4 +1,4 @@
-"""Runs programs under limits, and checks rules that hold for every program under any fault."""
+"""Runs programs under limits, and checks rules that hold for every program and every fault."""
 
 import dataclasses
 import os
@@ -12,7 +12,7 @@ from support import BIN, MPIRUN
 EXIT_CODES = {0, 1, 2, 75}  # docs/reference/exit-codes.md
 SUBCOMMANDS = {"status", "verify", "replay", "salvage", "merge", "select", "doctor", "array", "channel", "sag", "calibrate", "compare", "deviation",
                "drag", "report"}
-# Words by which a failure of the program itself is recognised in its output
+# In the output of a program, these words show that the program itself failed.
 SIGNS_OF_FAULTS = {
     b"Traceback (most recent call last)": "a traceback",
     b"internal fault": "an internal fault",
@@ -24,10 +24,10 @@ SIGNS_OF_FAULTS = {
 @dataclasses.dataclass
 class Outcome:
     name: str
-    code: int | None  # None if the program did not end
+    code: int | None  # exit code, or None if the program did not end
     output: bytes
     error: bytes
-    hung: str | None = None  # why the test ended the program
+    hung: str | None = None  # the reason why the test ended the program
 
     @property
     def is_over(self):
@@ -41,9 +41,9 @@ def command(name, *arguments, ranks=None):
 
 
 def run(case, name, *arguments, prepare=None, ranks=None, exit_codes=EXIT_CODES, **streams):
-    """Runs one of the programs in the case's folder, records forbidden behaviour, and returns its outcome.
+    """Runs one of the programs in the case's folder, records forbidden behaviour, and returns the outcome.
 
-    @param prepare  called in the new process before the program begins
+    @param prepare  is called in the new process before the program begins
     @param streams  stdin, stdout and stderr as for `subprocess.Popen`; by default stdin is empty, and the outputs are
     read
     """
@@ -67,13 +67,13 @@ def run(case, name, *arguments, prepare=None, ranks=None, exit_codes=EXIT_CODES,
 
 
 def title(name, arguments):
-    """The name by which findings are counted: the program with its subcommand, such as clogsweep status."""
+    """The name under which findings are counted: the program with its subcommand, such as clogsweep status."""
     first = os.fsdecode(arguments[0]) if arguments else ""
     return f"{name} {first}" if first in SUBCOMMANDS else name
 
 
 def wrongs(outcome, exit_codes=EXIT_CODES):
-    """Names everything in an outcome that no program may do."""
+    """Names everything in an outcome that is forbidden for all programs."""
     if outcome.hung:
         yield f"{outcome.name}: {outcome.hung}"
     elif outcome.code < 0:
@@ -86,7 +86,7 @@ def wrongs(outcome, exit_codes=EXIT_CODES):
 
 
 def quoted(arguments):
-    """The command for bash, without characters that a terminal would interpret."""
+    """The command as bash reads it, without characters that a terminal would interpret."""
     return " ".join(quoted_word(os.fsencode(word)) for word in arguments)
 
 

@@ -13,14 +13,16 @@ from samples import (FILE, REPORTS, SEAL, VERIFY, check_complete, check_readers,
 from support import SMALL
 
 JOURNAL = FILE + ".journal"
-# The first run makes a snapshot every 2^18 steps. It makes its first snapshot after a sixth of its time.
+# The first run makes a snapshot every 2^18 steps, and its first snapshot after a sixth of its time.
 STOPPED = [*SMALL, "obstacle-gap=0.4", "line-tension=0.05,0.5", "max-time=1e4", "seeds=1", "--output", FILE]
-# Times after which the sweep is stopped. They grow, because on a slow or busy machine the first snapshot comes later.
+# The sweep is stopped after these times. The times grow, because on a slow or busy machine the first snapshot comes
+# later.
 HOURS = [1e-4 * 1.5**n for n in range(16)]
 
 
 class Stopped:
-    """A sweep that was stopped while one of its runs had a snapshot, and the table of the completed sweep."""
+    """A sweep that was stopped while one of its runs had a snapshot, and the table of the same sweep after its
+    completion."""
 
     def __init__(self, folder, settings=STOPPED):
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=folder))
@@ -58,8 +60,8 @@ class Faults:
         case.chance.choice([self.harm_a_table, self.harm_a_table, self.harm_a_journal])(case)
 
     def harm_a_table(self, case):
-        """Damages a file that a sweep wrote, or a copy by another program. In such a copy no seal shows that something
-        is missing."""
+        """Damages a file that a sweep wrote, or another program's copy of this file. Such a copy has no seal, so
+        nothing shows that a part is missing."""
         sample = case.chance.choice(self.samples)
         end = case.chance.choice([len(sample.content), sample.content.rindex(SEAL)])
         places = [place for place in self.places[sample.name] if place < end]
@@ -80,6 +82,6 @@ class Faults:
         outcome = run(case, "clogsweep", *STOPPED, exit_codes={0, 2})
         if outcome.code == 2:
             case.expect((case.folder / JOURNAL).read_bytes() == content, "clogsweep: refuses a journal, but changes it")
-            (case.folder / JOURNAL).unlink()  # the message asks for this
+            (case.folder / JOURNAL).unlink()  # The message of the program asks for this.
             case.expect(run(case, "clogsweep", *STOPPED).code == 0, "clogsweep: does not resume without the journal")
         check_complete(case, case.folder / FILE, self.stopped.rows)

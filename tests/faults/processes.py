@@ -1,4 +1,4 @@
-"""The processes of a program: mpirun, its ranks, their helpers, the processes that compute."""
+"""Watches the processes of a program: mpirun, its ranks, their helpers, and the processes that compute."""
 
 import os
 import pathlib
@@ -8,16 +8,16 @@ import time
 
 from support import children_of
 
-# Neither limit depends on the load of the machine.
-CPU_SECONDS = 100  # limit for all processes of a program together; a sweep under the sanitizers needs about 30
-IDLE_SECONDS = 100  # limit on the time in which all processes wait, but not for a processor or a disk
+# Neither limit depends on how busy the machine is.
+CPU_SECONDS = 100  # Limit for all processes of a program together; a sweep with sanitizers needs about 30.
+IDLE_SECONDS = 100  # Limit on the time in which all processes wait. Waiting for a processor or a disk does not count.
 LOOK_SECONDS = 1
 BUSY = {"R", "D"}  # states of processes that run, or wait for a processor or a disk
 TICKS = os.sysconf("SC_CLK_TCK")
 
 
 def descend(pid):
-    """The process and all its descendants, one list for each generation."""
+    """A process and all its descendants, with one list for each generation."""
     generations = [[pid]]
     while generations[-1]:
         generations.append([child for parent in generations[-1] for child in children_of(parent)])
@@ -28,7 +28,7 @@ def send(pid, number):
     try:
         os.kill(pid, number)
     except ProcessLookupError:
-        pass  # the process has ended
+        pass  # The process has ended.
 
 
 def kill(pids):
@@ -37,7 +37,8 @@ def kill(pids):
 
 
 def status(folder):
-    """State of a process or thread, and its processor time including its ended children; Z and 0 if it has ended."""
+    """The state of a process or thread, and its processor time including that of its ended children. For an ended
+    process these are Z and 0."""
     try:
         fields = (folder / "stat").read_text().rpartition(")")[2].split()
     except (FileNotFoundError, ProcessLookupError):
@@ -49,7 +50,7 @@ def threads(folder):
     try:
         return list((folder / "task").iterdir())
     except (FileNotFoundError, ProcessLookupError):
-        return []  # the process has ended
+        return []  # The process has ended.
 
 
 def is_alive(pid):
@@ -57,14 +58,15 @@ def is_alive(pid):
 
 
 class Limits:
-    """Distinguishes processes that hang from processes that a busy machine slows down. Of slow processes at least one
-    always has work; hanging ones all wait, or use too much processor time."""
+    """Distinguishes processes that hang from processes that a busy machine slows down. Among slow processes at least
+    one always has work. Processes that hang either all wait, or use too much processor time."""
 
     def __init__(self):
         self.idle_seconds = 0
 
     def exceeded_by(self, pids, seconds):
-        """Inspects processes. @param seconds  time since the last call. @return what is wrong with them, or None"""
+        """Inspects processes. @param seconds  time since the last call. @return what is wrong with the processes, or
+        None"""
         folders = [pathlib.Path(f"/proc/{pid}") for pid in pids]
         if not any(status(thread)[0] in BUSY for folder in folders for thread in threads(folder)):
             self.idle_seconds += seconds
@@ -76,11 +78,11 @@ class Limits:
 
 
 class Hung(Exception):
-    """A program did not end by itself; the text says how this was noticed."""
+    """A program did not end by itself. The text states how the test noticed this."""
 
 
 def wait_for(pid, wait):
-    """Waits until a program ends by itself, however long it takes on a busy machine.
+    """Waits until a program ends by itself, even if this takes long on a busy machine.
 
     @param wait  waits for the end, or for a given time, as subprocess does
     @return the result of `wait`
@@ -97,7 +99,7 @@ def wait_for(pid, wait):
 
 
 def are_gone(pids):
-    """Whether all processes have ended or end soon."""
+    """Whether all processes have ended, or end within the limits."""
     limits = Limits()
     while alive := [pid for pid in pids if is_alive(pid)]:
         if limits.exceeded_by(alive, 0.05):

@@ -1,4 +1,4 @@
-"""Small sweeps that tests damage, and what the programs report about them while they are intact."""
+"""Makes small sweeps for tests that damage them, and records what the programs report about the intact sweeps."""
 
 import multiprocessing
 import os
@@ -14,7 +14,7 @@ from processes import CPU_SECONDS
 from support import BLOCKED, QUICK, TIMING
 
 FILE = "s.h5"
-SEAL = b"\nclogsweep seal"  # at the end of a file
+SEAL = b"\nclogsweep seal"  # marks the end of a file
 SALVAGED = "salvaged.h5"
 SWEEPS = {
     "polygons": [*QUICK, "obstacle-gap=0.4", "line-tension=0.05,0.5,1", "seeds=1..2"],
@@ -27,7 +27,8 @@ ENDINGS = (b"clogged", b"broken", b"flowing")
 
 
 def in_child(function, *arguments):
-    """Calls a function that may crash or never end, in a child process. @return its value, or None and the reason"""
+    """Calls a function in a child process, because it may crash or never end. @return the function's value, or None and
+    the reason"""
     def work(connection):
         resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # hides warnings
@@ -52,7 +53,7 @@ def in_child(function, *arguments):
 
 
 def stored_rows(path):
-    """The bytes of each column of every task, as read by h5py."""
+    """The bytes of each column of every task, read by h5py."""
     with h5py.File(path, "r") as file:
         rows = file["runs"][()]
     return {int(row["task"]): {name: row[name].tobytes() for name in rows.dtype.names} for row in rows}
@@ -66,17 +67,17 @@ def stored_texts(path):
 
 
 def read_with_python(path):
-    """The rows that the Python module reads, as text with every digit."""
+    """The rows that the Python module reads, as text with all digits."""
     return stored.read_table(path).to_csv()
 
 
 def results(rows, ignored=TIMING):
-    """Rows without the columns in which two computations of the same run may differ."""
+    """Rows without those columns in which two computations of the same run may differ."""
     return {task: {name: value for name, value in row.items() if name not in ignored} for task, row in rows.items()}
 
 
 def finished_rows(case):
-    """The results of runs that have ended; nothing if there is no table yet."""
+    """The results of runs that have ended. The result is empty if there is no table yet."""
     path = case.folder / FILE
     if not path.exists():
         return {}
@@ -86,14 +87,14 @@ def finished_rows(case):
 
 
 def differing(some, others):
-    """Names of columns in which rows of two tables differ, and tasks of which only one table has a row."""
+    """Names of the columns in which the rows of two tables differ, and tasks with a row in only one of the tables."""
     names = {name for task in some.keys() & others.keys() for name in some[task].keys() | others[task].keys()
              if some[task].get(name) != others[task].get(name)}
     return sorted(names | {f"task {task}" for task in some.keys() ^ others.keys()})
 
 
 class Sample:
-    """A finished sweep, and what every reader reports about it."""
+    """A finished sweep, and the report of every reader about it."""
 
     def __init__(self, name, folder):
         self.name = name
@@ -119,7 +120,8 @@ def samples(folder):
 
 
 def check_readers(case, sample):
-    """Checks that every reader of the case's file reports the undamaged numbers, or that the file is damaged."""
+    """Checks every reader of the case's file. A reader must report the undamaged numbers, or that the file is
+    damaged."""
     path = case.folder / FILE
     before = path.read_bytes()
     for report, told in zip(REPORTS, sample.reports):
@@ -129,14 +131,15 @@ def check_readers(case, sample):
     table, why = in_child(read_with_python, path)
     case.expect(table is None or table == sample.table, "read_table: other numbers than from the undamaged file")
     case.expect(table is not None or why.startswith("refused"), f"read_table: {str(why).split(':')[0]}")
-    if run(case, *VERIFY).code == 0 and SEAL in before:  # in a copy without a seal, verify checks only rows and settings
+    # In a copy without a seal, verify checks only rows and settings.
+    if run(case, *VERIFY).code == 0 and SEAL in before:
         check_called_whole(case, sample, path)
     check_salvaged(case, sample)
     case.expect(path.read_bytes() == before, "a reader changed the file")
 
 
 def check_salvaged(case, sample):
-    """Checks that rows which salvage keeps from a damaged file have not changed."""
+    """Checks that the rows that salvage keeps from a damaged file are unchanged."""
     outcome = run(case, "clogsweep", "salvage", FILE, "--output", SALVAGED)
     if outcome.code != 0:
         return
@@ -162,7 +165,7 @@ def check_called_whole(case, sample, path):
 
 
 def check_resumed(case, sweep, rows):
-    """Checks that the command that made the file repairs the file, or refuses it and leaves it unchanged.
+    """Checks the command that made the file. The command must repair the file, or refuse it and leave it unchanged.
 
     @param rows  of the undisturbed sweep
     """
@@ -176,7 +179,7 @@ def check_resumed(case, sweep, rows):
 
 
 def check_complete(case, path, rows, ignored=TIMING):
-    """@param rows  of the undisturbed sweep"""
+    """Checks that the file has all rows of the undisturbed sweep. @param rows  of this sweep"""
     found, why = in_child(stored_rows, path)
     if found is None:
         case.findings.append("the finished table cannot be read")
@@ -189,7 +192,7 @@ def check_complete(case, path, rows, ignored=TIMING):
 
 
 def rows_place(path):
-    """The first and last byte of the rows, the size of a row in bytes, and the place and size of each column in a
+    """The first and the last byte of the rows, the size of a row in bytes, and the place and size of each column in a
     row."""
     with h5py.File(path, "r") as file:
         table = file["runs"]

@@ -8,7 +8,7 @@
 
 namespace clog::fit {
 
-/// Sets of runs in which one or all distances are impossible, as in a damaged table.
+/// Sets of runs in which one distance or all distances are impossible, as in a damaged table.
 inline std::vector<std::vector<Observation>> absurd_runs() {
   const std::vector<Observation> sane{{1, true}, {2, true}, {3, true}, {4, false}};
   std::vector<std::vector<Observation>> all;
@@ -26,7 +26,7 @@ inline std::vector<std::vector<Observation>> absurd_runs() {
   return all;
 }
 
-/// Whether a result is unknown or a possible length.
+/// Whether a length is possible. A length may also be unknown.
 inline bool is_length_or_unknown(double length) {
   return std::isnan(length) || (length >= 0 && std::isfinite(length));
 }

@@ -17,8 +17,8 @@ namespace clog::fit {
 namespace {
 
 TEST(CloggingLength, OfTheLeukaemiaTrialIsTheReferenceAnswer) {
-  // Estimate: exponential fit of R's survival package. Intervals: SciPy's quantiles of chi-squared with 19
-  // degrees of freedom, and its root finder on the likelihood.
+  // The estimate is the exponential fit of R's survival package. The intervals come from SciPy: from the
+  // quantiles of chi-squared with 19 degrees of freedom, and from its root finder on the likelihood.
   const CloggingLength fit = fit_clogging_length(leukaemia_treated);
   EXPECT_EQ(fit.num_runs, 21);
   EXPECT_EQ(fit.num_clogs, 9);
@@ -40,7 +40,8 @@ TEST(CloggingLength, OfRunsThatAllClogHasTheExactInterval) {
 }
 
 TEST(CloggingLength, OfOneClogByHand) {
-  // The interval follows from 2 S/chi2; with 2 degrees of freedom the quantiles of chi2 are -2 log(1 - p).
+  // The ends of the interval are 2 S/chi2. With 2 degrees of freedom, the quantiles of chi2 are -2 log(1 -
+  // p).
   const std::vector<Observation> runs{{8, true}};
   const CloggingLength fit = fit_clogging_length(runs, 0.9);
   EXPECT_DOUBLE_EQ(fit.length, 8);
@@ -49,7 +50,7 @@ TEST(CloggingLength, OfOneClogByHand) {
 }
 
 TEST(CloggingLength, HasAnIntervalForAnyConfidence) {
-  // At a low confidence the interval is lambda exp(-+ z/sqrt(d)), with z = confidence sqrt(pi/2).
+  // At a low confidence the interval is lambda exp(-+ z/sqrt(d)) with z = confidence sqrt(pi/2).
   for (const double confidence : {1e-300, 1e-20, 1e-8, 1e-3}) {
     const CloggingLength fit = fit_clogging_length(leukaemia_treated, confidence);
     const double width = confidence * std::sqrt(std::numbers::pi / 2 / fit.num_clogs);
@@ -95,8 +96,8 @@ TEST(CloggingLength, OfADistanceThatIsNotANumberIsNotKnown) {
 }
 
 TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
-  // If runs are censored after a given number of clogs, the interval is exact. The coverage found in 4000
-  // samples has a standard error of 0.0034.
+  // The interval is exact if runs are censored after a given number of clogs. The coverage in 4000 samples
+  // has a standard error of 0.0034.
   std::mt19937_64 engine(1);
   std::exponential_distribution<double> distance(1.0 / 7.0);
   int num_covered = 0;
@@ -114,9 +115,9 @@ TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
 }
 
 TEST(CloggingLength, IntervalsCoverTheTruthWhereRunsAreCensoredAfterSomeDistance) {
-  // From a quarter of the runs to nearly all of them have clogged. The coverage found in 20000 samples has a
-  // standard error of 0.0015. Because the number of clogs is whole, the true coverage fluctuates, most if few
-  // clogs are expected (docs/explanation/statistics.md).
+  // In these samples a quarter to nearly all of the runs have clogged. The coverage in 20000 samples has a
+  // standard error of 0.0015. The true coverage fluctuates because the number of clogs is a whole number. The
+  // fluctuation is largest if few clogs are expected (docs/explanation/statistics.md).
   std::mt19937_64 engine(2);
   std::exponential_distribution<double> distance(1);
   for (const double share : {0.25, 0.5, 0.75, 0.95}) {
@@ -150,27 +151,27 @@ TEST(LeastSquaresLength, FindsTheLengthOfManyRuns) {
 }
 
 TEST(LeastSquaresLength, MatchesAnotherOptimiser) {
-  // SciPy's curve_fit of exp(-r/lambda) on the same points.
+  // From SciPy's curve_fit of exp(-r/lambda) to the same points.
   EXPECT_NEAR(least_squares_length(leukaemia_placebo), 9.2510204, 1e-4);
   EXPECT_NEAR(least_squares_length(leukaemia_treated), 42.134053, 1e-3);
   EXPECT_TRUE(std::isnan(least_squares_length(std::vector<Observation>{{3, true}, {5, false}})));
 }
 
 TEST(LeastSquaresLength, OfAbsurdDistancesIsALengthOrNotKnown) {
-  // The search for the minimum would never end if the sum of squares were not a number.
+  // The search for the minimum would never end if the sum of squares were NaN.
   for (const std::vector<Observation>& runs : absurd_runs())
     EXPECT_TRUE(is_length_or_unknown(least_squares_length(runs))) << runs.front().distance;
 }
 
 TEST(LeastSquaresLength, HasNoUnit) {
-  // Multiplication by powers of two causes no rounding.
+  // Multiplication by powers of two does not round.
   std::vector<Observation> scaled(std::begin(leukaemia_treated), std::end(leukaemia_treated));
   for (Observation& run : scaled) run.distance *= 0x1p-900;
   EXPECT_EQ(least_squares_length(scaled), least_squares_length(leukaemia_treated) * 0x1p-900);
 }
 
 TEST(LeastSquaresLength, IsBiasedWhereTheFitIsNot) {
-  // Runs of the same speed begin one after the other and are observed halfway through the sweep. Some of the
+  // Runs of the same speed begin one after the other, and are observed halfway through the sweep. Some of the
   // censored runs have covered little distance, but least squares treats them as runs that never clog.
   std::mt19937_64 engine(4);
   std::exponential_distribution<double> distance(1);
@@ -194,15 +195,15 @@ TEST(CloggingLength, RefusesAnImpossibleConfidence) {
   EXPECT_THROW(fit_clogging_length({}, 0.0), std::invalid_argument);
 }
 
-/// A sweep on some workers, observed when a share of its runs is done. All droplets travel at the same speed
-/// and clog at exponentially distributed distances.
+/// A sweep on some workers, observed when a given fraction of its runs is done. All droplets travel at the
+/// same speed, and clog at exponentially distributed distances.
 struct LiveSweep {
-  double of_finished = 0;  ///< lambda from finished runs alone, divided by the true value
-  double of_all = 0;       ///< the same from all runs, those in progress as censored
+  double of_finished = 0;  ///< Clogging length from finished runs alone, divided by the true value.
+  double of_all = 0;       ///< The same from all runs; those in progress are censored.
 };
 LiveSweep look_at(int num_workers, int num_runs, double share_done, std::mt19937& engine) {
   std::exponential_distribution<double> distance(1);
-  std::multimap<double, double> running;  // end of a run, and its beginning
+  std::multimap<double, double> running;  // the end of a run, and its beginning
   int num_begun = 0;
   for (; num_begun < num_workers; ++num_begun) running.emplace(distance(engine), 0);
   std::vector<Observation> finished;
@@ -224,7 +225,7 @@ LiveSweep look_at(int num_workers, int num_runs, double share_done, std::mt19937
 TEST(CloggingLength, IsNotTooShortWhileASweepRuns) {
   std::mt19937 engine(5);
   for (const auto& [num_workers, bias] : {std::pair{15, 0.5}, {63, 0.2}}) {
-    // 5 % of 300 runs are done: 15 finished runs.
+    // When 5 % of 300 runs are done, there are 15 finished runs.
     double of_finished = 0, of_all = 0;
     constexpr int num_sweeps = 2000;
     for (int i = 0; i < num_sweeps; ++i) {

@@ -16,14 +16,14 @@ namespace {
 CompetingEnd by(int cause, double distance) { return {distance, cause}; }
 CompetingEnd going(double distance) { return {distance, std::nullopt}; }
 
-/// Distances with ties within a cause, between causes, and with a censored run.
+/// Some distances are equal: ends by the same cause, ends by different causes, and an end and a censored run.
 const std::vector<CompetingEnd> twenty_runs = {by(1, 1),  by(1, 2),  by(2, 2),  going(3),  by(1, 4),
                                                by(2, 4),  going(4),  by(2, 5),  by(1, 6),  by(1, 7),
                                                going(7),  by(2, 8),  by(1, 9),  by(2, 10), by(2, 10),
                                                going(11), by(1, 12), going(13), by(2, 14), by(1, 15)};
 
-/// Expected values from statsmodels 0.13.5, CumIncidenceRight(time, status). Its errors at the last distance,
-/// where all runs end, are NaN.
+/// The expected values come from statsmodels 0.13.5, CumIncidenceRight(time, status). The errors from
+/// statsmodels are NaN at the last distance, where all runs have ended.
 TEST(CumulativeIncidence, IsTheReferenceAnswer) {
   struct Expected {
     double distance, probability, error;
@@ -84,7 +84,7 @@ TEST(CumulativeIncidence, OfUncensoredRunsIsTheirShareWithABinomialError) {
     }
 }
 
-/// For a single cause the incidence is one minus the survival curve, with Greenwood's error.
+/// For a single cause the incidence is one minus the survival curve, and its error is Greenwood's.
 TEST(CumulativeIncidence, OfOneCauseIsOneMinusSurvival) {
   std::vector<CompetingEnd> runs = twenty_runs;
   std::vector<Observation> observations;
@@ -101,8 +101,8 @@ TEST(CumulativeIncidence, OfOneCauseIsOneMinusSurvival) {
   }
 }
 
-/// With constant rates 1/lambda_c, F_c(r) = (lambda/lambda_c) (1 - exp(-r/lambda)), where 1/lambda is the sum
-/// of the rates. Runs are censored independently of their ends, as by max-time.
+/// With constant rates 1/lambda_c the incidence is F_c(r) = (lambda/lambda_c) (1 - exp(-r/lambda)), where
+/// 1/lambda is the sum of the rates. Runs are censored independently of the causes, as by max-time.
 TEST(CumulativeIncidence, OfExponentialCausesIsTheirShareOfAllEnds) {
   const double lambda_1 = 10, lambda_2 = 30, lambda = 1 / (1 / lambda_1 + 1 / lambda_2);
   constexpr int num_samples = 400, num_runs = 100;

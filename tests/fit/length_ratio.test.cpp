@@ -13,8 +13,8 @@
 namespace clog::fit {
 namespace {
 
-/// Pairs of distances with exponential laws that have some clogs in common (Marshall and Olkin). Some places
-/// hold both droplets of a pair, others hold only one of them.
+/// Draws pairs of distances. Both distances of a pair follow exponential laws and have some clogs in common
+/// (Marshall and Olkin): some places hold both droplets of a pair, and other places hold only one of them.
 std::vector<Pair> drawn_pairs(std::mt19937& engine, int number, double share, double ratio) {
   const double common_rate = share / std::max(1.0, ratio);
   const auto draw = [&](double rate) {
@@ -64,7 +64,8 @@ TEST(LengthRatio, ScalesWithTheWaysOfOneSide) {
 }
 
 TEST(LengthRatio, IsExactOnPaperForOneClogEach) {
-  // With 2 d + 1 = 3 degrees of freedom on both sides F(3, 3) has its 97.5 % quantile at 15.4392 (tables).
+  // With 2 d + 1 = 3 degrees of freedom on both sides, the 97.5 % quantile of F(3, 3) is 15.4392 (from
+  // tables).
   const std::vector<Observation> here = {{4, true}, {4, false}}, there = {{1, true}, {3, false}};
   const LengthRatio ratio = fit_length_ratio(here, there, {});
   EXPECT_DOUBLE_EQ(ratio.ratio, 2);
@@ -116,7 +117,7 @@ TEST(LengthRatio, CoversTheTruthAsOftenAsItClaims) {
     const Coverage found = coverage(40, share);
     RecordProperty("covered", std::to_string(found.covered));
     EXPECT_GT(found.covered, 0.92) << share;
-    EXPECT_LT(found.covered, 0.99) << share;  // an interval that does not use the pairs is too wide
+    EXPECT_LT(found.covered, 0.99) << share;  // an interval that does not use the pairs would be too wide
     EXPECT_GE(found.paired, share == 0.8 ? 0.8 : 0) << share;
     EXPECT_LE(found.paired, share == 0 ? 0.06 : 1) << share;
   }
@@ -125,8 +126,8 @@ TEST(LengthRatio, CoversTheTruthAsOftenAsItClaims) {
 TEST(LengthRatio, FindsHowMuchPairsGain) {
   std::mt19937 engine(5);
   EXPECT_NEAR(fit_pairs(drawn_pairs(engine, 4000, 0, 1)).gain, 1, 0.05);
-  // Equal laws that have a share s of the clogs in common have the correlation s/(2 - s) (Marshall and Olkin
-  // 1967).
+  // If two equal laws have a share s of the clogs in common, their correlation is s/(2 - s) (Marshall and
+  // Olkin 1967).
   const double correlation = 0.8 / 1.2;
   const LengthRatio ratio = fit_pairs(drawn_pairs(engine, 4000, 0.8, 1));
   EXPECT_NEAR(ratio.correlation, correlation, 0.04);

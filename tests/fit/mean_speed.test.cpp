@@ -32,7 +32,8 @@ TEST(SpeedRatio, WeighsRunsByTheirTime) {
   const MeanSpeed fit = fit_pooled_speed(std::vector<Travel>{{1, 1}, {9, 3}, {NAN, NAN}});
   EXPECT_EQ(fit.num_runs, 2);
   EXPECT_DOUBLE_EQ(fit.mean, 2.5);
-  EXPECT_DOUBLE_EQ(fit.standard_error, 1);  // the mean without one run is 3, without the other 1
+  // The mean without the first run is 3, and without the second run it is 1.
+  EXPECT_DOUBLE_EQ(fit.standard_error, 1);
 }
 
 TEST(SpeedRatio, OfEqualTimesIsTheMeanWithItsError) {
@@ -48,7 +49,8 @@ TEST(SpeedRatio, HasNoErrorForOneRunAndNoMeanForNone) {
   EXPECT_TRUE(std::isnan(fit_pooled_speed({}).mean));
 }
 
-/// Runs whose times differ tenfold. The shorter a run is, the more its speed scatters.
+/// Runs whose times differ by up to a factor of ten. The speed of a short run scatters more than that of a
+/// long run.
 std::vector<Travel> scattered_runs(int number, std::mt19937& engine) {
   std::uniform_real_distribution<double> log_time(0, std::log(10));
   std::normal_distribution<double> normal;
@@ -60,7 +62,7 @@ std::vector<Travel> scattered_runs(int number, std::mt19937& engine) {
   return runs;
 }
 
-/// The expected error is n/(n - 1) sum (d_i - R t_i)^2/(sum t)^2, to first order in 1/n.
+/// To first order in 1/n, the expected error is n/(n - 1) sum (d_i - R t_i)^2/(sum t)^2.
 TEST(SpeedRatio, HasTheLinearisedErrorOfManyRuns) {
   std::mt19937 engine(1);
   const std::vector<Travel> runs = scattered_runs(1000, engine);
@@ -82,7 +84,8 @@ TEST(SpeedRatio, ScattersAsItsErrorSays) {
     const MeanSpeed fit = fit_pooled_speed(scattered_runs(20, engine));
     squares += std::pow(fit.mean - 0.5, 2);
     squared_errors += std::pow(fit.standard_error, 2);
-    covered += std::abs(fit.mean - 0.5) < 2.093 * fit.standard_error;  // Student's t, 19 degrees of freedom
+    // Student's t with 19 degrees of freedom.
+    covered += std::abs(fit.mean - 0.5) < 2.093 * fit.standard_error;
   }
   EXPECT_NEAR(squared_errors / squares, 1, 0.06);
   EXPECT_NEAR(static_cast<double>(covered) / samples, 0.95, 0.015);

@@ -10,16 +10,16 @@ namespace clog::fit {
 namespace {
 
 TEST(Migration, IsTheRatioOfTheSums) {
-  // Slope 6/12; residuals 1 - 2 = -1 and 5 - 4 = 1: error sqrt(2 * 2/1)/12.
+  // The slope is 6/12. The residuals are 1 - 2 = -1 and 5 - 4 = 1, so the error is sqrt(2 * 2/1)/12.
   const Migration fit = fit_migration(std::vector<Displacement>{{4, 1}, {8, 5}});
   EXPECT_DOUBLE_EQ(fit.slope, 0.5);
   EXPECT_DOUBLE_EQ(fit.standard_error, 2.0 / 12);
 }
 
 TEST(Migration, HasTheErrorThatEnsemblesScatterBy) {
-  // 2000 ensembles have 20 runs each, with distances from 5 to 50 and a scatter of 2 about the slope -0.3.
-  // The mean squared error of the slope must equal the mean of the squared standard errors, within 5 %: by so
-  // much the linear approximation is wrong for 20 runs.
+  // There are 2000 ensembles of 20 runs. Distances are from 5 to 50, and the displacements scatter by 2 about
+  // the slope -0.3. The mean squared error of the slope must equal the mean of the squared standard errors to
+  // 5 %. This tolerance is the error of the linear approximation for 20 runs.
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> distance(5, 50);
   std::normal_distribution<double> noise(0, 2);
@@ -47,7 +47,8 @@ TEST(Migration, IsUndefinedWithoutDistance) {
 }
 
 TEST(Migration, LeavesOutRunsThatWentTooShortAWay) {
-  // These droplets only sagged by 0.04 in their release void. Their lateral displacement comes from the void.
+  // These droplets only sagged by 0.04 in their release void, so the void alone caused their lateral
+  // displacement.
   EXPECT_TRUE(std::isnan(fit_migration(std::vector<Displacement>{{0.04, -0.007}, {0.04, -0.007}}).slope));
   const Migration fit = fit_migration(std::vector<Displacement>{{4, 1}, {0.04, -0.4}, {8, 5}, {-0.1, 0.3}});
   EXPECT_DOUBLE_EQ(fit.slope, 0.5);

@@ -9,7 +9,7 @@ namespace clog::fit {
 namespace {
 
 TEST(ShareInterval, IsThatOfBinomTest) {
-  // R: binom.test(8, 10).
+  // From R: binom.test(8, 10).
   EXPECT_NEAR(share_interval(8, 10, 0.95).lower, 0.4439045, 1e-7);
   EXPECT_NEAR(share_interval(8, 10, 0.95).upper, 0.9747893, 1e-7);
 }

@@ -14,7 +14,7 @@ namespace clog::fit {
 namespace {
 
 TEST(SurvivalCurve, OfTheLeukaemiaTrialIsTheReferenceAnswer) {
-  // R's survival package, survfit().
+  // From survfit() in R's survival package.
   const std::vector<SurvivalStep> steps = survival_curve(leukaemia_treated);
   ASSERT_EQ(steps.size(), 7u);
   EXPECT_EQ(steps[0].distance, 6);
@@ -31,7 +31,7 @@ TEST(SurvivalCurve, OfTheLeukaemiaTrialIsTheReferenceAnswer) {
 }
 
 TEST(SurvivalCurve, HasTheReferenceAnswersLogLogInterval) {
-  // R's survfit(conf.type = "log-log"), which is also SAS's default.
+  // From R's survfit(conf.type = "log-log"), which is also the default of SAS.
   const std::vector<SurvivalStep> steps = survival_curve(leukaemia_treated);
   EXPECT_NEAR(steps.front().interval.lower, 0.6197, 5e-5);
   EXPECT_NEAR(steps.front().interval.upper, 0.9516, 5e-5);
@@ -73,7 +73,7 @@ TEST(SurvivalCurve, HasNoStepsWithoutClogs) {
 }
 
 TEST(Exponentiality, OfTheLeukaemiaTrialIsTheReferenceAnswer) {
-  // R's survival package, survreg() with an exponential and a Weibull law.
+  // From survreg() in R's survival package, with an exponential and a Weibull law.
   const WeibullTest treated = test_exponentiality(leukaemia_treated);
   EXPECT_NEAR(treated.exponential_likelihood, -42.1748803, 1e-7);
   EXPECT_NEAR(treated.shape, 1.3537345, 1e-7);
@@ -101,13 +101,13 @@ TEST(Exponentiality, IsRejectedAsOftenAsItClaimsAndWhereItFails) {
     }
     return static_cast<double>(num_rejected) / num_samples;
   };
-  EXPECT_NEAR(share_rejected(1), 0.05, 0.012);  // standard error 0.0035
+  EXPECT_NEAR(share_rejected(1), 0.05, 0.012);  // the standard error is 0.0035
   EXPECT_GT(share_rejected(2), 0.9);
   EXPECT_GT(share_rejected(0.5), 0.9);
 }
 
 TEST(Exponentiality, SeesClogsAtRelease) {
-  // Twelve of thirty droplets do not move.
+  // Twelve of the thirty droplets do not move.
   std::mt19937_64 engine(7);
   std::exponential_distribution<double> distance(1);
   std::vector<Observation> runs(12, {-0.001, true});
@@ -148,7 +148,7 @@ TEST(Exponentiality, SurvivesDegenerateData) {
   }
   const std::vector<Observation> not_a_number{{std::nan(""), false}, {1, true}};
   EXPECT_EQ(survival_curve(not_a_number).size(), 1u);
-  // Distances of all magnitudes.
+  // The distances have very different magnitudes.
   const std::vector<Observation> tiny{{1e-9, true}, {3e-9, true}, {2e-9, false}},
       huge{{1e9, true}, {3e9, true}, {2e9, false}};
   EXPECT_NEAR(test_exponentiality(tiny).shape, test_exponentiality(huge).shape, 1e-9);

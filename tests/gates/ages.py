@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks that the table of docs/gallery/index.md lists every picture of the gallery with the model version of its rows.
-If this is not the program's version, a later note must show, in its CSV file, that a part of each picture is the same
-with the program's version."""
+If this is not the program's version, a later note must show for a part of each picture that the program still gives the
+same rows. The note's CSV file contains these rows."""
 
 import csv
 import re
@@ -16,7 +16,7 @@ NOTE = re.compile(r"\]\(\.\./notes/(([\d-]{10})-[\w-]+)\.md\)")
 
 
 def same_now(link, date):
-    """The pictures that the linked note found unchanged; none if the note is not later than `date`."""
+    """The pictures that the linked note found unchanged. The set is empty if the note is not later than `date`."""
     if not link or link[2] <= date:
         return set()
     with open(known.ROOT / f"docs/notes/{link[1]}.csv", newline="") as file:

@@ -20,20 +20,20 @@ import sys
 import known
 
 BUILD = known.ROOT / "build/gates"
-# Matches the position before the first line of a finding.
+# Matches the place where a finding begins.
 FINDING = re.compile(r"^(?=[^\s:]+:\d+:\d+: (?:warning|error):)", re.MULTILINE)
 
 
 def configure():
-    """Writes to build/gates how clang++ would compile each source. CMake's own warnings are faults."""
+    """Writes to build/gates how clang++ would compile each source. Warnings of CMake count as findings."""
     done = subprocess.run(["cmake", "--preset", "gates"], cwd=known.ROOT, capture_output=True, text=True)
     if done.returncode != 0 or "Warning" in done.stderr:
         sys.exit(done.stdout + done.stderr + "CMake fails or warns")
 
 
 def compile_commands():
-    """The arguments that compile each source in git. A source that no target compiles is a fault, except for examples,
-    which a test builds against an installation."""
+    """The arguments that compile each source in git. A source that no target compiles is reported. Examples are an
+    exception, because a test builds them against an installation."""
     sources = set(known.files("*.cpp", ":(exclude)docs/examples"))
     commands = {}
     for entry in json.loads((BUILD / "compile_commands.json").read_text()):
@@ -47,7 +47,8 @@ def compile_commands():
 
 
 def source_of(header, sources):
-    """A source that includes this header: the one with the same name, or else the first; None if there is none."""
+    """A source that includes this header: the source with the same name, or else the first that includes the header.
+    None if no source includes it."""
     path = pathlib.PurePath(header)
     line = f'"{path.relative_to("include")}"' if path.parts[0] == "include" else f'{path.name}"'
     including = [source for source in sources if line in (known.ROOT / source).read_text()]
@@ -56,8 +57,8 @@ def source_of(header, sources):
 
 
 def chosen(sources, most):
-    """At most this number of the sources that changed or include a changed header. Prints the sources that it leaves
-    out."""
+    """Chooses at most this number of the sources that changed or that include a changed header. Prints the sources that
+    it leaves out."""
     answer = known.changed()
     if answer is None:
         print(f"what changed is not known: all {len(sources)} sources are candidates")
@@ -75,7 +76,8 @@ def chosen(sources, most):
 
 
 def compiler_words(source, command):
-    """Options of a clang++ that only parses and checks. It warns of everything except what the optimiser would find."""
+    """The options for a clang++ that only parses and checks. All warnings are on, except for those that need the
+    optimiser."""
     arguments, folder = command
     words = [word for word in arguments if word != "-c"] + ["-Werror", "-fsyntax-only"]
     done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -85,7 +87,7 @@ def compiler_words(source, command):
 def tidy_words(source, command):
     words = ["clang-tidy", "--quiet", "--warnings-as-errors=*", "-p", BUILD, known.ROOT / source]
     done = subprocess.run(words, cwd=known.ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    # Standard error also counts warnings that are not shown, so it is used only after a failure.
+    # The standard error also counts warnings that clang-tidy does not show, so it is printed only after a failure.
     return source, done.returncode, done.stdout or (done.stderr if done.returncode else "")
 
 
@@ -112,7 +114,7 @@ def main():
         for source, code, words in pool.map(lambda name: ask(name, commands[name]), sources):
             if code != 0:
                 faulty.append(source)
-            # A header's finding is printed once, not with every source that includes it.
+            # A finding in a header is printed once, not for every source that includes the header.
             for finding in FINDING.split(words):
                 if finding.strip() and finding not in told:
                     told.add(finding)

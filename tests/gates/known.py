@@ -1,4 +1,4 @@
-"""Lists the files of the repository, and those that changed."""
+"""Lists the files of the repository, and the files that changed."""
 
 import os
 import pathlib
@@ -6,8 +6,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# If nothing else tells what changed, the files of this number of last commits count as changed: a push may bring so
-# many.
+# If nothing else shows what changed, the files of this number of last commits count as changed, because one push may
+# contain so many commits.
 LAST_COMMITS = 10
 
 
@@ -18,7 +18,8 @@ def git(*arguments):
 
 
 def files(*patterns):
-    """The files of these patterns (`*.md`), relative to the root: those in git, and new ones that git does not ignore."""
+    """The files that match these patterns (such as `*.md`), relative to the root: the files in git, and new files that
+    git does not ignore."""
     listed = git("ls-files", "-z", "--cached", "--others", "--exclude-standard", "--", *patterns)
     if listed is None:
         sys.exit(f"{ROOT} is no git repository: which files to look at is not known")
@@ -26,7 +27,8 @@ def files(*patterns):
 
 
 def base():
-    """The commit with which files are compared, and the reason for this commit, in words; None if there is none."""
+    """The commit with which files are compared, and the reason for this choice in words. None if there is no such
+    commit."""
     named = os.environ.get("GATES_SINCE")
     if named:
         commit = git("rev-parse", "--verify", "--quiet", f"{named}^{{commit}}")
@@ -37,10 +39,10 @@ def base():
     for branch in ["origin/HEAD", "origin/main", "origin/master"]:
         fork = (git("merge-base", branch, "HEAD") or "").strip()
         if fork == head:
-            break  # this is the default branch itself
+            break  # This is the default branch itself.
         if fork:
             return fork, f"the fork from {branch}"
-    # A shallow clone may contain fewer commits, or only one.
+    # A shallow clone may contain fewer commits than LAST_COMMITS, or only one.
     for back in range(LAST_COMMITS, 0, -1):
         commit = git("rev-parse", "--verify", "--quiet", f"HEAD~{back}^{{commit}}")
         if commit:
@@ -49,7 +51,7 @@ def base():
 
 
 def changed():
-    """The files that differ from base(), including uncommitted and new ones, and the reason for this base, in words.
+    """The files that differ from base(), including uncommitted and new files, and the reason for this base in words.
     None if there is no base."""
     since = base()
     if since is None:

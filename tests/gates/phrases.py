@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Finds phrases that were retired from prose. phrases.txt lists them with the words to use instead.
 
-Phrases under `[everywhere]` are searched in *.md, comments, docstrings and messages, those under `[documentation]` in
-*.md only, those under `[beginnings]` only at the beginnings of comments, docstrings and messages, with the given upper
-or lower case. Code, `quoted` text and the dated pages (docs/notes, CHANGELOG.md) are skipped. A phrase may span two
-lines.
+The section of a phrase in phrases.txt decides where it is searched. `[everywhere]` means *.md, comments, docstrings and
+messages. `[documentation]` means *.md only. `[beginnings]` means only the beginnings of comments, docstrings and
+messages, with the given upper or lower case. Code, `quoted` text and the dated pages (docs/notes, CHANGELOG.md) are
+skipped. A phrase may span two lines.
 """
 
 import re
@@ -21,7 +21,7 @@ LINE = re.compile(r"(?P<phrase>[^#\[\]:]+): (?P<instead>.+)")
 
 
 def listed():
-    """The phrases of each section, as patterns with the words to use instead."""
+    """The phrases of each section as patterns, with the words to use instead."""
     section = None
     for number, line in enumerate(PHRASES.read_text().splitlines(), 1):
         entry = LINE.fullmatch(line)
@@ -37,7 +37,7 @@ def listed():
 
 
 def paragraphs(name):
-    """Consecutive lines of prose, joined by line feeds, with the number of the first."""
+    """Consecutive lines of prose, joined by line feeds, with the number of their first line."""
     first, lines = 0, []
     for number, line in spelling.prose(name):
         line = re.sub(r"^[\s/*<!#>\"']+", "", spelling.CODE.sub(" ", line)) if line.strip() else ""
@@ -54,7 +54,7 @@ def paragraphs(name):
 def main():
     phrases = list(listed())
     pages = [name for name in known.files("*.md") if not name.startswith(DATED)]
-    # phrases.txt and this script contain the phrases themselves.
+    # tests/gates is left out, because phrases.txt and this script contain the phrases themselves.
     sources = [name for name in known.files(*SOURCES) if not name.startswith("tests/gates/")]
     faults = 0
     for name in pages + sources:

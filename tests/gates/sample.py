@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""sample.py SEED: prints 100 sentences of README, handbook, help texts and comments, for a reader who counts the
-sentences that need a second reading. The same seed and sources give the same sentences.
+"""sample.py SEED: prints 100 sentences of README, handbook, help texts and comments. A reader counts those that need a
+second reading. The same seed and the same sources give the same sentences.
 """
 
 import random
@@ -11,7 +11,7 @@ import known
 import spelling
 import width
 
-# For each kind: the number of sentences to print, and the files from which they come.
+# For each kind, the number of sentences to print and the files that contain them.
 KINDS = {"README": (6, ["README.md"]), "tutorial": (10, ["docs/tutorial/*.md"]), "how-to": (12, ["docs/how-to/*.md", "docs/faq.md"]),
          "explanation": (16, ["docs/explanation/*.md"]), "reference": (14, ["docs/reference/*.md", "docs/glossary.md"]),
          "gallery": (8, ["docs/gallery/*.md"]), "notes": (6, ["docs/notes/*.md", "CHANGELOG.md", "docs/paper/*.md"]),
@@ -24,7 +24,7 @@ PAGE_MARKS, CODE_MARKS = re.compile(r"^\s*(?:[-*>] )?"), re.compile(r"^[\s/*<!#>
 
 
 def lines(name, kind):
-    """Numbers and texts of the lines of a file that belong to the kind."""
+    """Those lines of a file that belong to the kind, with their numbers."""
     text = (known.ROOT / name).read_text()
     if name.endswith(".md"):
         return [(number, line) for number, line in width.prose(text) if not line.startswith(("#", "!", ":", "---"))]
@@ -34,7 +34,8 @@ def lines(name, kind):
 
 
 def sentences(name, kind):
-    """Sentences with their places. A blank line, a list item or a gap between comments also ends a sentence."""
+    """Sentences with their places. A sentence also ends at a blank line, before a list item, and at a gap between
+    comments."""
     first, paragraph, before = 0, [], 0
     marks = PAGE_MARKS if name.endswith(".md") else CODE_MARKS
     for number, line in [*lines(name, kind), (None, "")]:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Tests the handbook's site in a browser: `site.py build/docs/html`. No page writes to the console or sends requests to
-another host; pages follow the browser's choice of light or dark; nothing is wider than a phone; search results contain
-no TeX."""
+"""Tests the handbook's site in a browser: `site.py build/docs/html`. No page may write to the console or send requests
+to another host. Pages must follow the browser's choice of light or dark, and nothing may be wider than a phone. Search
+results must not contain TeX."""
 
 import contextlib
 import functools
@@ -29,7 +29,7 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
 
 @contextlib.contextmanager
 def served(folder):
-    """@return the address"""
+    """Serves the folder. @return the address"""
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=folder)) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
@@ -51,14 +51,15 @@ def browser(scheme):
 
 
 def wait_for(driver, condition):
-    """Waits until a script returns true, but at most half a minute. If it never does, the checks that follow fail."""
+    """Waits until a script returns true, but at most half a minute. If the script never returns true, later checks
+    fail."""
     end = time.monotonic() + 30
     while not driver.execute_script(f"return !!({condition})") and time.monotonic() < end:
         time.sleep(0.1)
 
 
 def requests(driver):
-    """Addresses that the page has requested."""
+    """The addresses that the page has requested."""
     for entry in driver.get_log("performance"):
         message = json.loads(entry["message"])["message"]
         if message["method"] == "Network.requestWillBeSent":

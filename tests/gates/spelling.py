@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Checks the spelling of prose: *.md, comments, docstrings, and messages of programs. The spelling is British, with
--ise; aspell checks it.
+"""Checks the spelling of prose with aspell: *.md, comments, docstrings, and messages of programs. The spelling is
+British, with -ise.
 
-Correct words that aspell does not know are in words.txt. Words that look like code are left out: `quoted` ones, with
-digits, underscores, slashes or equals signs, in CamelCase or CAPITALS.
+Correct words that aspell does not know are in words.txt. Words that look like code are left out. Such words are
+`quoted`, are in CamelCase or CAPITALS, or contain digits, underscores, slashes or equals signs.
 """
 
 import ast
@@ -28,7 +28,7 @@ def of_markdown(text):
     for number, line in enumerate(text.splitlines(), 1):
         fenced ^= line.lstrip().startswith("```")
         if not fenced and not line.startswith("    "):
-            yield number, re.sub(r"\\[A-Za-z]+", " ", line)  # a formula's word
+            yield number, re.sub(r"\\[A-Za-z]+", " ", line)  # commands of a formula are no words
 
 
 def of_cpp(text, with_messages):
@@ -37,7 +37,7 @@ def of_cpp(text, with_messages):
         message = found["text"] or found["raw"]
         prose = comment or (message if with_messages and message and " " in message.strip() else "")
         first = text.count("\n", 0, found.start()) + 1
-        escape = r"\\\w+" if found["raw"] else r"\\."  # a formula's word, or a line break
+        escape = r"\\\w+" if found["raw"] else r"\\."  # commands of a formula, or line breaks
         for number, line in enumerate(prose.splitlines(), first):
             yield number, re.sub(escape, " ", line)
 
@@ -61,8 +61,8 @@ def of_script(text):
 
 
 def prose(name):
-    """Lines of prose in a file, with their numbers. The messages in tests are left out, because tests quote users'
-    mistakes."""
+    """The lines of prose in a file, with their numbers. Messages in tests are left out, because tests quote mistakes of
+    users."""
     text = (known.ROOT / name).read_text()
     with_messages = not name.startswith("tests/")
     if name.endswith(".md"):

@@ -10,14 +10,14 @@ MOST = 120
 
 
 def prose(text):
-    """The lines of prose, with their numbers: no table, no fenced block, no indented block."""
+    """The lines of prose, with their numbers. Tables, fenced blocks and indented blocks are left out."""
     fenced = indented = False
     before = ""
     for number, line in enumerate(text.splitlines(), 1):
         if line.lstrip().startswith("```"):
             fenced = not fenced
-        # A block of code is indented by four spaces and follows an empty line. Without the empty line, an indented line
-        # continues a list.
+        # A block of code is indented by four spaces and follows an empty line. An indented line without an empty line
+        # before it continues a list.
         indented = line.startswith("    ") and (indented or not before.strip()) or (indented and not line.strip())
         before = line
         if not fenced and not indented and not line.lstrip().startswith("|"):

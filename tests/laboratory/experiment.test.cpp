@@ -19,8 +19,8 @@ Experiment octane(double diameter_mm, double angle_degrees, double speed_mm_per_
 }
 
 TEST(Experiment, GivesThePublishedNumbers) {
-  // From the calibration of Cheng et al.: octane droplets in water, with gamma about 10 mJ/m^2. The expected
-  // numbers have the digits printed there.
+  // These droplets of octane in water are from the calibration of Cheng et al., with gamma about 10 mJ/m^2.
+  // The expected numbers have the digits printed there.
   EXPECT_NEAR(octane(3.5, 28, 7).line_tension(), 0.57, 0.01);
   EXPECT_NEAR(octane(1.98, 8.5, 0.97).line_tension(), 5.80, 0.07);
   EXPECT_NEAR(octane(3.30, 5.0, 1.1).line_tension(), 3.47, 0.05);

@@ -12,7 +12,7 @@ namespace clog::laboratory {
 namespace {
 
 TEST(SagOnWall, HasItsSoftLimit) {
-  // A wide puddle is 2 sqrt(Gamma) thick, and its centroid is at half of this height.
+  // The thickness of a wide puddle is 2 sqrt(Gamma). The puddle's centroid is at half of this height.
   EXPECT_NEAR(sag_on_wall(0.002), 0.5 - std::sqrt(0.002), 0.003);
 }
 

@@ -1,9 +1,9 @@
-"""Checks that a layer includes only the layers that its line in docs/developer/architecture.md names. Some libraries
-may be included by one layer only, and fmt by no header.
+"""Checks that each layer includes only the layers that its line in docs/developer/architecture.md names. Some libraries
+may be included by one layer only. No header may include fmt.
 
-The layers inside core have their own lines: core/world, core/polygon/step and so on. The folders of the Python package
-are its modules; they have another table, and an import inside a function counts, too. Neither layers nor Python files
-may include each other in a circle.
+The layers inside core have their own lines: core/world, core/polygon/step and so on. The modules of the Python package
+are its folders, and another table of the page lists them. An import inside a function counts, too. Neither layers nor
+Python files may include each other in a circle.
 
     tests/lint/layers.py ROOT
 """
@@ -24,7 +24,7 @@ PYTHON_LIBRARIES = {"h5py": {"reading"}, "matplotlib": DRAWING, "mpl_toolkits": 
 
 
 def table(text):
-    """The layers that each layer may use, from a part of the page."""
+    """The layers that each layer may use, read from a part of the page."""
     layers = {}
     for line in text.splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
@@ -34,13 +34,13 @@ def table(text):
 
 
 def layer_of(parts, layers):
-    """The layer of a file. @param parts  its folders below include/clog or src"""
+    """The layer of a file. @param parts  the folders of the file below include/clog or src"""
     names = ("/".join(parts[:depth]) for depth in (3, 2))
     return next((name for name in names if name in layers), parts[0])
 
 
 def includes(root, layers):
-    """The file, line, layer and included layer of every include."""
+    """The file, the line, the layer and the included layer of every include."""
     for base in (root / "include" / "clog", root / "src"):
         for path in sorted(base.rglob("*.?pp")):
             for number, line in enumerate(path.read_text().splitlines(), 1):
@@ -50,8 +50,8 @@ def includes(root, layers):
 
 
 def circle_of(uses):
-    """A circle of names, each of which uses the next one; empty if there is none. @param uses  the names that each name
-    uses"""
+    """A circle of names in which each name uses the next one, or nothing if there is no circle. @param uses  the names
+    that each name uses"""
     try:
         graphlib.TopologicalSorter(uses).prepare()
     except graphlib.CycleError as error:
@@ -87,13 +87,14 @@ def cpp_faults(root, uses):
 
 
 def file_of(base, parts):
-    """The file of a module, below the package; None if it does not exist"""
+    """The file of a module, relative to the package. None if the module does not exist."""
     folder = pathlib.Path(*parts)
     return next((place for place in (folder.with_suffix(".py") if parts else folder, folder / "__init__.py") if (base / place).is_file()), None)
 
 
 def imports(base, path):
-    """Line, module and file of every import in a Python file. The file is None outside the package."""
+    """The line, the module and the file of every import in a Python file. The file is None if the module is outside the
+    package."""
     for node in ast.walk(ast.parse((base / path).read_text())):
         if isinstance(node, ast.Import):
             yield from ((node.lineno, name.name, None) for name in node.names)

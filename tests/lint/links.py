@@ -1,6 +1,6 @@
-"""Checks that every link and every path in the documentation leads somewhere. A link in `*.md` must lead to a file of
-the sources and, after `#`, to one of its headings or targets. A path that is quoted `so`, in `*.md` or in the configs
-of `jobs`, must name a file or a folder if it begins with a folder of the sources, such as `src/`.
+"""Checks that every link and every path in the documentation leads to something. A link in `*.md` must lead to a file
+of the sources and, after `#`, to one of the headings or targets of this file. A `quoted` path in `*.md` or in the
+configs of `jobs` must name a file or a folder if it begins with a folder of the sources, such as `src/`.
 
     tests/lint/links.py ROOT
 """
@@ -14,17 +14,17 @@ import sys
 FOLDERS = ("analysis", "cmake", "docs", "include", "jobs", "src", "tests")
 LINK = re.compile(r"\]\(\s*<?([^\s()<>]+)>?(?:\s+\"[^\"]*\")?\s*\)|^ {0,3}\[[^\]]+\]:\s+(\S+)", re.MULTILINE)
 BLOCK = re.compile(r"^( *)(`{3,}|~{3,}).*?^\1\2 *$", re.MULTILINE | re.DOTALL)
-# The text may continue in the next line, but not in the next paragraph.
+# Quoted text may continue on the next line, but not in the next paragraph.
 QUOTED = re.compile(r"(?<!`)`((?:[^`\n]|\n(?!\s*\n))+)`(?!`)")
 PATH = re.compile(rf"(?:{'|'.join(FOLDERS)})/[^\s<*{{$]*")
 HEADING = re.compile(r"^#{1,6} +(.+?)(?: +#+)?$", re.MULTILINE)
 TARGET = re.compile(r"^\(([\w-]+)\)=$", re.MULTILINE)
-# Dated measurements and releases describe the sources of their date.
+# Dated notes and the changelog describe the sources as they were at that time.
 OF_THEIR_DAY = ("docs/notes/", "CHANGELOG.md")
 
 
 def sources(root):
-    """The files that git tracks or would add; in an archive of the sources, all files except build outputs."""
+    """The files that git tracks or would add. In an archive of the sources, all files except build outputs."""
     if (root / ".git").exists():
         asked = subprocess.run(["git", "-C", root, "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
                                capture_output=True, text=True)
@@ -35,12 +35,12 @@ def sources(root):
 
 
 def without(pattern, text):
-    """The text without everything that matches the pattern, but with as many lines."""
+    """The text without all matches of the pattern. The number of lines stays the same."""
     return pattern.sub(lambda found: "\n" * found[0].count("\n"), text)
 
 
 def anchors(text):
-    """The anchors that links may name, by the rules of GitHub and MyST; a repeated heading has a number."""
+    """The anchors to which links may point, by the rules of GitHub and MyST. A repeated heading has a number."""
     text = without(BLOCK, text)
     found = set(TARGET.findall(text))
     for heading in HEADING.findall(text):

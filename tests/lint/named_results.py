@@ -1,5 +1,5 @@
-"""Checks that the text of each result in docs/named-results.csv is on the pages listed there, and on no other page of
-the handbook.
+"""Checks that the text of each result in docs/named-results.csv is on the pages that the file lists, and on no other
+page of the handbook.
 
     tests/lint/named_results.py ROOT
 """

@@ -1,5 +1,6 @@
-"""Checks that no compiled file of ours has indirect functions, whose version depends on the processor when a program
-starts, and that none queries the processor: only --instruction-set may determine the bits of a row.
+"""Checks that only --instruction-set can determine the bits of a row. So no compiled file of ours may query the
+processor, and none may have indirect functions, because their version depends on the processor at the start of a
+program.
 
     one_selector.py READELF OBJDUMP FILE...     (archives and programs)
 """

@@ -1,5 +1,5 @@
-"""Checks that layers whose numbers get into rows call no function of the C library that has several versions for
-different processors. include/clog/core/tools/portable_math.hpp replaces these functions.
+"""Checks calls of the C library. Layers whose numbers get into rows must not call functions of which the library has
+several versions for different processors. include/clog/core/tools/portable_math.hpp replaces these functions.
 
     portable_math.py READELF ARCHIVE...
 """

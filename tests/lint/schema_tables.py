@@ -1,6 +1,6 @@
 """Checks that the lists of keys and columns in the documentation agree with clogsweep --schema.
 
-    tests/lint/schema_tables.py build/release/bin/clogsweep .            # exit code 1: a list is stale
+    tests/lint/schema_tables.py build/release/bin/clogsweep .            # exit code 1: a list is out of date
     tests/lint/schema_tables.py build/release/bin/clogsweep . --write    # renews the lists
 """
 
@@ -15,7 +15,7 @@ BEGIN, END = "<!-- {} of clogsweep --schema, by tests/lint/schema_tables.py -->"
 
 
 def values_of(key):
-    """The default of a key, then its other values."""
+    """The default of a key, followed by its other values."""
     words = [f"`{word}`" for word in key["words"] if word != key["default"]]
     if key["kind"] != "word":
         numbers = {"text": "a description, as of `--lab`", "file": "a file's name"}.get(key["kind"], key.get("range") or "any number")
@@ -41,8 +41,8 @@ def type_of(column):
 
 
 def columns(schema):
-    """The list of columns. One paragraph names all columns that have the name and the value of a key. Other columns
-    have entries; columns whose meanings differ only in numbers share one."""
+    """The list of columns. One paragraph names all columns that have the name and the value of a key. Each other column
+    has an entry. Columns whose meanings differ only in numbers share an entry."""
     key_of = {(key.get("column"), key.get("meaning")): key["key"] for key in schema["keys"]}
     named, rows = [], {}
     for column in schema["columns"]:

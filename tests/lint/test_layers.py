@@ -1,4 +1,4 @@
-"""Tests on small source trees what layers.py refuses.
+"""Tests on small source trees that layers.py refuses forbidden includes.
 
     tests/lint/test_layers.py
 """
@@ -31,7 +31,8 @@ def page(cpp, python):
 
 class Layers(unittest.TestCase):
     def found(self, files=(), cpp=CPP, python=PYTHON):
-        """The output of layers.py for the correct tree, with some files and some lines of its tables replaced."""
+        """The output of layers.py for the correct tree, in which some files and some lines of the tables are
+        replaced."""
         with tempfile.TemporaryDirectory() as folder:
             for name, text in {**SOUND, "docs/developer/architecture.md": page(cpp, python), **dict(files)}.items():
                 path = pathlib.Path(folder, name)

@@ -1,5 +1,5 @@
-"""Tests that jobs/mpi-settings.sh sets the variables of each version of Open MPI, but not those that the user has
-set."""
+"""Tests that jobs/mpi-settings.sh sets the variables of each version of Open MPI, but not the variables that the user
+has set."""
 
 import os
 import pathlib
@@ -23,7 +23,7 @@ EXPECTED = {
 
 
 def variables_after(**before):
-    """The variables of Open MPI and PRRTE that mpirun would see in a script that has sourced the settings."""
+    """The variables of Open MPI and PRRTE that mpirun gets from a script that has sourced the settings."""
     printed = subprocess.run(["bash", "-euc", '. "$0" && env', SETTINGS], env={"PATH": os.environ["PATH"], **before},
                              check=True, capture_output=True, text=True).stdout
     return {name: value for name, _, value in (line.partition("=") for line in printed.splitlines())

@@ -1,6 +1,6 @@
-"""Checks that the version is the same in `CMakeLists.txt`, in `CITATION.cff`, in the Python module, in the recipe for
-Spack and, as the newest release, in `CHANGELOG.md`, and that the dates in `CITATION.cff` and `CHANGELOG.md` agree. Also
-checks that the handbook's table of dependencies agrees with `cmake/dependencies.txt`.
+"""Checks that the version is the same in `CMakeLists.txt`, `CITATION.cff`, the Python module and the recipe for Spack,
+and is the newest release in `CHANGELOG.md`. The dates in `CITATION.cff` and `CHANGELOG.md` must also agree. Checks that
+the handbook's table of dependencies agrees with `cmake/dependencies.txt`.
 
     tests/lint/versions.py ROOT
 """
@@ -28,8 +28,8 @@ WRITTEN = {
 
 
 def first(root, file, pattern):
-    """The first match of a pattern in a file, which in the changelog is that of the newest release; None if there is
-    none."""
+    """The first match of a pattern in a file, or None. The first match in the changelog belongs to the newest
+    release."""
     found = re.search(pattern, (root / file).read_text(), re.MULTILINE)
     return found.group(1) if found else None
 
@@ -48,7 +48,7 @@ def faults(root):
 
 
 def table_of_dependencies(text):
-    """Rows of the handbook's table, from the lines of cmake/dependencies.txt."""
+    """The rows of the handbook's table that follow from the lines of cmake/dependencies.txt."""
     for line in text.splitlines():
         if line[:1].isalpha():
             name, minimum, *packages = line.split()

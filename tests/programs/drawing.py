@@ -18,8 +18,8 @@ from clogsweep import style  # noqa: E402
 
 
 def warm_up():
-    """Loads all commands, and loads the fonts by drawing a small picture. Forked processes share both, because loading
-    takes more CPU time than drawing a picture."""
+    """Loads all commands, and draws a small picture to load the fonts. Forked processes share both, because loading
+    takes more CPU time than drawing."""
     for command in clogsweep.__main__.COMMANDS:
         importlib.import_module(f"clogsweep.commands.{command.replace('-', '_')}")
     figure, axes = style.subplots(figsize=(2, 2))
@@ -41,8 +41,9 @@ def run_in(folder, out, error, call):
 
 class Analysis(ProgramTest):
     def fork(self, words, call):
-        """Calls a function in the test's folder, in a forked process. The process shares what warm_up() has loaded.
-        @param words  the call, for messages; @param call  returns an exit code"""
+        """Calls a function in the test's folder, in a forked process. The process shares everything that warm_up() has
+        loaded.
+        @param words  the call in words, for messages; @param call  returns an exit code"""
         out, error = self.folder / "stdout.txt", self.folder / "stderr.txt"
         process = multiprocessing.get_context("fork").Process(target=run_in, args=(self.folder, out, error, call))
         process.start()

@@ -1,4 +1,4 @@
-"""Pages of the handbook, and the blocks of code in them."""
+"""Reads pages of the handbook, and the blocks of code in them."""
 
 import os
 import re
@@ -11,25 +11,24 @@ from support import BIN, LONGEST, ROOT
 
 BLOCK = re.compile(r"^```(bash|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 TOCTREE = re.compile(r"^```{toctree}\n(?::.*\n)*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-# Settings from the page before the tutorials. `set` makes a block end at the first command that fails.
+# Settings from the page before the tutorials. With `set` a block ends at the first command that fails.
 BEFORE = f"set -euo pipefail; . {ROOT}/jobs/mpi-settings.sh\n"
 HOW_TO = ("other-arrays", "own-obstacles", "lattice", "lateral-displacement", "compare-sweeps", "python", "contact-angles", "sizes-and-tilts")
 PAGES = ["README.md", *(f"docs/how-to/{name}.md" for name in HOW_TO)]
 
 
 def tutorial():
-    """The tutorial's pages, in their order."""
+    """The pages of the tutorial in their order."""
     return [f"docs/tutorial/{page}.md" for page in TOCTREE.search((ROOT / "docs/tutorial/index.md").read_text())[1].split()]
 
 
 def blocks(path):
-    """@return pairs of a language and a text"""
+    """The blocks of code of a page. @return pairs of a language and a text"""
     return BLOCK.findall((ROOT / path).read_text())
 
 
 def code(text):
-    """@return the lines of a page that are indented or in a block of bash; all other lines are replaced by empty
-    ones"""
+    """The code of a page. @return its lines that are indented or in a block of bash; all other lines become empty"""
     fence = None
     for line in text.splitlines():
         if line.startswith("```"):
@@ -42,8 +41,8 @@ def code(text):
 
 
 def commands(path):
-    """@return the words of every command in the code of a page, in order, without what follows ">"; synopses are left
-    out"""
+    """The commands in the code of a page. @return the words of every command, without the words after ">". Synopses are
+    left out."""
     found = []
     for line in "\n".join(code((ROOT / path).read_text())).replace("\\\n", " ").splitlines():
         words = shlex.shlex(line, posix=True, punctuation_chars="|&;>")
@@ -60,7 +59,7 @@ def commands(path):
 
 
 def run(language, block, folder):
-    # Another python3 that comes first in the path may lack packages that Debian's python3 has. mpirun stays the same.
+    # The python3 of this test comes before others in the path, because others may lack packages. mpirun stays the same.
     folders = [str(BIN), os.path.dirname(shutil.which("mpirun")), os.path.dirname(sys.executable), os.environ["PATH"]]
     environment = {**os.environ, "PATH": ":".join(folders), "PYTHONPATH": str(ROOT / "analysis")}
     command = ["bash", "-c", BEFORE + block] if language == "bash" else [sys.executable, "-c", block]

@@ -1,4 +1,4 @@
-"""Tests clogfit calibrate with a droplet that nearly clogs, which takes most simulations."""
+"""Tests clogfit calibrate with a droplet that nearly clogs. Such a droplet takes the most simulations."""
 
 import json
 import os
@@ -16,7 +16,7 @@ from support import BIN, ROOT
 
 class Calibrate(test_calibrate.OnATerminal):
     def test_it_finds_what_made_a_passage_close_to_a_clog(self):
-        # A droplet with a line tension larger by 2 % clogs. Near that line tension Delta_v has narrow minima.
+        # A droplet whose line tension is larger by 2 % clogs. Near this line tension Delta_v has narrow minima.
         line_tension, near_wall_drag = 1.0, 0.07
         keys = ["--orifice=0.7", "vertices=48", "terminal-speed=0.05"]
         self.succeed("clogrun", "channel", "--output", "channel.h5", f"line-tension={line_tension}",
@@ -42,7 +42,7 @@ class Calibrate(test_calibrate.OnATerminal):
 
     def test_it_finds_what_version_0_2_0_found(self):
         record = json.loads((ROOT / "tests" / "programs" / "records" / "calibrate.json").read_text())
-        for expected in record["trials"][:2]:  # the third trial is no passage of a droplet
+        for expected in record["trials"][:2]:  # The third trial is no passage of a droplet.
             with self.subTest(profile=expected["profile"]):
                 self.write(expected["profile"], record["profiles"][expected["profile"]])
                 found, = json.loads(self.succeed("clogfit", "calibrate", expected["profile"], *record["keys"], "--format=json").stdout)["trials"]
@@ -52,7 +52,7 @@ class Calibrate(test_calibrate.OnATerminal):
                 self.assertEqual(found["warnings"], expected["warnings"])
 
     def calibrate_on_a_terminal(self, *arguments):
-        """Runs with a terminal as standard error, which shows the progress."""
+        """Runs clogfit calibrate with a terminal as the standard error, so that it shows its progress."""
         ours, theirs = pty.openpty()
         self.addCleanup(os.close, ours)
         shown = []

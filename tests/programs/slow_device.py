@@ -1,4 +1,4 @@
-"""Tests devices of a user in runs that take long."""
+"""Tests devices drawn by a user, in runs that take long."""
 
 import unittest
 

@@ -40,7 +40,7 @@ class Figures(test_figures.Drawn):
         self.assertEqual({point["obstacle_filling"] for point in points}, {"density", "saturated"})
 
     def test_single_runs_are_drawn_as_they_were_run(self):
-        # The number of runs for each of the figures 1 to D; A1 needs none.
+        # The number of runs for the figures of single droplets. Figure A1 needs no runs of its own.
         self.assert_single_runs(["1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "C2", "D"], 1 + 1 + 2 + 6 + 1 + 3 + 14 + 2 + 5, "7b", "3", "B2")
 
     def test_channels_are_sweeps_and_what_their_rows_say_is_drawn(self):
@@ -55,7 +55,8 @@ class Figures(test_figures.Drawn):
             for point, (_, row) in zip(drawn[-len(rows[sweep]):], rows[sweep].iterrows(), strict=True):
                 for column in ("largest_shape_parameter", "largest_shape_parameter_at", "smallest_relative_speed", "largest_relative_speed"):
                     self.assertEqual(float(point[column]), row[column])
-        # If the stored path does not belong to the sweep's row, the run is repeated; with --draw-only it is refused.
+        # After this exchange, the stored path does not belong to the sweep's row. So the run is repeated, or refused
+        # with --draw-only.
         way = self.folder / self.PLACE / "runs" / "vertices-1.h5"
         way.with_name("vertices-0.h5").replace(way)
         self.refuse_analysis("figures", "B1", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["vertices-0.h5", "not there"])

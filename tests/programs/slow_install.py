@@ -1,5 +1,5 @@
 """Builds a program against an installation, which takes half a minute, and reads the installed handbook. Sphinx takes a
-minute for the handbook; tests/run.sh --all builds it (CLOG_HANDBOOK)."""
+minute to build the handbook, so only tests/run.sh --all builds it (CLOG_HANDBOOK)."""
 
 import json
 import re
@@ -14,7 +14,7 @@ from test_install import KEYS, Installation
 COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": [],
             "clogfit": ["calibrate", "curve", "deviation", "drag", "report", "units"]}
 
-# Meanings of the commands, which are words without dashes
+# Arguments that are words without dashes
 POSITIONAL = {"--file", "--system", "--task"}
 
 
@@ -36,7 +36,7 @@ class Built(Installation):
 
 class Handbook(Installation):
     def man_page(self, name, section):
-        """The page without its font commands."""
+        """The man page without its font commands."""
         return re.sub(r"\\f[BIP]", "", (self.prefix / f"share/man/man{section}/{name}.{section}").read_text().replace("\\-", "-"))
 
     def test_man_pages_have_every_option_with_its_default_and_no_other(self):

@@ -1,6 +1,6 @@
-"""Runs the notebook of the gallery. Its cells must succeed and print the stored outputs.
+"""Runs the notebook of the gallery. The cells must succeed and print the stored outputs.
 
-Numbers may differ, as they do between compilers: docs/notes/2026-11-23-compilers.md.
+Numbers may differ, because they differ between compilers (docs/notes/2026-11-23-compilers.md).
 """
 
 import os
@@ -15,18 +15,18 @@ import nbformat
 from support import BIN, LONGEST, ROOT, ProgramTest
 
 NOTEBOOK = ROOT / "docs" / "gallery" / "notebook.ipynb"
-NUMBER = re.compile(r"\d+\.\d+(?:e[+-]?\d+)?")  # counts have no decimal point, and must be the same
+NUMBER = re.compile(r"\d+\.\d+(?:e[+-]?\d+)?")  # Counts have no decimal point, so they must be the same.
 
 
 def said(notebook):
-    """The text output of every cell of code, without progress bars. A film is .mp4 or .gif."""
+    """The text output of every code cell, without progress bars. The name of a film may end in .mp4 or .gif."""
     return [[(output["data"]["text/plain"] if "data" in output else output["text"]).replace(".gif>", ".mp4>")
              for output in cell.outputs if output.get("name") != "stderr"]
             for cell in notebook.cells if cell.cell_type == "code"]
 
 
 def words(outputs):
-    """A text without its numbers and the widths of its columns."""
+    """A text without its numbers, and with single spaces between its columns."""
     return [[" ".join(NUMBER.sub("#", text).split()) for text in cell] for cell in outputs]
 
 

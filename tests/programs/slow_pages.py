@@ -1,6 +1,6 @@
-"""Runs commands of the handbook. slow_tutorial runs tutorial, README and some how-to pages as they are. This test runs
-each command of the other pages in a folder with the files that the command names; commands that take long are shortened
-or only parsed.
+"""Runs commands of the handbook. slow_tutorial runs the tutorial, the README and some how-to pages without changes.
+This test runs the commands of all other pages, each in a folder with the files that the command names. Commands that
+take long are shortened or only parsed.
 """
 
 import pathlib
@@ -26,18 +26,18 @@ FOLLOWED = {*pages.PAGES, *pages.tutorial()}
 PAGES = sorted({str(path.relative_to(ROOT)) for part in ("how-to", "reference", "gallery", "explanation", "developer")
                 for path in (ROOT / "docs" / part).glob("*.md")} - FOLLOWED)
 PROGRAMS = ("clogsweep", "clogrun", "clogfit")
-LAUNCHERS = {"mpirun": 3, "srun": 1}  # number of words before the program in a call of each launcher
-# Commands that name one of our programs, but need something that may be missing on this machine
+LAUNCHERS = {"mpirun": 3, "srun": 1}  # For each launcher, the number of words before the program.
+# Commands that need something that this machine may lack, so they are not run
 NOT_RUN = {"docker", "spack", "sbatch", "qsub", "git", "sudo", "pydoc"}
-# Options and keys that make the runs of a command short, by its first words
+# Options and keys that make the runs of a command short, by the first words of the command
 SHORT = {"clogrun array": ["max-time=20", "seeds=1"], "clogrun replay": [], "clogrun channel": ["vertices=64", "start=-1.2", "end=-1"]}
-# Commands of python3 -m clogsweep that take too long
+# Commands of python3 -m clogsweep that take too long are only parsed
 LONG = {"agreement": agreement, "collision": collision, "predict": predict}
 SWEEP = ["preset=elastic", "line-tension=0.5,1,2,4", "seeds=1..4", *SMALL, "max-time=60"]
 
 
 def own_program(words):
-    """@return the call of one of our programs in a command, without its launcher, or nothing"""
+    """Removes the launcher from a command. @return the call, or nothing if it calls none of our programs"""
     while words and re.match(r"[A-Z_]+=", words[0]):
         words = words[1:]
     if words and words[0] in LAUNCHERS:
@@ -48,7 +48,7 @@ def own_program(words):
 
 
 def replaced(words, options):
-    """The words, with options in place of the keys of the same name."""
+    """The words of a call. Options replace the keys with the same name."""
     keys = {word.split("=")[0] for word in options}
     return [word for word in words if word.split("=")[0] not in keys] + options
 
@@ -83,7 +83,7 @@ class Commands(Analysis):
         picture.save(self.folder / "scan.png")
 
     def provide(self, words):
-        """Removes the command's outputs, and makes the inputs that the page does not make."""
+        """Removes the outputs of a command. Makes those inputs that the page does not make."""
         made = [words[words.index(option) + 1] for option in ("--output", "--frames") if option in words]
         for name in made:
             for path in self.folder.glob(f"{name.removesuffix('.h5')}*"):
@@ -102,14 +102,15 @@ class Commands(Analysis):
             self.check_python(rest[1:])
         elif program == "clogsweep" and ("=" in rest[0] or rest[0].startswith("--")):
             self.succeed(program, *rest, "--print-config")
-        elif program == "clogsweep" and rest[0] == "doctor":  # it may find problems
+        elif program == "clogsweep" and rest[0] == "doctor":  # The command may find problems.
             self.assertIn(self.run_program(program, *rest).returncode, (0, 1))
-        elif program == "clogfit" and rest[0] == "calibrate":  # it takes minutes
+        elif program == "clogfit" and rest[0] == "calibrate":  # The command takes minutes.
             (self.folder / "trial.csv").unlink()
             self.refuse(program, *rest, words=["cannot read trial.csv"])
         else:
             short = SHORT.get(f"{program} {rest[0]}", [])
-            self.succeed(program, *replaced([word for word in rest if word != "--watch"], short))  # --watch waits for the end of the sweep
+            # --watch would wait for the end of the sweep.
+            self.succeed(program, *replaced([word for word in rest if word != "--watch"], short))
 
     def check_figures(self, words):
         sys.argv[1:] = words
@@ -126,13 +127,13 @@ class Commands(Analysis):
         elif command in LONG:
             sys.argv[1:] = rest
             LONG[command].parse()
-        elif command == "refine":  # the launcher on the page may be that of a cluster
+        elif command == "refine":  # The launcher on the page may be one of a cluster.
             done = self.analyse(command, *rest[:rest.index("--")], "--dry-run")
             self.assertEqual(done.returncode, 0, done.stderr)
         else:
             sweep = {"device": "device.h5", "clogs": "wrapped.h5"}.get(command, "sweep.h5")
             stand_ins = {"/dev/stdin": "fit.json", "sweep.h5": sweep}
-            if command == "export":  # it never replaces a file
+            if command == "export":  # The command never replaces a file.
                 (self.folder / rest[-1]).unlink(missing_ok=True)
             done = self.analyse(command, *(stand_ins.get(word, word) for word in rest))
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -155,7 +156,7 @@ class Commands(Analysis):
 
 class Pictures(Analysis):
     def stored(self, path):
-        """@return the call of the program that made the rows of a picture; nothing for pictures of `figures`"""
+        """@return the call of the program that made the rows of a picture, or nothing for pictures of `figures`"""
         with Image.open(path) as picture:
             about = picture.info.get("Description", "")
         for line in about.splitlines():

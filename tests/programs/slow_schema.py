@@ -1,4 +1,4 @@
-"""Tests the page of a sweep over any key."""
+"""Tests that every key of a sweep can be drawn on a page."""
 
 import unittest
 

@@ -1,5 +1,5 @@
-"""Runs the commands of pages of the handbook as they are, one block after the other, in an empty folder; tutorial pages
-share one folder and run one after the other.
+"""Runs the commands on pages of the handbook without changes. Each page begins in an empty folder, except for the
+tutorial, whose pages share one folder and are run one after the other.
 
 Blocks of `bash` and `python` are run. The first line of a block of `text` must be in their output, apart from its
 numbers. Every file that a page names must exist at the end.
@@ -15,7 +15,7 @@ FILE = re.compile(r"`([\w-]+\.(?:h5|csv|cfg|json|png|pdf|gif|mp4|html))`")
 
 
 def outline(line):
-    """A line without its numbers and the widths of its columns."""
+    """A line without its numbers, and with single spaces between its columns."""
     return re.sub(r"\d[\d.]*(?:e[+-]?\d+)?", "#", " ".join(line.split()))
 
 
@@ -38,7 +38,7 @@ class Pages(ProgramTest):
             self.assertTrue((self.folder / name).exists(), f"{path} names {name}, which is not there")
 
     def test_the_tutorial(self):
-        """The tutorial tells the reader to stay in one folder, so files of one page must not disturb another."""
+        """Readers of the tutorial stay in one folder, so the files of one page must not disturb another page."""
         self.assertGreaterEqual(len(pages.tutorial()), 3)
         for page in pages.tutorial():
             self.follow(page)

@@ -1,4 +1,5 @@
-"""Changes results in a sweep's file, with correct checksums: a second implementation of the format, in Python."""
+"""Changes results in a sweep's file, and makes the checksums correct again. The module is a second implementation of
+the format, in Python."""
 
 import zlib
 
@@ -7,7 +8,8 @@ import numpy as np
 
 
 def edited(path, edit):
-    """@param edit  is called with the open file; then checksums and seal are made to agree with the file"""
+    """Changes a file. @param edit  is called with the open file; afterwards checksums and seal are made to agree with
+    the file"""
     content = path.read_bytes()
     path.write_bytes(content[:content.rindex(b"\nclogsweep seal")])
     with h5py.File(path, "r+") as file:
@@ -25,7 +27,7 @@ def edited(path, edit):
 
 
 def change(path, edit):
-    """@param edit  is called with the rows, and changes them in place"""
+    """Changes the rows of a file. @param edit  is called with the rows, and changes them in place"""
     def edit_rows(file):
         rows = file["runs"][:]
         edit(rows)
@@ -52,7 +54,7 @@ def columns(path):
 
 
 def make_older(path, version, without=()):
-    """Gives the file another format version, with fewer columns."""
+    """Gives the file an older format version, and removes columns."""
     def edit(file):
         table = file["runs"][:]
         del file["runs"]

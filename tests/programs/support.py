@@ -1,4 +1,4 @@
-"""Runs the built programs as a user would: in an empty folder, by their command line."""
+"""Runs the programs as a user would, with a command line in an empty folder."""
 
 import fcntl
 import hashlib
@@ -15,40 +15,43 @@ import unittest
 import pandas
 
 BIN = pathlib.Path(os.environ["CLOG_BIN"])
-# The tests have to know which mpirun this is, because those of Open MPI and MPICH behave differently.
+# Tests need to know whose mpirun this is, because those of Open MPI and MPICH behave differently.
 _mpi = re.search(r"^MPI: (.*) v?(\d+)",
                  subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout, re.MULTILINE)
 MPI, MPI_MAJOR = _mpi[1], int(_mpi[2])
-STEPS_PER_SNAPSHOT = 2**18  # stopped runs resume from a snapshot
+STEPS_PER_SNAPSHOT = 2**18  # Stopped runs resume from a snapshot.
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MPIRUN = ROOT / "tests" / "mpirun.sh"
 
-# After this number of seconds a program counts as hanging. With sanitizers, on a busy machine, some programs take
+# After this number of seconds a program counts as hanging. On a busy machine, some programs with sanitizers take
 # minutes.
 LONGEST = 1500
 
-# Small droplets in a small box, whose runs take some hundredths of a second.
+# Settings of small droplets in a small box. Runs with these settings take some hundredths of a second.
 SMALL = ["vertices=64", "box=20", "obstacle-density=saturated"]
 QUICK = [*SMALL, "max-time=60"]
-# A sweep that tests share, see shared_sweep(). It has two parameter sets with two droplets each; some of them clog.
+# A sweep that tests share, see shared_sweep(). Each of its two parameter sets has two droplets. Some of the droplets
+# clog.
 FEW = [*QUICK, "line-tension=1,3", "seeds=1..2"]
-# Long runs with several snapshots each (four per second).
+# Long runs with several snapshots each, four per second.
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
          "--report-seconds=0.1", "--output", "s.h5"]
 FEW_LONG = [word.replace("1..6", "1") for word in SWEEP]
-# Two runs of seconds each: both are in progress at the first snapshot.
+# Two runs that take seconds each. At the first snapshot both runs are in progress.
 SLOW = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05", "max-time=2e4", "seeds=1",
         "--report-seconds=0.1", "--output", "s.h5"]
-# The same runs, but for hours: they are in progress until something ends them, however long the test has to wait for
-# the processor.
+# The same runs, but they take hours. The runs are in progress until something ends them, even if the test has to wait
+# long for the processor.
 ENDLESS = [word.replace("max-time=2e4", "max-time=1e9") for word in SLOW]
-# Obstacles so close to each other that some seeds (53 and 64 of 51..70) leave no void for the release of the droplet.
+# The obstacles are so close to each other that for some seeds (53 and 64 of 51..70) there is no void for the release of
+# the droplet.
 BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3", "obstacle-gap=0.06", "self-contact-range=0.1"]
-# Columns that differ when the same run is recomputed: who computed it, and how long it took.
+# Columns that may differ when the same run is recomputed. The columns state who computed the run, and how long this
+# took.
 TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]
 
 
-# The folder of sweeps that several suites read. CTest empties it before the first suite that uses it.
+# The folder of the sweeps that several suites read. CTest empties it before it starts the first of these suites.
 if "CLOG_SHARED_SWEEPS" in os.environ:
     SHARED = pathlib.Path(os.environ["CLOG_SHARED_SWEEPS"])
     SHARED.mkdir(parents=True, exist_ok=True)
@@ -58,8 +61,8 @@ else:
 
 
 def shared_sweep(*arguments, program="clogsweep"):
-    """The file that the program writes for these arguments. It is computed once for all suites of a CTest run, and is
-    read-only: a test that needs to change it makes a copy first."""
+    """The file that the program writes for these arguments. The file is computed once for all suites of a CTest run,
+    and is read-only. A test that changes the file has to copy it first."""
     command = [program, *map(str, arguments)]
     path = SHARED / (hashlib.sha256("\0".join(command).encode()).hexdigest()[:16] + ".h5")
     with open(path.with_suffix(".lock"), "w") as lock:
@@ -74,7 +77,7 @@ def shared_sweep(*arguments, program="clogsweep"):
 
 
 def undisturbed(sweep):
-    """The file of an undisturbed sweep. The last two arguments are --output and its value."""
+    """The file of the same sweep without disturbance. The last two arguments, --output and its value, are left out."""
     return shared_sweep(*sweep[:-2])
 
 
@@ -96,7 +99,8 @@ class ProgramTest(unittest.TestCase):
         return done
 
     def refuse(self, name, *arguments, words, **options):
-        """Checks that the program exits with 2, prints one line that contains each of the words, and writes no file."""
+        """Checks that the program ends with exit code 2, prints one line that contains each of the words, and writes no
+        file."""
         before = self.snapshot()
         done = self.run_program(name, *arguments, **options)
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
@@ -116,7 +120,7 @@ class ProgramTest(unittest.TestCase):
             time.sleep(0.02)
 
     def ended(self, process, code=0):
-        """Waits until the process has ended with that exit code. @return its standard error"""
+        """Waits until the process has ended, and checks its exit code. @return its standard error"""
         output, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, code, f"{output}{error}")
         return error
@@ -126,7 +130,7 @@ class ProgramTest(unittest.TestCase):
         return name
 
     def copy_sweep(self, name, *arguments, program="clogsweep"):
-        """Copies a shared sweep to the test's own file, which may be changed. An existing file is replaced."""
+        """Copies a shared sweep to a file of the test, which may be changed. An existing file is replaced."""
         return pathlib.Path(shutil.copyfile(shared_sweep(*arguments, program=program), self.folder / name))
 
 
@@ -162,13 +166,13 @@ class SweepTest(ProgramTest):
 
     def ranks_of(self, process):
         children = children_of(process.pid)
-        if MPI == "MPICH":  # MPICH's mpirun has another process between itself and the ranks
+        if MPI == "MPICH":  # MPICH's mpirun has another process between itself and the ranks.
             return [rank for proxy in children for rank in children_of(proxy)]
         return children
 
     def until_in_time(self, attempt):
-        """Repeats attempt() until it returns something. It returns nothing if the sweep ended too early for the test,
-        as may happen on a busy machine."""
+        """Repeats attempt() until it returns something. attempt() returns nothing if the sweep ended too early for the
+        test, which may happen on a busy machine."""
         for _ in range(20):
             if outcome := attempt():
                 return outcome

@@ -1,4 +1,4 @@
-"""Tests the verdicts on the article's statements with curves that are made to have a known verdict."""
+"""Tests the verdicts on the article's statements with artificial curves whose verdicts are known."""
 
 import csv
 import io
@@ -18,11 +18,12 @@ from clogsweep.agreement.statements import AGREES, BY_MESH, DOES_NOT, FITTED, FO
 from clogsweep.paper import dilute
 from clogsweep.tools.errors import UserError
 
-FACTOR = 1.5  # ratio of the upper end of a confidence interval to the value, and of the value to the lower end
+FACTOR = 1.5  # Ratio of the upper end of a confidence interval to the value, and of the value to the lower end.
 
 
 def point(tension, length, gap=0.2, wrapped=0, squeezed=10, hybrid=0, clogs=None, **more):
-    """@param length  if it is negative, its absolute value is a lower bound, because no run clogged"""
+    """A point of a curve. @param length  a negative number means that no run clogged, and that its absolute value is
+    the lower bound"""
     if length < 0:
         return {"line_tension": tension, "obstacle_gap": gap, "clogs": 0, "wrapped": 0, "squeezed": 0, "hybrid": 0, "obstacle_density": 0.35, "obstacle_filling": "density",
                 "total_distance": -3 * length, "clogging_length": None, "clogging_length_lower": -length, "clogging_length_upper": None} | more

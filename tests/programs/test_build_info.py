@@ -1,4 +1,4 @@
-"""Tests how a build describes its sources, in programs and in their files."""
+"""Tests how programs and their files describe the sources from which they were built."""
 
 import json
 import os
@@ -13,13 +13,13 @@ import h5py
 
 from support import QUICK, ROOT, ProgramTest
 
-# The sources that cmake/write_build_info.cmake reads
+# cmake/write_build_info.cmake reads these files
 LOOKED_AT = [".gitattributes", "cmake/archive_version.txt", "cmake/build_info.cpp.in", "cmake/write_build_info.cmake"]
 HASH = "[0-9a-f]{12}"
 
 
 class Sources(unittest.TestCase):
-    """A repository for the test. The user's settings of git do not affect it."""
+    """A repository for the test. The user's own git settings do not affect it."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="clog_build_info_")
@@ -32,7 +32,7 @@ class Sources(unittest.TestCase):
         for name in LOOKED_AT:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, folder / name)
-        # If the tests themselves come from an archive, git has already filled in this file.
+        # If the tests themselves come from an archive, git has filled in this file already.
         form = folder / "cmake/archive_version.txt"
         for word, what in {"describe": "%(describe:tags=true,abbrev=12)", "hash": "%H"}.items():
             form.write_text(re.sub(f"(?m)^{word}: .*$", f"{word}: $Format:{what}$", form.read_text()))
@@ -58,7 +58,7 @@ class Sources(unittest.TestCase):
         return folder
 
     def said(self, folder=None):
-        """The description that a build of the folder would have: the output of git describe, and the hash."""
+        """The description of the sources in a build of the folder: the output of git describe, and the hash."""
         folder, output = folder or self.sources, self.folder / "build_info.cpp"
         subprocess.run(["cmake", f"-DSOURCE_DIR={folder}", f"-DOUTPUT={output}", f"-DTEMPLATE={folder}/cmake/build_info.cpp.in",
                         "-DVERSION=1.2.3", "-P", folder / "cmake/write_build_info.cmake"], check=True)
@@ -116,7 +116,7 @@ class Programs(ProgramTest):
             with h5py.File(self.folder / name) as file:
                 self.assertEqual(file.attrs["version"].decode(), version)
                 self.assertEqual(file.attrs["git_describe"].decode(), described)
-                # The attribute is a hash, with -dirty if the sources had uncommitted changes, or `unknown`.
+                # The attribute is a hash, followed by -dirty if the sources had uncommitted changes, or `unknown`.
                 commit = file.attrs["git_hash"].decode()
                 self.assertRegex(commit, f"^({HASH}(-dirty)?|unknown)$")
         with h5py.File(self.folder / "s.h5") as file:

@@ -1,5 +1,5 @@
-"""Tests that clogfit calibrate recovers the parameters of a simulated droplet from profiles with noise, in both kinds
-of units."""
+"""Tests that clogfit calibrate recovers the parameters of a simulated droplet. The profiles contain noise, and come in
+both kinds of units."""
 
 import json
 import math
@@ -22,13 +22,13 @@ class OnATerminal(ProgramTest):
     def read_some(terminal):
         try:
             return os.read(terminal, 4096)
-        except OSError:  # the last writer has closed the terminal
+        except OSError:  # The last writer has closed the terminal.
             return b""
 
 
 class Calibrate(OnATerminal):
     def measure(self, **options):
-        """A droplet's profile from clogrun."""
+        """Simulates a droplet with clogrun, and reads its profile."""
         run = shared_sweep("channel", f"line-tension={LINE_TENSION}", f"near-wall-drag={NEAR_WALL_DRAG}", "--start=-2.5", "--end=1.3",
                            "--sample-interval=0.3", "terminal-speed=0.05", *CHANNEL, program="clogrun")
         with h5py.File(run) as file:
@@ -42,7 +42,7 @@ class Calibrate(OnATerminal):
         noisy = [v * (1 + 0.02 * chance.standard_normal(len(v))) for _ in range(2)]
         lines = [f"{a:.5g},{b:.5g},{c:.5g}" for a, b, c in zip(h, noisy[0], shape)]
         self.write("reduced.csv", "\n".join(["h [sigma], v [v_t], A", *lines]))
-        # The other file has laboratory units, converted by hand: a droplet of 2 mm at 3 mm/s.
+        # The other file has laboratory units, which were converted by hand for a droplet of 2 mm at 3 mm/s.
         lines = [f"{25 * frame}, {2 * a:.4f}, {3 * b:.4f}" for frame, (a, b) in enumerate(zip(h, noisy[1]))]
         self.write("by_hand.csv", "\n".join(["# trial 2, 21 May", "t [ms], h [mm], v [mm/s]", *lines]))
         found = json.loads(self.succeed(
@@ -79,7 +79,7 @@ class Calibrate(OnATerminal):
         self.write("trial.csv", "\n".join(["h [sigma], v [v_t]", *(f"{0.1 * i},{1 - 0.05 * (i % 3)}" for i in range(-10, 11))]))
         ours, theirs = pty.openpty()
         self.addCleanup(os.close, ours)
-        # The calibration itself would take minutes.
+        # The calibration is stopped early, because it would take minutes.
         with subprocess.Popen([BIN / "clogfit", "calibrate", "trial.csv", "--orifice=0.7", "vertices=256", "--format=json"], cwd=self.folder,
                               stdout=subprocess.PIPE, stderr=theirs) as process:
             os.close(theirs)
@@ -122,7 +122,7 @@ class Calibrate(OnATerminal):
         with h5py.File(self.folder / "clogged.h5") as file:
             self.assertEqual(file["runs"]["status"][0], b"clogged")
         with h5py.File(self.folder / "channel.h5", "a") as file:
-            file.attrs["note"] = "changed by hand"  # this removes the seal
+            file.attrs["note"] = "changed by hand"  # This removes the seal.
         done = self.succeed("clogfit", "deviation", "channel.h5", "channel.h5")
         self.assertIn("may go unnoticed", done.stderr)
 

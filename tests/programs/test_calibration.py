@@ -1,4 +1,4 @@
-"""Tests the module behind clogfit calibrate, deviation and drag, with simulations in closed form."""
+"""Tests the module behind clogfit calibrate, deviation and drag. Closed formulas replace the simulations."""
 
 import json
 import math
@@ -27,7 +27,7 @@ def frames(*rows):
 
 
 def model(tension, near_wall_drag):
-    """The passage of a droplet that is slowed down by a barrier of height 1/tension, and by the drag near h = 0."""
+    """The passage of a droplet that is slowed down by a barrier of height 1/tension, and near h = 0 also by drag."""
     h = np.arange(-2, 2, 0.013)
     near = np.exp(-4 * h**2)
     return Profile(h, 1 / (1 + 8 * near_wall_drag * near) + 0.3 / (1 + tension) * h * near, 1 + near * 0.1 / (1 + tension))
@@ -47,8 +47,8 @@ def first_half(profile):
 
 
 def clogging(tension, near_wall_drag):
-    """The passage of a droplet whose speed in the neck falls to zero at the line tension 1. The profile has bumps that
-    move with the line tension."""
+    """The passage of a droplet whose smallest speed falls to zero as the line tension reaches 1. The profile has bumps
+    that move with the line tension."""
     h = np.arange(-1, 1, 0.004)
     if tension >= 1:
         h = h[h <= -0.1]
@@ -61,7 +61,7 @@ class Deviations(unittest.TestCase):
     stuck = frames([0, 1, 1], [1, 0.5, 1.1])
 
     def test_they_are_root_mean_squares_of_relative_differences(self):
-        # At h = 0.5 the simulation has v = 1.5 and A = 1.05; at h = 1 it has v = 2 and A = 1.1.
+        # The simulation has v = 1.5 and A = 1.05 at h = 0.5, and v = 2 and A = 1.1 at h = 1.
         speed, shape = deviation(frames([0.5, 1.8, 1.05 * 1.02], [1, 2, 1.1]), frames([0, 1, 1], [1, 2, 1.1]))
         self.assertAlmostEqual(speed, 0.2 / math.sqrt(2), places=12)
         self.assertAlmostEqual(shape, 0.02 / math.sqrt(2), places=12)
@@ -81,7 +81,7 @@ class Deviations(unittest.TestCase):
     def test_residuals_of_another_shape_are_correlated(self):
         noisy = measured(model(1, 0.1), 0.02)
         self.assertLess(abs(correlation(speed_residuals(noisy, model(1, 0.1))[0])), 3 / math.sqrt(len(noisy.h)))
-        faster = noisy._replace(speed=1.2 * noisy.speed)  # as if speeds had been divided by a wrong terminal speed
+        faster = noisy._replace(speed=1.2 * noisy.speed)  # as if the speeds had been divided by a wrong terminal speed
         residuals = speed_residuals(faster, model(1, 0.1))[0]
         self.assertGreater(correlation(residuals), 0.9)
         self.assertTrue(math.isnan(correlation(residuals[:7])))
@@ -109,7 +109,7 @@ class Calibrations(unittest.TestCase):
         number = 40
         found = [search.calibrate(measured(model(0.8, 0.1), 0.02, seed), model) for seed in range(number)]
         every = calibrate.means(found)
-        # The scatter of 40 results is known to 11 %. The error of their mean is the scatter divided by the square root
+        # The scatter of 40 results is known to 11 %. The error of their mean is this scatter divided by the square root
         # of 40.
         self.assertAlmostEqual(every["line_tension_deviation"] / np.mean([one.line_tension_error for one in found]), 1, delta=0.35)
         self.assertAlmostEqual(every["near_wall_drag_deviation"] / np.mean([one.near_wall_drag_error for one in found]), 1, delta=0.35)
@@ -157,7 +157,7 @@ class Calibrations(unittest.TestCase):
     def test_every_simulation_is_reported_and_a_search_is_repeatable(self):
         told = []
         found = search.calibrate(measured(model(1, 0.1), 0.02), model, lambda *attempt: told.append(attempt))
-        self.assertGreaterEqual(len(told), found.simulations)  # two threads may have tried the same value
+        self.assertGreaterEqual(len(told), found.simulations)  # Two threads may have tried the same value.
         self.assertAlmostEqual(min(delta for _, _, delta in told), found.delta_v, places=12)
         self.assertEqual(search.calibrate(measured(model(1, 0.1), 0.02), model)[:4], found[:4])
 
@@ -190,7 +190,8 @@ class Drag(unittest.TestCase):
         np.testing.assert_allclose(list(drag.fit(distances, speeds).values()), expected, rtol=1e-9)
 
     def test_it_is_that_of_the_recorded_program(self):
-        # Output of clogfit drag speeds.csv --format json of version 0.2.0 (git 0b3b912ecf24), which was written in C++
+        # The expected numbers are the output of `clogfit drag speeds.csv --format json` in version 0.2.0 (git
+        # 0b3b912ecf24), which was written in C++.
         recorded = 1.262664727769909, 0.0639355416714198, 0.08057491425594032, 0.009595554051668526
         found = drag.fit(np.array([0.05, 0.1, 0.2, 0.5, 1]), np.array([0.2, 0.45, 0.6, 0.85, 0.92]))
         np.testing.assert_allclose(list(found.values()), recorded, rtol=1e-12)
@@ -252,7 +253,7 @@ class ProfileFiles(unittest.TestCase):
 
 
 class Records(unittest.TestCase):
-    """Results of version 0.2.0, which was written in C++, for a coarse and fast droplet."""
+    """Compares with results of version 0.2.0, which was written in C++, for a coarse and fast droplet."""
 
     record = json.loads((Path(__file__).parent / "records" / "calibrate.json").read_text())
 

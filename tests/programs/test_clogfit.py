@@ -18,20 +18,20 @@ sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.tools import rounded  # noqa: E402
 from clogsweep.reading import stored  # noqa: E402
 
-# Droplets of these runs might travel a hundred diameters, so a test may give their rows any distance up to that.
+# Droplets of these runs can travel a hundred diameters. So a test may give the rows any distance up to this.
 FAR = ["max-time=1", "terminal-speed=100"]
-# Ten runs whose distances follow the exponential law exactly.
+# The distances of these ten runs follow the exponential law exactly.
 EXPONENTIAL = -np.log(1 - (np.arange(10) + 0.5) / 10)
 
 
 class Profiles(ProgramTest):
-    """clogfit drag and clogfit deviation, from CSV files."""
+    """clogfit drag and clogfit deviation with CSV files."""
 
     def test_the_exponent_of_the_near_wall_drag_comes_from_speeds_along_a_wall(self):
         distances = [0.05, 0.1, 0.3, 1.0]
         speeds = [1 / (1 + 0.07 * d ** -1.25) for d in distances]
         self.write("reduced.csv", "\n".join(["d [sigma], v [v_t]", *(f"{d},{v}" for d, v in zip(distances, speeds))]))
-        # The same in units of a laboratory, for a droplet of 2 mm at 0.5 mm/s.
+        # The same profile in units of a laboratory, for a droplet of 2 mm at 0.5 mm/s.
         self.write("mm.csv", "\n".join(["# tilt 5 deg", "frame, d [mm], v [mm/s]", *(f"7,{2 * d},{v / 2}" for d, v in zip(distances, speeds))]))
         for arguments in (["reduced.csv"], ["mm.csv", "--diameter", "2mm", "--speed=0.5 mm/s"]):
             fit = json.loads(self.succeed("clogfit", "drag", *arguments, "--format", "json").stdout)
@@ -70,7 +70,7 @@ class Fit(ProgramTest):
         return pandas.read_hdf(self.copy_sweep("sweep.h5", *SMALL, *settings), "runs")
 
     def change(self, **columns):
-        """Writes other results into the rows of the sweep file, and adjusts results that depend on the status."""
+        """Writes other results into the rows of the sweep's file, and adjusts results that depend on the status."""
         if "status" in columns:
             status = np.array(columns["status"])
             columns.setdefault("clogged_by", np.where(status == b"clogged", b"certified", b"none"))
@@ -92,15 +92,15 @@ class Fit(ProgramTest):
         told = self.succeed("clogfit", "sweep.h5", "--pool", "max-time").stdout
         self.assertIn("4 runs repeat droplets of longer runs and do not count (--pool)\n", told)
         self.assertIn("groups that differ only in max-time are joined (--pool)\n", told)
-        # With another number of boxes the same seed gives another array, so these runs repeat no droplets and all
-        # count.
+        # With another number of boxes the same seed gives another array. So these runs do not repeat droplets, and all
+        # of them count.
         self.succeed("clogsweep", "merge", "short.h5", "wide.h5", "--output", "boxes.h5")
         group, = json.loads(self.succeed("clogfit", "boxes.h5", "--format", "json", "--pool=boxes,max-time").stdout)["groups"]
         self.assertEqual((group["runs"], group["repeated"]), (8, 0))
         self.refuse("clogfit", "sweep.h5", "--pool=max-time,seeds", words=["invalid --pool=max-time,seeds", "runs that differ in seeds"])
 
     def test_it_gives_the_reference_answer(self):
-        # The classic leukaemia trial has 21 runs with 9 ends and a total distance of 359.
+        # The classic leukaemia trial has 21 runs, of which 9 end, and a total distance of 359.
         self.sweep("seeds=1..21", *FAR)
         times = [6, 6, 6, 6, 7, 9, 10, 10, 11, 13, 16, 17, 19, 20, 22, 23, 25, 32, 32, 34, 35]
         clogged = [1, 1, 1, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0]
@@ -118,7 +118,7 @@ class Fit(ProgramTest):
         self.assertAlmostEqual(at_10["probability"], 0.75294118, places=8)
         self.assertAlmostEqual(at_10["standard_error"], 0.09634965, places=8)
         first = group["survival"][0]
-        self.assertAlmostEqual(first["lower"], 0.6197, places=4)  # R, survfit(conf.type = "log-log")
+        self.assertAlmostEqual(first["lower"], 0.6197, places=4)  # From R, survfit(conf.type = "log-log")
         self.assertAlmostEqual(first["upper"], 0.9516, places=4)
         self.assertEqual(group["censored_distances"], sorted(time for time, c in zip(times, clogged) if not c))
         self.assertGreater(self.fit("--confidence", 0.5)["groups"][0]["survival"][0]["lower"], first["lower"])
@@ -126,16 +126,18 @@ class Fit(ProgramTest):
         self.assertAlmostEqual(narrow["clogging_length_profile_lower"], group["clogging_length"], places=9)
         self.assertAlmostEqual(narrow["clogging_length_profile_upper"], group["clogging_length"], places=9)
 
-    # In these runs some droplets rest for 20 t0 or more, and none clogs by wrapping
+    # In these runs some droplets rest for 20 t0 or more, and no droplet clogs by wrapping
     DWELLING = ["seeds=1..8", "line-tension=0.05,0.3", "max-time=400"]
 
     def longest_first(self, table):
-        """The dwells of every row, each with its length and place, from the longest to the earliest."""
+        """The dwells of every row with their lengths and places. The longest dwell comes first, and each of the others
+        is earlier and shorter than the one before."""
         names = ["longest_dwell", *(f"earlier_dwell_{i}" for i in range(1, 8))]
         return [[(row[name], row[name + "_at"]) for name in names if row[name] > 0] for _, row in table.iterrows()]
 
     def expected_endings(self, table, dwell):
-        """Distance of each run until its droplet rested longer than `dwell`, and whether it did, from the table alone."""
+        """The distance of each run until its droplet rested longer than `dwell`, and whether the droplet rested so
+        long. Both results are computed only from the table."""
         for row, dwells in zip(table.itertuples(), self.longest_first(table)):
             stood = [place for length, place in reversed(dwells) if length > dwell]
             is_clogged = row.status == "clogged"
@@ -156,7 +158,7 @@ class Fit(ProgramTest):
                 self.assertEqual(group["clogging_length"] is None, clogs == 0)
                 if clogs:
                     self.assertAlmostEqual(group["clogging_length"], total / clogs, places=12)
-                # The mechanism of a droplet that moved on is unknown. Speeds come from all runs.
+                # If a droplet moved on after its rest, its mechanism is unknown. Speeds come from all runs.
                 of_clogs = usual[group["line_tension"]]
                 self.assertEqual(group["flowing"], 8 - clogs)
                 self.assertLessEqual(group["squeezed"], of_clogs["squeezed"])
@@ -178,11 +180,13 @@ class Fit(ProgramTest):
                 self.assertGreaterEqual(longer_way, way)
                 self.assertLessEqual(fewer_clogs, clogs)
         self.assertLess(results[0], results[-1])
-        # No run can have rested for its own duration, so the numbers are the same as without the option.
+        # No run can have rested for its whole duration, so with these dwells the numbers are the same as without
+        # --dwell.
         usual = self.fit()["groups"]
         for dwell in (400, 1e9):
             self.assertEqual(self.fit("--dwell", dwell)["groups"], usual)
-        # Compared with the usual fit, this one loses at most one dwell length for each droplet that was still moving.
+        # This fit loses at most 0.05 for each droplet that was still moving, because a droplet that moves by less
+        # counts as resting.
         for (way, clogs), group in zip(results[-3], usual):
             self.assertEqual(clogs, group["clogs"])
             self.assertLess(group["total_distance"] - way, 0.05 * (group["flowing"] + 1))
@@ -222,11 +226,12 @@ class Fit(ProgramTest):
         self.assertEqual(fit["units"]["relative_speed_pooled_error"], "v_t")
         self.assertEqual(fit["units"]["clogging_length_wrapped_upper"], "sigma")
         self.assertLessEqual(set(fit["units"]), set(group))
-        self.assertNotIn("mean_speed", group)  # the table has such a column, in other units
+        self.assertNotIn("mean_speed", group)  # The table has a column of this name, in other units.
 
     def test_it_says_what_spoils_a_length(self):
         self.sweep("seeds=1..24", *FAR)
-        self.change(distance=[5.0] * 12 + [5.1] * 12, status=[b"clogged"] * 24)  # these distances are far from exponential
+        # These distances are far from exponential.
+        self.change(distance=[5.0] * 12 + [5.1] * 12, status=[b"clogged"] * 24)
         fit = self.fit()
         group, = fit["groups"]
         self.assertEqual(group["doubts"], "not_exponential")
@@ -290,13 +295,13 @@ class Fit(ProgramTest):
         self.assertEqual([step["distance"] for step in group["survival"]], [0, 1, 2, 3])
         text = self.succeed("clogfit", "sweep.h5", "--from-distance=0.5").stdout
         self.assertIn("3 runs ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all runs", text)
-        # Mechanisms are also shown if all remaining runs clogged by the same mechanism.
+        # Mechanisms are also printed if all remaining runs clogged by the same mechanism.
         self.assertRegex(self.succeed("clogfit", "sweep.h5", "--from-distance=3").stdout, "w/s/h/o.*\n.* 1/0/0/0 ")
         group, = self.fit()["groups"]
         self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (8, 6, 0))
         group, = self.fit("--from-distance", 100)["groups"]
         self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (0, 0, 8))
-        self.assertIsNone(group["doubts"])  # there are no runs
+        self.assertIsNone(group["doubts"])  # There are no runs.
         self.assertNotIn("> 0", self.succeed("clogfit", "sweep.h5", "--from-distance=100").stdout)
 
     def test_each_mechanism_has_a_length_of_its_own(self):
@@ -348,20 +353,20 @@ class Fit(ProgramTest):
         self.assertEqual([group[name] for name in ("runs", "clogs", "broken", "flowing", "squeezed", "other")], [10, 4, 4, 2, 4, 0])
         self.assertEqual([group[name] for name in ("total_distance", "clogging_length", "break_up_length")], [55, 55 / 4, 55 / 4])
         self.assertTrue(group["break_up_length_lower"] < 55 / 4 < group["break_up_length_upper"])
-        # Computed by hand: each end adds P just before it, divided by the number of runs at risk. This is 1/10 until
-        # the first run is censored at 5, then 6/10 of 1/5.
+        # Computed by hand: at each end, the incidence grows by the P just before the end, divided by the number of runs
+        # at risk. The growth is 1/10 until the first run is censored at 5, and then 6/10 of 1/5.
         broken = [(step["distance"], round(step["probability"], 12)) for step in group["incidence"]["broken"]]
         self.assertEqual(broken, [(2, 0.1), (3, 0.2), (7, 0.32), (8, 0.44)])
         clogged = [round(step["probability"], 12) for step in group["incidence"]["squeezed"]]
         self.assertEqual(clogged, [0.1, 0.2, 0.32, 0.44])
         self.assertEqual(set(group["incidence"]), {"squeezed", "broken"})
-        self.assertEqual(group["censored_distances"], [2, 3, 5, 7, 8, 10])  # clogged runs are not listed
+        self.assertEqual(group["censored_distances"], [2, 3, 5, 7, 8, 10])  # Clogged runs are not listed.
         text = self.succeed("clogfit", "sweep.h5").stdout
         self.assertRegex(text, r"95 % +broken +lambda_b/sigma.*\n.* 4 +13\.\d+ ")
         self.assertIn("lambda_b: mean distance before break-up", text)
         self.assertNotIn("w/s/h/o", text)
-        # A droplet that rested for long counts as ended at its place of rest, even if it broke later. Otherwise it ends
-        # where it broke.
+        # The run of a droplet that rested for long ends at the place of this rest, even if the droplet broke later.
+        # Otherwise the run ends where the droplet broke.
         dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5") if name.startswith(("longest_dwell", "earlier_dwell"))]
         self.change(**{name: np.nan for name in dwells})
         self.assertEqual(self.fit("--dwell", 0.9)["groups"][0]["broken"], 4)
@@ -472,7 +477,7 @@ class Fit(ProgramTest):
     def test_numbers_have_the_figures_that_their_interval_allows(self):
         self.sweep("seeds=1..12", *FAR, "line-tension=0.3,1,3")
         chance = np.random.default_rng(1)
-        lengths = np.tile([0.05, 7, 30], 12)  # in the order of the tasks: seeds vary slowest
+        lengths = np.tile([0.05, 7, 30], 12)  # In the order of the tasks, the seeds vary slowest.
         self.change(distance=np.minimum(lengths * chance.exponential(size=36), 90), status=[b"clogged"] * 36,
                     mean_speed=100 * chance.uniform(0.2, 0.4, 36), travel_time=0.5)
         text = self.succeed("clogfit", "sweep.h5").stdout
@@ -493,7 +498,8 @@ class Fit(ProgramTest):
             mine = rows[rows.lattice_angle == group["lattice_angle"]]
             slope = mine.lateral_displacement.sum() / mine.distance.sum()
             self.assertAlmostEqual(group["lateral_slope"], slope, places=12)
-            # Below the critical angle (25.7 degrees for a rigid disk in this lattice) a disk follows the rows of posts.
+            # Below the critical angle (25.7 degrees for a rigid disk in this lattice), a disk follows the rows of
+            # posts.
             self.assertAlmostEqual(slope, math.tan(math.radians(group["lattice_angle"])), delta=0.03)
             self.assertLess(group["lateral_slope_error"], 0.03)
             tangent = math.tan(math.radians(group["lattice_angle"]))
@@ -504,8 +510,8 @@ class Fit(ProgramTest):
 
     def test_own_circles_have_a_share_along_the_rows_that_are_stated(self):
         disks = ["model=sp", "wall-stiffness=10", "max-time=1500"]
-        # These are the posts of a rhombic lattice whose columns are shifted by a quarter of the pitch: 8 columns of 8
-        # posts.
+        # These are the posts of a rhombic lattice, 8 columns of 8 posts. Each column is shifted by a quarter of the
+        # pitch.
         posts = [(1.5 * i + 0.1, (1.5 * (j + i / 4)) % 12) for i in range(8) for j in range(8)]
         self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x, y in posts))
         self.succeed("clogsweep", *disks, "obstacles=posts.csv", "box=12", "seeds=1..3", "release=anywhere", "--output", "sweep.h5")

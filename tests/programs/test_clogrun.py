@@ -15,7 +15,7 @@ from support import BIN, LONGEST, QUICK, ROOT, SMALL, ProgramTest, table
 
 
 def centroid_x(polygon):
-    """Centroid of the enclosed area, for coordinates of shape (2, N)."""
+    """The x coordinate of the centroid of the enclosed area. @param polygon  coordinates of shape (2, N)"""
     (x, y), (after_x, after_y) = polygon, np.roll(polygon, -1, axis=1)
     cross = x * after_y - after_x * y
     return ((x + after_x) * cross).sum() / (3 * cross.sum())
@@ -112,7 +112,8 @@ class Run(ProgramTest):
         travelled = centroid_x(polygons[-1]) - centroid_x(polygons[0])
         self.assertAlmostEqual(travelled, samples["distance"][-1], places=10)
         self.assertGreater(len(obstacles), 5)
-        # Contact is soft: vertices may be inside an obstacle by some hundredths of an edge, which is 0.05 long.
+        # Contact is soft, so vertices may be inside an obstacle by some hundredths of the length of an edge. An edge is
+        # 0.05 long.
         for x, y in polygons.transpose(0, 2, 1).reshape(-1, 2):
             gaps = np.hypot(obstacles[:, 0] - x, obstacles[:, 1] - y) - obstacles[:, 2] / 2
             self.assertGreater(gaps.min(), -0.002)
@@ -163,7 +164,7 @@ class Run(ProgramTest):
         self.succeed("clogrun", "array", *QUICK, "obstacle-gap=0.4", "seeds=2", "--write-obstacles", "array.csv", "--output", "a.h5")
         header = (self.folder / "array.csv").read_text().splitlines()[0]
         self.assertEqual(header, "x,y,diameter")
-        # With --obstacles a density in the config has no effect, even if no array with the file's gap could have this
+        # With --obstacles a density in the config has no effect, even if no array with this gap could have such a
         # density.
         self.write("dense.cfg", "obstacle-density = 2.5\n")
         self.succeed("clogrun", "array", "vertices=64", "box=20", "max-time=60", "seeds=2", "--config", "dense.cfg", "obstacle-density=12.5%", "--obstacles", "array.csv", "--output", "b.h5")
@@ -173,7 +174,7 @@ class Run(ProgramTest):
         self.assertEqual(second.obstacle_filling, "file")
 
     def test_a_droplet_comes_to_rest_on_the_users_own_obstacles(self):
-        # Two circles below the droplet's start leave a gap narrower than the droplet.
+        # Below the start of the droplet there are two circles, with a gap that is narrower than the droplet.
         self.write("gate.csv", "# a gate\n\n12,9.65,0.3\n12,10.35\n")
         done = self.succeed("clogrun", "array", "--obstacles", "gate.csv", "box=20", "vertices=128", "line-tension=3",
                             "max-time=3000", "--output", "run.h5")
@@ -202,7 +203,7 @@ class Run(ProgramTest):
                 self.assertLess((energy + samples.dissipated_energy).pipe(np.ptp), 1e-4 * samples.dissipated_energy.iloc[-1])
 
     def test_a_droplet_that_creeps_along_walls_with_friction_is_not_certified(self):
-        # The droplet creeps for 3000 t0, then continues for 15 sigma. If the search for a rest began as early as
+        # The droplet creeps for 3000 t0, and then travels another 15 sigma. If the search for a rest began as early as
         # without friction, it would certify a clog.
         self.succeed("clogrun", "array", "preset=elastic", "friction=0.1", "line-tension=0.3", "vertices=256", "obstacle-gap=0.3", "obstacle-density=65%",
                      "box=50", "boxes=4", "seeds=6", "max-time=300", "--sample-interval=60", "--output", "creep.h5")
@@ -213,8 +214,8 @@ class Run(ProgramTest):
         self.assertEqual(table(self.folder / "creep.h5").status[0], "flowing")
 
     def test_a_droplet_at_rest_is_certified_although_its_walls_yield_many_times(self):
-        # Friction acts on both parts of the interface that lie over an obstacle. The kinetic energy falls by a factor
-        # of 10 in 330 t0, and the search for a rest begins shortly before max-time.
+        # Friction acts on both parts of the interface that are over an obstacle. The kinetic energy falls by a factor
+        # of 10 in 330 t0. The search for a rest begins shortly before max-time.
         done = self.succeed("clogrun", "array", "preset=elastic", "friction=0.2", "line-tension=0.1", "vertices=256", "obstacle-gap=0.3",
                             "obstacle-density=saturated", "box=40", "seeds=1", "max-time=2400", "--output", "rest.h5")
         self.assertIn("clogged after r = 1.328", done.stdout)
@@ -247,7 +248,7 @@ class Run(ProgramTest):
                     self.assertRegex(page, rf"(?m)^\|[^|]*`{name}`[^|]*\| {re.escape(unit)} \|")
 
     def test_a_droplet_is_released_whose_springs_would_keep_it_sliding(self):
-        """This release was once refused, although a droplet with half the line tension was released."""
+        """This release was once refused, although a droplet with half the line tension could be released."""
         done = self.succeed("clogrun", "array", "preset=robust", "vertices=64", "box=40", "line-tension=0.1", "obstacle-gap=0.4",
                             "seeds=1", "max-time=1", "--output", "r.h5")
         self.assertTrue(done.stdout.startswith("flowing after "), done.stdout)
@@ -313,7 +314,7 @@ class Run(ProgramTest):
         self.assertNotIn(": 0 s on", self.succeed("clogrun", "array", *SMALL, "max-time=0.1", "--dry-run", "--output", "run.h5").stdout)
         self.assertIn("on this machine", told)
         samples, polygons = map(int, re.search(r"# at most (\d+) samples and (\d+) polygons", told).groups())
-        # The output is a config that gives the same run.
+        # The output is a config. The same run must follow from it.
         self.write("told.cfg", told)
         self.succeed("clogrun", "array", "--config", "told.cfg", "--polygon-interval", 5, "--output", "run.h5")
         with h5py.File(self.folder / "run.h5") as file:

@@ -15,9 +15,9 @@ import pandas
 import stored_rows
 from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest, SweepTest
 
-# Columns that are not results, but say where and how fast a row was computed.
+# Columns that are no results. These columns state where and how fast a row was computed.
 CIRCUMSTANCES = ["wall_seconds", "processor_seconds", "rank", "host"]
-# This library writes to the file FORK_LOG which process has forked, and which has started MPI.
+# A library that writes to the file FORK_LOG which process has forked, and which has started MPI.
 FORK_LOGGER = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -156,7 +156,8 @@ class Sweep(ProgramTest):
         self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-3])
         self.assertRegex(lines[-2], "^# at most [0-9.e+-]+ core-hours on this machine")
         self.assertRegex(lines[-1], self.EXPECTED + r"tried for [0-9.e+-]+ s in total, \d+ of them ended$")
-        self.assertLess(float(re.search("tried for ([^ ]+) s", lines[-1])[1]), 1.05 * elapsed)  # the text has two figures
+        # The printed time has two significant digits.
+        self.assertLess(float(re.search("tried for ([^ ]+) s", lines[-1])[1]), 1.05 * elapsed)
         self.assertEqual(self.snapshot(), {})
 
     def test_a_dry_run_estimates_from_stored_runs(self):
@@ -170,7 +171,7 @@ class Sweep(ProgramTest):
         self.assertRegex(left, r"^# s.h5 has 6 of 60 tasks; 54 to go: expected \S+ core-hours more \(95 %: \S+ to \S+\)$")
         of_all, more = (float(re.search("expected ([^ ]+) ", line)[1]) for line in (expected, left))
         self.assertAlmostEqual(more / of_all, 1 - hours / of_all, delta=0.1)
-        # Nothing remains to be estimated.
+        # Nothing remains for an estimate.
         told = self.succeed("clogsweep", *sweep, "seeds=1..3", "--dry-run").stdout.splitlines()[-1]
         self.assertEqual(told, f"# s.h5 has all 6 tasks, which took {hours:.2g} core-hours; nothing is left to do")
 
@@ -328,11 +329,11 @@ class Isolated(ProgramTest):
         return process
 
     def children_of(self, pid):
-        # Does not call `pgrep`: on a busy machine a run might end before `pgrep` had looked.
+        # `pgrep` is not used here, because on a busy machine a run might end before `pgrep` has looked.
         return [int(child) for thread in pathlib.Path(f"/proc/{pid}/task").glob("*/children") for child in thread.read_text().split()]
 
     def computing_process(self, rank):
-        """The process that the rank's helper has started."""
+        """The process that the helper of the rank has started."""
         deadline = time.time() + LONGEST
         while time.time() < deadline:
             found = [process for helper in self.children_of(rank.pid) for process in self.children_of(helper)]
@@ -373,10 +374,10 @@ class Isolated(ProgramTest):
         sweep = ["seeds=1", "max-time=2e4", "--report-seconds=0.1"]
         process = self.start(*sweep)
         computing = self.computing_process(process)
-        # Waits for the first snapshot, because without a snapshot the resumed run would begin again.
+        # Waits for the first snapshot. Without a snapshot the resumed run would start from its beginning.
         self.wait_for(lambda: table(self.folder / "s.h5").steps.gt(STEPS_PER_SNAPSHOT).any())
         os.kill(computing, signal.SIGSTOP)
-        time.sleep(0.5)  # in this time the rank requests reports
+        time.sleep(0.5)  # During this time the rank requests reports.
         process.send_signal(signal.SIGTERM)
         self.ended(process, 75)
         rows = table(self.folder / "s.h5")
@@ -384,7 +385,7 @@ class Isolated(ProgramTest):
         self.assertGreater(rows.distance[0], 0, "the last report counts")
         self.wait_for_end_of([computing])
         hung_at = rows.distance[0]
-        # The process hangs again before its first report, so its state is that of the stored row.
+        # The process stops again before its first report. So its state must be the state in the stored row.
         process = self.start(*sweep[:2], "--report-seconds=100")
         os.kill(self.computing_process(process), signal.SIGSTOP)
         process.send_signal(signal.SIGTERM)
@@ -437,11 +438,12 @@ class Told(ProgramTest):
         try:
             while part := os.read(ours, 4096):
                 seen += part
-        except OSError:  # the other end has been closed
+        except OSError:  # The other end has been closed.
             pass
         os.close(ours)
         self.assertEqual(process.wait(), 0)
-        # The final screen: a carriage return overwrites the line, and the escape clears its rest.
+        # This is the final content of the screen. A carriage return makes the following text overwrite the line, and
+        # the escape clears the rest of the line.
         lines = []
         for line in seen.decode().removesuffix("\r\n").split("\r\n"):
             lines.append(line.split("\r")[-1].removesuffix("\x1b[K"))
@@ -498,7 +500,7 @@ class Refusals(ProgramTest):
 
     def test_a_density_that_not_every_seed_reaches_is_refused_with_the_largest(self):
         keys = ["vertices=64", "box=20", "max-time=60"]
-        # The second number of each pair exceeds the largest density by one in the fourth digit.
+        # The second number of each pair is larger than the largest possible density by one in the fourth digit.
         for geometry, too_large in [([], ["9", "2.623"]), (["obstacle-diameter-spread=0.5"], ["6", "3.766"])]:
             largest = f"{float(too_large[1]) - 0.001:.3f}"
             for density in too_large:

@@ -1,4 +1,4 @@
-"""Tests the answers to wrong commands, and what the programs refuse to do."""
+"""Tests the answers to wrong commands, and checks what the programs refuse."""
 
 import unittest
 
@@ -6,7 +6,7 @@ from support import BLOCKED, QUICK, SMALL, ProgramTest
 
 
 class Meant(ProgramTest):
-    """Tests messages that suggest what was meant."""
+    """Tests messages that suggest what the user meant."""
 
     def test_a_misspelt_command_is_answered_with_the_one_meant(self):
         for program, words, meant in [("clogsweep", ["stauts", "s.h5"], "clogsweep status"),
@@ -110,7 +110,7 @@ class Meant(ProgramTest):
 
 class Failing(ProgramTest):
     def test_a_sweep_whose_every_run_failed_is_no_success(self):
-        for told in ("failed, attempt 2", "nothing left to do"):  # both texts appear also the second time
+        for told in ("failed, attempt 2", "nothing left to do"):  # Both texts appear the second time, too.
             done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--output", "f.h5")
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertIn(told, done.stderr)
@@ -124,11 +124,11 @@ class Failing(ProgramTest):
 
 
 class Parameters(ProgramTest):
-    """Tests lines of configs, and the line of parameters above the tables of clogfit and clogsweep status."""
+    """Tests lines of configs, and the line with parameters above the tables of clogfit and clogsweep status."""
 
     def test_a_line_of_a_config_that_is_no_setting_is_named(self):
-        # The first line once made Boost loop for ever, because Boost replaces names between percent signs in its
-        # messages.
+        # Boost replaces names between percent signs in its messages. Because of this, the first line once made Boost
+        # loop for ever.
         for line in ("%prefix%invalid_line%", "line-tension 3"):
             self.write("bad.cfg", f"# a comment\nvertices = 64\n{line}\n")
             self.refuse("clogsweep", "--config", "bad.cfg", "--output", "s.h5", words=["bad.cfg line 3", line, "key = value"])

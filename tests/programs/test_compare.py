@@ -1,5 +1,5 @@
-"""Tests the comparison of the clogging lengths of two sweeps, several files that are read as one sweep, and the events
-of a sweep."""
+"""Tests three features: the comparison of the clogging lengths of two sweeps, several files that are read as one sweep,
+and the events of a sweep."""
 
 import json
 import math

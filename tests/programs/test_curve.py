@@ -1,4 +1,4 @@
-"""Tests clogfit curve, a smooth curve through the clogging lengths of a sweep, with rows that have known distances."""
+"""Tests clogfit curve, which fits a smooth curve to the clogging lengths of a sweep. The rows have known distances."""
 
 import csv
 import io
@@ -16,18 +16,18 @@ from support import BIN, ROOT, SMALL, ProgramTest
 sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
 
-# Droplets of these runs might travel a hundred diameters, so a test may give their rows any distance up to that.
+# Droplets of these runs can travel a hundred diameters. So a test may give the rows any distance up to this.
 FAR = ["max-time=1", "terminal-speed=100", "seeds=1..6"]
 TENSIONS = [0.03, 0.1, 0.3, 1.0, 3.0]
-LENGTHS = [0.1, 1.0, 10.0, 1.0, 0.1]  # a peak at 0.3
-# Six runs whose distances follow the exponential law exactly.
+LENGTHS = [0.1, 1.0, 10.0, 1.0, 0.1]  # The peak is at 0.3.
+# The distances of these six runs follow the exponential law exactly.
 EXPONENTIAL = -np.log(1 - (np.arange(6) + 0.5) / 6)
 PEAKED = [*FAR, "line-tension=" + ",".join(map(str, TENSIONS))]
 
 
 class Curve(ProgramTest):
     def sweep(self, *settings, lengths=None):
-        """@param lengths  by line tension; all other runs keep their results"""
+        """Makes a sweep. @param lengths  clogging lengths by line tension; all other runs keep their results"""
         table = pandas.read_hdf(self.copy_sweep("sweep.h5", *SMALL, *settings), "runs")
         if lengths is not None:
             way = np.array([lengths[row.line_tension] * EXPONENTIAL[row.seed - 1] for row in table.itertuples()])
@@ -143,7 +143,7 @@ class Curve(ProgramTest):
         self.sweep(FAR[0], FAR[2], "line-tension=0.1,0.3,1,3", "obstacle-gap=0.4,0.5", lengths=tensions)
         self.assertEqual([curve["common_obstacles"] for curve in self.curve("--key=line-tension")["curves"]], [True, True])
         self.assertIn(words, self.succeed("clogfit", "curve", "sweep.h5", "--key=line-tension").stdout)
-        # test_fitted_curves.py tests keys that change the array, and points with different seeds.
+        # Keys that change the array, and points with different seeds, are tested in test_fitted_curves.py.
 
     def test_several_files_are_one_sweep(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
@@ -153,7 +153,7 @@ class Curve(ProgramTest):
             names.append(f"part{len(names)}.h5")
             self.succeed("clogsweep", "select", "sweep.h5", f"line_tension{tensions}", "--output", names[-1])
         told = json.loads(self.succeed("clogfit", "curve", *names, "--format", "json").stdout)
-        # The number of threads of BLAS may change the last digits.
+        # The last digits are left out, because they may depend on the number of BLAS threads.
         one, other = (json.loads(json.dumps(curves), parse_float=lambda number: float(f"{float(number):.8g}")) for curves in (told["curves"], whole))
         self.assertEqual(one, other)
         self.refuse("clogfit", "curve", "sweep.h5", "no.h5", words=["no.h5"])

@@ -1,4 +1,4 @@
-"""Tests that readers notice damage of files, and that salvage keeps intact parts."""
+"""Tests that readers notice damage to files, and that salvage keeps intact parts."""
 
 import contextlib
 import io
@@ -42,7 +42,7 @@ class Damage(ProgramTest):
         self.rows = table(self.file)
 
     def multiply_a_distance(self):
-        """Multiplies the distance of a clogged row by 16, as a flipped bit of the exponent might."""
+        """Multiplies the distance of a clogged row by 16. A flipped bit in the exponent could do this."""
         content = self.file.read_bytes()
         self.file.write_bytes(content.replace(struct.pack("<d", self.rows.distance[1]), struct.pack("<d", 16 * self.rows.distance[1])))
         self.assertNotEqual(self.file.read_bytes(), content)
@@ -62,7 +62,7 @@ class Damage(ProgramTest):
         self.assertIn("row 1 (task 1) is not as it was written\ns.h5: 5 undamaged rows, 1 fault\n", verified.stdout)
         with self.assertRaises(stored.Damaged):
             stored.read_rows(self.file)
-        # HDF5's own checksum of the table's chunks protects readers that do not know our checksums.
+        # Readers that do not know our checksums are protected by HDF5's own checksum of the table's chunks.
         with self.assertRaises(OSError), h5py.File(self.file) as file:
             file["runs"][:]
         with pandas.HDFStore(self.file, "r") as store, self.assertRaisesRegex(Exception, "read"):
@@ -124,7 +124,7 @@ class Damage(ProgramTest):
         self.assertIn("preset=viscous", self.succeed("clogfit", "s.h5").stdout)
 
     def test_what_verify_refuses_is_not_salvaged(self):
-        """A file of somebody else may match its checksums and still contain impossible values."""
+        """A file from elsewhere may match its checksums and still contain impossible values."""
         def repeat_a_run(rows):
             rows[2] = rows[1]
             rows["task"][2] = 2
@@ -170,21 +170,22 @@ class Damage(ProgramTest):
         self.refuse("clogfit", "copy.h5", words=["row 2 (task 2)"])
 
     def copied(self):
-        """Copies the file as another program would: with all its content, but without a seal."""
+        """Copies the file as another program would. The copy has all content, but no seal."""
         content = self.file.read_bytes()
         copy = self.folder / "copy.h5"
         copy.write_bytes(content[:content.rindex(b"\nclogsweep seal")])
         return copy
 
     def test_verify_tells_when_only_other_readers_refuse_a_copy(self):
-        """HDF5's checksum of a chunk includes the padding, whereas our checksums cover only rows and attributes."""
+        """HDF5's checksum of a chunk includes the padding. Our checksums cover only rows and attributes."""
         copy = self.copied()
         whole = copy.read_bytes()
         with h5py.File(copy) as file:
             chunks = {name: file[name].id.get_chunk_info(0) for name in ("runs", "row_checksums")}
             num_rows, row_size = len(file["runs"]), file["runs"].dtype.itemsize
         self.assertIn("all undamaged", self.succeed("clogsweep", "verify", "copy.h5").stdout)
-        last = {name: chunk.byte_offset + chunk.size - 1 for name, chunk in chunks.items()}  # the last byte of the chunk's checksum
+        # Offsets of the last bytes of the checksums of the chunks.
+        last = {name: chunk.byte_offset + chunk.size - 1 for name, chunk in chunks.items()}
         for place in (*last.values(), chunks["runs"].byte_offset + num_rows * row_size):
             content = bytearray(whole)
             content[place] ^= 1
@@ -200,7 +201,7 @@ class Damage(ProgramTest):
                 (self.folder / "whole.h5").unlink()
 
     def test_python_does_not_read_a_copy_whose_description_is_damaged(self):
-        """Our checksums cover the bytes of rows only. With other names, types or positions of columns these bytes would
+        """Our checksums cover only the bytes of rows. With other names, types or positions of columns these bytes would
         mean other numbers."""
         copy = self.copied()
         whole = copy.read_bytes()
@@ -221,7 +222,7 @@ class Damage(ProgramTest):
         self.assertGreater(refused, 15)
 
     def test_the_check_of_a_copy_is_not_reused_for_a_changed_copy(self):
-        """Once, the result of the check was cached by name and time, so a changed copy with the same time counted as
+        """The result of the check was once cached by name and time. So a changed copy with the same time counted as
         undamaged."""
         copy = self.copied()
         clogsweep.open(copy)
@@ -241,8 +242,8 @@ class Damage(ProgramTest):
             clogsweep.open(run)
 
     def test_little_memory_is_no_damage_and_no_crash(self):
-        """HDF5 and Open MPI crash if memory is short. Once, an intact file that they could not load was called
-        damaged."""
+        """HDF5 and Open MPI crash if memory is short. An intact file was once reported as damaged because they could
+        not load it."""
         if not may_limit_memory():
             self.skipTest("programs with sanitizers map more memory than any machine has")
         sweep = [*SETTINGS[:-1], "new.h5"]
@@ -256,12 +257,13 @@ class Damage(ProgramTest):
             for name, *arguments in [("clogfit", "s.h5"), ("clogsweep", "verify", "s.h5"), ("clogsweep", *sweep)]:
                 size = megabytes * 2**20
                 done = run_with(size, name, arguments)
-                # If memory exceeds what loading takes by less than 150 kB, Highway's library ends the process before
-                # main().
+                # If the memory exceeds what loading needs by less than 150 kB, the library Highway ends the process
+                # before main().
                 if done.returncode == -signal.SIGABRT and run_with(size - 2**18, name, arguments).returncode == 127:
                     continue
                 with self.subTest(program=name, arguments=arguments[:1], megabytes=megabytes):
-                    self.assertIn(done.returncode, (0, 2, 127), done.stderr)  # 127: the libraries do not fit into memory
+                    # The code is 127 if the libraries do not fit into memory.
+                    self.assertIn(done.returncode, (0, 2, 127), done.stderr)
                     self.assertNotIn("damaged", done.stderr)
                 told.append((done.returncode, "out of memory" in done.stderr))
         self.assertIn((2, True), told)
@@ -278,7 +280,7 @@ class Damage(ProgramTest):
         pandas.testing.assert_frame_equal(table(self.folder / "packed.h5"), self.rows)
 
     def test_a_table_of_another_description_is_not_read(self):
-        """The table's description is compared before a row is read."""
+        """The description of the table is compared before any row is read."""
         def put(file, rows, **options):
             meanings = dict(file["runs"].attrs)
             del file["runs"]
@@ -320,11 +322,11 @@ class Damage(ProgramTest):
             self.assertEqual(self.file.read_bytes(), before)
 
     def test_a_column_offset_beyond_the_row_is_refused(self):
-        """With a wrong offset of a member in the table's description, memory outside the row was once shown as a
-        value."""
+        """The description of the table contains the offset of each column. With a wrong offset, memory outside the row
+        was once shown as a value."""
         content = bytearray(self.file.read_bytes()[:-stored.SEAL_SIZE])
         name = content.index(b"kinetic_energy_ratio\0")
-        offset = name + 24  # names are padded to eight bytes, and the member's offset follows
+        offset = name + 24  # Names are padded to eight bytes, and the offset of the column follows.
         self.assertLess(struct.unpack_from("<I", content, offset)[0], 2000)
         struct.pack_into("<I", content, offset, 60000)
         self.file.write_bytes(content)
@@ -333,10 +335,11 @@ class Damage(ProgramTest):
 
     def test_a_full_disk_ends_with_exit_code_2(self):
         def limit():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # the program must ignore SIGXFSZ, which would end it
+            # The program must ignore SIGXFSZ, which would otherwise end it.
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
 
         for name, *arguments in [("clogsweep", *SETTINGS[:-1], "new.h5"), ("clogrun", "array", *QUICK, "seeds=1", "--output", "run.h5")]:
-            # Without these settings, a daemon of Open MPI and the shared memory of MPICH would meet the limit, too.
+            # Without these settings, the limit would also affect a daemon of Open MPI and the shared memory of MPICH.
             done = subprocess.run([BIN / name, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, preexec_fn=limit,
                                   env={**os.environ, "OMPI_MCA_ess_singleton_isolated": "1", "UCX_TLS": "self,tcp"})
             self.assertEqual(done.returncode, 2, done.stderr)

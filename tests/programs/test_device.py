@@ -1,5 +1,5 @@
-"""Tests devices of a user: files of circles in any form, walls, entrance and exit; drawings of devices, and pictures of
-them."""
+"""Tests devices of a user: files of circles in any form, walls, entrance and exit, drawings of devices, and pictures of
+devices."""
 
 import contextlib
 import io
@@ -27,7 +27,8 @@ from clogsweep.drawing import device as drawn
 from clogsweep.drawing import device_plan
 from clogsweep.tools.errors import UserError
 
-ROW = [(4 + 3 * i, 0.9 + 1.7 * j + 0.6 * (i % 2)) for i in range(4) for j in range(3)]  # posts, in droplet diameters
+# Places of posts, in droplet diameters.
+ROW = [(4 + 3 * i, 0.9 + 1.7 * j + 0.6 * (i % 2)) for i in range(4) for j in range(3)]
 KEYS = ["box=6", "length=18", "side-walls=on", "release=entrance", "entrance=1", "exit=16", "vertices=64", "line-tension=0.05",
         "max-time=2000", "seeds=1..3"]
 SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="3.6mm" height="1.2mm" viewBox="0 0 3600 1200">
@@ -44,8 +45,8 @@ def csv(scale=1.0):
 
 class Walls(Analysis):
     def slide(self, angle, tolerance):
-        """A droplet that slides along a wall without friction, at an angle to the flow, has its terminal speed times
-        the cosine of the angle. Its speed along the flow has the square of the cosine."""
+        """Without friction, a droplet slides along a wall at its terminal speed times the cosine of the angle between
+        wall and flow. The droplet's speed along the flow is the terminal speed times the square of the cosine."""
         tangent = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
         for radius, spacing, vertices in ((0.05, 0.0167, 128), (0.1, 0.0333, 64)):
             normal = np.array([-tangent[1], tangent[0]])
@@ -145,7 +146,7 @@ class Devices(Walls):
         self.assertIn("other.cfg replaces the laboratory stored with the rows", self.succeed("clogfit", "s.h5", "--lab", "other.cfg").stderr)
 
     def test_droplets_that_rest_uncertified_are_named(self):
-        # The flat top of a row of circles across the flow holds no droplet sideways.
+        # The top of a row of circles across the flow is flat, so it does not hold the droplet sideways.
         self.write("row.csv", "".join(f"10,{y:.4f},0.1\n" for y in np.arange(3, 7, 0.0167)))
         self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=8", "entrance-from=4.9", "entrance-to=5.1",
                      "line-tension=1", "vertices=64", "max-time=1500", "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "s.h5")
@@ -154,8 +155,8 @@ class Devices(Walls):
         group, = json.loads(self.succeed("clogfit", "s.h5", "--dwell", 1000, "--format", "json").stdout)["groups"]
         self.assertEqual((group["clogs"], group["flowing"]), (1, 0))
         self.assertNotIn("at rest", self.succeed("clogfit", "s.h5", "--dwell", 1000).stdout)
-        # The droplet rests from the beginning to max-time, 1000 t0. The --dwell that clogfit suggests must be shorter
-        # than this.
+        # The droplet rests from the beginning to max-time, which is 1000 t0. The --dwell that clogfit suggests must be
+        # shorter.
         self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=9.44", "entrance-from=4.9", "entrance-to=5.1",
                      "line-tension=1", "vertices=64", "max-time=1000", "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "t.h5")
         self.assertIn("--dwell=900 counts it as clogged", self.succeed("clogfit", "t.h5").stdout)
@@ -342,7 +343,7 @@ class Drawings(Analysis):
         space.add_text("not a post")
         drawing.saveas(self.folder / "device.dxf")
         self.assert_posts(self.circles("device.dxf"), 1e-6)
-        # clogsweep reads the file by means of the printed command.
+        # With the printed command clogsweep reads the file.
         self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-2], "max-time=5", "seeds=1", "--output", "s.h5")
         self.assertEqual(len(table(self.folder / "s.h5")), 1)
 
@@ -412,7 +413,7 @@ class Drawings(Analysis):
 
 
 class WrongDrawings(Analysis):
-    """Tests drawings with contents that the user may not have intended."""
+    """Tests drawings whose content the user may not have intended."""
 
     COMMAND = ["--droplet", "200um", "--output", "posts"]
 
@@ -482,7 +483,8 @@ class WrongDrawings(Analysis):
         self.assertIn("skipped: 2 LINE", told)
         with mock.patch.dict(sys.modules, {"shapely": None, "shapely.ops": None, "shapely.geometry": None}):
             told = self.said_of("other", circles=[(800, 300), (1600, 300)], lines=lines)
-        self.assertIn("2 outlines or lines extend along the whole device and are taken for walls", told)  # these are lines of the device's edge
+        # The lines are parts of the device's edge.
+        self.assertIn("2 outlines or lines extend along the whole device and are taken for walls", told)
         self.assertIn("skipped: 11 LINE", told)
         self.assertIn("install python3-shapely", told)
 
@@ -492,7 +494,7 @@ class WrongDrawings(Analysis):
         return (pixels[..., 0] > 0.7) & (pixels[..., 1:3] < 0.5).all(axis=2)
 
     def run_printed(self, told, *keys):
-        """The command that `circles` prints."""
+        """Runs the command that `circles` prints."""
         begin = told.strip().splitlines()[-1].removesuffix(" ...").split()
         self.succeed(*begin, "line-tension=1", "vertices=64", "max-time=5", "seeds=1..2", *keys, "--output", "s.h5")
         return begin
@@ -562,7 +564,7 @@ def record(kind, form=0, data=b""):
 
 
 def real(value):
-    """A number in GDSII: a sign, a power of 16, and 56 bits."""
+    """A number in GDSII, which consists of a sign, a power of 16, and 56 bits."""
     power = 0
     if value == 0:
         return bytes(8)
@@ -586,7 +588,7 @@ def gdsii(outlines, metres, more=b"", in_user_units=0.001):
 
 
 class OtherTools(Analysis):
-    """Tests drawings in the form in which other programs write them."""
+    """Tests drawings as other programs write them."""
 
     def device(self, name, *, layer=None, region=None, posts=None, droplet=200e-6, unit=None, tolerance=0.04):
         self.drawing = readers.read(self.folder / name, layer, posts)
@@ -595,7 +597,7 @@ class OtherTools(Analysis):
         return shapes.understood(self.drawing, unit or self.drawing.metres, droplet, tolerance, 0)
 
     def circles_of(self, name, **options):
-        """Circles of the drawing, in micrometres from the device's lower left corner."""
+        """The circles of the drawing, in micrometres from the device's lower left corner."""
         device = self.device(name, **options)
         self.assertEqual([outline.tolist() for outline in device.others], [])
         circles = device.circles * device.droplet_micrometres
@@ -704,8 +706,8 @@ class OtherTools(Analysis):
         axes.set_axis_off()
         for x, y in [(800, 300), (1600, 900)]:
             axes.add_patch(matplotlib.patches.Circle((x, y), 50))
-        axes.scatter([2400], [600], s=(0.1 * 72)**2, linewidths=0)  # a circle of 0.1 inch
-        axes.add_patch(matplotlib.patches.Circle((-500, 600), 50))  # clipped by the axes
+        axes.scatter([2400], [600], s=(0.1 * 72)**2, linewidths=0)  # a circle with a diameter of 0.1 inch
+        axes.add_patch(matplotlib.patches.Circle((-500, 600), 50))  # The axes clip this circle.
         figure.savefig(self.folder / "device.svg")
         np.testing.assert_allclose(self.circles_of("device.svg", droplet=0.2 * 25.4e-3) / 25.4, [(800, 300, 100), (1600, 900, 100), (2400, 600, 100)], rtol=1e-3)
 
@@ -738,7 +740,7 @@ class OtherTools(Analysis):
 
     def test_dxf_polylines_with_a_width(self):
         drawing, space = self.dxf()
-        donut = [(475, 600, 50, 50, 1), (525, 600, 50, 50, 1)]  # a disc of diameter 100, in the form in which DONUT draws it
+        donut = [(475, 600, 50, 50, 1), (525, 600, 50, 50, 1)]  # a disc of diameter 100, as DONUT draws it
         space.add_lwpolyline(donut, format="xyseb", close=True)
         space.add_lwpolyline([(950, 600, 1), (1050, 600, 1)], format="xyb", close=True, dxfattribs={"const_width": 20})
         np.testing.assert_allclose(self.saved(drawing), [(500, 600, 100), (1000, 600, 120)], atol=0.02)
@@ -861,8 +863,8 @@ class OtherTools(Analysis):
             return record(kind) + record(0x12, 6, name) + transform + size + record(16, 3, struct.pack(f">{2 * len(corners)}i", *(1000 * value for corner in corners for value in corner))) + record(17)
 
         def polygons(references):
-            """@param references  references in the cell TOP to the cell MID, which contains an oblique array of the
-            cell POST"""
+            """The polygons of a drawing. @param references  references in the cell TOP to the cell MID, which contains
+            an oblique array of the cell POST"""
             date = record(5, 2, struct.pack(">12h", *[0] * 12))
             post = record(8) + record(13, 2, struct.pack(">h", 1)) + record(14, 2, struct.pack(">h", 0)) + record(16, 3, struct.pack(">8i", 0, 0, 30000, 0, 0, 20000, 0, 0)) + record(17)
             cells = record(7) + date + record(6, 6, b"POST") + post + record(7) + date + record(6, 6, b"MID\0")
@@ -905,9 +907,9 @@ class OtherTools(Analysis):
         drawing, space = self.dxf()
         for x, y in [(800, 300), (1600, 900), (3300, 600), (1000, 290)]:
             space.add_circle((x, y), 50)
-        space.add_circle((200, 600), 150)  # a port
-        space.add_lwpolyline(box(300, 250, 3300, 950), close=True)  # the channel
-        space.add_lwpolyline([(3590, 10), (3580, 10), (3580, 30)], close=True)  # a mark
+        space.add_circle((200, 600), 150)  # A port.
+        space.add_lwpolyline(box(300, 250, 3300, 950), close=True)  # The channel.
+        space.add_lwpolyline([(3590, 10), (3580, 10), (3580, 30)], close=True)  # A mark.
         space.add_line((3400, 0), (3400, 1200))
         device = self.saved(drawing, region=(500, 1200, 2000, 0))
         np.testing.assert_allclose(device, [(300, 50, 100), (500, 40, 100), (1100, 650, 100)], atol=1e-9)

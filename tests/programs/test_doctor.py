@@ -1,4 +1,4 @@
-"""Tests that clogsweep doctor finds problems of sweeps, and prints remedies."""
+"""Tests that clogsweep doctor finds problems of sweeps and prints remedies."""
 
 import os
 import pathlib
@@ -7,7 +7,7 @@ import unittest
 
 from support import BIN, LONGEST, MPI, MPI_MAJOR, MPIRUN, ProgramTest
 
-# Since Open MPI 5 the variable that binds ranks to cores has another name.
+# The variable that binds ranks to cores has another name since Open MPI 5.
 BINDING = "PRTE_MCA_hwloc_default_binding_policy" if MPI_MAJOR >= 5 else "OMPI_MCA_hwloc_base_binding_policy"
 
 

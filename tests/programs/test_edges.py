@@ -1,5 +1,5 @@
-"""Tests the surroundings of a sweep: names with any byte, moved links, file modes and foreign journals. In no case is a
-row lost."""
+"""Tests sweeps in difficult surroundings: names with any byte, links that are moved, file modes, and foreign journals.
+No row may be lost."""
 
 import errno
 import os
@@ -16,7 +16,7 @@ OWN = ["obstacle-layout=file", "box=10", "vertices=64", "max-time=30"]
 
 
 class Limits(SweepTest):
-    """Tests limits of a shell or batch system, which the program must name in one line."""
+    """Tests limits of a shell or of a batch system. The program must name the limit in one line."""
 
     def test_too_few_open_files(self):
         for most in (8, 10, 12, 18):
@@ -25,7 +25,7 @@ class Limits(SweepTest):
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertEqual(done.stderr, f"clogsweep: cannot start MPI (this shell allows {most} open files, 32 are needed); raise the limit: ulimit -n 1024\n")
         done = self.under(resource.RLIMIT_NOFILE, (10, 4096))
-        self.assertEqual(done.returncode, 0, done.stderr)  # the program raises the limit itself
+        self.assertEqual(done.returncode, 0, done.stderr)  # The program itself raises the limit.
 
     def test_too_few_processes(self):
         done = self.under(resource.RLIMIT_NPROC, (1, 1))
@@ -34,7 +34,7 @@ class Limits(SweepTest):
         self.assertEqual(done.stderr.count("\n"), 1)
 
     def under(self, what, limits):
-        """Runs the program under a limit. Root has no limit on processes, so as root the test runs a copy of the
+        """Runs the program under a limit. Root has no limit on processes, so for root the test runs a copy of the
         program as another user."""
         program = shutil.copy(BIN / "clogsweep", self.folder)
         os.chmod(self.folder, 0o777)
@@ -87,11 +87,11 @@ BRIEF = [word.replace("max-time=2e4", "max-time=5e3") for word in SLOW]
 
 
 class Places(SweepTest):
-    """Tests that a path is resolved only once. If others change it meanwhile, neither their files nor any row is
+    """Tests that a path is resolved only once. If other users change the path later, neither their files nor any row is
     affected."""
 
     def begin(self, sweep, output):
-        """Starts a sweep, and waits until it has published a table."""
+        """Starts a sweep. Waits until the sweep has written its table."""
         process = self.start(*sweep[:-1], output, ranks=1)
         self.wait_for(lambda: (self.folder / output).exists() or process.poll() is not None)
         return process
@@ -146,14 +146,14 @@ ACCESS_LIST = "system.posix_acl_access"
 
 
 def access_list(reader):
-    """An access list by which this user may read a file, which only its owner may write."""
+    """An access list for a file that only its owner may write. A second user may read the file."""
     nobody = 2**32 - 1
     entries = [(0x01, 6, nobody), (0x02, 4, reader), (0x04, 0, nobody), (0x10, 4, nobody), (0x20, 0, nobody)]  # owner, a user, group, mask, others
     return struct.pack("<I", 2) + b"".join(struct.pack("<HHI", *entry) for entry in entries)
 
 
 class Access(SweepTest):
-    """Tests that the owner determines who may read a file, before and after it is rewritten."""
+    """Tests that the owner of a file determines who may read it, before and after the file is rewritten."""
 
     GROWN = [*FINISHED[:-1], "seeds=100..104"]
 
@@ -191,15 +191,15 @@ class Access(SweepTest):
         try:
             os.setxattr(file, ACCESS_LIST, access_list(12))
         except OSError as error:
-            self.assertEqual(error.errno, errno.ENOTSUP)  # the file system has no access lists
+            self.assertEqual(error.errno, errno.ENOTSUP)  # The file system has no access lists.
             return
         self.grow()
         self.assertEqual(os.getxattr(file, ACCESS_LIST), access_list(12))
 
 
 class LinksOfOthers(SweepTest):
-    """Tests that links are followed as with fs.protected_symlinks: in a folder where everybody may make links, only the
-    user's own links are followed."""
+    """Tests which links are followed. As with fs.protected_symlinks, only the user's own links are followed in a folder
+    where everybody may make links."""
 
     def open_folder(self):
         folder = self.folder / "open"
@@ -216,7 +216,7 @@ class LinksOfOthers(SweepTest):
 
     def test_links_of_others_are_refused(self):
         if os.geteuid() != 0:
-            return  # only root can make links that belong to somebody else
+            return  # Only root can make links that belong to another user.
         folder = self.open_folder()
         for name in ("s.h5", "t.h5.journal"):
             (folder / name).symlink_to(self.folder / "elsewhere")

@@ -32,7 +32,7 @@ from clogsweep.tools import rounded
 from clogsweep.labels.groups import Groups
 from clogsweep.paper import arrays, dilute
 
-# Coarse droplets and short paths: all runs together take a few seconds.
+# Droplets are coarse and paths are short, so all runs together take a few seconds.
 TINY = {
     **{name: ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4", "obstacle-density=80%"]
        for name in ("clogging-robust", "clogging-friction", "clogging-elastic", "clogging-filling", "clogging-saturated")},
@@ -57,7 +57,7 @@ SINGLE_RUNS = ("1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "D")
 
 
 class Survival(unittest.TestCase):
-    """Tests the curve of figure C2, with numbers like those of clogfit."""
+    """Tests the curve of figure C2 with numbers like those of clogfit."""
 
     STEPS = [{"distance": 2.0, "probability": 0.75, "lower": 0.13, "upper": 0.96}, {"distance": 5.0, "probability": 0.375, "lower": 0.01, "upper": 0.8}]
 
@@ -89,7 +89,7 @@ class Survival(unittest.TestCase):
 
 
 class Parts(unittest.TestCase):
-    """Tests pictures of made-up numbers and outlines."""
+    """Tests pictures of invented numbers and outlines."""
 
     def test_the_legend_of_displacements_has_the_order_of_the_curves_at_their_ends(self):
         def run(end):
@@ -132,8 +132,8 @@ class Parts(unittest.TestCase):
             self.assertGreater(np.abs(np.diff(colours, axis=0)).max(axis=1).min(), 0.3)
 
     def test_a_legend_stays_off_error_bars(self):
-        # The error bars fill the axes except for the lower right, or entirely. The points alone would leave room for
-        # the legend above them.
+        # The error bars fill the axes, completely or except for the lower right. The legend would have room above the
+        # points alone, but not above the bars.
         for lowest in (6, 0):
             axes = style.new_figure().subplots()
             right = np.arange(12) > 8
@@ -163,7 +163,7 @@ class Drawn(Analysis):
         return json.loads(self.succeed("clogfit", f"{self.PLACE}/sweeps/{sweep}.h5", "--format", "json").stdout)["groups"]
 
     def assert_groups(self, name, sweep, quantity):
-        """The numbers beside the picture are exactly clogfit's."""
+        """Checks that the numbers beside the picture are exactly those of clogfit."""
         groups = [group for group in self.fit(sweep) if group[quantity] is not None]
         self.assertGreater(len(groups), 0)
         points = [row for row in self.drawn(name) if row["model"] == groups[0]["model"] and row[quantity]]
@@ -180,14 +180,14 @@ class Drawn(Analysis):
             self.assertIn("seeds 1 to ", about)
 
     def assert_sags(self, name):
-        """A soft disk sinks by pi/(16 E_w)."""
+        """Checks the sags. A soft disk sinks by pi/(16 E_w)."""
         disks = [point for point in self.drawn(name) if point["model"] == "sp"]
         self.assertGreater(len(disks), 0)
         for point in disks:
             self.assertAlmostEqual(float(point["sag"]), math.pi / 16 / float(point["wall_stiffness"]), delta=1e-4)
 
     def call_wrapped(self, sweep, number):
-        """Marks one clog of the sweep as wrapped, and the others as squeezed."""
+        """Marks one clog of the sweep as wrapped, and all others as squeezed."""
         def edit(rows):
             clogged = np.flatnonzero(rows["status"] == b"clogged")
             rows["mechanism"][clogged] = b"squeezed"
@@ -196,7 +196,8 @@ class Drawn(Analysis):
         stored_rows.change(sweep, edit)
 
     def assert_clogs(self, sweep, *names):
-        """Marks one clog as wrapped, because no droplet wraps in so short a sweep, and checks the figures."""
+        """Checks the figures of clogs. One clog is marked as wrapped, because no droplet wraps in such a short
+        sweep."""
         self.call_wrapped(sweep, -1)
         before = table(sweep)
         # A repeated command runs nothing.
@@ -214,7 +215,7 @@ class Drawn(Analysis):
         # A figure that is drawn from existing files must show the droplet that its label names.
         self.call_wrapped(sweep, 0)
         self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-friction-", "leave out --draw-only"])
-        # clogsweep refuses settings that differ from the file's, with its own message.
+        # clogsweep itself refuses settings that differ from those of the file.
         self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--set", "clogging-friction:box=30", words=["box"])
 
     def assert_report(self, sweep):
@@ -232,7 +233,8 @@ class Drawn(Analysis):
         self.assertIn("command_line: clogsweep", page)
 
     def assert_curves(self, names, *more):
-        """@param names  sweep and quantity of each figure with numbers of clogfit, by the figure's name"""
+        """Checks figures with curves. @param names  for each figure with numbers of clogfit, by its name: the sweep and
+        the quantity"""
         done = self.figures(*names, *more, "--ranks", 1)
         self.assertNotIn("Warning", done.stderr)
         for name in [*names, *more]:
@@ -249,17 +251,17 @@ class Drawn(Analysis):
             with self.subTest(figure=name):
                 self.assert_drawn(name)
         self.assert_passage_and_survival()
-        # --draw-only uses existing files, whatever the settings are, and runs nothing.
+        # --draw-only uses existing files, whatever the settings are, and does not run anything.
         before = self.times_of_runs()
         self.assertEqual(len(before), num_runs)
         self.figures(*redrawn, "--draw-only", "--set", "channel:max-time=200")
         self.figures(*names, "--set", "seeds=1..3")
         self.assertEqual(self.times_of_runs(), before)
-        # clogsweep refuses settings that differ from the sweep's, with its own message.
+        # clogsweep itself refuses settings that differ from those of the sweep.
         self.refuse_analysis("figures", redrawn[0], "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
 
     def assert_passage_and_survival(self):
-        """Figures 2 and C2."""
+        """Checks figures 2 and C2."""
         with h5py.File(self.folder / self.PLACE / "runs" / "channel-0.4-0.h5") as file:
             trajectory = file["trajectory"][:]
         points = self.drawn("2")
@@ -276,7 +278,7 @@ class Drawn(Analysis):
 
 
 class Figures(Drawn):
-    """Tests some figures of every kind; slow_figures tests all figures."""
+    """Tests some figures of every kind. slow_figures tests all figures."""
 
     def test_curves_show_what_clogfit_says(self):
         self.assert_curves({"7a": ("clogging-sp", "clogging_length"), "8ca": ("speed", "capillary_number")}, "9b")
@@ -355,7 +357,7 @@ class Pictures(Analysis):
                  if len(line.get_xdata()) == 1 and np.isfinite(line.get_ydata()[0])}
         arrow = drawn.pop(4)[0]
         self.assertEqual(drawn, {1: ("o", True), 2: ("s", False), 3: ("D", False)})
-        # The arrow begins at the lower bound and rises.
+        # The arrow rises from the lower bound.
         self.assertEqual(arrow.vertices[:, 1].min(), 0)
         self.assertEqual([line.get_ydata().tolist() for line in axes.lines if line.get_marker() is arrow], [[1.0]])
         style.legend(axes, groups)
@@ -419,7 +421,7 @@ class Pictures(Analysis):
             self.assertEqual(lengths.reasons_for_hollow_marker(group), doubts)
 
         def hollow_places():
-            """@return places of hollow markers, and the notes"""
+            """@return the places of hollow markers, and the notes"""
             axes = style.figure_of(lengths.draw_on, groups).axes[0]
             notes, = [text.get_text() for text in axes.texts if text.get_gid() == style.NOTES]
             return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white"], notes
@@ -435,7 +437,7 @@ class Pictures(Analysis):
         self.assertEqual(places, [2, 30])
         self.assertIn("hollow: fewer than 5 clogs", notes)
         self.assertIn("incomplete: runs of 1 of 2 points are unfinished or failed", notes)
-        groups.members[0]["clogs"] = 0  # an arrow already shows this
+        groups.members[0]["clogs"] = 0  # An arrow already shows that there are no clogs.
         self.assertNotIn("fewer than 5 clogs", hollow_places()[1])
 
     def test_clogs_are_drawn_from_a_sweep(self):
@@ -460,10 +462,10 @@ class Pictures(Analysis):
         self.assertTrue((image.imread(self.folder / "from-fit.png") == image.imread(self.folder / "from-sweep.png")).all())
 
     def test_edges_marked_as_touching_are_those_that_the_program_counts(self):
-        # One post leaves gaps at both side walls that are narrower than the droplet.
+        # One post leaves a gap at each side wall. Both gaps are narrower than the droplet.
         self.write("post.csv", "3,0.9,1\n")
-        # The edges differ in length, so straight edges touch at other places than the curved interface. Contact is
-        # tested at the surface, and at a distance from it (contact-range).
+        # The edges have different lengths, so straight edges touch at other places than the curved interface. Contact
+        # is tested at the surface, and at a distance from the surface (contact-range).
         for name, points_per_vertex, keys in [
             ("surface", 2, ["preset=elastic", "vertices=32", "line-tension=0.3,1", "box=20"]),
             ("off", 2, ["contact-range=half-vertex", "vertices=32", "line-tension=1", "box=20"]),
@@ -531,7 +533,7 @@ class Pictures(Analysis):
             self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, "--frames", film, "--output", "r.h5", words=["own4.", "it exists"])
         after = self.snapshot()
         self.assertEqual({name: after[name] for name in before}, before)
-        # The command replaces an earlier page or picture that it has made.
+        # The command may replace a page or picture that it made earlier.
         self.write("report.html", "<!DOCTYPE html>\n<title>an earlier one</title>\n")
         self.draw("report", "s.h5", "--output", "report.html", "--programs", BIN, "--examples", 0)
         for _ in range(2):
@@ -573,7 +575,7 @@ class Pictures(Analysis):
         self.assertRegex(done.stderr, r"^clogfit report: .*matplotlib.*; .*python.* needs h5py, .*\n$")
 
     def film_of(self, *keys, most=600, **options):
-        """@return run, chosen frames, film"""
+        """@return the run, the chosen frames and the film"""
         self.succeed("clogrun", "array", *SMALL, *keys, "--output", "filmed.h5")
         run = trajectory.read(self.folder / "filmed.h5")
         frames = film.chosen_frames(run, most)
@@ -602,8 +604,8 @@ class Pictures(Analysis):
         self.assertGreater(len(run.times), 1000)
         self.assertEqual(frames[-1], len(run.times) - 1)
         self.assertLessEqual(len(frames), 100)
-        # In ten frames the droplet moves too far for the eye. So the film shows only the end, in steps that the eye can
-        # follow.
+        # In ten frames the droplet moves too far for the eye. So the film shows only the end of the run, in steps that
+        # the eye can follow.
         self.assertGreater(frames[0], 0)
         steps = np.abs(np.diff(trajectory.centroids(run.polygons)[frames], axis=0)).sum(axis=1)
         self.assertLess(steps.max(), 2 * film.LONGEST_STEP)

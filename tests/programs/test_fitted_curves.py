@@ -1,5 +1,5 @@
-"""Compares the curves of clogsweep.curves with the recorded output of the C++ program that they replace, with closed
-forms and with exact small cases. Also tests which points belong to a curve."""
+"""Tests the curves of clogsweep.curves. The curves are compared with recorded output of the C++ program that this
+module replaces, with closed formulas, and with exact small cases. Also tests which points belong to a curve."""
 
 import functools
 import json
@@ -16,9 +16,9 @@ sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.curves import answer, features, model, points, table  # noqa: E402
 from clogsweep.tools.errors import UserError  # noqa: E402
 
-# RECORDS are outputs of `clogfit curve` (git 0b3b912ecf24) for sweeps with fabricated distances. Each record has the
-# command, its output at every fourth grid point of a curve (every thirteenth of a surface), and the clogs of each point
-# by mechanism.
+# RECORDS are outputs of `clogfit curve` (git 0b3b912ecf24) for sweeps with invented distances. Each record contains the
+# command, the output, and the clogs of each point by mechanism. Of the output it has every fourth grid point of a
+# curve, or every thirteenth of a surface.
 RECORDS = json.loads((pathlib.Path(__file__).parent / "data" / "curves.json").read_text())["records"]
 LENGTH = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 
@@ -59,15 +59,16 @@ class Records(unittest.TestCase):
                             key=lambda crossing: abs(crossing.place - math.log(one[key])))
                 self.assertEqual(found.is_upward, one["direction"] == "upwards")
                 for value, name in ((found.place, key), (found.lower, f"{key}_lower"), (found.upper, f"{key}_upper")):
-                    self.assertAlmostEqual(math.exp(-value) * one[name] if one[name] else 1.0 * math.isinf(value), 1, delta=1e-6)  # 0 and None mean that the interval has no end
+                    # An end that is 0 or None means that the interval has no end on this side.
+                    self.assertAlmostEqual(math.exp(-value) * one[name] if one[name] else 1.0 * math.isinf(value), 1, delta=1e-6)
 
     def test_peaks_agree_and_their_intervals_do_within_the_scatter_of_the_draws(self):
         for told, recorded, _, places, curve in self.fits():
             peak = features.find_peak(curve, places, told["confidence"])
             expected = recorded["peak"]
             self.assertAlmostEqual(peak.length / expected["clogging_length"], 1, delta=1e-6)
-            # Both programs use 2000 draws. The density of draws at an end of the interval gives the standard error of
-            # this end.
+            # Both programs use 2000 draws. The standard error of an end of the interval follows from the density of the
+            # draws there.
             draws = features.tops(features.drawn_curves(curve), places)
             ends = [(np.log([peak.length_lower, peak.length_upper]), [math.log(expected[name]) for name in LENGTH[1:]], draws[1])]
             for i, key in enumerate(told["keys"]):
@@ -84,8 +85,8 @@ class Records(unittest.TestCase):
 
 class Model(unittest.TestCase):
     def test_one_point_has_the_normal_interval_of_a_poisson_count(self):
-        # With a wide prior, the posterior of one point has the mean log lambda = log(S/d) and the variance 1/d. For
-        # many clogs this is close to the exact interval of a Poisson count, (chi2(2d), chi2(2d + 2))/2.
+        # With a wide prior, the posterior for one point has the mean log lambda = log(S/d) and the variance 1/d. For
+        # many clogs the interval is close to the exact interval of a Poisson count, (chi2(2d), chi2(2d + 2))/2.
         curve = model.curve_of_scales(known_points([[0]], [400], [2000]), model.Scales(1, (1,)), np.array([[0.0]]))
         self.assertAlmostEqual(curve.mean[0], math.log(5), delta=1e-3)
         self.assertAlmostEqual(curve.deviation[0], 1 / 20, delta=1e-4)

@@ -1,4 +1,4 @@
-"""Tests a sweep on two hosts, one of which dies. tests/two_hosts.sh explains what a host is here."""
+"""Tests a sweep on two hosts of which one dies. tests/two_hosts.sh explains how it simulates hosts."""
 
 import contextlib
 import os
@@ -18,20 +18,20 @@ class TwoHosts(SweepTest):
         return process
 
     def members(self, process, *name):
-        """Processes that the launcher has started on both hosts. @param name  options of `pgrep` that select a name;
-        none: all"""
+        """The processes that the launcher has started on both hosts. @param name  options of `pgrep` that select a
+        name; without them, all processes"""
         found = subprocess.run(["pgrep", "--session", str(process.pid), *name], capture_output=True, text=True)
         states = {pid: subprocess.run(["ps", "-o", "state=", pid], capture_output=True, text=True).stdout.strip()
                   for pid in found.stdout.split()}
         return [int(pid) for pid, state in states.items() if state not in ("", "Z")]
 
     def lose_a_host(self):
-        """@return the rows before the host died, in a tuple; None if the sweep ended before"""
+        """Kills one of the two hosts. @return the rows before its death, in a tuple; None if the sweep ended before"""
         process = self.start_on_both()
         self.wait_for(lambda: process.poll() is not None or
                       (self.folder / "s.h5").exists() and set(table(self.folder / "s.h5")["rank"]) == {0, 1})
         before = table(self.folder / "s.h5")
-        # Kills the rank of the second host, and the daemon, which is the rank's parent.
+        # Kills the rank on the second host, and the daemon that is the parent of this rank.
         for daemon in self.members(process, "--exact", "orted"):
             found = subprocess.run(["pgrep", "--parent", str(daemon)], capture_output=True, text=True).stdout.split()
             for pid in [*map(int, found), daemon]:

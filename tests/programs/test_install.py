@@ -1,5 +1,5 @@
-"""Tests an installation by cmake --install in an environment without anything else, and an installation of the Python
-package by pip."""
+"""Tests an installation by cmake --install in an environment that contains nothing else, and an installation of the
+Python package by pip."""
 
 import os
 import pathlib
@@ -27,13 +27,13 @@ class Installation(unittest.TestCase):
         cls.folder = pathlib.Path(folder.name)
         first = cls.folder / "first"
         cls.called("cmake", "--install", BIN.parent, "--prefix", first)
-        # The installation is moved, so that a program that depends on its old place fails.
+        # The installation is moved. A program that depends on the old place fails then.
         cls.prefix = cls.folder / "moved"
         first.rename(cls.prefix)
 
     @classmethod
     def called(cls, *command, **options):
-        # Programs see only the installation and the system.
+        # The programs see only the installation and the system.
         environment = {"PATH": f"{cls.folder}/moved/bin:{BIN.parent}/launcher:/usr/bin:/bin", "HOME": str(cls.folder), "OMPI_ALLOW_RUN_AS_ROOT": "1",
                        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONDONTWRITEBYTECODE": "1",
                        "PYTHONPATH": f"{cls.folder}/moved/lib/python3/dist-packages", "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "")}
@@ -46,11 +46,12 @@ class Installation(unittest.TestCase):
 class Installed(Installation):
     def test_nothing_knows_where_it_was_built(self):
         cache = (BIN.parent / "CMakeCache.txt").read_text()
-        # In a build with sanitizers, their tables contain the full path of every source. Nobody installs such a build.
+        # A build with sanitizers contains the full path of every source. Nobody installs such a build, so it is not
+        # checked.
         sources = [] if "CLOG_SANITIZE:STRING=address" in cache else [ROOT, BIN.parent]
         for path in self.prefix.rglob("*"):
             self.assertFalse(path.is_symlink(), path)
-            if path.is_file() and path.suffix != ".png":  # a picture contains its command
+            if path.is_file() and path.suffix != ".png":  # A picture contains its command.
                 content = path.read_bytes()
                 for place in (*sources, self.folder / "first"):
                     self.assertFalse(str(place).encode() + b"/" in content, f"{path} knows {place}")
@@ -76,18 +77,18 @@ class Installed(Installation):
         self.assertIn("line-tension = 0.05,0.1,0.2,0.25,0.3,0.4,0.6", said)
 
     def test_the_script_for_slurm_finds_what_is_installed(self):
-        # A copy of the script runs in another folder, as under Slurm.
+        # Slurm runs a copy of the script in another folder.
         copy = shutil.copy(self.prefix / "share/clogsweep/jobs/slurm.sh", self.folder / "slurm_script")
         self.called("bash", copy, *KEYS[:-1], "seeds=1", "--output", "slurm.h5")
         self.assertEqual(len(pandas.read_hdf(self.folder / "slurm.h5", "runs")), 1)
 
     def test_a_program_of_ones_own_finds_the_libraries(self):
-        # slow_install.py builds and runs the example.
+        # slow_install.py builds and runs this example.
         example = self.prefix / "share/doc/clogsweep/docs/examples/own-program"
         self.called("cmake", "-G", "Ninja", "-S", example, "-B", self.folder / "example", f"-DCMAKE_PREFIX_PATH={self.prefix}")
 
     def completed(self, *words, function="_clogsweep"):
-        """The words that bash offers to complete the last word."""
+        """The words by which bash offers to complete the last word."""
         script = f"""
             compopt() {{ :; }}
             . {self.prefix}/share/bash-completion/completions/{words[0]}
@@ -126,7 +127,7 @@ class Installed(Installation):
                                (["clogsweep", "--max-hours"], []), (["clogfit", "s.h5", "--dwell"], []), (["clogrun", "array", "--seed"], []),
                                (["clogsweep", "orifice", "="], []), (["clogsweep", "--orifice"], [])):
             self.assertEqual(self.completed(*words, ""), offered, words)
-        self.assertEqual(self.completed("clogsweep", "--verbose", "stat"), [])  # a command must come first
+        self.assertEqual(self.completed("clogsweep", "--verbose", "stat"), [])  # A command must come first.
         self.assertIn("inputs", self.completed("clogfit", ""))
         self.assertIn("calibrate", self.completed("clogfit", ""))
         for option, words in (("--isolate", ["yes", "no"]), ("--master-computes", ["auto", "yes", "no"])):
@@ -146,7 +147,7 @@ class Installed(Installation):
         self.read_until(terminal, b"clogsweep preset=elastic ")
 
     def read_until(self, terminal, text):
-        """Reads from a terminal, which may be slow, until the text has arrived."""
+        """Reads from a terminal until the text has arrived. The terminal may be slow."""
         seen = b""
         while text not in seen:
             ready, _, _ = select.select([terminal], [], [], LONGEST)

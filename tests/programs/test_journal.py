@@ -1,4 +1,4 @@
-"""Tests figures for a journal, and files with the rows of a sweep for other programs."""
+"""Tests figures for a journal, and files that contain the rows of a sweep for other programs."""
 
 import itertools
 
@@ -24,7 +24,7 @@ class Journal(Analysis):
         return clogsweep.open(shared_sweep(*keys), BIN).fit(lab=self.folder / "lab.cfg")
 
     def assert_tidy(self, picture):
-        """Checks that the labels of ticks and axes and the words of the legend are on the page, and that none covers
+        """Checks that the labels of ticks and axes and the words of the legend are on the page. No word may cover
         another."""
         axes, = picture.figure.axes
         picture.figure.canvas.draw()

@@ -1,6 +1,6 @@
-"""Tests that every version 1.x reads a sweep that version 1.0.0 wrote. With the same model_version (11), it also
-computes the same rows and continues the sweep. If a version has another model_version, it must refuse to continue, and
-these tests have to be changed.
+"""Tests that every version 1.x reads a sweep that version 1.0.0 wrote. A version with the same model_version (11) also
+computes the same rows, and continues the sweep. A version with another model_version must refuse to continue the sweep.
+These tests then have to be changed.
 
     clogsweep line-tension=1,3 model=dp vertices=32 obstacle-gap=0.2 obstacle-density=0.5 box=20 boxes=2 max-time=1000 \
         seeds=1..4 --instruction-set=baseline --output written-by-1.0.0.h5
@@ -37,7 +37,7 @@ class LaterVersions(Analysis):
         compilers = {clogsweep.open(self.folder / file).attributes["compiler"] for file in ("s.h5", "again.h5")}
         if len(compilers) == 1:
             pandas.testing.assert_frame_equal(rows, again, check_exact=True)
-        else:  # which may round otherwise
+        else:  # Other instruction sets may round differently.
             pandas.testing.assert_frame_equal(rows[OUTCOME], again[OUTCOME], rtol=1e-4)
 
     def test_more_seeds_continue_it(self):

@@ -18,7 +18,8 @@ from clogsweep.drawing import measured  # noqa: E402
 from clogsweep.results import fit  # noqa: E402
 from clogsweep.tools.errors import UserError  # noqa: E402
 
-# Survival after leukaemia, with and without maintenance chemotherapy: the data set `aml` of R's package survival 3.5-3.
+# Times of survival after leukaemia, with and without maintenance chemotherapy. The times are the data set `aml` of R's
+# package survival 3.5-3.
 AML = {"Maintained": "9 1, 13 1, 13 0, 18 1, 23 1, 28 0, 31 1, 34 1, 45 0, 48 1, 161 0",
        "Nonmaintained": "5 1, 5 1, 8 1, 8 1, 12 1, 16 0, 23 1, 27 1, 30 1, 33 1, 43 1, 45 1"}
 LAB = "diameter = 2 mm\nangle = 20 deg\nspeed = 7 mm/s\n"
@@ -37,23 +38,23 @@ class Lengths(ProgramTest):
         self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
         told = self.lengths("aml.csv")
         maintained, not_maintained = told["groups"]
-        # From R: length, exp(coef(survreg(Surv(time, status) ~ 1, dist="exponential"))); shape, 1/scale with dist="weibull"; p_value of the
-        # likelihood-ratio test of these two fits
+        # From R: `length` is exp(coef(survreg(Surv(time, status) ~ 1, dist="exponential"))). `shape` is 1/scale with
+        # dist="weibull". `p_value` belongs to the likelihood-ratio test of these two fits.
         for group, name, runs, clogs, length, shape, p_value in [(maintained, "Maintained", 11, 7, 60.4285714279, 1.0318542417, 0.910781681452),
                                                                  (not_maintained, "Nonmaintained", 12, 11, 23.1818181818, 1.57362854769, 0.090487586318)]:
             self.assertEqual((group["x"], group["runs"], group["clogs"], group["doubts"]), (name, runs, clogs, None))
             self.assertAlmostEqual(group["clogging_length_mm"], length, places=6)
             self.assertAlmostEqual(group["weibull_shape"], shape, places=5)
             self.assertAlmostEqual(group["weibull_p_value"], p_value, places=5)
-        # survfit(..., conf.type="log-log"): time, at risk, probability, standard error, interval
+        # From R's survfit(..., conf.type="log-log"): time, number at risk, probability, standard error, and interval
         steps = maintained["survival"]
         self.assertEqual([(step["distance"], step["at_risk"], step["clogs"]) for step in steps],
                          [(9, 11, 1), (13, 10, 1), (18, 8, 1), (23, 7, 1), (31, 5, 1), (34, 4, 1), (48, 2, 1)])
         for name, expected in [("probability", 0.490909090909), ("standard_error", 0.1641932672211), ("lower", 0.1673309097769), ("upper", 0.753399790371)]:
             self.assertAlmostEqual(steps[4][name], expected, places=9)
         self.assertEqual(maintained["censored_distances"], [13, 28, 45, 161])
-        # Expected values for the table of the Python module: summary(..., times=161), and the last step of the other
-        # group, for which R gives no bounds either.
+        # The table of the Python module. The expected values come from R's summary(..., times=161), and from the last
+        # step of the other group, for which R gives no bounds either.
         groups = [*told["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
         known = types.SimpleNamespace(told={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
         end, not_censored, none = (fit.Fit.survival(known, group).iloc[-1].to_dict() for group in range(3))
@@ -128,8 +129,8 @@ class Beside(ProgramTest):
         found = self.compare("sweep.h5", "own.csv")
         self.assertEqual([(one["wall"], one["line_tension"]) for one in found], [(wall, tension) for wall in ("glass", "steel") for tension in self.groups])
         self.assertEqual({one["clogs_here"] for one in found}, {0, 2})
-        # If all droplets clogged, the ratio of the two lengths follows Snedecor's F, each length with two degrees of
-        # freedom per clog.
+        # If all droplets clogged, the ratio of the two lengths follows Snedecor's F distribution. Each length has two
+        # degrees of freedom per clog.
         one = next(one for one in found if one["wall"] == "glass" and one["clogs_there"] == 2)
         quantile = scipy.stats.f.ppf(0.975, 4, 4)
         self.assertAlmostEqual(one["ratio_lower"], one["ratio"] / quantile, places=6)

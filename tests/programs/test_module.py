@@ -67,7 +67,8 @@ class Module(Analysis):
             self.assertEqual(fit.groups[name].isna().tolist(), [False, True, True], name)
         self.assertEqual([group["relative_speed"] is None for group in fit.told["groups"]], [False, True, True])
         axes, = fit.speeds().figure.axes
-        self.assertEqual([bars.lines[0].get_xdata().tolist() for bars in axes.containers], [[0.1, 0.7]])  # the speeds are those of all runs
+        # The speeds are those of all runs.
+        self.assertEqual([bars.lines[0].get_xdata().tolist() for bars in axes.containers], [[0.1, 0.7]])
         of_page = report.table_of_lengths(fit.known, fit.told["doubts"], table(self.folder / "s.h5"))
         cells = re.findall(r"<td><span>[^<]*</span><small>( \(mean of \d of \d runs: [^<]*\))</small></td>", of_page)
         self.assertEqual([re.search(r"\(.* runs", cell)[0] for cell in cells], ["(mean of 3 of 4 runs", "(mean of 2 of 4 runs"])
@@ -257,7 +258,7 @@ class Module(Analysis):
 
     def test_a_python_module_that_is_lacking_gets_one_line(self):
         for lines in ("clogsweep.open('s.h5')", "clogsweep.Sweep"):
-            # None in sys.modules makes an import fail.
+            # With None in sys.modules an import fails.
             done = subprocess.run([sys.executable, "-c", f"import sys; sys.modules['pandas'] = None\nimport clogsweep\n{lines}"],
                                   cwd=ROOT / "analysis", capture_output=True, text=True)
             self.assertRegex(done.stderr.splitlines()[-1], "^ImportError: cannot start .*pandas.*; .*python.* needs h5py, pandas, SciPy, tables and matplotlib")

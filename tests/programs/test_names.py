@@ -24,7 +24,7 @@ from clogsweep.tools import outputs, texts
 CIRCLES = os.fsdecode("ü".encode() + b"a$x^2$b\xff\x1b[31m.csv")
 SHOWN = r"üa$x^2$b\xff\x1b[31m.csv"
 SWEEP = os.fsdecode(b"s$1$\xfe\x1b.h5")
-WORD = 'x,"y$1$\x1b['  # instead of a preset
+WORD = 'x,"y$1$\x1b['  # replaces the name of a preset
 
 
 class Texts(unittest.TestCase):
@@ -78,7 +78,7 @@ class Names(Analysis):
 
 
 class Words(Analysis):
-    """Tests a foreign file with arbitrary words in its columns and attributes."""
+    """Tests a file from elsewhere, with arbitrary words in its columns and attributes."""
 
     def setUp(self):
         super().setUp()
@@ -138,7 +138,8 @@ class Outputs(Analysis):
         self.assertEqual(page.read_text(encoding="utf-8"), "<!DOCTYPE html> earlier")
 
     def test_every_output_takes_the_place_of_the_earlier_one(self):
-        """A second name of the earlier file still leads to it, so the command has not written into that file."""
+        """A second name still leads to the earlier file with its old content. So the command did not write into this
+        file."""
         self.copy_sweep("s.h5", *QUICK, "line-tension=0.5,3", "seeds=1..4")
         self.copy_sweep("run.h5", "array", *QUICK, "line-tension=3", "seeds=1", "--polygon-interval=20", program="clogrun")
         picture = Image.new("L", (600, 300), 255)

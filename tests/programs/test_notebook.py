@@ -1,7 +1,7 @@
-"""Runs the cells of the gallery's notebook with fewer and shorter runs, to test that the module has everything that
-they call.
+"""Runs the cells of the gallery's notebook, with fewer and shorter runs. So it tests that the module has everything
+that the cells call.
 
-slow_notebook tests whether they print the stored outputs.
+slow_notebook tests whether the cells print the stored outputs.
 """
 
 import ast
@@ -13,13 +13,13 @@ from drawing import Analysis
 from support import BIN, ROOT
 
 NOTEBOOK = ROOT / "docs" / "gallery" / "notebook.ipynb"
-# Commands that take long, and shorter ones that replace them
+# Commands that take long, with their shorter replacements
 SHORTER = {"mpirun -np 2 clogsweep": str(BIN / "clogsweep"), "line-tension=0.2,0.3,0.5,1,2": "line-tension=0.3,1,3", "box=40": "box=20",
            "max-time=2000": "max-time=100", "seeds=1..12": "seeds=1..2", "most=4": "most=1", "interval=2": "interval=10", "most_frames=100": "most_frames=2"}
 
 
 def run_cells(cells):
-    """Shows the value of a cell's last line, as a notebook does."""
+    """Runs cells. Like a notebook, it shows the value of the last line of each cell."""
     names = {}
     for cell in cells:
         *body, last = ast.parse(cell).body

@@ -138,7 +138,7 @@ class Looks(Analysis):
         for drawing in (style.figure_of(lengths.draw_on, groups), style.figure_of(lengths.draw_speeds_on, groups), style.figure_of(report.draw_survival, groups, "", groups.members)):
             self.assert_title_is_whole(drawing)
             self.assertIn("2 runs per point", drawing.axes[0].get_title())
-        # The speed of the stiffer droplets, which clog at once, is unknown.
+        # The stiffer droplets clog at once, so their speed is unknown.
         for group, speed in zip(groups.members, (0.4, None)):
             group.update(relative_speed=speed, relative_speed_error=0.1)
         drawing = style.figure_of(lengths.draw_speeds_on, groups)
@@ -148,7 +148,7 @@ class Looks(Analysis):
         self.assertTrue(low < 0.5 and high > 3, (low, high))
 
     def test_two_presets_in_one_picture_have_a_curve_each(self):
-        # K_l is a given number in robust, but follows from the line tension in elastic.
+        # K_l is a given number in robust. In elastic it follows from the line tension.
         self.succeed("clogsweep", *SMALL, "line-tension=0.3,1", "seeds=1..2", "--output", "robust.h5")
         self.succeed("clogsweep", *SMALL, "line-tension=0.3,1", "seeds=1..2", "preset=elastic", "friction=0.05", "--output", "elastic.h5")
         groups = Groups(json.loads(self.succeed("clogfit", "robust.h5", "elastic.h5", "--format", "json").stdout))
@@ -166,7 +166,7 @@ class Looks(Analysis):
         self.assertIn("moved by $0.05", axes.get_xlabel())
         self.assertEqual([curve.get_label() for curve in axes.containers], [r"$\Gamma = 0.05$", r"$\Gamma = 0.3$"])
         soft, stiff = axes.containers
-        # No soft droplet rests, so arrows show lower bounds.
+        # No soft droplet rests, so arrows show the lower bounds.
         self.assertTrue(np.isnan(soft.lines[0].get_xydata()[:, 1]).all())
         bounds, = [line for line in axes.lines if line.get_marker() is style.LOWER_BOUND and len(line.get_xdata()) > 0]
         places, lengths = stiff.lines[0].get_xydata().T
@@ -254,7 +254,7 @@ class Looks(Analysis):
             caption = self.fit("box=20", "max-time=20", "line-tension=0.5,1", "seeds=1", *given).caption()
             for word in ("$N_v = 64$", density):
                 self.assertEqual(word in caption, word in words, caption)
-            self.assertNotIn(r"\Gamma_\mathrm{w}", caption)  # there is a film of water, which is the default
+            self.assertNotIn(r"\Gamma_\mathrm{w}", caption)  # A film of water is the default.
 
     def test_a_passage_is_drawn_over_h_with_a_colour_bar_as_high_as_the_axes(self):
         self.succeed("clogrun", "channel", "vertices=64", "orifice=0.8", "start=-1", "end=1", "--polygon-interval", 10, "--output", "run.h5")
@@ -322,7 +322,7 @@ class Looks(Analysis):
     def test_the_last_frame_of_a_film_is_the_end_of_the_run(self):
         self.copy_sweep("run.h5", "array", *QUICK, "--polygon-interval", 10, program="clogrun")
         run = trajectory.read(self.folder / "run.h5")
-        # The row is made to look like a certified clog, whose equilibrium lies beyond the last frame.
+        # The row is changed to that of a certified clog. The equilibrium of such a clog is beyond the last frame.
         run.row["distance"] = run.table["distance"][-1] + 0.01
         moving = film.Film(run, film.chosen_frames(run, 50), "speed", 20)
         moving.show(len(moving) - 1)
@@ -352,7 +352,7 @@ class Looks(Analysis):
             red, green, blue = colour_at(index, trajectory.centroids(run.polygons)[frames[index]])
             self.assertTrue(red > green > blue, "the droplet is orange")
             (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-            # The obstacle lies in the middle of the picture, where nothing covers it.
+            # This obstacle is in the middle of the picture, where nothing covers it.
             inside = [(x, y) for x, y, _ in run.obstacles if left + 0.3 * (right - left) < x < left + 0.6 * (right - left)
                       and low + 0.4 * (high - low) < y < high - 0.3 * (high - low)]
             self.assertGreater(len(inside), 0)

@@ -1,4 +1,4 @@
-"""Tests that --instruction-set determines every bit of a row, whatever else the processor supports."""
+"""Tests that --instruction-set determines every bit of a row. The other abilities of the processor must not matter."""
 
 import os
 import subprocess
@@ -9,14 +9,14 @@ from unittest import mock
 import pandas
 from support import TIMING, ProgramTest, table
 
-# Settings that make the C library behave as on a processor without fused multiply-adds.
+# With these settings the C library behaves as on a processor without fused multiply-adds.
 PLAIN = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F"}
 COSINES = "import math; print([math.cos(0.01 * i).hex() for i in range(10000)])"
 
-# The release of droplets with 80 vertices uses sines and cosines that would differ with those of the C library.
-# Droplets of large line tension clog soon.
+# The release of droplets with 80 vertices uses sines and cosines whose values would differ if they came from the C
+# library. Droplets with a large line tension clog soon.
 POLYGONS = ["vertices=80", "box=20", "obstacle-density=saturated", "obstacle-gap=0.3", "line-tension=log(0.3,1,3)", "max-time=100", "seeds=1..3"]
-# The angle of this lattice (8 columns over 69 rows) would differ, too.
+# The angle of this lattice (8 columns over 69 rows) would also differ.
 DISKS = ["model=sp", "wall-stiffness=10,100", "obstacle-layout=lattice", "lattice-angle=6.6135",
          "obstacle-diameter=0.3", "obstacle-gap=0.2", "box=35", "max-time=100", "seeds=1..3"]
 

@@ -1,4 +1,4 @@
-"""Tests sweeps of points, sweeps over lists of words, sweeps in parts, merged files and selected rows."""
+"""Tests sweeps of points, sweeps over lists of words, sweeps in several parts, merged files, and selected rows."""
 
 import json
 import unittest

@@ -1,5 +1,5 @@
-"""Tests that --until-precision adds seeds where lambda is not precise enough, and that it adds the same seeds after any
-interruption."""
+"""Tests that --until-precision adds seeds where lambda is not precise enough. The sweep must add the same seeds after
+any interruption."""
 
 import json
 import re
@@ -9,7 +9,7 @@ import h5py
 import pandas
 from support import QUICK, TIMING, ProgramTest, shared_sweep, table
 
-# At Gamma = 2 every droplet clogs; at Gamma = 0.3 few do in so short a time.
+# At Gamma = 2 every droplet clogs. At Gamma = 0.3 few droplets clog in such a short time.
 SWEEP = [*QUICK, "obstacle-gap=0.3", "line-tension=0.3,2", "seeds=1..4", "--until-precision=75%", "--most-seeds=14"]
 
 
@@ -49,7 +49,7 @@ class Precision(ProgramTest):
         stopped, hours = 0, 0.00004
         while self.run_program("clogsweep", *SWEEP, "--output", "stopped.h5", f"--max-hours={hours}").returncode == 75:
             stopped += 1
-            hours *= 1.05  # on a busy machine a session may make no progress
+            hours *= 1.05  # On a busy machine a session may make no progress.
             self.assertLess(stopped, 200)
         self.assertGreater(stopped, 0)
         self.check_equal("stopped.h5", whole)
@@ -67,14 +67,14 @@ class Precision(ProgramTest):
     def test_a_lower_precision_finishes_runs_of_a_higher_one(self):
         more = [*SWEEP[:-2], "--until-precision=30%", "--most-seeds=60"]
         begin = hours = 0.00004
-        for _ in range(200):  # until a stop comes in a later round than the first
+        for _ in range(200):  # Repeats until the stop comes in a later round than the first.
             done = self.run_program("clogsweep", *more, "--output", "s.h5", f"--max-hours={hours}")
-            if done.returncode == 0:  # the sweep ended before: start again
+            if done.returncode == 0:  # The sweep ended before the stop, so it starts again.
                 (self.folder / "s.h5").unlink()
                 hours = begin
                 continue
             self.assertEqual(done.returncode, 75, done.stderr)
-            hours *= 1.05  # on a busy machine a session may make no progress
+            hours *= 1.05  # On a busy machine a session may make no progress.
             rows = table(self.folder / "s.h5")
             if len(rows) > 8 and (rows.status == "interrupted").any():
                 break
@@ -113,7 +113,7 @@ class Precision(ProgramTest):
         self.assertLessEqual(most, high)
         for end, of_most in zip(of_fewest, (low, high)):
             self.assertAlmostEqual(of_most / end / 4, 1, delta=0.11)
-        self.assertAlmostEqual(fewest / expected / 25, 1, delta=0.11)  # two figures
+        self.assertAlmostEqual(fewest / expected / 25, 1, delta=0.11)  # The printed number has two significant digits.
         self.assertAlmostEqual(most / expected / 100, 1, delta=0.11)
         self.assertAlmostEqual(longest / bound / 100, 1, delta=0.02)
         self.assertIn("# --most-seeds=30 ends it before that; give 100 or more", told("--until-precision=20%", "--most-seeds=30"))

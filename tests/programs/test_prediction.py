@@ -1,4 +1,5 @@
-"""Tests clogging lengths predicted from droplets on two obstacles, in cases whose answer has a closed form."""
+"""Tests clogging lengths that are predicted from droplets on two obstacles. The result of each case has a closed
+form."""
 
 import math
 import os

@@ -1,5 +1,5 @@
-"""Tests that python3 -m clogsweep refine adds values and seeds where the fitted curve needs them, and that it adds the
-same ones after any interruption."""
+"""Tests that python3 -m clogsweep refine adds values and seeds where the fitted curve needs them. The command must add
+the same values and seeds after any interruption."""
 
 import contextlib
 import functools
@@ -29,7 +29,7 @@ from clogsweep.tools.errors import UserError  # noqa: E402
 
 SCHEMA = json.loads(subprocess.run([BIN / "clogsweep", "--schema"], check=True, capture_output=True, text=True).stdout)
 NUMBERS = {key["key"]: key for key in SCHEMA["keys"] if key.get("role") == "physics" and key["kind"].startswith("number")}
-# Keys that have no curve (keys of channels), or that have their own search.
+# Keys that have no curve (keys of channels), and keys that have their own search.
 ELSEWHERE = {name for name, key in NUMBERS.items() if key["scope"] == "channel"} | {"lattice-angle"}
 GOAL = "--until=curve=70%"
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT / "analysis")}
@@ -49,7 +49,7 @@ def settings_for(name):
         return [*words, "obstacles=posts.csv", *(["release=entrance"] if name.startswith("entrance") else [])]
     elastic = ["preset=elastic"] if name in ("perimeter-stiffness-ratio", "perimeter-stiffness", "friction", "yield-traction") else []
     if name == "advancing-angle":
-        words.append("wall-tension=0.5")  # Young's angle is then 120 degrees
+        words.append("wall-tension=0.5")  # Young's angle is then 120 degrees.
     if name == "pitch":
         return [*words, "obstacle-layout=lattice"]
     return [*words, *elastic, *(["obstacle-gap=0.6"] if name != "obstacle-gap" else [])]
@@ -97,21 +97,21 @@ class EveryKey(ProgramTest):
         return rows.assign(task=range(len(rows)), seed=range(1, len(rows) + 1), model="dp", vertices=64.0)
 
     def check_membership(self, keys, settings, values):
-        """Checks that a row belongs to a value if, and only if, it has the parameters of this value."""
+        """Checks that a row belongs to a value if it has the parameters of this value, and only then."""
         members, rows = self.members(keys, settings, values), self.rows(self.tasks(keys, settings, values), 2)
         others = []
         for column in SCHEMA["columns"]:
             name = column["name"]
             if column.get("parameter_role") not in ("physics", "numerics") or name in {NUMBERS[key]["column"] for key in keys}:
                 continue
-            other = rows.iloc[-1:].copy()  # a row of another sweep, which differs only in this column
+            other = rows.iloc[-1:].copy()  # a row of another sweep that differs only in this column
             other[name] = "other" if rows[name].dtype == object else other[name].fillna(0) * 1.01 + 7
             others.append(other.assign(task=len(rows) + len(others)))
         found = members.of_values(pandas.concat([rows, *others]))
         self.assertEqual(list(zip(found["task"], found["values"])), list(enumerate([*values, *values])))
 
     def check_peak(self, name, settings, values):
-        """Checks that the search finds the peak of a known curve, which is in the middle of its range."""
+        """Checks that the search finds the peak of a known curve. The peak is in the middle of the range."""
         search = CurveSearch([name], [values], [1, 2], 100.0, Options(Goal("peak", 0.001), math.inf, 100, False))
         members = self.members([name], settings, search.candidates)
         position = np.log(np.array(search.candidates)[:, 0] / values[0]) / math.log(values[-1] / values[0])
@@ -170,7 +170,7 @@ class Values(unittest.TestCase):
 
 
 class Choice(unittest.TestCase):
-    """Tests the choice of blocks of seeds among 41 places. Errors of neighbouring places are correlated."""
+    """Tests the choice of blocks of seeds for 41 places. The errors of neighbouring places are correlated."""
 
     NUMBER = 41
 
@@ -249,11 +249,11 @@ class Refine(RefineTest):
         stopped, hours = 0, 0.0002
         while (done := self.run_refine("line-tension", *SWEEP, GOAL, "--output", "s.h5", f"--max-hours={hours}")).returncode == 75:
             stopped += 1
-            hours *= 1.1  # on a busy machine a session may make no progress
+            hours *= 1.1  # On a busy machine a session may make no progress.
             self.assertLess(stopped, 200)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertGreater(stopped, 0)
-        for seconds in (1.5, 2, 3, 4):  # then SIGKILL to all processes
+        for seconds in (1.5, 2, 3, 4):  # After this time SIGKILL is sent to all processes.
             with subprocess.Popen(self.command("line-tension", *SWEEP, GOAL, "--output", "killed.h5"), cwd=self.folder, env=ENVIRONMENT,
                                   stderr=subprocess.DEVNULL, start_new_session=True) as process:
                 time.sleep(seconds)
@@ -269,7 +269,7 @@ class Refine(RefineTest):
     def test_an_unfinished_round_is_completed_before_another_is_planned(self):
         self.refine("line-tension", *SWEEP, "--until=curve=95%", "--output", "s.h5")
         (path,) = self.folder.glob("s.h5.refine-*.csv")
-        path.write_text(path.read_text() + "1.5,1001..1003\n")  # the points are stored, but their round has not begun
+        path.write_text(path.read_text() + "1.5,1001..1003\n")  # The points are stored, but their round has not begun.
         self.refine("line-tension", *SWEEP, "--until=curve=95%", "--output", "s.h5")
         self.assertEqual(sorted(table(self.folder / "s.h5").query("line_tension == 1.5 and seed > 1000").seed), [1001, 1002, 1003])
 
@@ -367,7 +367,8 @@ class Refine(RefineTest):
                 self.assertEqual(self.run_refine("line-tension", *SWEEP, GOAL, "--output", "s.h5", launcher=["bash", "-c", words]).returncode, code)
 
 
-# This search takes three seconds on one core. In its lattice droplets follow the rows up to about 19 degrees.
+# This search takes three seconds on one core. In this lattice droplets follow the rows up to an angle of about 19
+# degrees.
 LATTICE = ["obstacle-layout=lattice", "obstacle-gap=2", "obstacle-diameter=1", "vertices=64", "terminal-speed=0.1", "box=100", "seeds=1"]
 
 
@@ -382,8 +383,8 @@ class CriticalAngle(RefineTest):
         rows = table(self.folder / "s.h5")
         self.assertLess(len(rows), 15)
         for row in rows.itertuples():
-            # The slope of a droplet that follows the rows is the tangent of their angle. A droplet that leaves the rows
-            # goes to the other side.
+            # The slope of a droplet that follows the rows is the tangent of the rows' angle. A droplet that leaves the
+            # rows moves to the other side.
             if row.lattice_angle <= lower + 0.01:
                 self.assertLess(math.tan(math.radians(row.lattice_angle)) - row.lateral_displacement / row.distance, 0.05)
             else:

@@ -23,14 +23,14 @@ sys.path.insert(1, str(ROOT / "analysis"))
 from clogsweep.pages import chart  # noqa: E402
 from clogsweep.tools import rounded  # noqa: E402
 
-SECONDS = 120  # enough for a busy machine
+SECONDS = 120  # long enough for a busy machine
 POINT = "svg.chart .point"
 
 
 def setUpModule():
     """Starts one browser for all tests, because starting a browser takes seconds."""
     options = webdriver.ChromeOptions()
-    # In a container shared memory is small, and for root there is no sandbox.
+    # Shared memory is small in a container, and the sandbox does not work for root.
     for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1280,900"):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
@@ -40,7 +40,7 @@ def setUpModule():
 
 
 class Browser(ProgramTest):
-    """Tests of one page. Each test of a class loads the page again."""
+    """Tests one page. Each test of a class loads this page again."""
 
     KEYS: list[str]  # keys of the sweep
     browser: webdriver.Chrome
@@ -65,7 +65,7 @@ class Browser(ProgramTest):
 
     def read_page(self):
         self.browser.get(self.page.as_uri())
-        self.point_at(self.find("h1"))  # another test may have left the mouse elsewhere
+        self.point_at(self.find("h1"))  # Another test may have left the mouse elsewhere.
 
     def point_at(self, element):
         ActionChains(self.browser).move_to_element(element).perform()
@@ -80,12 +80,12 @@ class Browser(ProgramTest):
         return self.browser.find_element(By.CSS_SELECTOR, selector)
 
     def column(self, heading):
-        """Cells of a column from top to bottom."""
+        """The cells of a column from top to bottom."""
         titles = [title.text for title in self.find_all("th")]
         return [cell.text for cell in self.find_all(f"tbody td:nth-child({titles.index(heading) + 1})")]
 
     def shown(self):
-        """The text of the card beside the mouse, by the card's headings."""
+        """The texts of the card beside the mouse, by the headings of the card."""
         self.wait(self.find("#card").is_displayed)
         terms = [[element.text for element in self.find_all(f"#card {name}")] for name in ("dt", "dd")]
         return dict(zip(*terms, strict=True))
@@ -128,7 +128,7 @@ class Lengths(Browser):
             self.assertEqual(shown["seeds"], "1 to 4")
             # Few runs clogged, so clogfit's sentence about few clogs appears.
             self.assertIn("more seeds are needed", shown["doubts"])
-            # In the legend only the point's own curve is bright.
+            # Only the curve of this point is bright in the legend.
             bright = first_chart.find_elements(By.CSS_SELECTOR, ".legend.of")
             self.assertEqual(len(bright), 1)
             self.assertIn(point.get_attribute("data-groups"), bright[0].get_attribute("data-groups").split())
@@ -167,7 +167,7 @@ class Lengths(Browser):
         self.browser.switch_to.active_element.send_keys(Keys.ENTER)
         self.assertEqual(heading.get_attribute("aria-sort"), "descending")
         self.assertEqual(lengths(), sorted(before, reverse=True))
-        # A point still shows its own row.
+        # Each point still shows its own row.
         self.point_at(self.find_all(POINT)[0])
         self.assertIn(self.shown()[name], self.find_all(POINT)[0].get_attribute("aria-label"))
 
@@ -179,7 +179,7 @@ class Lengths(Browser):
         self.assertAlmostEqual(heading["y"], box["y"], delta=1)
 
     def colours_of_picture(self):
-        """Number of pixels of each brightness in the first chart, as shown."""
+        """The number of pixels of each brightness in the first chart, as the browser shows it."""
         (self.folder / "chart.png").write_bytes(base64.b64decode(self.find("svg.chart").screenshot_as_base64))
         with Image.open(self.folder / "chart.png") as picture:
             return picture.convert("L").histogram()

@@ -1,4 +1,5 @@
-"""Tests sweeps that are stopped, changed or wrong: no row may be lost, and the same command must resume them."""
+"""Tests sweeps that are stopped or changed, or that contain mistakes. No row may be lost, and the same command must
+resume the sweep."""
 
 import json
 import os
@@ -17,19 +18,19 @@ from support import (BIN, BLOCKED, ENDLESS, FEW_LONG, LONGEST, MPI, QUICK, ROOT,
 
 class Resumed(SweepTest):
     def journal(self):
-        """The number of records in the journal, and how many of them have snapshots."""
+        """The number of records in the journal, and the number of records with snapshots."""
         words = self.run_program("clogsweep", "verify", "s.h5").stdout
         found = re.search(r"s.h5.journal: (\d+) records?, (\d+) of them with snapshots", words)
         return (int(found[1]), int(found[2])) if found else (0, 0)
 
     def stop_with_unfinished_runs(self, sweep):
-        """Stops the sweep while a run has a snapshot, which may take several attempts. @return rows of unfinished
+        """Stops the sweep while a run has a snapshot, which may take several attempts. @return the rows of unfinished
         runs"""
         for attempt in range(100):
-            # Each attempt runs longer, because a busy machine needs longer for a snapshot.
+            # Each attempt runs longer than the one before, because on a busy machine a snapshot takes longer.
             done = self.run_program("clogsweep", *sweep, f"--max-hours={0.0001 * 1.05**attempt:.6f}")
             if done.returncode != 75:
-                (self.folder / "s.h5").resolve().unlink()  # the sweep is complete: start again
+                (self.folder / "s.h5").resolve().unlink()  # The sweep is complete, so it starts again.
                 continue
             self.assertIn("stopped by --max-hours", done.stderr)
             rows = table(self.folder / "s.h5")
@@ -39,7 +40,7 @@ class Resumed(SweepTest):
         self.fail("no stop met a run with a snapshot")
 
     def stop_with_a_snapshot(self, sweep, signal_number, **options):
-        """@return the sweep's process and its messages; nothing if the sweep ended before"""
+        """Stops a sweep. @return the sweep's process and its messages, or nothing if the sweep ended earlier"""
         process = self.start(*sweep, **options)
         self.wait_for(lambda: process.poll() is not None or (self.folder / "s.h5").exists() and
                       (table(self.folder / "s.h5").query("status == 'running'").steps > STEPS_PER_SNAPSHOT).any())
@@ -50,11 +51,11 @@ class Resumed(SweepTest):
     def test_a_signal_stops_and_the_same_command_resumes(self):
         for signal_number in (signal.SIGUSR1, signal.SIGINT, signal.SIGTERM):
             process, error = self.until_in_time(lambda: self.stop_with_a_snapshot(SLOW, signal_number))
-            if signal_number == signal.SIGUSR1:  # a second after any other signal, mpirun kills the remaining ranks
+            if signal_number == signal.SIGUSR1:  # A second after any other signal, mpirun kills the remaining ranks.
                 self.assertIn("the same command resumes the sweep", error)
                 rows = table(self.folder / "s.h5")
                 self.assertGreater((rows.status == "interrupted").sum(), 0)
-            if MPI == "Open MPI":  # MPICH's mpirun may end with 0 after any signal
+            if MPI == "Open MPI":  # MPICH's mpirun may end with 0 after any signal.
                 self.assertEqual(process.returncode, 75 if signal_number == signal.SIGUSR1 else 1, error)
         done = self.succeed("clogsweep", *SLOW, ranks=2)
         self.assertRegex(done.stderr, "1 run resumes from the last checkpoint|2 runs resume from the last checkpoint")
@@ -66,7 +67,8 @@ class Resumed(SweepTest):
     def test_a_rank_alone_stops_at_every_warning_and_its_processes_ignore_it(self):
         for warned in (signal.SIGUSR2, signal.SIGXCPU, signal.SIGHUP):
             with self.subTest(signal=warned):
-                process = self.start(*ENDLESS, launcher="env", ranks="--default-signal=HUP")  # without mpirun
+                # The sweep runs without mpirun.
+                process = self.start(*ENDLESS, launcher="env", ranks="--default-signal=HUP")
                 self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any())
                 helper, = children_of(process.pid)
                 for pid in (*children_of(helper), helper, process.pid):
@@ -83,7 +85,7 @@ class Resumed(SweepTest):
         self.assertEqual(process.returncode, 0, error)
 
     def test_a_signal_while_it_starts_stops_it_too(self):
-        os.mkfifo(self.folder / "s.cfg")  # rank 0 waits for its config
+        os.mkfifo(self.folder / "s.cfg")  # Rank 0 waits for its config.
         process = self.start(*SWEEP, "--config", "s.cfg")
         with open(self.folder / "s.cfg", "w"):
             for rank in self.ranks_of(process):
@@ -93,8 +95,8 @@ class Resumed(SweepTest):
         self.assertFalse((self.folder / "s.h5").exists())
 
     def hold_while_it_runs(self, ranks):
-        """@return the sweep's process and the processes of its ranks, which are stopped; nothing if the sweep ended
-        before"""
+        """Starts a sweep and stops its ranks. @return the sweep's process and the processes of the ranks, or nothing if
+        the sweep ended earlier"""
         process = self.start(*SLOW, ranks=ranks)
 
         def runs():
@@ -143,7 +145,7 @@ class Resumed(SweepTest):
         self.wait_for(lambda: (self.folder / "s.h5").exists())
         watched = self.succeed("clogsweep", "status", "s.h5", "--watch").stdout
         self.assertIn("4 of 4 runs finished", watched)
-        self.assertNotIn("\x1b", watched)  # the output is no terminal, so the screen must not be cleared
+        self.assertNotIn("\x1b", watched)  # The output is no terminal, so the screen must not be cleared.
 
     def test_status_counts_unfinished_runs_as_not_clogged(self):
         self.stop_with_unfinished_runs(SWEEP)
@@ -187,7 +189,8 @@ class Resumed(SweepTest):
         self.refuse("clogsweep", *FEW_LONG, words=["its table is gone", "put the table back"])
 
     def kill_with_records(self, number):
-        """@return whether the journal had this number of records; otherwise the sweep ended before"""
+        """Kills a sweep with records in its journal. @return whether the journal had this number of records; otherwise
+        the sweep ended earlier"""
         process = self.start(*SLOW)
         self.wait_for(lambda: process.poll() is not None or self.journal()[0] >= number)
         self.kill_all(process)
@@ -198,7 +201,7 @@ class Resumed(SweepTest):
         self.assertIn(", all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
         journal = self.folder / "s.h5.journal"
         content = bytearray(journal.read_bytes())
-        content[500] ^= 1  # a byte of the first record
+        content[500] ^= 1  # changes a byte of the first record
         journal.write_bytes(content + b"the torn end of a kill")
         verified = self.run_program("clogsweep", "verify", "s.h5")
         self.assertEqual(verified.returncode, 1)
@@ -229,7 +232,7 @@ class Resumed(SweepTest):
             self.assertEqual((self.folder / name).read_text(), name)
 
     def test_a_table_that_cannot_be_made_leaves_no_journal(self):
-        # The name of the draft is too long for a file, the name of the journal is not.
+        # The name of the journal is short enough for a file. The name of the draft is too long.
         self.refuse("clogsweep", *SWEEP[:-1], 240 * "s", words=["cannot create", "File name too long"])
 
     def test_many_sessions_with_long_commands_fit(self):
@@ -254,7 +257,7 @@ class Resumed(SweepTest):
         self.until_in_time(first_run_is_stopped)
         begun = table(self.folder / "s.h5")
         self.succeed("clogsweep", *long, "--instruction-set=baseline", ranks=2)
-        only_one = begun.instruction_set[0] == "baseline"  # this processor has no other set
+        only_one = begun.instruction_set[0] == "baseline"  # This processor has no other set.
         rows = table(self.folder / "s.h5").set_index("task")
         self.assertEqual(rows.instruction_set[begun.task[0]], "baseline" if only_one else "mixed")
         self.assertEqual((rows.instruction_set == "baseline").sum(), 2 if only_one else 1)
@@ -335,7 +338,7 @@ class Resumed(SweepTest):
         self.refuse("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "clog-energy=1e-16", "gravity=vertex",
                     "perimeter-spring=mean", "--output", "s.h5",
                     words=["clog-energy=1e-16 (file: 1e-17)", "gravity=vertex (file: area)", "another --output"])
-        # Different texts for the same numbers count as equal.
+        # Two different texts for the same number count as equal.
         done = self.succeed("clogsweep", "vertices=64", "box=2e1", "max-time=20", "seeds=1", "--output", "s.h5")
         self.assertIn("nothing left to do", done.stderr)
 
@@ -356,7 +359,7 @@ class Resumed(SweepTest):
         before = runs()
         fill = [*keys, "seeds=2", "--output", "s.h5", "--seeds-per-set", 6]
         self.assertIn("# 19 tasks", self.succeed("clogsweep", *fill, "--dry-run").stdout)
-        self.run_program("clogsweep", *fill, "--max-hours=1e-9")  # stopped at once
+        self.run_program("clogsweep", *fill, "--max-hours=1e-9")  # The sweep stops at once.
         self.succeed("clogsweep", *fill, ranks=2)
         rows = table(self.folder / "s.h5")
         seeds = {tension: sorted(group.seed) for tension, group in rows.groupby("line_tension")}
@@ -379,8 +382,8 @@ class Resumed(SweepTest):
 
 
 class Batch(ProgramTest):
-    """Tests the scripts for batch systems. The commands of the systems are replaced by commands that only write down
-    their calls."""
+    """Tests the scripts for batch systems. The commands of these systems are replaced by commands that only write down
+    how they were called."""
 
     def script(self, name, *arguments, **environment):
         for command in ("scontrol", "qsub"):
@@ -402,7 +405,7 @@ class Batch(ProgramTest):
         return ["vertices=64", "box=20", "obstacle-gap=1.2", "seeds=1..20", *more, "--output", str(self.folder / "s.h5")]
 
     def warn(self, process, signal_number=signal.SIGUSR1):
-        """Checks that a warning interrupts the job's runs, and that the job queues again."""
+        """Checks that a warning interrupts the runs of the job, and that the job is queued again."""
         self.wait_for(lambda: process.poll() is not None or (
             (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()))
         process.send_signal(signal_number)
@@ -442,7 +445,7 @@ class Batch(ProgramTest):
 
     def test_a_complete_sweep_does_not_queue_again(self):
         self.write("lab.cfg", "diameter = 1 mm\nangle = 20 deg\ntension = 2 mN/m\nspeed = 1 mm/s\n")
-        # Relative paths refer to the job's folder, not to the folder in which a wrapper called the script.
+        # Relative paths refer to the job's folder. The script was called in another folder by a wrapper.
         process = self.script("slurm.sh", *self.sweep("max-time=5", "--lab", "lab.cfg")[:-1], "s.h5", SLURM_JOB_ID="77")
         self.ended(process)
         self.assertEqual(self.called(), "")

@@ -1,5 +1,5 @@
-"""Tests sweeps of channels, flat walls and user-supplied circles: they have the same keys as single runs, and a row for
-each run."""
+"""Tests sweeps of channels, flat walls and user-supplied circles. Such sweeps have the same keys as single runs, and a
+row for each run."""
 
 import json
 import math
@@ -25,12 +25,13 @@ OWN = ["obstacles=posts.csv", "box=10", "vertices=64", "max-time=60"]
 
 
 def read_rows(path):
-    """The rows of the table, with columns as attributes."""
+    """The rows of the table. Columns are attributes of a row."""
     return list(table(path).itertuples(index=False))
 
 
 class BreakUp(Analysis):
-    """Tests a droplet that sinks on one circle, a tenth of the droplet's diameter beside the middle."""
+    """Tests a droplet that sinks on one circle. The path of the droplet is a tenth of its diameter beside the middle of
+    the circle."""
 
     KEYS = ["obstacles=one.csv", "box=20", "vertices=64", "max-time=250", "break-up-neck=0.03"]
 
@@ -69,7 +70,7 @@ class BreakUp(Analysis):
         self.assertEqual(head, "offset,symmetry,breaks_up_to,whole_from,capillary_number")
         low, high = map(float, near.split(",")[2:4])
         self.assertTrue(0.055 < low < high < 0.07 and high < 1.02 * low, near)
-        self.assertEqual(far.split(",")[2:], ["", "0.01", ""])  # no droplet breaks
+        self.assertEqual(far.split(",")[2:], ["", "0.01", ""])  # No droplet breaks up.
         self.assertTrue((self.folder / "c.png").exists())
         for words, said in [(["--offsets", "0.6"], "0.6"), (["vertices"], "KEY=VALUE"), (["vertices=x"], "vertices"), (["--offsets", "0.4"], "nothing to draw")]:
             self.refuse_analysis("collision", "--output", "d", "--programs", BIN, *words, words=[said])
@@ -83,7 +84,7 @@ class Channels(Analysis):
         row = rows[1]
         self.succeed("clogrun", "channel", *CHANNEL, "line-tension=0.6", "--sample-interval", 0.001, "--output", "r.h5")
         with h5py.File(self.folder / "r.h5") as file:
-            samples = file["trajectory"][1:]  # the row's results come from the checks, not from the release
+            samples = file["trajectory"][1:]  # The row's results come from the checks, and do not include the release.
         largest = np.argmax(samples["shape_parameter"])
         self.assertEqual(row.largest_shape_parameter, samples["shape_parameter"][largest])
         self.assertEqual(row.largest_shape_parameter_at, samples["h"][largest])
@@ -93,8 +94,8 @@ class Channels(Analysis):
         slowest = np.argmin(fallen["speed_ratio"])
         self.assertEqual((row.smallest_relative_speed, row.smallest_relative_speed_at), (fallen["speed_ratio"][slowest], fallen["h"][slowest]))
         self.assertTrue(np.isnan(row.sag))
-        # Two caps on rounded tips have a shape parameter of 1.0952 (tests/core/scene). The largest shape parameter
-        # occurs in the orifice.
+        # A droplet between two caps on rounded tips has a shape parameter of 1.0952 (tests/core/scene). The largest
+        # shape parameter occurs in the orifice.
         self.assertAlmostEqual(row.largest_shape_parameter, 1.0952, delta=0.01)
         self.assertLess(abs(row.largest_shape_parameter_at), 0.05)
 
@@ -143,12 +144,12 @@ class Channels(Analysis):
             self.assertTrue(0 < passed < 3)
             self.assertIn(f"<li>orifice {orifice}: {passed} of 3 passed</li>", page)
         self.assertNotIn("lambda", page)
-        self.assertEqual((page.count("<svg"), page.count("<img")), (6, 0))  # one shows the busy ranks
+        self.assertEqual((page.count("<svg"), page.count("<img")), (6, 0))  # One of the charts shows the busy ranks.
         self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html", "--examples", 0)
         page = (self.folder / "r.html").read_text()
         self.assertEqual((page.count("<svg"), page.count("<img")), (4, 0))
 
-        # Each point has its group's number, and each marker shows how the run ended.
+        # Each point has the number of its group, and each marker shows how the run ended.
         axes = style.figure_of(passages.draw_curves, Groups(fit), "largest_shape_parameter").axes[0]
         self.assertEqual(axes.get_xlabel(), labels.AXES["line_tension"])
         drawn = [(line.get_xdata()[0], line.get_ydata()[0], line.get_marker()) for line in axes.lines if len(line.get_xdata()) == 1]
@@ -208,7 +209,8 @@ class Channels(Analysis):
             keys = [word for word in CHANNEL if word.split("=")[0] not in names]
             self.refuse("clogsweep", *keys, "line-tension=1", *words, "--output", "s.h5", words=told)
         self.refuse("clogsweep", "orifice=0.6", "obstacle-layout=random", "--output", "s.h5", words=["orifice=0.6", "obstacle-layout=channel"])
-        self.succeed("clogsweep", "orifice=0.7", "vertices=64", "max-time=1", "--output", "s.h5")  # this key implies a channel
+        # The key `orifice` implies a channel.
+        self.succeed("clogsweep", "orifice=0.7", "vertices=64", "max-time=1", "--output", "s.h5")
         self.assertEqual([row.obstacle_filling for row in read_rows(self.folder / "s.h5")], ["channel"])
         self.refuse("clogrun", "channel", "obstacle-layout=wall", "--output", "r.h5", words=["obstacle-layout=channel"])
         self.refuse("clogrun", "array", "obstacle-layout=channel", "--output", "r.h5", words=["clogrun channel"])
@@ -236,7 +238,7 @@ class Walls(Analysis):
         self.succeed("clogsweep", "obstacle-layout=wall", "model=sp", "wall-stiffness=0.5,5", "--output", "s.h5")
         for row, stiffness in zip(read_rows(self.folder / "s.h5"), [0.5, 5], strict=True):
             self.assertAlmostEqual(row.sag, np.pi / (16 * stiffness), delta=1e-5)
-        # The report has no outline to show, because a disk has none.
+        # The report has no outline to show, because disks have no outlines.
         self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
         page = (self.folder / "r.html").read_text()
         self.assertEqual((page.count("<svg"), page.count("<img")), (3, 0))
@@ -257,11 +259,12 @@ class OwnCircles(ProgramTest):
         (key, (name, table)), = self.circles("s.h5").items()
         self.assertEqual({row.obstacles for row in rows}, {key})
         self.assertEqual((name, len(table)), ("posts.csv", 6))
-        self.assertEqual(table["radius"].tolist(), [0.25, 0.15, 0.2, 0.3, 0.15, 0.5])  # 0.15: half of obstacle-diameter
+        # A radius of 0.15 is half of obstacle-diameter.
+        self.assertEqual(table["radius"].tolist(), [0.25, 0.15, 0.2, 0.3, 0.15, 0.5])
         self.assertEqual({row.obstacle_filling for row in rows}, {"file"})
         self.assertEqual({row.obstacle_density for row in rows}, {0.06})
         self.assertAlmostEqual(rows[0].obstacle_gap, np.hypot(1.2, 0.6) - 0.4)
-        # clogrun gives the same run.
+        # clogrun must compute the same run.
         self.succeed("clogrun", "array", *OWN, "line-tension=1", "--output", "r.h5")
         run, = read_rows(self.folder / "r.h5")
         self.assertEqual((run.distance, run.lateral_displacement, run.obstacles), (rows[1].distance, rows[1].lateral_displacement, key))
@@ -277,7 +280,7 @@ class OwnCircles(ProgramTest):
         self.refuse("clogsweep", *OWN, "--output", "s.h5", words=["posts.csv"])
 
     def test_seeds_release_it_anywhere(self):
-        # No lane of this array is free of posts.
+        # In this array every lane along the flow is blocked by posts.
         (self.folder / "dense.csv").write_text("x,y,diameter\n" + "".join(f"{3 * i % 10},{1.25 * i + 0.6},0.5\n" for i in range(8)))
         keys = ["obstacles=dense.csv", *OWN[1:-1], "line-tension=0.1", "max-time=400", "release=anywhere"]
         self.succeed("clogsweep", *keys, "seeds=1..4", "--output", "s.h5")
@@ -297,7 +300,8 @@ class OwnCircles(ProgramTest):
         first, second = read_rows(self.folder / "s.h5")
         self.assertNotEqual(first.obstacles, second.obstacles)
         names = {key: name for key, (name, _) in self.circles("s.h5").items()}
-        self.assertEqual(names, {first.obstacles: "posts.csv", second.obstacles: ""})  # only the last file's name is known
+        # Only the name of the last file is known.
+        self.assertEqual(names, {first.obstacles: "posts.csv", second.obstacles: ""})
         self.succeed("clogsweep", "replay", "s.h5", 1)
         self.succeed("clogsweep", "verify", "s.h5")
 
@@ -318,8 +322,8 @@ class OwnCircles(ProgramTest):
         self.assertNotIn("leaves y=", told)
 
     def test_droplets_that_fall_through_a_lane_met_nothing(self):
-        # Posts between two walls at y = 1 and 7, in a device that is 8 wide. Behind the walls there is a lane of width
-        # 1.7, in which a droplet touches nothing.
+        # Posts between two walls at y = 1 and 7, in a device of width 8. Behind the walls there is a lane of width 1.7.
+        # A droplet in this lane touches nothing.
         walls = [(0.53 * i % 16, y) for i in range(30) for y in (1, 7)] + [(1.0 + 2 * i, 0.5 * (i % 2) + y) for i in range(8) for y in (2, 3.1, 4.2, 5.3)]
         keys = ["box=8", "boxes=2", "release=anywhere", "vertices=64", "line-tension=4", "terminal-speed=0.1", "max-time=100", "seeds=1..12"]
         (self.folder / "walls.csv").write_text("x,y,diameter\n" + "".join(f"{x:.4f},{y},0.3\n" for x, y in walls))
@@ -340,8 +344,8 @@ class OwnCircles(ProgramTest):
         self.succeed("clogsweep", "verify", "s.h5")
 
     def test_the_length_between_two_walls_is_that_of_the_droplets_that_met_them_in_any_unit(self):
-        # 60 posts form two walls at y = 1 and 7, with a lane of width 1.7 behind them. Between the walls there are a
-        # few columns of posts.
+        # 60 posts form two walls at y = 1 and 7. Behind them is a lane of width 1.7. Between the walls there are a few
+        # columns of posts.
         walls = [(round((i + 0.5) * 16 / 30, 4), y) for i in range(30) for y in (1, 7)]
         walls += [(1 + 4 * i, 1.75 + 0.75 * j + 0.3 * (i % 2)) for i in range(4) for j in range(7)]
         keys = ["box=8", "boxes=2", "release=anywhere", "vertices=64", "line-tension=3", "terminal-speed=0.1", "max-time=150", "seeds=1..20"]
@@ -359,7 +363,7 @@ class OwnCircles(ProgramTest):
         self.assertGreater(clogs, 0)
         self.assertAlmostEqual(group["clogging_length_met"], (met.distance - met.first_contact_at).sum() / clogs, places=9)
         self.assertLess(group["clogging_length_met"], group["clogging_length"] / 2)
-        # Keys of devices that have their defaults do not appear.
+        # Keys of devices do not appear if they have their defaults.
         text = self.succeed("clogfit", "walls.csv.h5").stdout
         for word in ("side_walls", "entrance", "exit=", " length="):
             self.assertNotIn(word, text)

@@ -12,7 +12,8 @@ from clogsweep import style
 from clogsweep.drawing import clogs, curve
 from clogsweep.labels.groups import Groups
 
-# Settings for keys that apply only to certain runs, and for keys with words as values, which take no list
+# Settings for two kinds of keys: keys that apply only to certain runs, and keys whose values are words, which take no
+# list
 SURROUNDINGS = {
     "lattice-angle": ["obstacle-layout=lattice", "box=60", "obstacle-gap=0.5"],
     "pitch": ["obstacle-layout=lattice", "box=60"],
@@ -28,7 +29,7 @@ SURROUNDINGS = {
     **{key: ["obstacles=one.csv", "box=10", "vertices=64", "max-time=300", "release=entrance"]
        for key in ("entrance", "entrance-from", "entrance-to", "exit", "length")},
 }
-# These keys apply to channels, which have passages instead of clogging lengths: see test_scenes.
+# These keys apply to channels. Channels have passages instead of clogging lengths, so test_scenes tests them.
 OF_CHANNELS = {"orifice", "wedge-angle", "tip-radius", "start", "end"}
 VALUES = {"line-tension": "1,3", "wall-stiffness": "0.05,0.08", "obstacle-gap": "0.2,0.3", "obstacle-diameter": "0.3,0.4",
           "obstacle-diameter-spread": "0,0.2", "obstacle-density": "1.5,2", "lattice-angle": "0,10", "pitch": "0.8,0.9", "seeds": "1..3", "box": "20,25",
@@ -55,7 +56,7 @@ class Sweeps(Analysis):
 
     def sweep(self, key):
         (self.folder / "s.h5").unlink(missing_ok=True)
-        for name, x in [("one.csv", 6.2), ("other.csv", 6.25)]:  # the files have rows of posts across the flow
+        for name, x in [("one.csv", 6.2), ("other.csv", 6.25)]:  # The files contain rows of posts across the flow.
             (self.folder / name).write_text("x,y,diameter\n" + "".join(f"{x},{i * 10 / 12},0.3\n" for i in range(12)))
         seeds = [] if key in ("seeds", "obstacles") else ["seeds=1..2"]
         tension = [] if key == "line-tension" else ["line-tension=2"]
@@ -73,9 +74,9 @@ class EveryKey(Sweeps):
                 self.sweep(key["key"])
                 groups = self.fit()
                 if key["role"] != "ensemble":
-                    if key["key"] == "laboratory":  # the laboratory lists droplets of two sizes
+                    if key["key"] == "laboratory":  # The laboratory lists droplets of two sizes.
                         self.assertEqual((groups.abscissa, groups.values("diameter_mm")), ("diameter_mm", {1, 2}))
-                    elif key["kind"] == "file":  # files cannot be values of an axis, so each file has a curve
+                    elif key["kind"] == "file":  # Files cannot be values on an axis, so each file has its own curve.
                         self.assertEqual([len(members) for _, members in groups.curves()], [1, 1])
                     else:
                         self.assertEqual(groups.abscissa, key["column"])

@@ -1,4 +1,4 @@
-"""Tests sweeps over the droplets and tilts that a laboratory file lists."""
+"""Tests sweeps over several droplets and tilts, which a laboratory file lists."""
 
 import json
 import math
@@ -207,7 +207,7 @@ class Sizes(ProgramTest):
         heading, *lines = [line.split() for line in self.succeed("clogfit", "s.h5").stdout.split("\n\n")[1].splitlines()]
         self.assertEqual(heading[:3], ["diameter/mm", "angle/degrees", "lambda/mm"])
         self.assertEqual(heading[-3:], ["line_tension", "terminal_speed", "note"])
-        self.assertNotIn("tension/(mN/m)", heading)  # it is 2 for all droplets
+        self.assertNotIn("tension/(mN/m)", heading)  # The tension is 2 for all droplets.
         self.assertEqual({tuple(map(float, line[:2])) for line in lines}, set(SETS))
         summary = clogsweep.open(self.folder / "s.h5", BIN).fit().summary
         self.assertEqual({"diameter_mm", "angle_degrees"} & set(summary.columns), {"diameter_mm", "angle_degrees"})

@@ -1,4 +1,5 @@
-"""Tests streams that are closed, full or not read, files that are not regular, and messages with unusual names."""
+"""Tests streams that are closed or full, or that nobody reads. Also tests files that are not regular, and messages with
+unusual names."""
 
 import os
 import shutil
@@ -14,7 +15,7 @@ sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
 
 SMALL_SWEEP = [*QUICK, "seeds=1..3", "--verbose", "--output", "s.h5"]
-# All commands that print something and end by themselves
+# All commands that print something and then end
 REPORTS = [["clogsweep", "--help"], ["clogsweep", "--version"], ["clogsweep", "--print-config"], ["clogsweep", *QUICK, "--dry-run"],
            ["clogsweep", "doctor"], ["clogsweep", "doctor", "--help"], ["clogsweep", "status", "done.h5"],
            ["clogsweep", "verify", "done.h5"], ["clogsweep", "replay", "done.h5", "0"],
@@ -46,7 +47,7 @@ class Streams(SweepTest):
 
     def test_a_closed_stream_suppresses_output(self):
         for redirection in (">&-", "2>&-", "<&-", "<&- >&- 2>&-", ">/dev/full 2>/dev/full"):
-            # MPICH's mpirun does not start without its streams, and Open MPI's mpirun waits for a full stream.
+            # MPICH's mpirun does not start without its streams. Open MPI's mpirun waits if a stream is full.
             for ranks in (None, 2) if MPI == "Open MPI" and "full" not in redirection else (None,):
                 with self.subTest(redirection, ranks=ranks):
                     done = self.redirect(redirection, "clogsweep", *SMALL_SWEEP, ranks=ranks)
@@ -74,7 +75,7 @@ class Streams(SweepTest):
                 (self.folder / "run.h5").unlink(missing_ok=True)
 
     def without_reader(self, stream, name, *arguments):
-        """Runs a program with a pipe as the given stream. Nobody reads the pipe any more."""
+        """Runs a program. The given stream is a pipe that nobody reads any more."""
         reader, writer = os.pipe()
         os.close(reader)
         streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, stream: writer}
@@ -120,7 +121,7 @@ class Streams(SweepTest):
 
 class Files(SweepTest):
     def make_others(self):
-        """Makes a file of every kind except a regular one; returns their names."""
+        """Makes a file of every kind except a regular one. @return the names of the files"""
         os.mkdir(self.folder / "folder")
         os.mkfifo(self.folder / "pipe")
         with socket.socket(socket.AF_UNIX) as address:
@@ -167,7 +168,8 @@ class Files(SweepTest):
                                      (["clogfit", "drag", "pipe"], -signal.SIGTERM)):
             with self.subTest(arguments):
                 process = subprocess.Popen([str(BIN / arguments[0]), *arguments[1:]], cwd=self.folder, stderr=subprocess.PIPE)
-                writer = os.open(self.folder / "pipe", os.O_WRONLY)  # returns when the program has opened its end
+                # The call returns when the program has opened its end.
+                writer = os.open(self.folder / "pipe", os.O_WRONLY)
                 process.terminate()
                 process.communicate(timeout=LONGEST)
                 os.close(writer)
@@ -175,7 +177,7 @@ class Files(SweepTest):
 
 
 class Alone(SweepTest):
-    """Tests a single rank that no launcher has started."""
+    """Tests a single rank that was started without a launcher."""
 
     def test_it_needs_neither_environment_nor_daemon(self):
         environment = {name: value for name, value in os.environ.items() if name == "ASAN_OPTIONS"}
@@ -189,8 +191,8 @@ class Alone(SweepTest):
         self.assertEqual(set(names.split()), {"clogsweep"})
 
     def test_it_needs_no_folder_for_its_own_files(self):
-        # Otherwise all such ranks of a user would share one folder, and a rank would fail that starts while another one
-        # ends.
+        # Otherwise all such ranks of a user would share one folder. A rank would then fail if it started while another
+        # rank ends.
         done = subprocess.run([str(BIN / "clogsweep"), *QUICK, "--output", "s.h5"], cwd=self.folder, env={**os.environ, "TMPDIR": "/proc"},
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -1,7 +1,7 @@
-"""Runs commands of the handbook's pages with fewer seeds and shorter runs, to test that programs and module know their
-keys and options.
+"""Runs commands on pages of the handbook with fewer seeds and shorter runs. So it tests that the programs and the
+module know the keys and options of these commands.
 
-slow_tutorial runs the unchanged commands, and tests what they print and draw.
+slow_tutorial runs the commands without changes, and tests what they print and draw.
 """
 
 import re
@@ -10,11 +10,11 @@ import unittest
 import pages
 from drawing import Analysis
 
-# Parts of commands that make them take long, and their replacements
+# Parts of commands that take long, with their replacements
 SHORTER = [(r"\bmpirun -np \d+ ", ""), (r"\bseeds( *)=( *)1\.\.\d+", r"seeds\1=\g<2>1..2"), (r"\bmax-time( *)=( *)\d{3,}", r"max-time\1=\g<2>300"),
            (r"\bstart=-2 end=\d\b", "start=-1 end=-0.9"), (r"\bfor tension in [\d. ]+", "for tension in 1"), (r"\bvertices=128\b", "vertices=64")]
-# This function replaces python3 and only records its arguments. Then the test makes the calls without starting Python
-# anew.
+# This function replaces python3, and only records its arguments. The test then makes the calls itself, without starting
+# Python again.
 LATER = "later() { echo \"$@\" >> later.txt; }\n"
 
 
@@ -36,7 +36,7 @@ class Commands(Analysis):
                         self.draw(*line.split())
 
     def test_those_of_the_tutorial(self):
-        """All pages are run in one folder, as the tutorial tells its readers."""
+        """All pages are run in one folder, as the tutorial asks its readers to do."""
         for page in pages.tutorial():
             self.follow(page)
 

@@ -18,14 +18,15 @@ from clogsweep import style  # noqa: E402
 from clogsweep.pages import report  # noqa: E402
 from clogsweep.tools import rounded  # noqa: E402
 
-# The droplets of Cheng et al.: diameter, tilt and terminal speed, then V_t and Gamma_exp as printed there, each with
-# its uncertainty. This is half of the last digit of the number, or follows from the digits of the quantities behind it
-# ("v_t = 7 mm/s" may be wrong by one part in fourteen).
+# The droplets of Cheng et al. with their diameter, tilt and terminal speed, and with V_t and Gamma_exp as printed
+# there. V_t and Gamma_exp come with their uncertainties. An uncertainty is half of the last printed digit, or follows
+# from the digits of the quantities from which the number was computed. For instance, "v_t = 7 mm/s" may be wrong by one
+# part in fourteen.
 ARTICLE = [("3.5 mm", "28 deg", "7 mm/s", (0.08, 0.006), (0.57, 0.01)),
            ("1.98 mm", "8.5 deg", "0.97 mm/s", (0.028, 5e-4), (5.80, 0.07)),
            ("3.30 mm", "5.0 deg", "1.1 mm/s", (0.032, 5e-4), (3.47, 0.05))]
-FITTED = [0.16, 1.7, 1.08]  # Gamma* of these three droplets in the article
-TENSION = "9.6 mN/m"  # the article says "about 10 mJ/m^2"; this value gives the printed Gamma_exp
+FITTED = [0.16, 1.7, 1.08]  # Gamma* of these three droplets in the article.
+TENSION = "9.6 mN/m"  # The article states "about 10 mJ/m^2". This value gives the printed Gamma_exp.
 
 
 class Units(ProgramTest):
@@ -41,7 +42,7 @@ class Units(ProgramTest):
             found = self.units(self.lab(diameter, angle, speed))
             self.assertAlmostEqual(found["terminal_speed"], terminal_speed[0], delta=terminal_speed[1])
             self.assertAlmostEqual(found["line_tension_experiment"], experiment[0], delta=experiment[1])
-            # The article finds "Gamma**/Gamma_exp of about 0.3".
+            # The article states that "Gamma**/Gamma_exp" is about 0.3.
             self.assertAlmostEqual(found["line_tension"], fitted, delta=0.1 * fitted)
             self.assertAlmostEqual(found["capillary_number"], 3.14159265 / 4 / found["line_tension"], delta=1e-6)
 
@@ -68,7 +69,7 @@ class Units(ProgramTest):
         self.assertIsNone(given["angle_degrees"][0])
         self.assertAlmostEqual(given["angle_degrees"][1], 24.0, delta=0.5)
         self.assertEqual(clogsweep.units(self.folder / lab, length=[2, 3], folder=BIN)["given"]["length_mm"], [7.0, 10.5])
-        # Between upright plates this droplet has Gamma = 0.0815, the smallest value at any tilt.
+        # Between upright plates this droplet has Gamma = 0.0815. At any other tilt Gamma is larger.
         told = self.succeed("clogfit", "units", lab, "--line-tension", "0.05,0.2").stdout
         self.assertRegex(told, r"(?m)^or tilt with this tension +none: even upright, Gamma is 0\.0815 +Gamma = 0\.0500$")
         self.assertRegex(told, r"(?m)^or tilt with this tension +2\d\.\d deg +Gamma = 0\.200$")
@@ -130,7 +131,7 @@ class Units(ProgramTest):
             self.assertEqual([stored.decode() for stored in set(file["runs"]["laboratory"])], list(file["laboratories"]))
             self.assertAlmostEqual(file["runs"]["line_tension"][0] / known["line_tension"], 1, places=3)
             self.assertAlmostEqual(file["runs"]["terminal_speed"][0] / known["terminal_speed"], 1, places=3)
-        self.succeed("clogsweep", "--lab", lab, *QUICK, "seeds=1..5", "--output", "s.h5")  # this gives the sweep more seeds
+        self.succeed("clogsweep", "--lab", lab, *QUICK, "seeds=1..5", "--output", "s.h5")  # gives the sweep more seeds
         self.succeed("clogsweep", "verify", "s.h5")
         fit = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
         group, = fit["groups"]

@@ -3,11 +3,13 @@
 
     compare_outputs.py BEFORE AFTER [--trees TREE TREE] [--only WORD]     (folders of the programs; source trees)
 
-The pages are README.md and those of docs/tutorial, docs/how-to and docs/reference. Pages of slow_tutorial are run block
-by block. The commands of the other pages are shortened and run one by one, as in slow_pages. Output, exit code and
-written files are compared; times, speeds, hosts, dates and temporary folders are masked. --trees: the source trees
-whose Python modules are used with BEFORE and AFTER (default: this tree for both); pages and test suites come from the
-second tree. Exit code 1: something differs. Needs about ten minutes a side on an idle machine.
+The pages are README.md and those of docs/tutorial, docs/how-to and docs/reference. The pages of slow_tutorial are run
+block by block. The commands of the other pages are shortened and run one by one, as in slow_pages. Outputs, exit codes
+and written files are compared. Times, speeds, hosts, dates and temporary folders are masked.
+
+--trees names the source trees whose Python modules are used with BEFORE and AFTER. By default both use this tree. Pages
+and test suites come from the second tree. Exit code 1: something differs. The comparison needs about ten minutes for
+each build on an idle machine.
 """
 
 import argparse
@@ -22,7 +24,7 @@ import subprocess
 import sys
 import tempfile
 
-LIMIT = 240  # seconds; on a busy machine, a command of a minute can take this long
+LIMIT = 240  # Limit in seconds. On a busy machine, a command that usually takes a minute can take this long.
 UNITS = "steps/s|s|ms|us|min|minutes?|hours?|h|days?|seconds?|core-hours?|core-seconds|ranks? s|kB|MB|GB|MiB|GiB"
 MASKS = [(r"[\d.,e+-]+ (runs/min|ns per vertex-step|runs per minute)", r"SOME \1"),
          (r"/tmp/[\w./-]*", "TMP"), (r"\d{4}-\d\d-\d\d([T ]\d\d:\d\d(:\d\d)?(\.\d+)?Z?( UTC)?)?", "DATE"), (r"\d?\d:\d\d(:\d\d)?", "TIME"),
@@ -42,7 +44,7 @@ def masked(text):
 
 
 def digest(path):
-    """@return lines that describe the contents of a file"""
+    """@return lines that describe the content of a file"""
     import compare_rows
     import numpy as np
     from PIL import Image
@@ -73,7 +75,8 @@ class Recorder:
         return {path: path.stat().st_mtime_ns for path in sorted(self.folder().rglob("*")) if path.is_file()}
 
     def call(self, name, run):
-        """@param run  makes the call; returns a CompletedProcess, or nothing if there is nothing to compare"""
+        """Records a call. @param run  makes the call; returns a CompletedProcess, or nothing if there is nothing to
+        compare"""
         before = self.states()
         try:
             done = run()
@@ -90,7 +93,7 @@ class Recorder:
 
 
 def record(folder, tree, pages_tree, only, output):
-    # Programs look for the Python module beside their folder, so it is linked there.
+    # The programs look for the Python module beside their folder, so a link to the module is made there.
     own = tempfile.TemporaryDirectory(prefix="clog_programs_")
     programs = pathlib.Path(own.name) / "bin"
     shutil.copytree(folder, programs)
@@ -197,7 +200,7 @@ def main():
     num_differing = 0
     for name in {**before, **after}:
         one, two = before.get(name, ["not run"]), after.get(name, ["not run"])
-        if one != two and sorted(one) != sorted(two):  # ranks report in any order
+        if one != two and sorted(one) != sorted(two):  # The order in which ranks report may differ.
             num_differing += 1
             print(f"## {name}")
             print("\n".join(line[:300] for line in difflib.unified_diff(one, two, "BEFORE", "AFTER", lineterm="", n=0)))

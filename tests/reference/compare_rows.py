@@ -3,10 +3,10 @@
 
     tests/reference/compare_rows.py BEFORE AFTER        (folders of the programs)
 
-In each case both builds make the same small run. Everything in the two files must be the same: datasets, columns and
-attributes, and so also units and meanings. Only what describes the circumstances of a run may differ. The cases
-together give every key of AFTER's schema a value other than its default, and use every word of every key. Exit code 1:
-something differs, or no case covers a key.
+In each case both builds make the same small run. Everything in the two files must be the same: datasets, columns, and
+attributes with their units and meanings. Only the circumstances of a run may differ. Every key of AFTER's schema has a
+value other than its default in at least one case, and every word of every key is used. Exit code 1: something differs,
+or no case covers a key.
 """
 
 import argparse
@@ -23,13 +23,13 @@ import time
 import h5py
 import numpy as np
 
-# These are not compared: columns, attributes of the root ("@"), checksums of such columns.
+# The comparison leaves out columns, attributes of the root ("@"), and checksums of such columns.
 CIRCUMSTANCES = {*(f"runs/{name}" for name in ("wall_seconds", "processor_seconds", "rank", "host", "attempt")), "row_checksums",
                  *(f"@{name}" for name in ("version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "checksums",
                                            "start_time", "command_line", "sessions", "activity", "parts"))}
 INPUTS = {"own.csv": "x,y,diameter\n2,5,0.5\n3.2,4.4,0.3\n3.4,5.9,0.4\n5,5.1,0.6\n7,4.2,0.3\n8.5,6.4,1\n",
           "points.csv": "line-tension,obstacle-gap\n0.1,0.3\n1,0.6\n"}
-# Dense arrays, in which the droplet meets obstacles at once.
+# Dense arrays, in which the droplet soon meets obstacles.
 ARRAY = "clogsweep box=20 vertices=64 seeds=3..4 obstacle-density=saturated"
 SWEEP = f"{ARRAY} max-time=40"
 DEVICE = "clogsweep obstacles=own.csv obstacle-layout=file box=10 vertices=64 seeds=1..2"
@@ -78,7 +78,7 @@ CASES = {
 
 
 def uncovered(programs):
-    """@return the keys that have their default in all cases, and the words of keys that no case uses"""
+    """@return the keys that have their defaults in all cases, and the words of keys that no case uses"""
     given = collections.defaultdict(set)
     for word in shlex.split("\n".join(CASES.values())):
         key, _, values = word.partition("=")
@@ -92,7 +92,7 @@ def uncovered(programs):
 
 
 def interrupt(command, folder):
-    """Stops the sweep up to three times. @return whether any stop came in time"""
+    """Stops the sweep up to three times. @return whether any stop came before the end"""
     for count in range(3):
         process = subprocess.Popen(command, cwd=folder, stderr=subprocess.DEVNULL)
         time.sleep(0.6)
@@ -103,7 +103,7 @@ def interrupt(command, folder):
 
 
 def make(programs, name, folder):
-    """@return the path of the case's file"""
+    """Makes the run of a case. @return the path of its file"""
     folder.mkdir()
     for file, text in INPUTS.items():
         (folder / file).write_text(text)
@@ -119,7 +119,7 @@ def make(programs, name, folder):
 
 
 def contents(path):
-    """@return everything in a file, by name: type, shape and bytes"""
+    """@return everything in a file by name, with its type, shape and bytes"""
     found = {}
 
     def add(name, value):
@@ -144,7 +144,7 @@ def contents(path):
 
 
 def differences(before, after):
-    """Names of the differences between two files."""
+    """The names of everything that differs between two files."""
     one, two = contents(before), contents(after)
     for name in sorted({*one, *two}):
         if name not in one or name not in two:
@@ -154,7 +154,7 @@ def differences(before, after):
 
 
 def compare(programs, name):
-    """@return names of the differences, or of what failed"""
+    """Compares a case. @return names of the differences, or of what failed"""
     with tempfile.TemporaryDirectory(prefix="clog_reference_") as place:
         try:
             paths = [make(folder, name, pathlib.Path(place) / which) for which, folder in programs.items()]

@@ -18,7 +18,7 @@ TEST(Activity, CountsBusyRanksAndWhatIsLostToTheTail) {
   activity.started(0);
   activity.started(0);
   activity.ended(2);
-  activity.started(3);  // a rank was idle for a second, which is not part of the tail
+  activity.started(3);  // a rank was idle for a second, but this was not at the end of the sweep
   activity.ended(4);
   activity.ended(6.5);
   const nlohmann::json line = told(activity, 6.5);

@@ -67,7 +67,7 @@ TEST(SweepCost, OfRunsOfWhichNoneEndsIsAnythingUpToTheBound) {
   const SweepCost all = cost(std::vector<RunCost>(10, unfinished(1, 100)), 1000);
   EXPECT_NEAR(all.bound, 1e5, 1e-6);
   EXPECT_NEAR(all.upper, all.bound, 1e-6);
-  EXPECT_GT(all.lower, 2000);  // 10 s of computing in all, and no run has ended
+  EXPECT_GT(all.lower, 2000);  // the runs have computed for 10 s in all, and none of them has ended
   EXPECT_GT(all.expected, all.lower);
   EXPECT_LT(all.expected, all.bound);
 }
@@ -87,8 +87,8 @@ TEST(SweepCost, CountsWhatComesBeforeTheFirstStep) {
 }
 
 TEST(SweepCost, WeighsRunsByWhatTheyMayCost) {
-  // Half of the sweep's runs cost ten times as much as the others. The estimate weighs them by their bounds,
-  // whatever part of them was sampled.
+  // Half of the sweep's runs cost ten times as much as the others. The estimate weights the runs by their
+  // bounds, whatever fraction of each kind was sampled.
   const std::vector<RunCost> sample = {finished(1, 10), finished(10, 100)};
   EXPECT_NEAR(sweep_cost(sample, 110 * 50 / seconds_per_work, 100).expected, 550, 1e-9);
 }
@@ -102,7 +102,7 @@ WaitingRuns waiting(std::int64_t set, std::int64_t number, double longest) {
 }
 
 TEST(CostLeft, IsThatOfTheParameterSetsThatWait) {
-  // All long runs have begun, but only a few of the short runs.
+  // All long runs have begun, but only a few of the short runs have.
   std::vector<RunCost> begun(20, of_set(0, finished(20, 100)));
   for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, finished(seconds, 100)));
   const std::vector<WaitingRuns> waits = {waiting(0, 0, 100), waiting(1, 16, 100)};
@@ -118,7 +118,8 @@ TEST(CostLeft, HasWhatUnfinishedRunsStillTake) {
   for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, finished(seconds, 100)));
   begun.push_back(of_set(1, unfinished(0.4, 100)));
   const SweepCost left = cost_left(begun, {});
-  EXPECT_GT(left.expected, 0.2);  // a short run, estimated from the other short runs
+  // The remaining run is short, and its cost is estimated from the other short runs.
+  EXPECT_GT(left.expected, 0.2);
   EXPECT_LT(left.expected, 2);
   EXPECT_GT(left.upper, left.expected);
   EXPECT_LT(left.lower, left.expected);
@@ -171,11 +172,11 @@ TEST(CostLeft, CoversTheTruthWhereLongRunsBeginFirst) {
   EXPECT_GT(num_covered, 0.85 * num_trials);
 }
 
-/// How often the interval contains the true cost of a mixture of short and long runs that belong to
-/// `num_sets` parameter sets.
+/// The fraction of cases in which the interval contains the true cost. The sweep is a mixture of short and
+/// long runs. @param num_sets  number of parameter sets to which the runs belong
 double coverage(int num_sets) {
-  // A third of the runs takes 0.1 s on average, a third 2 s, a third 40 s. Each of 24 sampled runs is
-  // followed for 0.4 s.
+  // A third of the runs takes 0.1 s on average, another third 2 s, and the last third 40 s. Each of 24
+  // sampled runs is followed for 0.4 s.
   std::mt19937 random(7);
   int num_covered = 0;
   constexpr int num_trials = 400;
@@ -195,9 +196,9 @@ double coverage(int num_sets) {
 }
 
 TEST(SweepCost, CoversTheTruthWhereShortAndLongRunsMix) {
-  EXPECT_GT(coverage(1), 0.8);   // every set has the mixture
-  EXPECT_GT(coverage(3), 0.9);   // each kind of run has its own set
-  EXPECT_GT(coverage(24), 0.9);  // one run of each set is known
+  EXPECT_GT(coverage(1), 0.8);   // The only set has the mixture.
+  EXPECT_GT(coverage(3), 0.9);   // Each kind of run is a set.
+  EXPECT_GT(coverage(24), 0.9);  // One run of each set is known.
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace clog::results {
 
-/// Makes a row that fault_of() accepts. The droplet moved at its terminal speed over `distance`, where its
-/// run ended; a droplet that still flows has rested there since.
+/// Makes a row that fault_of() accepts. The droplet moved over `distance` at its terminal speed, and then its
+/// run ended. If the status is flowing, the droplet has rested there since.
 /// @param distance  [sigma]
 inline void end_run(sweep::RunRow& row, RunStatus status, double distance) {
   row.status = status;

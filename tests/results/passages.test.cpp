@@ -33,7 +33,7 @@ RunParameters device() {
   return resolve(run);
 }
 
-/// @param first_contact_at  distance of the first contact; empty if the droplet met no obstacle
+/// @param first_contact_at  distance of the first contact, or empty if the droplet met no obstacle
 sweep::RunRow row(std::uint32_t seed, RunStatus status, double distance,
                   std::optional<double> first_contact_at) {
   RunParameters run = device();
@@ -71,7 +71,7 @@ void expect_passages(const Group& group, const std::vector<Counts>& expected) {
 TEST(Passages, AreThoseOfEachRowOfPostsAndOfTheExit) {
   const std::vector<Group> groups = group_runs(five_rows(), 0.95);
   ASSERT_EQ(groups.size(), 1u);
-  // The fourth droplet is beyond x = 5 and still moves.
+  // The fourth droplet is beyond x = 5, and still moves.
   expect_passages(groups[0], {{3, 4, 1}, {6, 3, 1}, {9, 2, 2}, {device_exit, 2, 2}});
 }
 
@@ -84,7 +84,7 @@ TEST(Passages, AreThoseOfTheUsersLines) {
 
 TEST(Passages, ArePrintedALineEach) {
   const std::string text = to_text(group_runs(five_rows(), 0.95), 0.95, SharedParameters::unusual);
-  // 2 of 4: exact limits of Clopper and Pearson, as R's binom.test(2, 4) prints them.
+  // For 2 of 4 runs these are the exact limits of Clopper and Pearson, as R's binom.test(2, 4) prints them.
   EXPECT_NE(text.find("        9          2   4   0.50  0.07 .. 0.93\n"), std::string::npos) << text;
   EXPECT_NE(text.find("       12          2   4   0.50  0.07 .. 0.93\n"), std::string::npos) << text;
 }

@@ -16,13 +16,13 @@ sweep::RunRow row(std::int64_t task, RunStatus status) {
   return row;
 }
 
-/// Progress of a sweep of which four runs are to be done.
+/// The progress of a sweep that has four runs to do.
 class ProgressTest : public testing::Test {
  protected:
   std::ostringstream out_;
   Progress progress_{out_, Progress::Screen::plain, 2, [](std::int64_t) { return std::int64_t{0}; }};
 
-  /// The last line, without the rate and what follows it, which depend on the time.
+  /// The last line, cut before the rate, because the rate and the text after it depend on the time.
   std::string line() {
     progress_.finish();
     const std::string text = out_.str();

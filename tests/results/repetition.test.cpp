@@ -23,7 +23,7 @@ sweep::RunRow known_row() {
   return row;
 }
 
-/// A NaN whose bits are not those of the NaN in files.
+/// A NaN with other bits than the NaN in files.
 double other_nan() { return std::bit_cast<double>(std::uint64_t{0xfff0'0000'0000'0123}); }
 
 TEST(DifferingResults, AreTheColumnsWithOtherValues) {

@@ -1,5 +1,5 @@
-/// Checks for every parameter that two values of it mean two different runs. So the code that compares,
-/// groups, lists or shares runs cannot overlook a parameter.
+/// Checks every parameter: two of its values must mean two different runs. So the code that compares, groups,
+/// lists or shares runs cannot overlook a parameter.
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -64,20 +64,20 @@ sweep::Settings settings_for(const Parameter& parameter) {
     settings.set("friction", "0.1");
   }
   if (key == "advancing-angle")
-    settings.set("wall-tension", "0.5");  // Young's angle must not be the largest possible angle
+    settings.set("wall-tension", "0.5");  // Young's angle must be smaller than the largest possible angle
   if (parameter.key == std::string("gravity")) settings.set("preset", "heavy-interface");
   if (parameter.key == std::string("model")) settings.set("wall-stiffness", "1");
   return settings;
 }
 
-/// A value that differs from the one in the settings, as text of a config.
+/// A value that differs from the one in the settings, as text for a config.
 std::string other_value(const Parameter& parameter, const sweep::Settings& settings) {
   if (parameter.kind == ValueKind::file) return "other.csv";
   if (parameter.kind == ValueKind::text) return "angle = 20 deg; diameter = 1 mm";
   const ParameterValue value = parameter.get(sweep::Plan(settings).task(0));
   if (parameter.kind == ValueKind::word)
     return *std::ranges::find_if(parameter.words, [&](const std::string& word) {
-      return word != "auto" && ParameterValue(word) != value;  // auto may mean the same value
+      return word != "auto" && ParameterValue(word) != value;  // `auto` may mean the same value
     });
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer + 1);
   if (parameter.key == std::string("advancing-angle")) return "150";
@@ -85,7 +85,7 @@ std::string other_value(const Parameter& parameter, const sweep::Settings& setti
   if (parameter.key == std::string("exit")) return "40";  // downstream of the release at the centre
   if (parameter.key == std::string("length")) return "50";
   if (parameter.key == std::string("entrance-to")) return "10";
-  if (parameter.unit == std::string("degrees")) return "10";  // a small change may leave the lattice as it is
+  if (parameter.unit == std::string("degrees")) return "10";  // a smaller change might not change the lattice
   if (const auto* number = std::get_if<double>(&value)) return shortest(*number == 0 ? 0.05 : 0.8 * *number);
   return "0.5";
 }
@@ -97,7 +97,7 @@ sweep::Plan plan_of_both(const Parameter& parameter) {
   return sweep::Plan(settings);
 }
 
-/// The two runs. They come from two sweeps, because a word takes no list of values.
+/// The two runs. The runs come from two sweeps, because a list of values cannot contain words.
 std::vector<RunParameters> both_runs(const Parameter& parameter) {
   sweep::Settings settings = settings_for(parameter);
   const RunParameters one = sweep::Plan(settings).task(0);
@@ -117,7 +117,7 @@ TEST_P(EveryKey, MakesTwoGroups) {
 }
 
 /// A sweep over four values of another parameter and two values of this one has two curves. A comparison of
-/// the two values names this parameter.
+/// these two values names this parameter.
 TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
   const Parameter& parameter = GetParam();
   if (parameter.role != ParameterRole::physics || parameter.key == std::string("line-tension")) return;
@@ -137,7 +137,7 @@ TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
   const auto column = std::ranges::find_if(group_columns(), [&](const sweep::Column* one) {
     return one->parameter && one->parameter->key == std::string(parameter.key);
   });
-  if (column == group_columns().end()) return;  // another column holds the parameter's value
+  if (column == group_columns().end()) return;  // the parameter's value is in another column
   EXPECT_NE(separating_value(**column, sides[0].front()), separating_value(**column, sides[1].front()));
   const Comparisons found =
       compare({{"one", sides[0], {"line_tension"}}, {"other", sides[1], {"line_tension"}}}, 0.95, {});
@@ -149,8 +149,9 @@ TEST_P(EveryKey, MakesTwoArraysIfItShapesThem) {
   EXPECT_EQ(sweep::array_key(runs[0]) != sweep::array_key(runs[1]), GetParam().shapes_array);
 }
 
-/// ObstacleArrays keeps the walls of the last run. In a device with side walls they depend on the droplet's
-/// reach, because it limits where droplets may start. So a run of another droplet must get its own walls.
+/// ObstacleArrays keeps the walls of the last run. In a device with side walls the walls depend on how far
+/// the droplet reaches, because this limits where droplets may start. So a run with another droplet must get
+/// its own walls.
 TEST_P(EveryKey, LeavesTheNextRunOfADeviceItsOwnWalls) {
   sweep::Settings settings;
   settings.attach("one.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.3}}));
@@ -179,7 +180,7 @@ TEST_P(EveryKey, LeavesTheNextRunOfADeviceItsOwnWalls) {
 }
 
 TEST_P(EveryKey, MakesTwoLinesOfADryRun) {
-  if (GetParam().kind == ValueKind::word) return;  // no sweep has lists of words
+  if (GetParam().kind == ValueKind::word) return;  // sweeps have no lists of words
   const sweep::Plan plan = plan_of_both(GetParam());
   testing::internal::CaptureStdout();
   print_tasks(plan);

@@ -14,15 +14,16 @@ namespace clog::results {
 namespace {
 
 TEST(SeedRule, AsksForMoreOnlyWhereTheIntervalIsWide) {
-  // In one of two parameter sets every droplet clogs, in the other every fourth. A precision of 60 % requires
-  // 14 clogs.
+  // In one of two parameter sets every droplet clogs, and in the other every fourth. A precision of 60 %
+  // requires 14 clogs.
   const auto has_clogged = [](std::int64_t task) { return task % 2 == 0 || task / 2 % 4 == 3; };
   SeedRule rule(0.6, 2, 16, 100);
   const std::vector<std::int64_t> next = rule.next_round(has_clogged);
   EXPECT_EQ(rule.num_reached(), 1);
-  ASSERT_EQ(next.size(), 16u);  // no more than the set has, although 4 clogs of 16 require 40 more
+  // The set has only 16 runs, so no more are added, although 4 clogs of 16 require 40 more.
+  ASSERT_EQ(next.size(), 16u);
   for (std::size_t i = 0; i < next.size(); ++i) EXPECT_EQ(next[i], 2 * (16 + static_cast<int>(i)) + 1);
-  EXPECT_EQ(rule.next_round(has_clogged).size(), 24u);  // 8 of 32 clog, so 56 seeds are needed
+  EXPECT_EQ(rule.next_round(has_clogged).size(), 24u);  // 8 of 32 runs clogged, so 56 seeds are needed
   EXPECT_TRUE(rule.next_round(has_clogged).empty());
   EXPECT_EQ(rule.num_reached(), 2);
 }
@@ -81,7 +82,7 @@ TEST(SeedRule, EndsAtTheBudgetWhereNothingClogs) {
     for (const std::int64_t task : next) EXPECT_TRUE(tasks.insert(task).second) << "twice";
     ++num_rounds;
   }
-  EXPECT_EQ(num_rounds, 3);  // 8, 16, 25 seeds
+  EXPECT_EQ(num_rounds, 3);  // the rounds have 8, 16 and 25 seeds
   EXPECT_EQ(tasks.size(), 3u * 21);
   EXPECT_EQ(*tasks.begin(), 12);
   EXPECT_EQ(*tasks.rbegin(), 74);
@@ -89,7 +90,8 @@ TEST(SeedRule, EndsAtTheBudgetWhereNothingClogs) {
 }
 
 TEST(SeedRule, DoesNotBiasTheClogsThatItStopsAt) {
-  // Distances are exponential and censored at one clogging length; there are 400 sweeps of one parameter set.
+  // There are 400 sweeps of one parameter set. Distances are exponential, and censored at one clogging
+  // length.
   std::mt19937 engine(11);
   std::exponential_distribution<double> distance(1);
   double mean = 0, covered = 0;
@@ -111,7 +113,7 @@ TEST(SeedRule, DoesNotBiasTheClogsThatItStopsAt) {
     mean += fit.length / num_sweeps;
     covered += (fit.interval.lower <= 1 && 1 <= fit.interval.upper) / static_cast<double>(num_sweeps);
   }
-  EXPECT_NEAR(mean, 1, 0.04);  // standard error 0.009
+  EXPECT_NEAR(mean, 1, 0.04);  // the standard error is 0.009
   EXPECT_NEAR(covered, 0.95, 0.035);
 }
 

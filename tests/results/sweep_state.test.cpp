@@ -22,13 +22,13 @@
 
 namespace {
 
-/// A move of another file onto the sweep's file, which somebody else makes just after the sweep's file was
-/// renamed and its folder synchronised.
+/// Another user moves a file onto the sweep's file, just after the sweep's file was renamed and its folder
+/// was synchronised.
 struct Move {
   std::filesystem::path from, to;
 };
 std::optional<Move> move_at_sync_of_folder;
-/// While is_disk_slow, fsync() of a draft of a table or a journal waits.
+/// While is_disk_slow is true, fsync() of a draft of a table or a journal waits.
 std::atomic<bool> is_disk_slow = false, is_draft_waiting = false;
 
 bool is_draft(int descriptor) {
@@ -39,7 +39,7 @@ bool is_draft(int descriptor) {
 
 }  // namespace
 
-/// Replaces the system's fsync() in the test program.
+/// Replaces the system's fsync() in this test program.
 extern "C" int our_fsync(int descriptor) __asm__("fsync");
 int our_fsync(int descriptor) {
   for (; is_disk_slow && is_draft(descriptor); is_draft_waiting = true) usleep(1000);
@@ -55,7 +55,7 @@ int our_fsync(int descriptor) {
 namespace clog::results {
 namespace {
 
-/// A sweep of two runs. Its state is opened again and again, as after kills.
+/// A sweep of two runs. The state of the sweep is opened again and again, as if the sweep had been killed.
 class SweepStateTest : public testing::Test {
  protected:
   std::filesystem::path folder_ =
@@ -205,7 +205,7 @@ TEST_F(SweepStateTest, RefusesARowOfAnotherRunThanTheTasks) {
   EXPECT_EQ(state.tasks_left(), std::vector<std::int64_t>{1});
 }
 
-/// The message of the error that is thrown.
+/// The message of the error that the action throws.
 template <class Action>
 std::string refusal(const Action& action) {
   try {
@@ -347,7 +347,7 @@ TEST_F(SweepStateTest, LeavesTheJournalAsItIsWhenItRefuses) {
     state.finish();
   }
   const auto size = std::filesystem::file_size(journal) - 1;
-  std::filesystem::resize_file(journal, size);  // a torn record
+  std::filesystem::resize_file(journal, size);  // makes a record incomplete
   settings_.set("max-time", "17");
   EXPECT_NE(refusal([&] { open(); }).find("other settings"), std::string::npos);
   EXPECT_EQ(std::filesystem::file_size(journal), size);

@@ -23,7 +23,8 @@ TEST(TimeLeft, IsThatOfTheParameterSetsThatWait) {
   sets[1].num_waiting = 40;
   const TimeLeft left = time_left(sets, 2);
   EXPECT_TRUE(left.is_known);
-  EXPECT_NEAR(left.shortest, 20 / 1.292, 0.01);  // 80 % interval: 1.2816/sqrt(25) = 0.2563 = log(1.292)
+  // The 80 % interval is a factor of 1.292 wide on both sides, because 1.2816/sqrt(25) = 0.2563 = log(1.292).
+  EXPECT_NEAR(left.shortest, 20 / 1.292, 0.01);
   EXPECT_NEAR(left.longest, 20 * 1.292, 0.01);
 }
 
@@ -64,7 +65,7 @@ TEST(TimeLeft, CoversTheTruthWhereLongRunsBeginFirst) {
     const TimeLeft left = time_left(sets, 1);
     num_covered += left.shortest < truth && truth < left.longest;
   }
-  EXPECT_GT(num_covered, 0.7 * num_trials);  // the range is 80 %
+  EXPECT_GT(num_covered, 0.7 * num_trials);  // the range is an interval of 80 %
 }
 
 }  // namespace

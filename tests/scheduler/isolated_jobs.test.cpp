@@ -1,4 +1,4 @@
-/// Tests tasks that crash their process, under the scheduler on any number of ranks. Exits with 1 on the
+/// Tests tasks that crash their process, under the scheduler and on any number of ranks. Exits with 1 on the
 /// first fault.
 
 #include "clog/scheduler/isolated_jobs.hpp"
@@ -23,7 +23,8 @@ namespace {
 
 using namespace clog;
 
-/// For each task that crashes: the signal (0: it exits with code 3), and the words in its row.
+/// For each task that crashes, the signal and the words in its row. With the signal 0 the task exits with
+/// code 3.
 const std::map<std::int64_t, std::pair<int, std::string>> crashes = {
     {3, {SIGSEGV, "its process was ended by SIGSEGV (Segmentation fault)"}},
     {8, {SIGFPE, "its process was ended by SIGFPE (Floating point exception)"}},
@@ -32,16 +33,16 @@ const std::map<std::int64_t, std::pair<int, std::string>> crashes = {
     {34, {0, "its process exited with code 3"}},
 };
 
-/// Tasks from here on are slow, so that a rank asks them for their progress.
+/// Tasks with this number or a larger one are slow, so that a rank asks them for their progress.
 constexpr std::int64_t first_slow_task = 60;
 
-/// Tasks from here on stop their process for good, in their first slice.
+/// Tasks with this number or a larger one stop their process in their first slice. It never continues.
 constexpr std::int64_t first_hanging_task = 10'000;
-/// Tasks from here on kill, or stop, the helper of their process.
+/// Tasks with these numbers or larger ones kill or stop the helper of their process.
 constexpr std::int64_t first_task_that_kills_the_helper = 20'000;
 constexpr std::int64_t first_task_that_stops_the_helper = 30'000;
 
-/// The test's own process, before it forks.
+/// The process of the test itself, before it forks.
 const pid_t rank_pid = getpid();
 
 int oom_score_adj() {
@@ -50,7 +51,7 @@ int oom_score_adj() {
   return score;
 }
 
-/// A job that crashes in its last slice, if its task is one of `crashes`. Its row contains the process that
+/// A job that crashes in its last slice if its task is one of `crashes`. The job's row states which process
 /// computed it.
 class CrashingJob final : public SyntheticJob {
  public:
@@ -63,7 +64,7 @@ class CrashingJob final : public SyntheticJob {
     }
     if (getpid() != rank_pid && task >= first_task_that_kills_the_helper) {
       kill(getppid(), SIGKILL);
-      while (true) pause();  // dies with the helper before it can end its task
+      while (true) pause();  // the process dies together with the helper, before it can end its task
     }
     if (task >= first_hanging_task && task < first_task_that_kills_the_helper) std::raise(SIGSTOP);
     if (task >= first_slow_task && task < first_hanging_task)
@@ -94,7 +95,7 @@ void a_crash_fails_its_task_and_no_other(const scheduler::Communicator& ranks,
                                          const sweep::JobFactory& make_job) {
   constexpr std::int64_t num_tasks = first_slow_task;
   std::map<std::int64_t, sweep::RunRow> rows;
-  std::map<std::int64_t, std::set<std::int64_t>> processes;  // processes of tasks that succeeded, by rank
+  std::map<std::int64_t, std::set<std::int64_t>> processes;  // by rank, the processes of tasks that succeeded
   std::map<std::int64_t, std::int64_t> attempts;
   scheduler::SweepEvents events;
   events.started = [&](std::int64_t task, int) { return scheduler::Start{{}, ++attempts[task]}; };
@@ -167,7 +168,8 @@ void a_stopped_task_goes_on_from_its_snapshot(const scheduler::Communicator& ran
 }
 
 void hanging_tasks_block_nobody(const scheduler::Communicator& ranks, const sweep::JobFactory& make_job) {
-  // Every rank computes one task that hangs. Reports are so frequent that each rank always waits for one.
+  // Every rank computes one task that hangs. Reports are so frequent that each rank is always waiting for a
+  // report.
   std::vector<std::int64_t> tasks(ranks.size());
   std::iota(tasks.begin(), tasks.end(), first_hanging_task);
   const std::vector<std::byte> snapshot(3);

@@ -8,13 +8,13 @@
 
 namespace clog::scheduler {
 
-/// An order of tasks in which number i belongs to group i % num_groups.
+/// An order of tasks. The task with number i belongs to group i % num_groups.
 inline TaskOrder order_of(const std::vector<std::int64_t>& tasks, std::int64_t num_groups = 1) {
   TaskOrder order([num_groups](std::int64_t task) { return task % num_groups; });
   order.add(tasks);
   return order;
 }
-/// The same for the tasks 0, 1, 2 and so on.
+/// The same order for the tasks 0, 1, 2 and so on.
 inline TaskOrder order_of(std::int64_t num_tasks, std::int64_t num_groups = 1) {
   std::vector<std::int64_t> tasks(num_tasks);
   std::iota(tasks.begin(), tasks.end(), std::int64_t{0});

@@ -8,7 +8,7 @@ namespace {
 using Ranks = std::vector<int>;
 using Tasks = std::vector<std::int64_t>;
 
-/// Fails tasks 1, 2 and 3 on a rank.
+/// Lets tasks 1, 2 and 3 fail on a rank.
 void fail_three(RankTrust& trust, int rank) {
   for (const std::int64_t task : {1, 2, 3}) EXPECT_EQ(trust.failed(task, rank), Ranks());
 }
@@ -60,7 +60,7 @@ TEST(RankTrust, BlamesATaskThatFailsOnATrustedRankToo) {
 }
 
 TEST(RankTrust, BelievesNoRankThatHasNotSucceeded) {
-  // Two ranks are on one broken node.
+  // Two of the ranks are on a broken node.
   RankTrust trust({0, 1, 2});
   fail_three(trust, 1);
   fail_three(trust, 2);

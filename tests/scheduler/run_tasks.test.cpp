@@ -1,4 +1,4 @@
-/// Tests the scheduler on any number of ranks, with synthetic tasks. Exits with 1 on the first fault.
+/// Tests the scheduler with synthetic tasks, on any number of ranks. Exits with 1 on the first fault.
 
 #include "clog/scheduler/scheduler.hpp"
 
@@ -112,7 +112,7 @@ class FailingJob final : public sweep::Job {
 };
 
 void failed_tasks_are_tried_again(const scheduler::Communicator& ranks) {
-  // Task 3 never succeeds; task 5 succeeds in its second attempt, which a snapshot of one byte marks here.
+  // Task 3 never succeeds. Task 5 succeeds in its second attempt. A snapshot of one byte marks this attempt.
   std::map<std::int64_t, std::int64_t> attempts;
   std::map<std::int64_t, int> successes;
   const auto make_failing = [](std::int64_t task, std::span<const std::byte> snapshot) {
@@ -135,8 +135,8 @@ void failed_tasks_are_tried_again(const scheduler::Communicator& ranks) {
   expect(attempts[5] == 2 && attempts[6] == 1, "no more attempts than needed");
 }
 
-/// Makes jobs that fail on broken ranks, take some milliseconds on others, and fail everywhere if the task is
-/// impossible.
+/// Makes jobs that fail on broken ranks and take some milliseconds on other ranks. A job fails everywhere if
+/// its task is impossible.
 sweep::JobFactory failing_on(const scheduler::Communicator& ranks,
                              const std::function<bool(int rank)>& is_broken,
                              const std::function<bool(std::int64_t task)>& is_impossible) {
@@ -147,11 +147,11 @@ sweep::JobFactory failing_on(const scheduler::Communicator& ranks,
   };
 }
 
-/// Results of a sweep with broken ranks, on rank 0.
+/// The results on rank 0 of a sweep with broken ranks.
 struct Outcome {
   scheduler::SweepEnd end;
   std::map<std::int64_t, std::string> status;     // by task
-  std::map<std::int64_t, std::int64_t> attempts;  // attempts that count, by task
+  std::map<std::int64_t, std::int64_t> attempts;  // Attempts that count, by task.
   std::map<std::int64_t, int> starts;
   std::set<int> set_aside;
 };
@@ -220,7 +220,7 @@ void who_was_set_aside_stays_so_in_the_next_round(const scheduler::Communicator&
 }
 
 void most_ranks_may_be_broken(const scheduler::Communicator& ranks) {
-  // Each task has only one attempt, so failures of broken ranks must not count as attempts.
+  // Each task has only one attempt. So failures on broken ranks must not count as attempts.
   const auto make_job = failing_on(
       ranks, [](int rank) { return rank > 0; }, never);
   const Outcome outcome = sweep(ranks, 60, 1, make_job);
@@ -250,7 +250,7 @@ void impossible_tasks_are_no_rank_to_blame(const scheduler::Communicator& ranks)
 }
 
 void a_sweep_without_a_rank_that_works_ends(const scheduler::Communicator& ranks) {
-  // Rank 0 breaks once all others have been set aside.
+  // Rank 0 breaks after all other ranks have been set aside.
   int num_done = 0;
   const auto make_job = failing_on(
       ranks, [&](int rank) { return rank > 0 || ++num_done > 60; }, never);

@@ -24,7 +24,7 @@ inline void expect(bool holds, const char* what) {
   std::_Exit(1);
 }
 
-/// A job whose number of slices differs from task to task.
+/// A job whose number of slices depends on its task.
 class SyntheticJob : public sweep::Job {
  public:
   SyntheticJob(std::int64_t task, std::span<const std::byte> snapshot)
@@ -34,7 +34,8 @@ class SyntheticJob : public sweep::Job {
     return --slices_left_ <= 0;
   }
   std::vector<std::byte> snapshot() const override {
-    return std::vector<std::byte>(1 + task_ * 7 % 5 - slices_left_);  // one more byte than slices done
+    // The number of bytes is one more than the number of slices done.
+    return std::vector<std::byte>(1 + task_ * 7 % 5 - slices_left_);
   }
   sweep::RunRow row() const override {
     sweep::RunRow row;

@@ -44,7 +44,7 @@ TEST(TaskOrder, GoesOnWithTheGroupThatRanLongest) {
   tasks.ended(1, 5);
   tasks.ended(2, 3);
   EXPECT_EQ(tasks.take(6), 4);
-  tasks.ended(4, 6.5);  // the mean of group 1 is now 2.75
+  tasks.ended(4, 6.5);  // now the mean of group 1 is 2.75
   EXPECT_EQ(tasks.take(7), 5);
 }
 
@@ -83,8 +83,8 @@ TEST(TaskOrder, HandsOutTheLongestOfAllGroups) {
   std::mt19937 random(7);
   double now = 0;
   for (int i = 0; i < num_tasks; ++i, now += 0.125) {
-    // The group with the longest time per ended task comes first; among equal groups, the one with fewest
-    // begun tasks.
+    // The group with the longest time per ended task comes first. The times of running tasks count, too.
+    // Among equal groups, the group with the fewest begun tasks comes first.
     const auto turn = [&](const Known& group) {
       double time = group.time_ended;
       for (const auto& [task, start] : group.starts) time += now - start;
@@ -115,7 +115,7 @@ TEST(TaskOrder, CountsTheTimeOfRunningTasks) {
   tasks.ended(0, 1);
   tasks.ended(1, 4);
   EXPECT_EQ(tasks.take(4), 5) << "both have run for 4 seconds more: 1 + 4 against 4 + 4";
-  tasks.ended(3, 4);  // group 1: 8 seconds in two tasks, and one that has just begun
+  tasks.ended(3, 4);  // group 1 took 8 seconds for two tasks, and another of its tasks has just begun
   EXPECT_EQ(tasks.take(4), 4) << "5 seconds, one task ended, against 8 and two";
 }
 

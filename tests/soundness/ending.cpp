@@ -17,7 +17,7 @@ double quantile(std::span<const double> values, double fraction) {
   return *place;
 }
 
-/// Displacement of every vertex, all x then all y [sigma].
+/// The displacement of every vertex, with all x first and then all y [sigma].
 Eigen::ArrayXd way_between(const DropletState& from, const DropletState& to) {
   const Eigen::Array2d shift = to.frame.displacement({0, 0}, from.frame, {0, 0});
   Eigen::ArrayXd way = to.position - from.position;
@@ -52,7 +52,7 @@ void TailRecorder::add_energy(double energy_ratio, double interval) {
   constexpr double smallest = 1e-300;  // for a droplet at rest
   log_energy_.push_back(std::log10(std::max(energy_ratio, smallest)));
   time_ += interval;
-  // E_k/E_t is the mean square speed of the vertices over V_t^2.
+  // E_k/E_t is the mean square speed of the vertices divided by V_t^2.
   expected_way_ += std::sqrt(energy_ratio) * terminal_speed_ * interval;
 }
 

@@ -8,12 +8,12 @@
 
 namespace clog::soundness {
 
-/// What a droplet that has not clogged does at the end of its run.
+/// The behaviour of a droplet that has not clogged, at the end of its run.
 enum class Ending {
-  moving,      ///< travels: the mean speed of its centre is above `slowest_travel` V_t
-  decaying,    ///< has stopped, and its kinetic energy is falling
-  steady,      ///< has stopped, but its interface creeps on
-  chattering,  ///< has stopped, but its vertices shake about their places
+  moving,      ///< The droplet travels: the mean speed of its centre is above `slowest_travel` V_t.
+  decaying,    ///< The droplet has stopped, and its kinetic energy is falling.
+  steady,      ///< The droplet has stopped, but its interface creeps on.
+  chattering,  ///< The droplet has stopped, but its vertices shake about their places.
 };
 const char* name(Ending ending);
 
@@ -21,15 +21,15 @@ const char* name(Ending ending);
 /// condition holds:
 ///   moving      mean_speed > slowest_travel
 ///   decaying    fall > least_fall, and the last quarter of the window is not above the third
-///   chattering  coherence < least_coherence: vertices come much less far than at their speed they could
+///   chattering  coherence < least_coherence: vertices move a much shorter distance than their speed permits
 ///   steady      none of the above
 struct Tail {
-  double mean_speed = 0;  ///< distance of the centre's last place from its first, divided by the time [V_t]
-  double level = 0;       ///< median of log10(E_k/E_t) in the last quarter
-  double fall = 0;        ///< fall of the median of log10(E_k/E_t) from the first quarter to the last
-  double last_fall = 0;   ///< the same from the third quarter to the last
-  double band = 0;        ///< log10(E_k/E_t) in the last quarter, 95 % quantile minus 5 % quantile
-  /// Path of the vertices between two samples, divided by the path that follows from E_k.
+  double mean_speed = 0;  ///< Distance between the centre's first and last places, divided by the time [V_t].
+  double level = 0;       ///< Median of log10(E_k/E_t) in the last quarter.
+  double fall = 0;        ///< Fall of the median of log10(E_k/E_t) from the first quarter to the last.
+  double last_fall = 0;   ///< Fall of this median from the third quarter to the last.
+  double band = 0;        ///< Width of log10(E_k/E_t) in the last quarter: 95 % minus 5 % quantile.
+  /// The path of the vertices between two samples, divided by the path that follows from E_k.
   double coherence = 0;
 
   Ending ending() const;
@@ -39,25 +39,27 @@ inline constexpr double slowest_travel = 0.01;
 inline constexpr double least_fall = 0.1;
 inline constexpr double least_coherence = 0.3;
 
-/// Collects the samples from which a Tail is computed, near the end of a run.
+/// Collects samples near the end of a run, from which a Tail is computed.
 class TailRecorder {
  public:
   explicit TailRecorder(double terminal_speed) : terminal_speed_(terminal_speed) {}
 
-  /// Call this at even intervals, each of length `interval` [t0].
+  /// Call this at equal intervals. @param interval  their length [t0]
   void add_energy(double energy_ratio, double interval);
-  /// Call this once before add_energy(), then more seldom, at intervals of many relaxation times V_t/g.
+  /// Call this once before add_energy(). After that call it less often, at intervals of many relaxation times
+  /// V_t/g.
   void add_place(const DropletState& state);
-  /// Empty if there were too few samples.
+  /// The tail, or nothing if there were too few samples.
   std::optional<Tail> tail() const;
 
  private:
   double terminal_speed_;
   std::vector<double> log_energy_;
   double time_ = 0;
-  double expected_way_ = 0;      // since the last place [sigma]
-  double sum_expected_way_ = 0;  // until the last place [sigma]
-  double sum_way_ = 0;           // root mean square over the vertices, between places [sigma]
+  double expected_way_ = 0;      // Expected path since the last place [sigma].
+  double sum_expected_way_ = 0;  // Expected path until the last place [sigma].
+  // Root mean square path of the vertices, summed over the intervals between places [sigma].
+  double sum_way_ = 0;
   std::optional<DropletState> first_, last_;
 };
 

@@ -13,8 +13,8 @@
 namespace clog::soundness {
 namespace {
 
-/// The largest depth to which an obstacle's surface is inside the interface; 0 if no obstacle reaches the
-/// interface [sigma].
+/// The largest depth of an obstacle's surface inside the interface [sigma], or 0 if no obstacle reaches the
+/// interface.
 double deepest_wall(const DropletState& state, const ObstacleArray& obstacles) {
   const Eigen::ArrayXd interface = refined(state.position);
   const Eigen::Index n = interface.size() / 2;

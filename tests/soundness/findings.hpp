@@ -5,31 +5,33 @@
 
 namespace clog::soundness {
 
-/// Measures of a deformable droplet at one moment, or the worst of several moments.
+/// Measures of a deformable droplet at one moment, or the worst values at several moments.
 struct Findings {
-  int crossings = 0;      ///< see num_self_crossings()
-  int enclosed = 0;       ///< obstacles whose centre lies inside the droplet
-  double overlap = 0;     ///< depth of an obstacle's surface inside the interface [vertex diameters; on
-                          ///< meshes finer than 128 vertices those of 128 vertices]
+  int crossings = 0;  ///< Number of self-crossings, see num_self_crossings().
+  int enclosed = 0;   ///< Number of obstacles whose centre is inside the droplet.
+  /// Depth of an obstacle's surface inside the interface [vertex diameters; on meshes finer than 128 vertices
+  /// those of 128 vertices].
+  double overlap = 0;
   double area_error = 0;  ///< |area/rest area - 1|
-  double edge_ratio = 1;  ///< longest over shortest edge
-  double perimeter = 0;   ///< in units of the circle's
-  double shape = 1;       ///< shape parameter
-  double substeps = 1;  ///< parts into which a time step is split, mean over the interval between two checks
+  double edge_ratio = 1;  ///< Longest over shortest edge.
+  double perimeter = 0;   ///< In units of the circle's.
+  double shape = 1;       ///< Shape parameter.
+  /// Number of parts into which a time step is split, averaged over the interval between two checks.
+  double substeps = 1;
 
   void keep_worst(const Findings& other);
 };
 
-/// Contact is soft: the interface may come nearer to an obstacle's centre than the radius by this much
-/// [vertex diameters]. A depth allowed for 128 vertices is also allowed for a finer mesh.
+/// Largest accepted depth of an obstacle's surface inside the interface [vertex diameters]. Contact is soft,
+/// so this depth is not zero. A depth that is accepted for 128 vertices is also accepted for a finer mesh.
 inline constexpr double deepest_overlap = 0.25;
 /// Largest accepted relative error of the area.
 inline constexpr double largest_area_error = 0.05;
 
 bool is_sound(const Findings& findings);
 
-/// Checks every edge of the refined interface (see refined()) against every obstacle near the droplet. It
-/// does not use the contact lists of the forces, so it also finds obstacles that these lists lack. `substeps`
+/// Checks every edge of the refined interface (see refined()) against every obstacle near the droplet. The
+/// contact lists of the forces are not used, so obstacles that these lists lack are found, too. `substeps`
 /// keeps its default.
 Findings look_at(const DropletState& state, const ObstacleArray& obstacles);
 

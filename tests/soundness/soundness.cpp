@@ -1,4 +1,4 @@
-/// Program `soundness`: tests whether every droplet stays physically sound. See
+/// The program `soundness` tests whether every droplet stays physically sound. See
 /// docs/explanation/soundness.md.
 
 #include <algorithm>
@@ -50,12 +50,13 @@ constexpr const char* usage =
 The exit code is 0 when all were sound, 1 when one was not, 75 when it was stopped before it knew.
 )";
 
-/// Time between two looks at a droplet, in checks of its run: 2 t0 at the default time step.
+/// Number of checks of a run between two looks at its droplet. These checks take 2 t0 at the default time
+/// step.
 constexpr int checks_per_look = 32;
-/// The length of the last part of a run, in which its ending is judged.
+/// Length of the last part of a run, as a fraction of the run. The ending of the run is judged in this part.
 constexpr double tail_part = 0.2;
 
-/// CPU time of this thread, which excludes other work on the machine [s].
+/// CPU time of this thread [s], which excludes other work on the machine.
 double cpu_seconds() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -65,13 +66,14 @@ double cpu_seconds() {
 struct CaseReport {
   RunParameters run;
   bool done = false;
-  std::string refusal;  ///< why the droplet was not released
+  std::string refusal;  ///< the reason why the droplet was not released
   Findings worst;
-  double unsound_since = -1;  ///< [t0]; negative: never
+  double unsound_since = -1;  ///< time [t0], or negative if the droplet was always sound
   RunResult result;
-  double release_force = 0;  ///< largest component after a release, without weight [weight of a vertex]
+  /// Largest component of the force after a release, without the weight [weight of a vertex].
+  double release_force = 0;
   std::optional<Tail> tail;
-  double seconds = 0;  ///< computing time of the integration, or of the release
+  double seconds = 0;  ///< CPU time of the integration, or of the release [s]
 
   bool is_given_up() const { return refusal.empty() && ending() == "given up"; }
   bool is_sound() const {
@@ -79,7 +81,7 @@ struct CaseReport {
            release_force <=
                1.01 * release_force_tolerance;  // sums may be taken in another order than in the release
   }
-  /// The ending, in a few words.
+  /// Describes the ending in a few words.
   std::string ending() const {
     if (!refusal.empty()) return "refused";
     if (result.status == RunStatus::running) return result.time > 0 ? "given up" : "released";
@@ -95,7 +97,7 @@ void look(const DropletRun& run, double substeps, CaseReport& report) {
   report.worst.keep_worst(findings);
 }
 
-/// @param longest  computing time after which the run is given up [s]
+/// @param longest  CPU time after which the run is given up [s]
 void follow(DropletRun& run, double longest, CaseReport& report) {
   const RunParameters& parameters = report.run;
   const double check_time = DropletRun::steps_per_check * *parameters.time_step;
@@ -132,7 +134,7 @@ CaseReport run_case(const RunParameters& parameters, double longest) {
   return report;
 }
 
-/// Checks only the release, and the remaining force.
+/// Checks only the release and the force that remains after it.
 CaseReport release_case(const RunParameters& parameters) {
   CaseReport report;
   report.run = parameters;
@@ -156,7 +158,7 @@ CaseReport release_case(const RunParameters& parameters) {
   return report;
 }
 
-/// Works on the cases 0 .. num_cases - 1, in this order, on this number of threads.
+/// Works on the cases 0 .. num_cases - 1 in this order, on several threads.
 template <class Work>
 void for_all(std::size_t num_cases, unsigned num_threads, Work work) {
   std::atomic<std::size_t> next = 0;
@@ -191,7 +193,7 @@ std::string describe(const CaseReport& report) {
   return line;
 }
 
-/// A Markdown table, whose columns have even widths.
+/// A Markdown table. All entries of a column have the same width.
 class Table {
  public:
   explicit Table(std::vector<std::string> heads) { rows_.push_back(std::move(heads)); }
@@ -250,7 +252,7 @@ std::vector<std::string> table_row(const std::vector<const CaseReport*>& cell) {
   return row;
 }
 
-/// The finished cases by cell. @param num_groups  case i belongs to cell i % num_groups
+/// The finished cases of each cell. @param num_groups  case i belongs to cell i % num_groups
 std::vector<std::vector<const CaseReport*>> cells_of(const std::vector<CaseReport>& reports,
                                                      std::size_t num_groups) {
   std::vector<std::vector<const CaseReport*>> cells(num_groups);
@@ -313,8 +315,8 @@ void write_runs(std::ofstream& out, const std::string& path, const std::vector<C
   if (!out.flush()) throw Error("cannot write " + path);
 }
 
-/// The cases in the order of their expected duration. Runs with small line tension and narrow gaps take
-/// longest, because the droplet is stretched and its steps are split.
+/// The cases in the order of their expected duration, longest first. Runs with small line tension and narrow
+/// gaps take longest, because the droplet is stretched and its steps are split.
 std::vector<std::size_t> longest_first(const std::vector<CaseReport>& reports) {
   std::vector<std::size_t> order(reports.size());
   std::iota(order.begin(), order.end(), 0);
@@ -327,7 +329,7 @@ std::vector<std::size_t> longest_first(const std::vector<CaseReport>& reports) {
   return order;
 }
 
-/// Runs every case, long ones first, and reports each on the error stream.
+/// Runs every case and reports it on the error stream. Long cases come first.
 template <class DoCase>
 void do_all(std::vector<CaseReport>& reports, unsigned num_threads, DoCase do_case) {
   const std::vector<std::size_t> order = longest_first(reports);
@@ -342,7 +344,7 @@ void do_all(std::vector<CaseReport>& reports, unsigned num_threads, DoCase do_ca
   });
 }
 
-/// Release k has the parameters of the group with the number k modulo the number of groups, and the seed k +
+/// Plans releases. Release k has the parameters of the group k modulo the number of groups, and the seed k +
 /// 1.
 std::vector<CaseReport> planned_releases(const sweep::Plan& plan, std::int64_t num_releases) {
   std::vector<CaseReport> reports(num_releases);
@@ -373,7 +375,7 @@ bool parse(cli::CommandLine& line, int argc, char** argv) {
   settings.set("max-time", "2000");
   settings.set("box", "100");
   if (!cli::parse_command(line, argc, argv)) return false;
-  if (line.has("releases")) {  // the most difficult gap, in boxes that are quickly filled
+  if (line.has("releases")) {  // the most difficult gap, in small boxes, which are quickly filled
     if (!line.has("obstacle-gap")) settings.set("obstacle-gap", "0.2");
     if (!line.has("obstacle-density")) settings.set("obstacle-density", "saturated");
     if (!line.has("box")) settings.set("box", "20");
@@ -388,7 +390,7 @@ bool parse(cli::CommandLine& line, int argc, char** argv) {
   return true;
 }
 
-/// Prints how many droplets were sound. Returns the exit code.
+/// Prints how many droplets were sound. @return the exit code
 int conclude(const std::vector<CaseReport>& reports) {
   const auto done = std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.done; });
   const auto sound =

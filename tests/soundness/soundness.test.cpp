@@ -28,8 +28,8 @@ TEST(Findings, OfACircleAreThoseOfACircle) {
   EXPECT_NEAR(findings.shape, 1, 1e-3);
 }
 
-/// A circle below an edge of the droplet, with its surface at this distance from the edge, in vertex
-/// diameters.
+/// A circle below an edge of the droplet. @param distance  of the circle's surface from the edge [vertex
+/// diameters]
 Findings with_obstacle_at(double distance) {
   const DropletState state = circle();
   const double radius = 0.15;
@@ -89,11 +89,12 @@ TEST(Ending, IsMovingWhenTheCentreTravelsAcrossFrames) {
   const Tail tail =
       tail_of([](DropletState& state, double time) { state.x() += 0.03 * time; }, [](double) { return 1.0; });
   EXPECT_EQ(tail.ending(), Ending::moving);
-  EXPECT_NEAR(tail.mean_speed, 1, 0.05);  // no place was added at the end of the last interval
+  // The tolerance is needed because no place was added at the end of the last interval.
+  EXPECT_NEAR(tail.mean_speed, 1, 0.05);
   EXPECT_NEAR(tail.coherence, 1, 1e-6);
 }
 
-/// Moves vertices outwards and inwards in turn, at 1e-3 V_t.
+/// Moves neighbouring vertices in opposite directions at 1e-3 V_t.
 void creep(DropletState& state, double time) {
   for (Eigen::Index i = 0; i < state.size(); ++i) state.y()[i] += 0.03e-3 * time * (i % 2 == 0 ? 1 : -1);
 }
@@ -117,7 +118,7 @@ TEST(Ending, IsChatteringWhenVerticesShakeAboutTheirPlaces) {
   const auto shake = [&](DropletState& state, double) {
     for (double& value : state.position) value += 1e-6 * scatter(engine);
   };
-  // A vertex at 1e-2 V_t would move by 6e-4 between two places.
+  // At 1e-2 V_t, a vertex would move by 6e-4 between two places.
   const Tail tail = tail_of(shake, [&](double) { return 1e-4 * std::pow(10, scatter(engine)); });
   EXPECT_EQ(tail.ending(), Ending::chattering);
   EXPECT_GT(tail.band, 1);

@@ -11,11 +11,11 @@
 #include <vector>
 
 namespace {
-/// Errors with which the next calls of fsync() fail, the last one first.
+/// The next calls of fsync() fail with these errors. The last error comes first.
 std::vector<int> next_errors;
 }  // namespace
 
-/// Replaces the C library's function in this program.
+/// Replaces the function of the C library in this program.
 // NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the library's name is reserved
 extern "C" int fsync(int descriptor) {
   if (next_errors.empty()) return static_cast<int>(syscall(SYS_fsync, descriptor));

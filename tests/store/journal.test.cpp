@@ -120,7 +120,7 @@ TEST_F(JournalTest, LosesNoOtherRecordToADamagedOne) {
   struct Case {
     const char* what;
     std::vector<std::uintmax_t> places;
-    std::vector<std::int64_t> tasks;  // tasks of the remaining records
+    std::vector<std::int64_t> tasks;  // the tasks of the remaining records
   };
   for (const Case& damaged :
        {Case{"a row", {begins[1] + 100}, {0, 2, 3, 4}}, Case{"a size", {begins[1] + 1}, {0, 2, 3, 4}},

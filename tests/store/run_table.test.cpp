@@ -58,7 +58,7 @@ std::vector<sweep::RunRow> some_rows(int number) {
 }
 
 TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
-  for (const int number : {0, 1, 200, 1000}) {  // each table replaces the one before
+  for (const int number : {0, 1, 200, 1000}) {  // each table replaces the table before
     const std::vector<sweep::RunRow> rows = some_rows(number);
     publish(path(), rows, {{"version", "1.2.3"}, {"empty", ""}});
     const SweepFile file = read_sweep(path());
@@ -122,7 +122,7 @@ TEST_F(RunTableTest, IsPublishedOnlyInPlaceOfTheFileThatIsKnown) {
   const std::string stamp = place.stamp();
   EXPECT_TRUE(publish_sweep(place, stamp, {some_rows(2), {}, {}}));
   EXPECT_EQ(read_sweep(path()).rows.size(), 2u);
-  // Somebody else has moved another file to this name.
+  // Another user has moved another file to this name.
   write_text("other", "another's");
   fs::rename(path("other"), path());
   EXPECT_FALSE(publish_sweep(place, stamp, {some_rows(3), {}, {}}));
@@ -135,7 +135,7 @@ TEST_F(RunTableTest, IsPublishedOnlyInPlaceOfTheFileThatIsKnown) {
 }
 
 TEST_F(RunTableTest, IsTheSameUnderAnotherInode) {
-  // Some network file systems change the inode after a while.
+  // Some network file systems change the inode of a file after a while.
   publish(path(), some_rows(2), {});
   const OutputPath place = OutputPath::resolve(path());
   const std::string stamp = place.stamp();
@@ -170,7 +170,7 @@ TEST_F(RunTableTest, LeavesTheDraftOfALivingProcessAlone) {
 TEST_F(RunTableTest, UpdatesTheFileThatALinkLeadsTo) {
   fs::create_directory(path("scratch"));
   fs::create_symlink("scratch/target.h5", path());
-  for (const int number : {1, 2}) {  // the link leads nowhere at first
+  for (const int number : {1, 2}) {  // the first time the link points to no file
     publish(path(), some_rows(number), {});
     EXPECT_TRUE(fs::is_symlink(path()));
     EXPECT_EQ(read_sweep(path("scratch/target.h5")).rows.size(), static_cast<std::size_t>(number));
@@ -198,7 +198,7 @@ TEST_F(RunTableTest, IsWholeForAReaderAtEveryMoment) {
 }
 
 TEST_F(RunTableTest, IsNeverLockedWhereReadersLookForIt) {
-  // In h5py and pandas, HDF5 locks a file before it reads the file.
+  // In h5py and pandas, HDF5 locks a file before reading it.
   publish(path(), some_rows(1), {});
   const pid_t writer = fork();
   if (writer == 0) {
@@ -304,8 +304,8 @@ TEST_F(RunTableTest, LosesNoAttributeByADamagedListOfChecksums) {
       std::string damaged = content;
       damaged[byte] = static_cast<char>(damaged[byte] ^ (1 << bit));
       write_text("damaged.h5", damaged);
-      // What is read stays the same if the flipped bit is between digits and name, or only turns the
-      // lower-case letter of a hexadecimal digit into upper case.
+      // Some flipped bits do not change what is read: bits between digits and name, and bits that turn a
+      // lower-case letter of a hexadecimal number into upper case.
       try {
         EXPECT_EQ(read_sweep(path("damaged.h5")).provenance, read_sweep(path()).provenance)
             << byte << ' ' << bit;

@@ -47,15 +47,15 @@ class FolderTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// Writes a table, replacing an existing one.
+/// Writes a table. An existing table is replaced.
 inline void publish(const std::string& path, const std::vector<sweep::RunRow>& rows,
                     const Provenance& provenance, const std::vector<CircleFile>& circles = {}) {
   const OutputPath place = OutputPath::resolve(path);
   publish_sweep(place, place.stamp(), {rows, provenance, circles});
 }
 
-/// Simulates a full disk by a limit on the size of files, so it must run in its own process. If an Error is
-/// thrown, it prints the error's text on the error stream and exits with 2.
+/// Simulates a full disk by a limit on the size of files. So it must run in its own process. If the action
+/// throws an Error, its text is printed on the error stream, and the process exits with 2.
 [[noreturn]] inline void run_on_full_disk(rlim_t num_bytes, const std::function<void()>& action) {
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit before;
@@ -65,7 +65,8 @@ inline void publish(const std::string& path, const std::vector<sweep::RunRow>& r
   try {
     action();
   } catch (const Error& error) {
-    setrlimit(RLIMIT_FSIZE, &before);  // before printing, because the error stream may be a file
+    // The limit ends before the printing, because the error stream may be a file.
+    setrlimit(RLIMIT_FSIZE, &before);
     std::fputs(error.what(), stderr);
     std::_Exit(2);
   }

@@ -13,7 +13,7 @@
 namespace clog::store {
 namespace {
 
-/// Every call tries different bytes, because the outcome for the same bytes is cached.
+/// Every call tries different bytes, because the result for the same bytes is cached.
 std::string refusal(const std::function<void()>& read) {
   static int number = 0;
   ++number;

@@ -14,7 +14,8 @@ bool goes_back = false;
 time_t seconds_back = 0;
 }  // namespace
 
-/// Replaces the C library's function in this program: each call is ten seconds before the last one.
+/// Replaces the function of the C library in this program. Each call returns a time ten seconds before that
+/// of the last call.
 // NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the library's names are reserved
 extern "C" int clock_gettime(clockid_t clock, timespec* now) noexcept {
   const auto code = static_cast<int>(syscall(SYS_clock_gettime, clock, now));

@@ -39,7 +39,8 @@ RunParameters run_in(const ObstacleParameters& obstacles, std::uint32_t seed) {
   return run;
 }
 
-/// A seed that no other test uses at the same time. No test uses the odd number after it, either.
+/// A seed that no other test uses at the same time. The odd number after it is not used by other tests,
+/// either.
 std::uint32_t own_seed() { return 2 * static_cast<std::uint32_t>(getpid()); }
 
 ObstacleParameters lattice() {
@@ -57,8 +58,8 @@ void expect_identical(const ObstacleArray& one, const ObstacleArray& other) {
   EXPECT_TRUE(std::ranges::equal(one.binned().cell_start, other.binned().cell_start));
 }
 
-/// The file that is mapped at an address, as the kernel names it: device and inode. For a process's own
-/// memory this is "00:00 0".
+/// The device and the inode of the file that is mapped at an address, as the kernel prints them. For memory
+/// of the process itself they are "00:00 0".
 std::string file_behind(const void* address) {
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);) {
@@ -82,7 +83,8 @@ int num_sockets(pid_t process) {
   return number;
 }
 
-/// Another process. It works, reports, and stays until the test kills it, without a chance to clean up.
+/// Another process. The process works and reports. Then it waits until the test kills it, so it cannot clean
+/// up.
 class OtherProcess {
  public:
   /// @param work  returns the text that the process reports
@@ -152,11 +154,11 @@ TEST(ObstacleArrays, TakesNoOtherForTheSame) {
 TEST(ObstacleArrays, AreInMemoryOnceForAllProcesses) {
   const auto get = [seed = own_seed()] {
     ObstacleArrays arrays;
-    static std::shared_ptr<const ObstacleArray> array;  // kept until the process ends
+    static std::shared_ptr<const ObstacleArray> array;  // the process keeps the array until its end
     array = arrays.get(run_in(large, seed));
     return std::to_string(arrays.num_built()) + " built, in " + file_behind(array->obstacles().data());
   };
-  // All processes begin at once: one builds, and the others wait for it.
+  // All processes begin at once. One of them builds the array, and the others wait for it.
   std::vector<std::unique_ptr<OtherProcess>> others(4);
   for (auto& other : others) other = std::make_unique<OtherProcess>(get);
   std::vector<std::string> told;
@@ -197,7 +199,7 @@ TEST(ObstacleArrays, AreBuiltByTheNextWhenTheirBuilderIsKilledAtWork) {
   const ObstacleParameters slow{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 600};
   {
     const OtherProcess builder([&] {
-      if (fork() == 0) {  // reports that it has begun, and is killed at work
+      if (fork() == 0) {  // the child reports that it has begun, and is killed while it works
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         ObstacleArrays().get(run_in(slow, seed));
         _exit(0);
@@ -223,7 +225,8 @@ TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
       builds.get(run_in(slow, seed));
       for (;;) pause();
     }
-    while (num_sockets(builder) <= num_sockets(getpid())) usleep(1000);  // until the builder has the lock
+    // Waits until the builder has the lock.
+    while (num_sockets(builder) <= num_sockets(getpid())) usleep(1000);
     kill(builder, SIGSTOP);
     return builder;
   };
@@ -241,12 +244,12 @@ TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
   get_and_signal(arrays, start_and_stop_builder(), SIGKILL);
   EXPECT_EQ(arrays.num_built(), 1);
 
-  // The next array would be completed later, but this process does not wait for it.
+  // The next array would be complete later, but this process does not wait for it.
   arrays.get(run_in(small, 1));
   get_and_signal(arrays, start_and_stop_builder(), SIGCONT);
   EXPECT_EQ(arrays.num_built(), 3);
 
-  // An existing shared array is still found. After that, the process waits for others again.
+  // An existing shared array is still found. After that, the process waits for other processes again.
   ObstacleArrays other;
   other.get(run_in(large, seed));
   arrays.get(run_in(large, seed));
@@ -260,13 +263,13 @@ TEST(ObstacleArrays, AreWaitedForAsLongAsTheyTake) {
   EXPECT_EQ(ObstacleArrays::longest_wait(small), seconds(10));
   ObstacleParameters huge = large;
   huge.box = 2200;
-  EXPECT_GT(ObstacleArrays::longest_wait(huge), seconds(190));  // takes 10 s of CPU time
+  EXPECT_GT(ObstacleArrays::longest_wait(huge), seconds(190));  // the array takes 10 s of CPU time
   ObstacleParameters huger = huge;
   huger.box = 4400;
   EXPECT_EQ(ObstacleArrays::longest_wait(huger), 4 * ObstacleArrays::longest_wait(huge));
   ObstacleParameters mixture = huge;
   mixture.diameter_spread = 0.9;
-  EXPECT_GT(ObstacleArrays::longest_wait(mixture), seconds(4500));  // takes some 450 s
+  EXPECT_GT(ObstacleArrays::longest_wait(mixture), seconds(4500));  // the array takes about 450 s
 }
 
 TEST(ObstacleArrays, AreBuiltAtOnceWhereNothingCanBeLocked) {
@@ -276,7 +279,7 @@ TEST(ObstacleArrays, AreBuiltAtOnceWhereNothingCanBeLocked) {
     rlimit usual;
     getrlimit(RLIMIT_NOFILE, &usual);
     // The thread must begin before the limit is set, because sanitizers open a file to inspect a new thread.
-    // A process that waited until the limit is lifted would find the array.
+    // If the process waited until the limit was lifted, it would find the array.
     std::atomic<bool> has_begun = false;
     std::thread later([&] {
       has_begun = true;
@@ -311,8 +314,8 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
   const auto take = [&](bool as_another) {
     return std::make_unique<OtherProcess>([&name, as_another] {
       static const NameLock lock(name);
-      // /proc shows whether a process belongs to another user. Without root the test cannot start such a
-      // process, but it can make its own process look foreign.
+      // /proc shows whether a process belongs to another user. Without root the test cannot start a process
+      // of another user. But the test can make its own process look like a process of another user.
       const bool is_root = geteuid() == 0;
       constexpr uid_t nobody = 65534;
       if (as_another && is_root && setuid(nobody) != 0) return std::string("cannot become another");
@@ -331,7 +334,8 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
 }
 
 TEST(RunJob, GivesTheSameRowInASharedArray) {
-  // A run of a droplet that goes far among obstacles, whose outcome does not depend on the last bits.
+  // A run of a droplet that travels far among obstacles. The outcome of the run does not depend on the last
+  // bits.
   const Plan plan(settings_of({{"line-tension", "0.1"},
                                {"obstacle-density", "1"},
                                {"vertices", "64"},

@@ -56,7 +56,7 @@ const std::vector<Keys> sweeps = {
     {{"max-time", "200"}, {"model", "sp"}, {"wall-stiffness", "100"}, {"terminal-speed", "100"}},
 };
 
-/// A stiff polygon that has clogged, so that its row has all results.
+/// The row of a stiff polygon that has clogged. So it has all results.
 const RunRow& clogged() {
   static const RunRow row = row_of(sweeps.front());
   return row;
@@ -146,7 +146,7 @@ TEST(FaultOf, NamesWhatBelongsToAnotherScene) {
   EXPECT_NE(fault_of(row).find("invalid orifice=0.001"), std::string::npos);
 }
 
-/// The fault of a row whose file holds another value in one column.
+/// The fault of a row after another value was written to one of its columns.
 template <class T>
 std::string fault_with(const Column& column, T value) {
   const RunRow& row = row_with(column);
@@ -233,7 +233,7 @@ TEST(FaultOf, NamesEveryNumberThatIsNone) {
   for (const Column& column : columns()) {
     if (column.kind != ValueKind::number) continue;
     const bool means_nothing =
-        column.name == "lattice_angle";  // the array is random, so the column does not apply
+        column.name == "lattice_angle";  // the array is random, so this column does not apply
     std::vector<double> values = {std::nan(""), std::numeric_limits<double>::infinity(), -1e300};
     if (column.role != ColumnRole::parameter) values.push_back(1e300);
     for (const double value : values) {
@@ -290,7 +290,7 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
   }
 }
 
-/// The final row of a run whose droplet rested twice, and at the end hung over an obstacle.
+/// The final row of a run whose droplet rested twice and ended hanging over an obstacle.
 const RunRow& hanging() {
   static const RunRow row = [] {
     RunRow one = row_of({{"max-time", "1000"},
@@ -371,7 +371,7 @@ TEST(FaultOf, NamesContactsThatCannotBe) {
 }
 
 TEST(FarthestWay, IsHardlyMoreThanAFreeSoftDiskFalls) {
-  // No obstacle pushes the disk, so only its weight acts.
+  // No obstacle pushes the disk. Only the weight acts on it.
   RunRow row = describe(plan_of({{"model", "sp"}, {"wall-stiffness", "1"}}).task(0));
   row.parameters.obstacles.gap = std::nan("");
   row.time = 1000;

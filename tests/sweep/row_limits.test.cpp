@@ -188,7 +188,7 @@ TEST(ObstacleSpacing, IsFromCentreToCentre) {
 
 TEST(ObstacleSpacing, OfOwnCirclesFollowsFromHowManyThereAre) {
   Settings settings;
-  // Four circles in a box of 8 x 8. Two of them are close to each other, and none is as wide as
+  // Four circles in a box of 8 x 8. Two of them are close to each other. None is as wide as
   // obstacle-diameter.
   settings.attach("posts.csv", OwnCircles({{1, 1, 0.2}, {2, 1, 0.2}, {5, 3, 0.2}, {3, 6, 0.2}}, "posts.csv"));
   settings.set("obstacles", "posts.csv");
@@ -210,7 +210,7 @@ RunRow wrapped_clog(double friction, FilmFriction films, double mesh_hold) {
 }
 
 TEST(MayHangOnMesh, WhereCornersBearMoreThanFriction) {
-  // For a rope over half of a disc, the ratio of the forces on its ends is exp(pi mu).
+  // The ratio of the forces on the ends of a rope over half of a disc is exp(pi mu).
   const double ratio = std::exp(std::numbers::pi * 0.1);
   const double borne = (ratio - 1) / (ratio + 1);
   EXPECT_NEAR(weight_borne_by_friction(wrapped_clog(0.1, FilmFriction::on, 0).parameters.dp), borne, 1e-12);

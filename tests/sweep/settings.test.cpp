@@ -145,7 +145,8 @@ TEST(Settings, ReadBackNamesOfFilesWithAnyByte) {
       EXPECT_EQ(unescaped(escaped(text)), text) << byte;
       EXPECT_EQ(escaped(text).find_first_of(std::string_view("\n\r\0#", 4)), std::string::npos) << byte;
       Settings settings;
-      if (one == "," || text.find_first_not_of(" \t") == std::string::npos) continue;  // no list of files
+      // This text is no list of files.
+      if (one == "," || text.find_first_not_of(" \t") == std::string::npos) continue;
       settings.set("obstacles", text);
       const std::string file = settings.values("obstacles").front();
       settings.attach(file, OwnCircles({{5, 5, 0.3}}));

@@ -122,7 +122,7 @@ TEST(Lists, OfAnyNumbersHaveNoRanges) {
   }
 }
 
-/// Numbers of all magnitudes and both signs; half of them have few digits.
+/// Numbers of all magnitudes and both signs. Half of them have few digits.
 std::vector<double> numbers_of_all_kinds() {
   std::mt19937_64 random(1);
   std::vector<double> numbers;
@@ -149,7 +149,7 @@ TEST(Shortest, IsNoLongerThanAnyTextThatReadsBack) {
   }
 }
 
-/// These texts belong to the identity of rows, so other texts would mean other runs.
+/// These texts belong to the identity of rows. So other texts would mean other runs.
 TEST(Shortest, IsWrittenAsPeopleDo) {
   const std::pair<double, const char*> texts[] = {{0, "0"},
                                                   {-0.0, "-0"},

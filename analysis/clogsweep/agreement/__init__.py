@@ -1,6 +1,6 @@
-"""The statements of the article compared with the results of this program: see python3 -m clogsweep agreement."""
+"""Compares the statements of the article with the results of this program: see python3 -m clogsweep agreement."""
 
-from . import passages, lengths, speeds  # noqa: F401  each registers its statements, in the order of the article
+from . import passages, lengths, speeds  # noqa: F401  each module registers its statements, in the order of the article
 from .statements import Judged, judge_all
 from .table import WRITERS
 

@@ -16,7 +16,7 @@ LEAST_LINEARITY = 0.99
 
 
 def bounds(group: Group) -> tuple[float, float]:
-    """The confidence interval of a clogging length, without an upper end if no run clogged."""
+    """The confidence interval of a clogging length. The upper end is infinite if no run clogged."""
     return group["clogging_length_lower"], math.inf if group["clogging_length_upper"] is None else group["clogging_length_upper"]
 
 
@@ -42,7 +42,7 @@ def speed_of(group: Group) -> str:
 
 
 def curves(groups: Iterable[Group], parameter: str) -> dict[Any, list[Group]]:
-    """One curve for each value of the parameter, in ascending order."""
+    """One curve for each value of the parameter, in ascending order of the values."""
     found: dict[Any, list[Group]] = {}
     for group in groups:
         found.setdefault(group[parameter], []).append(group)
@@ -50,7 +50,7 @@ def curves(groups: Iterable[Group], parameter: str) -> dict[Any, list[Group]]:
 
 
 def rises(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bool:
-    """Whether any point is clearly below a later one."""
+    """Whether any point of the curve is clearly below a later point."""
     return any(is_less(curve[i], curve[j]) for i in range(len(curve)) for j in range(i + 1, len(curve)))
 
 
@@ -59,13 +59,14 @@ def falls(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bo
 
 
 def trend(is_as_published: bool, is_opposite: bool) -> str:
-    """The verdict on a curve, or on two points. Clear differences may be as published, opposite to the published ones,
-    of both kinds at different points, or absent."""
+    """The verdict on a curve, or on two points. Clear differences may be as published, or opposite, or both at
+    different points of a curve. Without a clear difference the verdict is NOT_KNOWN."""
     return (IN_KIND if is_opposite else AGREES) if is_as_published else DOES_NOT if is_opposite else NOT_KNOWN
 
 
 def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callable[[Group, Group], bool], said: Callable[[Group], str]) -> Finding:
-    """Whether lambda of soft disks falls with E_w, judged by one curve for each gap."""
+    """Judges from one curve for each gap whether the clogging length of soft disks falls with the wall stiffness
+    E_w."""
     ordered = {gap: sorted(curve, key=lambda group: group["wall_stiffness"]) for gap, curve in found.items()}
     return Finding(overall([trend(falls(curve, is_less), rises(curve, is_less)) for curve in ordered.values()]),
                    "; ".join(f"gap {gap:g}: {said(curve[0])} at {curve[0]['wall_stiffness']:g}, {said(curve[-1])} at {curve[-1]['wall_stiffness']:g}"
@@ -81,6 +82,7 @@ def overall(verdicts: Sequence[str]) -> str:
 
 
 def by_tolerance(value: float, published: float, tolerance: float) -> str:
-    """`agrees` within the tolerance, `qualitatively` within four times the tolerance."""
+    """The verdict on a value: `agrees` if it differs from the published value by at most the tolerance, `qualitatively`
+    up to four times the tolerance."""
     difference = abs(value - published)
     return AGREES if difference <= tolerance else IN_KIND if difference <= 4 * tolerance else DOES_NOT

@@ -1,4 +1,4 @@
-"""Sections 4.2 and 5, appendix C: clogging lengths of polygons and disks."""
+"""Judges statements of sections 4.2 and 5 and of appendix C, on clogging lengths of polygons and disks."""
 
 import math
 from collections.abc import Callable, Iterable, Sequence
@@ -20,15 +20,15 @@ CONFIDENCE = 0.95
 
 
 def peak(curve: Sequence[Group]) -> Group | None:
-    """The highest of the points that are clearly above a point on their left and a point on their right."""
+    """The highest point among those that are clearly above some point on their left and some point on their right."""
     found = [point for i, point in enumerate(curve)
              if any(shorter(other, point) for other in curve[:i]) and any(shorter(other, point) for other in curve[i + 1:])]
     return max(found, key=dilute.known_length) if found else None
 
 
 def shape(curve: Sequence[Group]) -> str:
-    """The verdict on whether a curve is non-monotonic. A curve without a peak that falls is monotonic if the softest
-    droplets do not clog."""
+    """The verdict on whether a curve is non-monotonic. A curve without a peak counts as monotonic only if it clearly
+    falls and its softest droplets do not clog."""
     return AGREES if peak(curve) else DOES_NOT if falls(curve, shorter) and curve[0]["clogs"] == 0 else NOT_KNOWN
 
 
@@ -44,8 +44,8 @@ def is_not_monotonic(groups: list[Group]) -> Finding:
 
 
 def peak_draws(curve: Sequence[Group], seed: int) -> tuple[features.Peak, Numbers]:
-    """The fitted peak, and log Gamma_peak of each curve drawn from the posterior. @param seed  another one for each
-    gap, so that draws of different gaps are independent"""
+    """Fits the curve. @return the fitted peak, and log Gamma_peak of each curve that is drawn from the posterior
+    @param seed  a different seed for each gap, so that the draws of different gaps are independent"""
     known = model.Points(np.log([[group["line_tension"]] for group in curve]), *(np.array([group[name] for group in curve], float) for name in ("clogs", "total_distance")))
     places = points.grid_over(known.places)
     fitted = model.fit_curve(known, places)
@@ -55,8 +55,8 @@ def peak_draws(curve: Sequence[Group], seed: int) -> tuple[features.Peak, Number
 @statement_of_walls("4.2, figure 6c", "the peak moves to larger Γ as gaps widen",
                     does_not_agree="no peak moves to larger Γ", not_known="fewer than two curves have a peak, or the sign of the slope is uncertain")
 def peak_moves(groups: list[Group]) -> Finding:
-    """Judges by the fraction of posterior draws in which the regression of log Gamma_peak on the gap has a slope of zero or
-    less."""
+    """Fits a straight line to log Gamma_peak against the gap for each posterior draw. The fraction of draws in which
+    the slope is zero or negative decides the verdict."""
     by_gap = curves([group for group in groups if group["total_distance"]], "obstacle_gap")
     found = {gap: peak_draws(curve, seed) for seed, (gap, curve) in enumerate(by_gap.items(), 1)
              if sum(group["clogs"] > 0 for group in curve) >= points.FEWEST_CLOGGING}
@@ -71,7 +71,9 @@ def peak_moves(groups: list[Group]) -> Finding:
 
 
 def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
-    """The crossover of the branches: the largest line tension at which most clogs are wrapped, and the next at which most are squeezed."""
+    """The range of line tensions in which squeezed clogs replace wrapped ones. The range begins at the largest line
+    tension at which more clogs are wrapped than squeezed. It ends at the next line tension at which more clogs are
+    squeezed than wrapped."""
     wrapped = max((point["line_tension"] for point in curve if point["wrapped"] > point["squeezed"]), default=math.inf)
     squeezed = [point["line_tension"] for point in curve if point["squeezed"] > point["wrapped"] and point["line_tension"] > wrapped]
     return (wrapped, min(squeezed)) if squeezed else None
@@ -80,7 +82,8 @@ def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
 @statement_of_walls("4.2, figure 6c", "wrapping gives way to squeezing at larger Γ as gaps widen", in_kind="the ranges of the narrowest and the widest gap overlap",
                     does_not_agree="at no Γ are most clogs wrapped", not_known="the branches meet in fewer than two gaps, or their ranges overlap")
 def transition_moves(groups: list[Group]) -> Finding:
-    """Compares the crossover in the narrowest gap with the crossover in the widest gap."""
+    """Judges whether the range of transition() lies at larger line tensions in the widest gap than in the narrowest
+    gap."""
     found = {gap: range_ for gap, curve in curves(groups, "obstacle_gap").items() if (range_ := transition(curve))}
     wrapped, clogs = (sum(group[name] for group in groups) for name in ("wrapped", "clogs"))
     if len(found) < 2:
@@ -113,8 +116,8 @@ def neighbours_support(shop: Workshop, family: Family) -> Finding:
 
 
 def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) -> Finding:
-    """Whether lambda is longer in the widest gap than in the narrowest at every abscissa larger than `beyond`. Points without
-    clogs do not count."""
+    """Judges whether lambda is longer in the widest gap than in the narrowest gap, at every abscissa larger than
+    `beyond`. An abscissa at which no droplet clogs in either gap does not count."""
     verdicts, words = {}, []
     for place, members in curves(groups, abscissa).items():
         members = sorted(members, key=lambda group: group["obstacle_gap"])
@@ -140,8 +143,8 @@ def longer_in_wide_gaps(groups: list[Group]) -> Finding:
 
 @statement_of_walls("4, text", "at intermediate Γ droplets flow continuously", in_kind="not in every gap, or not only at intermediate Γ", does_not_agree="some clog at every Γ")
 def flows_between(groups: list[Group]) -> Finding:
-    """Whether there is a line tension at which no droplet clogs, while some clog at a smaller and some at a larger
-    one."""
+    """Judges whether there is a line tension at which no droplet clogs, although some clog at smaller and at larger
+    line tensions."""
     verdicts, words = [], []
     for gap, curve in curves(groups, "obstacle_gap").items():
         free = [i for i, point in enumerate(curve) if point["clogs"] == 0]
@@ -216,7 +219,8 @@ def is_exponential(shop: Workshop) -> Finding:
 
 @statement("appendix C, figure C1", "E_k of a droplet that clogs decays exponentially to the threshold", "C1")
 def energy_decays(shop: Workshop) -> Finding:
-    """Fits a straight line to ln E_k over the last ten decades."""
+    """Judges how well a straight line fits ln E_k at the end of the run, after E_k has fallen to 1e10 times the clog's
+    threshold."""
     run = arrays.energies(shop)[0.3]
     if run.word("status") != "clogged":
         return Finding(DOES_NOT, f"the droplet is {run.word('status')}")
@@ -226,15 +230,15 @@ def energy_decays(shop: Workshop) -> Finding:
     return Finding(AGREES if r_squared >= LEAST_LINEARITY else DOES_NOT, f"R² = {r_squared:.4f} of ln E_k over {np.log10(energy[tail].max() / energy[tail].min()):.0f} decades")
 
 
-# Figure 7: soft disks, and both models vs the sag
+# Figure 7: soft disks, and both models against the sag
 
 statement("4.2, figure 7a", "λ of soft disks falls monotonically with E_w", "7a", not_known="too few clogs")(
     lambda shop: fall_with_stiffness(curves(shop.sweep("clogging-sp"), "obstacle_gap"), shorter, length_of))
 statement("4.2, figure 7a", "λ of soft disks grows with the gap", "7a", in_kind="at equal density λ of stiff disks does not grow", not_known="too few clogs")(
     lambda shop: grows_with_gap(shop.sweep("clogging-sp"), "wall_stiffness"))
 
-APART = 0.25  # published: the models differ where the sag is larger
-ALIKE = 2.0  # lengths are alike if their ratio is at most this
+APART = 0.25  # The article says that the models differ if the sag is larger than this.
+ALIKE = 2.0  # Lengths with a larger ratio than this are not alike.
 
 
 def over_the_sag(shop: Workshop, config: str, groups: Sequence[Group]) -> list[tuple[float, Group]]:
@@ -243,8 +247,10 @@ def over_the_sag(shop: Workshop, config: str, groups: Sequence[Group]) -> list[t
 
 
 def compared(shop: Workshop, family: Family, is_beyond: bool) -> Finding:
-    """Compares polygons with disks of the same sag, where the sag is larger (`is_beyond`) or smaller than APART. Their
-    lengths agree if the intervals overlap, or if the ratio is at most ALIKE. Lower bounds count as lengths."""
+    """Compares the lengths of polygons with those of disks with the same sag. With `is_beyond` the sags are larger than
+    APART, and the lengths should differ; otherwise the sags are smaller, and the lengths should agree. Lengths agree if
+    their intervals overlap, or if their ratio is at most ALIKE. If no droplet clogged, the lower bound serves as the
+    length."""
     disks = over_the_sag(shop, "clogging-sp", shop.sweep("clogging-sp"))
     logs = [math.log(sag) for sag, _ in disks]
 

@@ -1,5 +1,5 @@
-"""Section 4.1, appendices A and B: measured quantities, and passages through channels, which have no confidence
-intervals because nothing in them is random."""
+"""Judges statements of section 4.1 and of appendices A and B, on measured quantities and on passages through channels.
+Nothing in such a passage is random, so there are no confidence intervals."""
 
 import math
 from typing import Any
@@ -38,22 +38,22 @@ def first_minimum(shop: Workshop) -> Finding:
 
 
 def slowest_before(way: Any) -> float:
-    """Where the droplet is slowest, within the last diameter before the orifice: farther upstream it still accelerates
-    from rest."""
+    """The position at which the droplet is slowest, within one diameter before the orifice. Farther upstream the
+    droplet still accelerates from rest."""
     before = way[(way["h"] > -1) & (way["h"] < 0)]
     return float(before["h"][np.argmin(before["speed_ratio"])])
 
 
 def top_behind(way: Any) -> Any:
-    """The peak of the speed behind the orifice, where the published droplets overshoot, or None if the droplet does not
-    pass. Farther away a slow droplet approaches v_t."""
+    """The point behind the orifice at which the speed has its peak, or None if the droplet does not pass. Only the
+    first 0.6 diameters count: farther away a slow droplet approaches v_t."""
     behind = way[(way["h"] > 0) & (way["h"] < 0.6)]
     peaks, found = find_peaks(behind["speed_ratio"], prominence=0)
     return behind[peaks[np.argmax(found["prominences"])]] if way["h"][-1] > 0.6 and len(peaks) else None
 
 
 def tops_of_speeds(shop: Workshop, orifice: float) -> tuple[list[float], str]:
-    """The largest speed of each droplet of figure 4 that passes, and a text about all droplets of this figure."""
+    """The largest speeds of the droplets of figure 4 that pass, and a text about all droplets of this figure."""
     tops = {tension: top_behind(run.table) for tension, run in channels.overshooting(shop, orifice).items()}
     words = [f"the droplet of {tension:g} does not pass" if top is None else f"{top['speed_ratio']:.2f} at {tension:g}" for tension, top in tops.items()]
     return [top["speed_ratio"] for top in tops.values() if top is not None], f"w = {orifice:g}, b_0/b_∞ = {channels.OVERSHOOTS[orifice]:g}: {', '.join(words)}"
@@ -101,8 +101,8 @@ def drag_exponent(shop: Workshop) -> Finding:
 @statement("appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on", "B1",
            in_kind="smooth only on finer meshes", does_not_agree="ripples shrink up to the finest mesh")
 def profiles_are_smooth(shop: Workshop) -> Finding:
-    """A mesh counts as smooth if the ripples on it and on every finer mesh are at most a tenth larger than on the
-    finest mesh."""
+    """Finds the meshes that give smooth speed profiles. The ripples on a smooth mesh, and on all finer meshes, are at
+    most a tenth larger than those on the finest mesh."""
     noise = {count: roughness(run.table) for count, run in channels.meshes(shop).items()}
     counts = sorted(noise)
     rough = [count for count in counts if noise[count] > 1.1 * noise[counts[-1]]]
@@ -111,7 +111,8 @@ def profiles_are_smooth(shop: Workshop) -> Finding:
 
 
 def roughness(way: Any) -> float:
-    """Root mean square deviation of a speed profile from its running mean over a tenth of a diameter [v_t]."""
+    """The root mean square deviation of a speed profile from its running mean [v_t]. The mean is taken over a tenth of
+    a diameter."""
     h = np.arange(-0.9, 0.9, 0.005)
     known = (h > way["h"].min()) & (h < way["h"].max())
     speed = np.interp(h[known], way["h"], way["speed_ratio"])
@@ -128,7 +129,7 @@ TENSION, OIL, WATER, GRAVITY = 0.010, 703.0, 997.0, 9.8  # N/m, kg/m^3, m/s^2
 
 
 def buoyancy(tilt: float) -> float:
-    """g_exp [m/s^2]"""
+    """The acceleration g_exp of the buoyant droplet along the plates [m/s^2]"""
     return math.sin(math.radians(tilt)) * GRAVITY * (WATER - OIL) / OIL
 
 
@@ -145,7 +146,8 @@ statement("4.1", "V_t = 0.08, 0.028, 0.032 for the three terminal speeds")(
 
 @statement("4.1", "Γ** = 1.7 ± 0.1 and 1.08 ± 0.09 follow from Γ* = 0.16 ± 0.01 by tilt and diameter")
 def tensions_scale(shop: Workshop) -> Finding:
-    """Values agree within twice their combined errors; the error of Gamma* is 6 %."""
+    """Compares ratios of line tensions. Values agree if they differ by at most twice their combined errors. The error
+    of Gamma* is 6 %."""
     weights = [math.sin(math.radians(tilt)) * diameter**2 for tilt, diameter, _ in EXPERIMENTS]
     found = [0.16 * weights[0] / weight for weight in weights[1:]]
     is_within = [abs(value - published) <= 2 * math.hypot(error, value / 16) for value, published, error in zip(found, (1.7, 1.08), (0.1, 0.09))]

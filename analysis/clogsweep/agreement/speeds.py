@@ -1,4 +1,4 @@
-"""Section 4.3, appendices D and E: mean speeds among obstacles."""
+"""Judges statements of section 4.3 and of appendices D and E, on mean speeds among obstacles."""
 
 import math
 from typing import Any
@@ -18,7 +18,7 @@ def speed_curves(shop: Workshop, config: str, parameter: str, abscissa: str) -> 
 
 
 def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Finding:
-    """Whether the mean speed rises monotonically with Gamma."""
+    """Judges whether the mean speed rises monotonically with Gamma."""
     verdicts, words = [], []
     for value, curve in speed_curves(shop, config, parameter, "line_tension").items():
         verdicts.append(trend(rises(curve, slower), falls(curve, slower)))
@@ -80,8 +80,8 @@ def soft_disks_are_free(shop: Workshop) -> Finding:
 
 
 def speed_pairs(shop: Workshop) -> list[tuple[float, Group, float, Group]]:
-    """Two pairs in gaps of 1.1: the stiffest polygon with the stiffest disk, and the softest polygon with the softest
-    disk, each with its sag."""
+    """Two pairs of a polygon and a disk in gaps of 1.1: the stiffest of both models, and the softest of both models.
+    Each droplet comes with its sag."""
     found = []
     for config in ("speed", "speed-sp"):
         groups = [group for group in shop.sweep(config) if math.isclose(group["obstacle_gap"], 1.1) and group["relative_speed"] is not None]

@@ -1,7 +1,7 @@
-"""The statements of the article, and the judgement of each.
+"""The statements of the article, and how each is judged.
 
-A statement has its place in the article, its text, and a function that judges it from the sweeps of the figures. The
-verdict is computed. Only the reason for a verdict other than `agrees` is written by hand.
+A statement consists of its place in the article, its text, and a function that judges it from the sweeps of the
+figures. The verdict is computed. If it is not `agrees`, the reason for it was written by hand.
 """
 
 import dataclasses
@@ -20,8 +20,10 @@ VERDICTS = [AGREES, IN_KIND, FORCED, BY_MESH, FITTED, DOES_NOT, NOT_KNOWN, NOT_R
 
 @dataclasses.dataclass(frozen=True)
 class Finding:
-    """The result of this program. @param value  text with numbers and their intervals; @param variants  verdicts and values
-    of other models; @param brief  verdicts of other models"""
+    """What this program finds about a statement.
+    @param value  text with numbers and their intervals
+    @param variants  verdicts and values of other models
+    @param brief  the same verdicts without values"""
 
     verdict: str
     value: str
@@ -36,7 +38,7 @@ Judge = Callable[..., Finding]
 class Statement:
     where: str
     text: str
-    figures: tuple[str, ...]  # figures from whose sweeps the statement is judged
+    figures: tuple[str, ...]  # The statement is judged from the sweeps of these figures.
     judge: Judge
     reasons: Mapping[str, str] = dataclasses.field(default_factory=dict)  # by verdict
 
@@ -51,7 +53,7 @@ def statement(where: str, text: str, *figures: str, **reasons: str) -> Callable[
     """Registers a function that judges a statement.
 
     @param figures  figures whose sweeps the function needs
-    @param reasons  the reason for each verdict, by NAMES
+    @param reasons  the reason for each verdict; NAMES maps the argument's name to the verdict
     """
 
     def register(judge: Judge) -> Judge:
@@ -69,8 +71,8 @@ def tried(judge: Judge, *arguments: Any) -> Finding:
 
 
 def with_variants(found: Mapping[Family, Finding]) -> Finding:
-    """The finding of the first family, which is nearest to the published model. If the first family does not agree, the
-    verdict names what makes another family agree."""
+    """The finding of the first family, which is nearest to the published model. If the first family does not agree but
+    another family does, the verdict says whether friction or the mesh makes the difference."""
     (_, nearest), *others = found.items()
     verdict = nearest.verdict
     if verdict in (DOES_NOT, NOT_KNOWN):
@@ -82,8 +84,8 @@ def with_variants(found: Mapping[Family, Finding]) -> Finding:
 
 
 def statement_of_families(where: str, text: str, figure: str = "6c", families: Sequence[Family] = FAMILIES, **reasons: str) -> Callable[[Judge], Judge]:
-    """Registers a function that judges a statement from the sweeps, for each family of walls. @param families  the
-    first is nearest to the published model"""
+    """Registers a function that judges a statement from the sweeps. The function is called for each family of walls.
+    @param families  the first is nearest to the published model"""
     def register(judge: Judge) -> Judge:
         statement(where, text, figure, **reasons)(lambda shop: with_variants({family: tried(judge, shop, family) for family in families}))
         return judge
@@ -92,7 +94,8 @@ def statement_of_families(where: str, text: str, figure: str = "6c", families: S
 
 
 def statement_of_walls(where: str, text: str, figure: str = "6c", families: Sequence[Family] = FAMILIES, **reasons: str) -> Callable[[Judge], Judge]:
-    """Registers a function that judges a statement from the groups of one family, sorted by gap, then line tension."""
+    """Registers a function that judges a statement from the groups of one family. The groups are sorted by gap, then by
+    line tension."""
     def register(judge: Judge) -> Judge:
         def of_family(shop: Workshop, family: Family) -> Finding:
             return judge(sorted(family.of(shop.sweep(family.config)), key=lambda group: (group["obstacle_gap"], group["line_tension"])))
@@ -110,7 +113,8 @@ class Judged:
 
     @property
     def reason(self) -> str:
-        """The reason for the verdict. If there is no verdict or no agreement, it also tells what was tried."""
+        """The reason for the verdict. If the statement does not agree or cannot be judged, the reason also names the
+        figures whose runs were tried."""
         figures = ", ".join(self.statement.figures) if self.finding.verdict in (DOES_NOT, NOT_KNOWN) else ""
         return "; ".join(filter(None, [self.statement.reasons.get(self.finding.verdict), figures and f"tried: runs of figure{'s' * (',' in figures)} {figures}"]))
 
@@ -121,13 +125,17 @@ def judge(shop: Workshop, one: Statement) -> Judged:
 
 
 def judge_all(shop: Workshop) -> tuple[list[Judged], int]:
-    """@param shop  a workshop that runs nothing. @return the judged statements, and the model version of the sweeps.
+    """Judges all statements.
+    @param shop  a workshop that runs nothing
+    @return the judged statements, and the model version of the sweeps
     @throws UserError  if the sweeps have several model versions"""
     return [judge(shop, one) for one in STATEMENTS], the_version(shop.model_versions())
 
 
 def the_version(versions: Mapping[str, Iterable[int]]) -> int:
-    """@param versions  model versions in the rows of each sweep"""
+    """The common model version of all sweeps.
+    @param versions  model versions in the rows of each sweep
+    @throws UserError  if the sweeps have several model versions"""
     newest = max((version for of_sweep in versions.values() for version in of_sweep), default=0)
     older = sorted(name for name, of_sweep in versions.items() if set(of_sweep) - {newest})
     if older:

@@ -1,4 +1,4 @@
-"""The judged statements as a table."""
+"""Prints the judged statements as a table."""
 
 import collections
 import csv
@@ -16,20 +16,21 @@ def cells(one: Judged) -> list[str]:
 
 
 def counts(judged: Sequence[Judged]) -> str:
-    """How many statements have each verdict, such as *agrees* for 31 and *qualitatively* for 12."""
+    """The number of statements with each verdict, such as *agrees* for 31 and *qualitatively* for 12."""
     number = collections.Counter(one.finding.verdict for one in judged)
     *others, last = [f"*{verdict}* for {number[verdict]}" for verdict in VERDICTS if number[verdict]]
     return f"{', '.join(others)} and {last}" if others else last
 
 
 def shortened(value: str) -> str:
-    """The first and the last of several results."""
+    """The first and the last of several results, or the text itself if there are at most two."""
     parts = value.split("; ")
     return f"{parts[0]}; ...; {parts[-1]}" if len(parts) > 2 else value
 
 
 def markdown(judged: Sequence[Judged], version: int) -> str:
-    """A table for each section of the article, with the first and last of several results. Variants have their verdicts, but no results."""
+    """A table for each section of the article. Of several results it shows the first and the last. For variants it
+    shows only the verdicts."""
     lines = [textwrap.fill(f"The verdicts on the article's {len(judged)} statements are {counts(judged)}. All rows have model version {version}.", 118)]
     place_of = {id(one): one.statement.where.partition(", ") for one in judged}
     for section in dict.fromkeys(place[0] for place in place_of.values()):

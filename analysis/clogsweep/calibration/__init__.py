@@ -1,1 +1,1 @@
-"""Line tension and near-wall drag of a droplet from measured passages through a channel, or along a wall."""
+"""Fits the line tension and the near-wall drag of a droplet to measured passages through a channel, or along a wall."""

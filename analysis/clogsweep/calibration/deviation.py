@@ -1,4 +1,4 @@
-"""Deviation of a simulated passage from a measured one (Cheng et al., Delta_v and Delta_A)."""
+"""Computes the deviation of a simulated passage from a measured one (Delta_v and Delta_A of Cheng et al.)."""
 
 import math
 
@@ -7,17 +7,18 @@ import numpy as np
 from ..tools.hints import Numbers
 from .profiles import Profile, at
 
-# Smallest residual of a frame that the simulated droplet never reached. All other residuals are limited to this.
+# Residual of a frame that the simulated droplet just fails to reach. Residuals of frames that it reached are limited to
+# this value.
 NEVER_REACHED = 10
-# A profile with fewer residuals has no correlation.
+# The correlation is NaN for a profile with fewer residuals.
 FEWEST_CORRELATED = 8
 
 
 def speed_residuals(measured: Profile, simulated: Profile) -> tuple[Numbers, int]:
     """v_measured/v_simulated - 1 of each frame, and the number of frames that the simulated droplet never reached.
 
-    For such a frame the residual is 10, and 10 more for each diameter between the droplet's end and the frame. So a
-    search among droplets that clog can tell which of them get closer.
+    The residual of such a frame is 10, plus 10 for each diameter between the frame and the farthest point that the
+    droplet reached. So a search among droplets that clog can tell which of them get closer.
     """
     speed = at(simulated, measured.h).speed
     never = np.isnan(speed)
@@ -29,7 +30,7 @@ def speed_residuals(measured: Profile, simulated: Profile) -> tuple[Numbers, int
 
 
 def shape_residuals(measured: Profile, simulated: Profile) -> Numbers:
-    """A_measured/A_simulated - 1 of each frame that has a shape."""
+    """A_measured/A_simulated - 1 of each frame with a measured shape."""
     frames = at(simulated, measured.h)
     found = np.where(np.isnan(frames.speed), NEVER_REACHED, measured.shape / frames.shape - 1)
     return found[~np.isnan(measured.shape) & ~np.isnan(found)]
@@ -40,7 +41,7 @@ def root_mean_square(values: Numbers) -> float:
 
 
 def correlation(residuals: Numbers) -> float:
-    """The correlation of successive residuals about zero. For n residuals of pure noise it is about 1/sqrt(n) or less;
-    if the profiles differ in shape it is near one."""
+    """The correlation between successive residuals, without subtraction of their mean. For n residuals of pure noise it
+    is about 1/sqrt(n) or less. If the profiles differ systematically, the correlation is near one."""
     squares = float(residuals @ residuals)
     return float(residuals[1:] @ residuals[:-1]) / squares if len(residuals) >= FEWEST_CORRELATED and squares > 0 else math.nan

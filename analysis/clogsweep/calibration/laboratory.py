@@ -1,4 +1,4 @@
-"""A laboratory's droplet between tilted plates, from `clogfit units`."""
+"""Converts the quantities of a laboratory's droplet between tilted plates to the model's units, by `clogfit units`."""
 
 import json
 import pathlib
@@ -10,15 +10,15 @@ from ..results import laboratory
 from ..tools.errors import ProgramFailed, UserError
 from .profiles import Scales
 
-# Values for quantities that clogfit units requires, in commands whose user did not give them.
+# Values for quantities that clogfit units requires. The values serve commands whose user did not give these quantities.
 UNKNOWN = {"diameter": "1 mm", "angle": "90 deg"}
 
 
 def quantities(given: Mapping[str, str | None], folder: pathlib.Path) -> tuple[dict[str, Any], Scales]:
-    """The answer of clogfit units, and the divisors of columns in laboratory units.
+    """Asks clogfit units. @return its answer, and the divisors of columns in laboratory units
 
-    @param given  quantities by their names in a lab file, None if unknown. @throws UserError  that names the wrong
-    option
+    @param given  quantities by their names in a lab file, None if unknown
+    @throws UserError  that names the wrong option
     """
     known = {name: text for name, text in given.items() if text}
     try:
@@ -29,6 +29,6 @@ def quantities(given: Mapping[str, str | None], folder: pathlib.Path) -> tuple[d
 
 
 def print_json(answer: Mapping[str, Any], document: Mapping[str, Any]) -> None:
-    """Prints the document after the version of the programs. NaN and infinity become null."""
+    """Prints the document as JSON, with the version of the programs in front. NaN and infinity become null."""
     text = json.dumps({"version": answer["version"], "git_describe": answer["git_describe"], **document})
     print(json.dumps(json.loads(text, parse_constant=lambda _: None), indent=2))

@@ -15,31 +15,33 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
 FEWEST_FRAMES = 3
-# If a simulated passage is calibrated, only its part within this distance from the orifice is used, as in an experiment
-# [sigma].
+# If a simulated passage is calibrated, only its frames within this distance from the orifice are used, as in an
+# experiment [sigma].
 FARTHEST_FRAME = 1.5
 FRAMES_PER_DIAMETER = 20
-METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "\u00b5m": 1e-6, "\u03bcm": 1e-6}  # the units that clogfit units knows; Unicode has two signs for micro
+# The units that clogfit units knows. Unicode has two characters for micro.
+METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "\u00b5m": 1e-6, "\u03bcm": 1e-6}
 
 
 class Profile(NamedTuple):
-    """A droplet in a channel, frame by frame; arrays of equal length. A simulation is in the order of time."""
+    """A droplet in a channel, frame by frame. The arrays have equal length. The frames of a simulation are in the order
+    of time."""
 
-    h: Numbers  # distance of the centre of mass from the orifice, positive downstream [sigma]
-    speed: Numbers  # along the flow [v_t]
-    shape: Numbers  # A = perimeter^2/(4 pi area); NaN where unknown
+    h: Numbers  # Distance of the centre of mass from the orifice, positive downstream [sigma].
+    speed: Numbers  # Along the flow [v_t].
+    shape: Numbers  # A = perimeter^2/(4 pi area); NaN where unknown.
 
 
 class Scales(NamedTuple):
-    """Divisors of columns in laboratory units [m, m/s]; 0 if unknown."""
+    """Divisors that convert columns in laboratory units to reduced units [m, m/s]. A divisor is 0 if it is unknown."""
 
     diameter: float = 0
     speed: float = 0
 
 
 class Channel(NamedTuple):
-    """The conditions of a passage, except for those of the droplet. The name of a field is that of a column and, with
-    hyphens for underscores, that of a key."""
+    """The conditions of a passage, except for those of the droplet. Each field has the name of a column. With hyphens
+    for underscores, the name of a column is also that of a key."""
 
     orifice: float
     wedge_angle: float
@@ -48,7 +50,7 @@ class Channel(NamedTuple):
 
 
 def read_text(path: str) -> str:
-    """Text in UTF-8, UTF-16 or Latin-1. @throws UserError"""
+    """Reads a text in UTF-8, UTF-16 or Latin-1. @throws UserError"""
     try:
         mode = os.stat(path).st_mode
         if not stat.S_ISREG(mode) and not stat.S_ISFIFO(mode):
@@ -63,8 +65,8 @@ def read_text(path: str) -> str:
 
 
 def factor(header: str, reduced: str, scale: float, option: str) -> float:
-    """Factor that converts a column, such as h [mm], to reduced units. @param reduced  the reduced unit: sigma or
-    v_t"""
+    """The factor that converts a column to reduced units. @param header  of the column, such as h [mm]; @param reduced
+    the reduced unit: sigma or v_t"""
     unit = header.partition("[")[2].partition("]")[0].strip()
     if unit == reduced:
         return 1
@@ -89,10 +91,11 @@ def number(cell: str) -> float:
 
 
 def read_table(path: str, length: str, scales: Scales) -> Numbers:
-    """Columns `length`, v and A of a text file as spreadsheets write it (docs/how-to/own-obstacles.md), in reduced units.
+    """Reads the columns `length`, v and A of a text file as spreadsheets write it (docs/how-to/own-obstacles.md), and
+    converts them to reduced units.
 
-    @return shape (3, lines); A is NaN where its cell is empty, or if there is no such column. @throws UserError  that
-    names file and line
+    @return shape (3, lines). A is NaN where its cell is empty, and everywhere if the file has no column A.
+    @throws UserError  that names file and line
     """
     separator, rows = "", []
     columns: dict[str, int] = {}
@@ -122,19 +125,21 @@ def read_table(path: str, length: str, scales: Scales) -> Numbers:
 
 
 def read_run(path: str) -> tuple[Profile, np.void]:
-    """Samples and row of a passage that clogrun wrote. @throws UserError; Damaged"""
+    """Reads the samples and the row of a passage that clogrun wrote. @throws UserError; Damaged"""
     table, row = passages.read(path)
     return Profile(table["h"], table["speed_ratio"], table["shape_parameter"]), row
 
 
 def at(profile: Profile, h: Numbers) -> Profile:
-    """The profile at each h, where the droplet first reaches it, interpolated linearly; NaN if it never does."""
+    """The profile at the places h, interpolated linearly. If the droplet reaches h several times, the first time
+    counts. Values are NaN where the droplet never reaches h."""
     first = profile.h >= np.maximum.accumulate(profile.h)
     return Profile(h, *(np.interp(h, profile.h[first], values[first], left=math.nan, right=math.nan) for values in profile[1:]))
 
 
 def read_profile(path: str, scales: Scales = Scales()) -> tuple[Profile, np.void | None]:
-    """Every frame of a text file, or every sample and the row of a file of clogrun channel. @throws UserError; Damaged"""
+    """Reads a text file, or a file of clogrun channel. @return all its frames; the row, if clogrun wrote the file.
+    @throws UserError; Damaged"""
     profile, row = read_run(path) if passages.is_hdf5(path) else (Profile(*read_table(path, "h", scales)), None)
     if len(profile.h) < FEWEST_FRAMES:
         raise UserError(f"{path} holds fewer than three frames; give a longer one")
@@ -142,8 +147,8 @@ def read_profile(path: str, scales: Scales = Scales()) -> tuple[Profile, np.void
 
 
 def read_trial(path: str, scales: Scales = Scales()) -> tuple[Profile, Channel | None]:
-    """A passage to compare simulations with, and its channel if clogrun wrote it. @throws UserError  also if the droplet
-    did not pass"""
+    """Reads a passage with which simulations are compared. @return the passage; its channel, if clogrun wrote the file.
+    @throws UserError  also if the droplet did not pass; Damaged"""
     profile, row = read_profile(path, scales)
     if row is None:
         return profile, None

@@ -1,9 +1,10 @@
-"""Searches the line tension and the near-wall drag of the simulation that is closest to a measured passage.
+"""Searches for the line tension and the near-wall drag with which the simulation is closest to a measured passage.
 
 Close to a line tension at which the droplet clogs, Delta_v has several minima, each about a percent of Gamma wide. The
-search begins on a coarse grid and descends from its best points by the simplex method. It brackets the line tension at
-which droplets clog, and descends again from several line tensions below this bracket, each twice as far away from the
-bracket as the one before. It ends with Gauss-Newton steps until these and another simplex gain nothing.
+search begins on a coarse grid and descends from its best points by the simplex method. The search then brackets the
+line tension at which droplets clog, and descends again from several line tensions below this bracket. The distance from
+the bracket doubles from each of these to the next. At the end the search takes Gauss-Newton steps, and stops when
+neither these nor another simplex lower Delta_v further.
 """
 
 import itertools
@@ -28,19 +29,23 @@ LOWER = np.array([math.log(0.02), 0])
 UPPER = np.array([math.log(10), 2])
 GRID_TENSIONS = LOWER[0] + (UPPER[0] - LOWER[0]) * (np.arange(7) + 0.5) / 7
 GRID_DRAGS = np.array([0, 0.01, 0.03, 0.1, 0.3]) * UPPER[1]
-LADDER_DISTANCES = (0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32)  # distances from the bracketed clog, in log Gamma
+# Starting points of the second descents: their distances from the line tension at which droplets clog, in log Gamma.
+LADDER_DISTANCES = (0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 LADDER_DRAGS = (0.9, 1, 1.1)
 NUM_STARTS = 3
-CLOG_WIDTH = 0.005  # width of the bracket around the clog, in log Gamma
-# Finite differences of log Gamma and b_0/b_inf. If no droplet clogs, residuals are linear over the longest ones.
+CLOG_WIDTH = 0.005  # Width to which the bracket around the line tension of a clog is narrowed, in log Gamma.
+# Steps of the finite differences, in log Gamma and b_0/b_inf. If no droplet clogs, the residuals are linear over the
+# longest steps.
 LONGEST_STEP = np.array([0.05, 0.01])
 SHORTEST_STEP = np.array([5e-4, 1e-4])
 MOST_ROUNDS = 20
-WORTH_IT = 0.999  # a round has gained something if it multiplies Delta_v by less than this
-NEGLIGIBLE = 0.03  # Gauss-Newton steps shorter than this are not taken [standard errors]
+WORTH_IT = 0.999  # A round counts as a gain if it multiplies Delta_v by less than this.
+NEGLIGIBLE = 0.03  # Gauss-Newton steps shorter than this many standard errors are not taken.
 
-GOOD = 0.2  # a larger Delta_v causes a warning: speeds differ by more than a fifth
-MESH = 0.01  # smaller systematic residuals cause no warning: noiseless runs differ by less, but smoothly, in speed and in shape
+GOOD = 0.2  # A larger Delta_v causes a warning, because speeds then differ by more than a fifth.
+# Smaller systematic residuals cause no warning: even simulations without noise differ smoothly by almost this much, in
+# speed and in shape.
+MESH = 0.01
 NEAR_CLOG = 1.1
 
 
@@ -50,7 +55,7 @@ class Attempt(NamedTuple):
     place: tuple[float, float]
     simulated: Profile
     residuals: Numbers  # of the speed
-    num_never_reached: int  # frames
+    num_never_reached: int  # Frames.
 
     @property
     def delta(self) -> float:
@@ -58,10 +63,11 @@ class Attempt(NamedTuple):
 
 
 class Calibration(NamedTuple):
-    """Line tension and near-wall drag of one profile. Errors are NaN if the frames do not determine both of these."""
+    """The line tension and the near-wall drag of one profile. Errors are NaN if the frames do not determine both
+    quantities."""
 
     line_tension: float  # [g rho sigma^2]
-    line_tension_error: float  # follows from the scatter of the frames about the best run
+    line_tension_error: float  # Estimated from the scatter of the frames about the best run.
     near_wall_drag: float  # b_0/b_inf
     near_wall_drag_error: float
     delta_v: float
@@ -69,21 +75,23 @@ class Calibration(NamedTuple):
     speed_correlation: float
     shape_correlation: float
     converged: bool
-    clogging_tension: float  # droplets of this Gamma and more do not reach all frames; NaN if all droplets do, or none
+    # Droplets of this line tension or a larger one do not reach all frames. The value is NaN if all tried droplets
+    # reach all frames, or if none does.
+    clogging_tension: float
     simulations: int
     warnings: list[str]
 
 
 class Linearised(NamedTuple):
-    """Least squares with residuals linearised at a place."""
+    """A least-squares problem, with residuals linearised about a place."""
 
-    step: Numbers  # to the minimum
+    step: Numbers  # from the place to the minimum
     errors: Numbers
 
 
 class Search:
-    """The simulations of one profile, by their places (log Gamma and b_0/b_inf). They run in parallel, and a place is
-    seldom simulated twice."""
+    """The simulations of one profile, stored by their places (log Gamma and b_0/b_inf). Simulations run in parallel. A
+    place that was simulated before is seldom simulated again."""
 
     def __init__(self, measured: Profile, simulate: Simulation, progress: Callable[[float, float, float], None]) -> None:
         self.measured, self.simulate, self.progress = measured, simulate, progress
@@ -102,8 +110,9 @@ class Search:
         return in_parallel(self.attempt, places)
 
     def descend(self, start: Place, first_step: Place, tolerance: Place, most: int) -> tuple[Attempt, bool]:
-        """Nelder and Mead's simplex. @return the best, and whether the simplex has shrunk to the tolerance"""
-        scale = np.array(tolerance)  # SciPy has one tolerance for all coordinates
+        """Minimises by Nelder and Mead's simplex. @return the best attempt, and whether the simplex has shrunk to the
+        tolerance"""
+        scale = np.array(tolerance)  # SciPy has one tolerance for all coordinates, so the coordinates are scaled.
         corners = np.array(start) + np.vstack([np.zeros(2), np.diag(first_step)])
         corners = np.where(corners > UPPER, 2 * np.array(start) - corners, corners)
         found = optimize.minimize(
@@ -112,8 +121,8 @@ class Search:
         return self.attempt(found.x * scale), found.success
 
     def linearise_over(self, place: Numbers, step: Numbers) -> Linearised | None:
-        """Finite differences over a step. None if the droplet clogs a step away, or if the frames do not determine both
-        line tension and drag."""
+        """Finds the linearised residuals by finite differences over a step. Returns None if the droplet clogs a step
+        away, or if the frames do not determine both line tension and drag."""
         below = np.maximum(place - step, [-math.inf, 0])
         beside = [(place[0] + step[0], place[1]), (below[0], place[1]), (place[0], place[1] + step[1]), (place[0], below[1])]
         here, stiffer, softer, slower, faster = every = self.attempts([place, *beside])
@@ -127,16 +136,16 @@ class Search:
         return Linearised(-np.linalg.lstsq(slopes, here.residuals, rcond=None)[0], np.sqrt(variance * np.diag(np.linalg.inv(information))))
 
     def linearise(self, place: Place) -> Linearised | None:
-        """Computes finite differences twice: first over steps so short that droplets on both sides of the place pass,
-        then over steps as long as the errors."""
+        """Computes the linearised residuals twice: first over steps so short that the droplets on both sides of the
+        place pass, then over steps as long as the errors."""
         step = LONGEST_STEP
         while (found := self.linearise_over(np.array(place), step)) is None and np.all(step > 2 * SHORTEST_STEP):
             step = step / 2
         return found and self.linearise_over(np.array(place), np.clip(found.errors, SHORTEST_STEP, step))
 
     def polish(self, best: Attempt) -> tuple[Attempt, bool]:
-        """Gauss-Newton steps, then a new simplex if these gain nothing: the previous simplex may have shrunk to a point
-        that is not a minimum."""
+        """Takes Gauss-Newton steps. If these gain nothing, a new simplex follows, because the previous simplex may have
+        shrunk to a point that is not a minimum."""
         for _ in range(MOST_ROUNDS):
             before = best.delta
             if around := self.linearise(best.place):
@@ -151,8 +160,8 @@ class Search:
         return best, False
 
     def bracket_clog(self, grid: Sequence[Attempt], drag: float) -> tuple[float, float] | None:
-        """log Gamma of a droplet that reaches all frames, and of a slightly stiffer one that does not; None if there is
-        no such pair."""
+        """log Gamma of a droplet that reaches all frames, and of a slightly stiffer droplet that does not. The result
+        is None if there is no such pair."""
         brackets = [(softer.place[0], stiffer.place[0]) for softer, stiffer in zip(grid, grid[len(GRID_DRAGS):])
                     if softer.num_never_reached == 0 < stiffer.num_never_reached]
         if not brackets:
@@ -164,7 +173,7 @@ class Search:
         return passing, clogging
 
     def run(self) -> tuple[Attempt, bool, float]:
-        """@return the best simulation, whether the search converged, and the Gamma from which on droplets clog, or
+        """@return the best simulation; whether the search converged; the smallest Gamma at which droplets clog, or
         NaN"""
         grid = self.attempts(list(itertools.product(GRID_TENSIONS, GRID_DRAGS)))
         minima = in_parallel(lambda start: self.descend(start, (0.4, max(0.3 * start[1], 0.03)), (0.01, 0.002), 40)[0], starts(grid))
@@ -177,7 +186,7 @@ class Search:
 
 
 def in_parallel(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
-    """Works on all items at once. Each has a thread, which waits until a core is free for its simulation."""
+    """Works on all items at once. Each item has its own thread, which waits until a core is free for its simulation."""
     with ThreadPoolExecutor(max_workers=len(items)) as threads:
         return list(threads.map(function, items))
 
@@ -187,7 +196,7 @@ def nearest(attempts: Sequence[Attempt]) -> Attempt:
 
 
 def starts(attempts: Sequence[Attempt]) -> list[tuple[float, float]]:
-    """The best places, no two of the same line tension."""
+    """The places of the best attempts, one for each line tension."""
     best: dict[float, tuple[float, float]] = {}
     for attempt in sorted(attempts, key=lambda attempt: attempt.delta):
         best.setdefault(attempt.place[0], attempt.place)
@@ -197,14 +206,14 @@ def starts(attempts: Sequence[Attempt]) -> list[tuple[float, float]]:
 def warnings(best: Attempt, found: Calibration) -> list[str]:
     """Reasons to doubt a result."""
     num_frames, log_tension, drag = len(best.residuals), *best.place
-    # The correlation of independent noise exceeds this limit once in seven hundred trials. If residuals are systematic, something other than
-    # Gamma and b_0 differs.
+    # The correlation of independent noise exceeds this limit once in seven hundred trials. If the residuals are
+    # systematic, the measurement differs from the model in more than Gamma and b_0.
     largest = 3 / math.sqrt(num_frames)
     shapes = [(name, measure) for name, measure, delta in (("speeds", found.speed_correlation, found.delta_v), ("shapes", found.shape_correlation, found.delta_a))
               if measure > largest and delta > MESH][:1]
     every = [
         (not found.converged, "the search did not converge: another place may have a smaller Delta_v"),
-        # A drag of 0 cannot be lowered further.
+        # A drag at its lower limit of 0 needs no warning, because it cannot be negative.
         (not LOWER[0] + 0.01 < log_tension < UPPER[0] - 0.01 or drag > 0.99 * UPPER[1],
          "the best is at the end of what was searched, and may lie beyond"),
         (best.num_never_reached > 0, f"no simulated droplet comes to {best.num_never_reached} of the frames: look at --orifice, at the units and at h"),
@@ -222,8 +231,9 @@ def calibrate(measured: Profile, simulate: Simulation, progress: Callable[[float
     """Minimises Delta_v. The same profile gives the same result every time.
 
     Errors come from least squares, on the assumption that the frames are independent and have equal relative scatter.
-    The residuals are linearised over differences about as long as the errors.
-    @param simulate  is called from several threads; @param progress  gets line tension, drag and Delta_v of each simulation
+    The residuals are linearised by finite differences over steps about as long as the errors.
+    @param simulate  is called from several threads
+    @param progress  is called with line tension, drag and Delta_v of each simulation
     @throws what a simulation throws
     """
     measured = Profile(*(values[np.argsort(measured.h, kind="stable")] for values in measured))

@@ -1,4 +1,4 @@
-"""Simulates passages through a channel by clogrun, as many at a time as there are cores."""
+"""Simulates passages through a channel with clogrun. As many simulations run at a time as there are cores."""
 
 import contextlib
 import os
@@ -18,23 +18,23 @@ from .profiles import Channel, Profile, read_run
 
 Simulation = Callable[[float, float], Profile]  # its arguments are line tension and near-wall drag
 
-# The run starts half a diameter before the first frame. Motion is overdamped, so at the first frame it no longer
-# depends on the start.
+# The run starts this many diameters before the first frame. Motion is overdamped, so the droplet has forgotten its
+# start when it reaches the first frame.
 APPROACH = 0.5
 # A droplet that starts here is usually clear of the wedges [sigma].
 USUAL_START = -2.0
-# The run is long enough for a droplet to pass at 1/30 of its terminal speed, on average.
+# The run is long enough for a droplet with a mean speed of 1/30 of its terminal speed to pass.
 SLOWEST = 30
-# Shorter than any step, so clogrun stores as many samples as it can: one every 64 steps.
+# This interval is shorter than any step, so clogrun stores as many samples as it can: one every 64 steps.
 SAMPLE_INTERVAL = 1e-9
 
 
 class Stopped(Exception):
-    """A signal asked for an early end."""
+    """A signal has asked the program to end early."""
 
 
 class Clogrun:
-    """Runs clogrun channel. May be called from several threads, which wait for a free core."""
+    """Runs clogrun channel. Several threads may call it; they wait for a free core."""
 
     def __init__(self, folder: pathlib.Path) -> None:
         self.program = folder / "clogrun"
@@ -43,7 +43,8 @@ class Clogrun:
         self.stopping = threading.Event()
 
     def __call__(self, *words: object) -> str:
-        """@return what it prints. @throws ProgramFailed  with its reason; Stopped"""
+        """Runs clogrun channel with these arguments. @return what clogrun prints. @throws ProgramFailed  with clogrun's
+        reason; Stopped"""
         with self.cores:
             if self.stopping.is_set():
                 raise Stopped
@@ -51,7 +52,8 @@ class Clogrun:
             with subprocess.Popen([self.program, "channel", *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                   encoding="utf-8", errors="backslashreplace", start_new_session=True) as process:
                 self.running.add(process)
-                if self.stopping.is_set():  # a signal may have come since the check above
+                # The signal may have come between the check above and the start of the process.
+                if self.stopping.is_set():
                     process.terminate()
                 out, error = process.communicate()
                 self.running.discard(process)
@@ -63,7 +65,7 @@ class Clogrun:
 
     @contextlib.contextmanager
     def stoppable(self) -> Iterator[None]:
-        """A block in which a stop signal ends all runs, whose calls then raise Stopped."""
+        """Within this block, a stop signal ends all runs. The calls that started these runs then raise Stopped."""
         def stop(_number: int, _frame: FrameType | None) -> None:
             self.stopping.set()
             for process in list(self.running):
@@ -77,13 +79,14 @@ class Clogrun:
                 signal.signal(number, handler)
 
     def channel(self, words: Sequence[str]) -> Channel:
-        """The channel that these keys give. @throws ProgramFailed  for keys that clogrun refuses"""
+        """The channel that follows from these keys. @throws ProgramFailed  for keys that clogrun refuses"""
         with tempfile.TemporaryDirectory(prefix="clogsweep-calibrate-") as place:
             config = dict(line.split(" = ", 1) for line in self(*words, f"--output={place}/run.h5", "--dry-run").splitlines() if " = " in line)
         return Channel(*(float(config[name.replace("_", "-")]) for name in Channel._fields))
 
     def past(self, measured: Profile, words: Sequence[str]) -> Simulation:
-        """A function that simulates a passage which begins before and ends after the frames of a measured one.
+        """Returns a function that simulates a passage. The passage begins before the first measured frame and ends
+        after the last.
         @param words  keys of clogrun channel"""
         words = [word for word in words if word.partition("=")[0].lstrip("-") not in ("start", "end", "max-time")]
         start, end = min(float(min(measured.h)) - APPROACH, USUAL_START), float(max(measured.h)) + 0.1
@@ -98,7 +101,7 @@ class Clogrun:
         words += [f"start={start}", f"end={end}", f"max-time={SLOWEST * (end - start) / channel.terminal_speed}", f"--sample-interval={SAMPLE_INTERVAL}"]
 
         def simulate(line_tension: float, near_wall_drag: float) -> Profile:
-            """The passage; it ends early if the droplet breaks or clogs."""
+            """The simulated passage, which ends early if the droplet breaks or clogs."""
             with tempfile.TemporaryDirectory(prefix="clogsweep-calibrate-") as place:
                 self(*words, f"line-tension={line_tension}", f"near-wall-drag={near_wall_drag}", f"--output={place}/run.h5")
                 return read_run(f"{place}/run.h5")[0]

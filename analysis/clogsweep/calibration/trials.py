@@ -16,8 +16,8 @@ INTERRUPTED = 75
 
 
 class Progress:
-    """Shows how close the best simulations are so far, by the worst of the trials. Several threads may report
-    simulations."""
+    """Shows how close the best simulations are so far: the largest deviation among the best simulations of all trials.
+    Several threads may report simulations."""
 
     def __init__(self, num_trials: int) -> None:
         self.best = [(math.inf, 0.0, 0.0)] * num_trials  # Delta_v, Gamma, b_0/b_inf
@@ -45,7 +45,8 @@ class Progress:
 
 
 def calibrate(clogrun: Clogrun, words: Sequence[str], files: Sequence[str], profiles: Sequence[Profile]) -> list[Calibration]:
-    """@param words  keys of clogrun channel. @throws ProgramFailed  after a signal, with the best so far"""
+    """Calibrates all profiles. @param words  keys of clogrun channel. @throws ProgramFailed  after a signal, with the
+    best results so far"""
     progress = Progress(len(files))
 
     def calibrate_one(number: int) -> Calibration:

@@ -1,4 +1,4 @@
-"""Break-up of droplets on a single obstacle: the largest line tension at which they break up, vs the offset of their
+"""Finds the largest line tension at which droplets break up on a single obstacle, as a function of the offset of their
 path from the obstacle's centre."""
 
 import math
@@ -7,19 +7,25 @@ from collections.abc import Sequence
 
 from ..reading import programs, stored
 
-DIAMETER = 0.3  # of the obstacle [sigma]
-FALL = 3  # from the release to the obstacle's centre [sigma]: the obstacle is too far away to displace the release
+DIAMETER = 0.3  # Diameter of the obstacle [sigma].
+# Distance from the release to the obstacle's centre [sigma]. At this distance the obstacle does not displace the
+# release.
+FALL = 3
 BOX = 20
 KEYS = {"preset": "robust", "vertices": "128", "terminal-speed": "0.03", "break-up-neck": "0.02"}
-TENSIONS = (0.01, 0.6)  # range of the search: from below the tested range of line tensions to droplets that never break
+# Range of the search: from below the tested range of line tensions to droplets that never break.
+TENSIONS = (0.01, 0.6)
 PRECISION = 0.02
-STEPS = 6  # a sweep divides the range into so many steps
+STEPS = 6  # number of parts into which each sweep divides the range
 
-Threshold = tuple[float | None, float | None]  # the largest tried line tension at which the droplet breaks up, and the smallest larger one at which it does not
+# The largest tried line tension at which the droplet breaks up, and the smallest tried line tension above it, at which
+# the droplet does not break up.
+Threshold = tuple[float | None, float | None]
 
 
 def symmetry(offset: float) -> float:
-    """The symmetry of a collision: the area of the smaller part divided by that of the larger part, for a droplet of radius 1/2."""
+    """The symmetry of a collision. A line at the offset from the centre divides a circle of radius 1/2; the symmetry is
+    the smaller area divided by the larger one."""
     small = (math.acos(2 * offset) - 2 * offset * math.sqrt(1 - 4 * offset**2)) / math.pi
     return small / (1 - small)
 
@@ -29,15 +35,15 @@ def capillary_number(tension: float) -> float:
 
 
 class Collisions:
-    """Droplets that fall onto the obstacle."""
+    """Simulates droplets that fall onto the obstacle."""
 
     def __init__(self, clogsweep: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> None:
         self.clogsweep, self.folder, self.keys = clogsweep, folder, KEYS | keys
-        # A droplet that has not broken up after four times the duration of its fall counts as whole.
+        # A droplet that has not broken up after four times the duration of its fall counts as intact.
         self.keys.setdefault("max-time", f"{4 * FALL / float(self.keys['terminal-speed']):g}")
 
     def break_up(self, offset: float, tensions: Sequence[float]) -> list[bool]:
-        """Whether each of the droplets breaks up."""
+        """Whether a droplet of each line tension breaks up."""
         circles, sweep = self.folder / "circle.csv", self.folder / "collisions.h5"
         circles.write_text(f"x,y,diameter\n{BOX / 2 + FALL},{BOX / 2 + offset},{DIAMETER}\n", encoding="utf-8")
         programs.run_program(self.clogsweep, f"obstacles={circles}", f"box={BOX}", "seeds=1", *(f"{key}={value}" for key, value in self.keys.items()),
@@ -47,7 +53,8 @@ class Collisions:
         return [end == b"broken" for end in ends]
 
     def threshold(self, offset: float) -> Threshold:
-        """@return the bracket; None beyond TENSIONS"""
+        """Brackets the line tension below which droplets break up. @return the bracket; an end is None if it would be
+        outside TENSIONS"""
         low, high = TENSIONS
         while high / low > 1 + PRECISION:
             tensions = [low * (high / low)**(step / STEPS) for step in range(STEPS + 1)]

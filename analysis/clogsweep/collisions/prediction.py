@@ -1,7 +1,8 @@
-"""Predicts clogging lengths from droplets that fall onto one or two obstacles. The simulations show which obstacles
-hold a droplet; then such obstacles are counted in an array.
+"""Predicts clogging lengths from droplets that fall onto one or two obstacles. Simulations show which pairs of
+obstacles, and which single obstacles, hold a droplet. The prediction follows from the number of such pairs and
+obstacles in an array.
 
-docs/explanation/predicted.md has the law and its limits.
+docs/explanation/predicted.md describes the law and its limits.
 """
 
 import dataclasses
@@ -17,18 +18,25 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from .collision import BOX, FALL
 
-GAP_STEP = 0.04  # between the gaps of the simulated pairs [sigma]: a twentieth of the range of gaps that can hold a droplet
+# Step between the gaps of the simulated pairs [sigma]. The step is a twentieth of the range of gaps that can hold a
+# droplet.
+GAP_STEP = 0.04
 ANGLE_STEP = 3  # [degrees]
-DIAMETER_STEP = 0.1  # between the mean diameters of the simulated pairs [sigma]
-EXIT = 6  # distance of the exit behind the obstacles: droplets that hang there do not reach it [sigma]
-LONGEST_FALL = 90  # a droplet that still moves after the time of such a fall at terminal speed counts as free [sigma]
-OFFSET_PRECISION, OFFSET_STEPS = 0.0001, 6  # precision of the half-width within which one obstacle holds a droplet [sigma]; its search divides each bracket into so many steps
-SPEED = 0.03  # default of the terminal speed [sqrt(sigma g)]
-SMALLEST_LENGTH = 4  # [sigma]: predictions below this were too long by a third and more
-SOFTEST = 1  # smallest line tension without a doubt: up to 42 % of all clogs hang on three obstacles at 0.5, and 85 % at 0.3 (docs/explanation/predicted.md)
-ARRAYS, ARRAY_BOX = 4, 60  # number of random arrays in which pairs are counted, and their width [sigma]
+DIAMETER_STEP = 0.1  # Step between the mean diameters of the simulated pairs [sigma].
+EXIT = 6  # Distance of the exit behind the obstacles [sigma]. Droplets that hang there do not reach the exit.
+# Length of a fall [sigma]. A droplet that still moves after the time of this fall at terminal speed counts as free.
+LONGEST_FALL = 90
+# Precision of the half-width within which one obstacle holds a droplet [sigma], and number of parts into which each
+# step of the search divides its bracket.
+OFFSET_PRECISION, OFFSET_STEPS = 0.0001, 6
+SPEED = 0.03  # Default terminal speed [sqrt(sigma g)].
+SMALLEST_LENGTH = 4  # Predictions below this length were too long by a third and more [sigma].
+# Smallest line tension that causes no warning. At 0.5 up to 42 % of all clogs hang on three obstacles, and at 0.3 up to
+# 85 % (docs/explanation/predicted.md).
+SOFTEST = 1
+ARRAYS, ARRAY_BOX = 4, 60  # Number of random arrays in which pairs are counted, and their width [sigma].
 
-# The keys of the array. All other keys belong to the droplet; `obstacle-diameter` belongs to both.
+# Keys that describe the array. All other keys describe the droplet. `obstacle-diameter` describes both.
 OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacles", "lattice", "pitch", "lattice-angle", "box",
              "boxes", "length")
 REFUSED = {"exit": "droplets leave the obstacles at one of their own", "seeds": "arrays and pairs have seeds of their own here", "max-time": "nothing runs in the array", "release": "nothing runs in the array"}
@@ -39,23 +47,26 @@ Circles = Sequence[tuple[float, float, float]]  # x along the flow, y across it,
 
 @dataclasses.dataclass(frozen=True)
 class Array:
-    """The obstacles of an array, and its pairs of obstacles between which a free droplet does not fit."""
+    """The obstacles of an array, and those pairs of obstacles between which an undeformed droplet does not fit."""
 
     area: float  # [sigma^2]
     obstacles: int
-    mean_diameter: float  # of the obstacles [sigma]
-    diameters: Numbers  # mean diameter of the two obstacles of each pair [sigma]
-    separations: Numbers  # distance between the two centres of each pair [sigma]
-    angles: Numbers  # angle between the line through the two centres and the direction across the flow, 0 to 90 [degrees]
-    is_isotropic: bool  # all directions of pairs are equally likely, as in random arrays
+    mean_diameter: float  # Mean diameter of the obstacles [sigma].
+    diameters: Numbers  # Mean diameter of the two obstacles of each pair [sigma].
+    separations: Numbers  # Distance between the two centres of each pair [sigma].
+    # Angle between the line through the two centres and the direction across the flow, 0 to 90 [degrees].
+    angles: Numbers
+    is_isotropic: bool  # Whether all directions of pairs are equally likely, as in random arrays.
 
 
 def pairs_of(circles: Numbers, width: float, length: float) -> Iterator[Numbers]:
-    """Pairs of obstacles in a periodic array between which a free droplet does not fit: for each obstacle, its pairs
-    with later ones in the list.
+    """Finds the pairs of obstacles in a periodic array between which an undeformed droplet does not fit. For each
+    obstacle it yields the pairs with obstacles that come later in the list.
 
-    @param circles  n x 3, x, y and diameter [sigma]; @param width  period across the flow, y; @param length  along it, x
-    @return arrays of m x 3: vector from the first to the second obstacle, mean diameter
+    @param circles  shape (n, 3): x, y and diameter [sigma]
+    @param width  period across the flow, along y
+    @param length  period along the flow, along x
+    @return arrays of shape (m, 3): the vector from the first to the second obstacle, and their mean diameter
     """
     period = np.array([length, width])
     for index, circle in enumerate(circles):
@@ -67,7 +78,7 @@ def pairs_of(circles: Numbers, width: float, length: float) -> Iterator[Numbers]
 
 
 class Droplets:
-    """Droplets that fall onto one or two obstacles."""
+    """Simulates droplets that fall onto one or two obstacles."""
 
     def __init__(self, clogsweep: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> None:
         """@param keys  those keys of clogsweep that describe the droplet"""
@@ -76,13 +87,16 @@ class Droplets:
             speed = float(keys.get("terminal-speed", SPEED))
         except ValueError:
             raise UserError(f"invalid terminal-speed={keys['terminal-speed']} (must be a number); try {SPEED}") from None
-        # Soft droplets may creep on an obstacle until max-time. Droplets that pass end at the exit.
+        # The time is limited because a soft droplet may creep on an obstacle without ever ending. Droplets that pass
+        # end at the exit.
         self.keys = {"max-time": f"{LONGEST_FALL / speed:g}", "exit": f"{BOX / 2 + FALL + EXIT:g}"} | keys
 
     def ends(self, arrays: Sequence[Circles], tension: float | None = None) -> dict[float, list[bytes]]:
-        """What holds the droplet in each array. @param arrays  obstacles, with x = 0 at the distance FALL below the
-        release; @param tension  None: all line tensions of the keys
-        @return for each line tension, a word per array: wrapped, squeezed and so on, empty if it passed
+        """How the run in each array ends.
+        @param arrays  obstacles of each array; x = 0 is at the distance FALL below the release
+        @param tension  a single line tension, or None for all line tensions of the keys
+        @return for each line tension, one word per array: the mechanism of the clog, such as wrapped or squeezed, or
+        empty if the droplet passed
         """
         files = [self.folder / f"{index}.csv" for index in range(len(arrays))]
         for file, circles in zip(files, arrays):
@@ -102,15 +116,16 @@ class Droplets:
         return found
 
     def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
-        """For each line tension: which pairs stop a droplet that falls onto the middle between the two obstacles. Pairs
-        of which one obstacle alone holds the droplet do not count. @param angles  of the pairs [degrees]"""
+        """Which pairs of obstacles hold a droplet that falls onto the middle between the two obstacles, for each line
+        tension. A pair does not count if a single obstacle would hold the droplet.
+        @param angles  of the pairs [degrees]"""
         halves = [[(gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos)] for angle in angles]
         ends = self.ends([[(0, -y, diameter), (2 * x, y, diameter)] for x, y in halves])
         return {tension: [end in (b"squeezed", b"hybrid") for end in words] for tension, words in ends.items()}
 
     def half_width(self, diameter: float, tension: float) -> float:
-        """Largest offset from an obstacle's centre at which the obstacle holds the droplet [sigma], or 0 if this is
-        below OFFSET_PRECISION."""
+        """The largest offset from an obstacle's centre at which the obstacle holds the droplet [sigma]. An offset below
+        OFFSET_PRECISION is returned as 0."""
         low, high = 0.0, (1 + diameter) / 2
         while high - low > max(OFFSET_PRECISION, low / OFFSET_STEPS**2):
             offsets = [low + (high - low) * step / OFFSET_STEPS for step in range(OFFSET_STEPS + 1)]
@@ -121,10 +136,11 @@ class Droplets:
 
 
 def mean_cosine(held: Sequence[bool]) -> float:
-    """Mean of cos(angle) over all directions, 0 where a pair does not hold the droplet.
+    """The mean of cos(angle) over all directions of a pair. Directions in which the pair does not hold the droplet
+    contribute 0.
 
-    A pair that holds the droplet stops all droplets that arrive between the centres of its obstacles; others slide off
-    outwards.
+    A pair that holds the droplet is taken to stop every droplet that arrives between the centres of its obstacles.
+    Other droplets slide off to the outside.
     @param held  whether the pair holds the droplet at the middle of each interval of ANGLE_STEP, beginning with 0
     degrees
     """
@@ -133,18 +149,18 @@ def mean_cosine(held: Sequence[bool]) -> float:
 
 
 def largest_angle(gap: float, diameter: float) -> float:
-    """Largest angle at which a rigid disc rests on two obstacles [degrees]: then the disc's centre is straight above
-    the centre of the lower obstacle."""
+    """The largest angle at which a rigid disc rests on two obstacles [degrees]. At this angle the disc's centre is
+    straight above the centre of the lower obstacle."""
     return math.degrees(math.asin(min(1.0, (gap + diameter) / (1 + diameter))))
 
 
 class Prediction(NamedTuple):
-    """Clogging lengths, infinite where nothing holds the droplet [sigma]."""
+    """The clogging lengths [sigma]. A length is infinite if nothing holds the droplet."""
 
     tension: float
     length: float
-    squeezed: float  # if only pairs held droplets
-    wrapped: float  # if only single obstacles held droplets
+    squeezed: float  # Clogging length if only pairs held droplets.
+    wrapped: float  # Clogging length if only single obstacles held droplets.
 
 
 def length_of(rate: float) -> float:
@@ -174,12 +190,12 @@ def predict(droplets: Droplets, array: Array) -> Iterator[Prediction]:
 
 
 def doubts_of(tension: float, length: float) -> list[str]:
-    """Reasons why a predicted length may be wrong by more than a tenth, as in docs/explanation/predicted.md."""
+    """Reasons why a predicted length may be wrong by more than a tenth. docs/explanation/predicted.md explains them."""
     return [word for word, holds in (("soft", tension < SOFTEST), ("crowded", length < SMALLEST_LENGTH)) if holds]
 
 
 def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> Array:
-    """Has clogrun make the array, or several arrays if it is random. @param keys  that describe the array.
+    """Lets clogrun make the array. If it is random, several arrays are made. @param keys  that describe the array.
     @throws UserError"""
     run, circle_file = folder / "array.h5", folder / "array.csv"
     is_own = keys.get("obstacle-layout", "random") != "random" or "obstacles" in keys

@@ -1,6 +1,6 @@
-"""Smooth curves through clogging lengths: lambda against one or two keys of a sweep.
+"""Fits smooth curves to clogging lengths: lambda against one or two keys of a sweep.
 
-- model: the Gaussian process that is fitted, on numbers alone
+- model: the Gaussian process, a fit that knows only numbers
 - features: band, peak and crossings of a fitted curve
 - points: which groups of clogfit's table belong to a curve, and why others do not
 - answer: the curves of a sweep, as `clogfit curve --format json` prints them

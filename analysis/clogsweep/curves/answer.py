@@ -15,17 +15,19 @@ from ..tools.hints import AnyPath, Column, Group, Numbers
 from . import features, model, points
 
 ALL = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
-# For each cause (clogfit's column with the number of such ends): the columns of its length and of both ends of the
-# interval.
+# The keys are clogfit's columns with the number of runs that each cause ended. The values are the columns of the
+# cause's length, and of the two ends of its interval.
 CAUSES = {cause: tuple(f"clogging_length_{cause}{end}" for end in ("", "_lower", "_upper")) for cause in ("wrapped", "squeezed", "hybrid", "other")}
 CAUSES["broken"] = ("break_up_length", "break_up_length_lower", "break_up_length_upper")
 
 
 def of_sweep(clogfit: pathlib.Path, paths: Sequence[AnyPath], keys: Sequence[str] = (), *options: object,
              crossing: Sequence[float] = ()) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The curves of one sweep, which may consist of several files, and the model's units in the laboratory, if these
-    are known. @param keys see points.find_keys(); @param options  of clogfit @throws UserError; ProgramFailed with
-    clogfit's reason"""
+    """The curves of one sweep, and the model's units in the laboratory if these are known. The sweep may consist of
+    several files.
+    @param keys  see points.find_keys()
+    @param options  of clogfit
+    @throws UserError; ProgramFailed with clogfit's reason"""
     fit = fits.told(clogfit, *paths, *options)
     rows = [stored.read_rows(path, clogfit.parent) for path in paths]
     names = [name for name in stored.columns_of(rows[0]) if all(name in stored.columns_of(others) for others in rows)]
@@ -34,7 +36,8 @@ def of_sweep(clogfit: pathlib.Path, paths: Sequence[AnyPath], keys: Sequence[str
 
 
 def of_fit(fit: points.Fit, seeds: Sequence[set[int]], names: Sequence[str] = (), crossing: Sequence[float] = ()) -> dict[str, Any]:
-    """@param fit  the JSON of clogfit; @param seeds  of the runs of each of its groups. @throws UserError  if there is no curve"""
+    """Fits the curves. @param fit  the JSON output of clogfit; @param seeds  seeds of the runs of each group. @throws
+    UserError  if there is no curve"""
     if any("status" in group for group in fit["groups"]):
         raise UserError("cannot fit a curve (droplets in a channel or on a wall have no clogging length)")
     fit = fits.in_millimetres(fit)
@@ -102,9 +105,9 @@ def _column(groups: Sequence[Group], name: str) -> Numbers:
 
 def bands_by_cause(groups: Sequence[Group], known: model.Points, places: Numbers, confidence: float,
                    whole: Numbers) -> dict[tuple[str, ...], Numbers]:
-    """The band of each cause that occurs, for which clogs by other causes count as censored. There is none if the
-    causes of some clogs are unknown. @param whole  the band of all clogs, used for a cause to which all of them
-    belong"""
+    """The band of each cause by which some droplets clog. In the fit for one cause, clogs by the other causes count as
+    censored. If the causes of some clogs are unknown, there are no bands.
+    @param whole  the band of all clogs, which also serves a cause to which all clogs belong"""
     if any(group[cause] is None for group in groups for cause in CAUSES):
         return {}
     counts = {names: _column(groups, cause) for cause, names in CAUSES.items() if any(group[cause] > 0 for group in groups)}

@@ -1,4 +1,4 @@
-"""Features of a fitted curve: its band, its peak, where it crosses a length."""
+"""Computes features of a fitted curve: its band, its peak, and the places where it crosses a given length."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ from ..tools.hints import Numbers
 from .model import Curve
 
 NUM_DRAWS = 2000
-FIRST_JITTER = 1e-10  # times the largest variance: added to the diagonal, so that rounding leaves the covariance positive definite
+# Added to the diagonal as a multiple of the largest variance, so that the covariance is positive definite in spite of
+# rounding.
+FIRST_JITTER = 1e-10
 
 
 @dataclasses.dataclass(frozen=True)
 class Peak:
-    """The peak of a curve. `place` and its interval hold the logarithm of each key; lengths [sigma].
+    """The peak of a curve. `place` and its interval are logarithms of the keys. Lengths are in units of sigma.
 
-    `probability_inside` is the fraction of curves drawn from the posterior whose peak is not at an end of the range of
-    places.
+    `probability_inside` is the fraction of the curves drawn from the posterior that have their peak inside the range of
+    places, not at one of its ends.
     """
 
     place: Numbers
@@ -33,8 +35,8 @@ class Peak:
 
 @dataclasses.dataclass(frozen=True)
 class Crossing:
-    """The logarithm of the key at which a curve crosses a length, and its interval, which comes from the band. An end
-    of the interval is infinite if it would be beyond the places."""
+    """The place at which a curve crosses a length, with its interval. Place and interval are logarithms of the key. The
+    interval ends where the band crosses the length. An end is infinite if it would be beyond the places."""
 
     place: float
     lower: float
@@ -43,21 +45,23 @@ class Crossing:
 
 
 def normal_deviate(confidence: float) -> float:
-    """Half the width of a normal distribution's interval, in standard deviations. @throws ValueError  unless 0 < confidence < 1"""
+    """Half the width of an interval of the normal distribution with this confidence, in standard deviations.
+    @throws ValueError  unless 0 < confidence < 1"""
     if not 0 < confidence < 1:
         raise ValueError("a confidence is between 0 and 1")
     return float(special.ndtri((1 + confidence) / 2))
 
 
 def band(curve: Curve, confidence: float) -> Numbers:
-    """lambda and the lower and upper end of its pointwise interval at every place [sigma]. @return three rows"""
+    """The pointwise confidence band. @return three rows: lambda, the lower end and the upper end of its interval at
+    every place [sigma]"""
     half = normal_deviate(confidence) * curve.deviation
     return np.exp([curve.mean, curve.mean - half, curve.mean + half])
 
 
 def drawn_curves(curve: Curve, number: int = NUM_DRAWS, seed: int = 1) -> Numbers:
-    """Draws curves of log lambda from the distribution, one per row. The same seed gives the same curves, another seed
-    independent ones."""
+    """Draws curves of log lambda from the posterior, one per row. Each seed gives the same curves every time. Curves of
+    different seeds are independent."""
     variance = max(float(np.max(np.diagonal(curve.covariance))), float(np.finfo(float).tiny))
     jitter = FIRST_JITTER
     while True:
@@ -68,12 +72,12 @@ def drawn_curves(curve: Curve, number: int = NUM_DRAWS, seed: int = 1) -> Number
             jitter *= 10
             if jitter >= 1:
                 raise
-    # RandomState is frozen: it gives the same numbers with every NumPy.
+    # NumPy promises that RandomState gives the same numbers in every version.
     return curve.mean + np.random.RandomState(seed).standard_normal((number, len(curve.mean))) @ factor.T
 
 
 def tops_of_lines(heights: Numbers, x: Numbers) -> tuple[Numbers, Numbers]:
-    """The highest point of a parabola through each row's highest value and its neighbours. @return places, heights"""
+    """The top of the parabola through the highest value of each row and its two neighbours. @return places, heights"""
     number = np.arange(len(heights))
     highest = np.argmax(heights, axis=1)
     middle = np.clip(highest, 1, len(x) - 2)
@@ -89,7 +93,8 @@ def tops_of_lines(heights: Numbers, x: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def tops(heights: Numbers, places: Numbers) -> tuple[Numbers, Numbers]:
-    """Place and height of each row's maximum. @param places  a line in increasing order, or a rectangular grid"""
+    """The place and the height of each row's maximum. @param places  values of one key in increasing order, or a
+    rectangular grid of two keys"""
     if places.shape[1] == 1 and len(places) > 2:
         x, height = tops_of_lines(heights, places[:, 0])
         return x[:, None], height
@@ -98,8 +103,8 @@ def tops(heights: Numbers, places: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def find_peak(curve: Curve, places: Numbers, confidence: float) -> Peak:
-    """Place and height of the mean curve's peak, with intervals from curves drawn from the distribution. @param places
-    see tops()"""
+    """The place and the height of the peak of the mean curve. Their intervals come from curves drawn from the
+    posterior. @param places  see tops()"""
     draws = drawn_curves(curve)
     draw_places, draw_heights = tops(draws, places)
     (place,), (height,) = tops(curve.mean[None], places)
@@ -112,25 +117,27 @@ def find_peak(curve: Curve, places: Numbers, confidence: float) -> Peak:
 
 
 def peak_probabilities(curve: Curve) -> Numbers:
-    """The probability that each place has the peak."""
+    """The probability that the peak is at each place."""
     return np.bincount(np.argmax(drawn_curves(curve), axis=1), minlength=len(curve.mean)) / NUM_DRAWS
 
 
 def find_crossings(curve: Curve, x: Numbers, length: float, confidence: float) -> list[Crossing]:
-    """The places where a curve over one key crosses a length. Between two places the curve is taken as a straight line.
+    """The crossings of a length by a curve over one key. Between two neighbouring places the curve counts as a straight
+    line.
     @param x  logarithms of the key, in increasing order; @param length  [sigma]"""
     above = curve.mean - np.log(length)
     half = normal_deviate(confidence) * curve.deviation
 
     def zero(values: Numbers, i: int) -> float:
-        """Where the line between the places i and i + 1 is zero."""
+        """The point at which the straight line between the places i and i + 1 crosses zero."""
         return float(x[i] + (x[i + 1] - x[i]) * values[i] / (values[i] - values[i + 1]))
 
     crossings = []
     for i in np.flatnonzero((above[:-1] < 0) != (above[1:] < 0)):
         is_upward = bool(above[i] < 0)
         before, after = (above + half, above - half) if is_upward else (above - half, above + half)
-        # Places before the crossing at which the whole band is still on the side from which the curve comes.
+        # The places before the crossing where the whole band is still below the length, or above the length if the
+        # curve falls.
         outside_before = np.flatnonzero((before[:i + 1] < 0) == is_upward)
         outside_after = np.flatnonzero((after[i + 1:] >= 0) == is_upward) + i + 1
         crossings.append(Crossing(zero(above, i), zero(before, outside_before[-1]) if outside_before.size else -np.inf,

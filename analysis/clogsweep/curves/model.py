@@ -1,10 +1,11 @@
-"""log lambda as a Gaussian process over the logarithms of one or two keys.
+"""Fits log lambda as a Gaussian process over the logarithms of one or two keys.
 
-If runs together travelled the distance S and clogged d times, d is a Poisson count with exposure S. With f = log
-lambda, log L = -d f - S exp(-f), which is concave in f (Lawless, Statistical Models and Methods for Lifetime Data,
-chapter 4). The kernel is a product of Matern's with smoothness 5/2, one for each key. The posterior is Laplace's
-approximation (Rasmussen and Williams, Gaussian Processes for Machine Learning, algorithms 3.1 and 3.2), averaged over
-amplitudes and correlation lengths by the marginal likelihood.
+Suppose that the runs at a place travelled the total distance S and clogged d times. Then d is a Poisson count with
+exposure S. With f = log lambda the log likelihood is log L = -d f - S exp(-f), which is concave in f (Lawless,
+Statistical Models and Methods for Lifetime Data, chapter 4). The kernel is a product of Matern kernels with smoothness
+5/2, one for each key. The posterior is Laplace's approximation (Rasmussen and Williams, Gaussian Processes for Machine
+Learning, algorithms 3.1 and 3.2). The posterior is averaged over amplitudes and correlation lengths, with the marginal
+likelihood as the weight.
 """
 
 from __future__ import annotations
@@ -18,19 +19,24 @@ from scipy import linalg
 
 from ..tools.hints import Numbers
 
-LEVEL_VARIANCE = 100.0  # prior variance of the process's mean about the common log lambda of all points: a standard deviation of a factor e^10
-JITTER = 1e-8  # times the kernel's variance: added to the diagonal, so that rounding leaves the matrix positive definite
-AMPLITUDES = (0.25, 0.5, 1, 2, 4, 8)  # standard deviations of log lambda; as factors of lambda 1.3 to 3000
-RANGE_FRACTIONS = (0.1, 0.16, 0.25, 0.4, 0.63, 1, 1.6, 3)  # correlation lengths, divided by the range of the places
-WEIGHT_USED = 0.98  # the most likely scales are used until their weights sum to this; the others change nothing
+# Prior variance of the process's mean about the common log lambda of all points. A standard deviation is a factor of
+# e^10 in lambda.
+LEVEL_VARIANCE = 100.0
+# Added to the diagonal as a multiple of the kernel's variance, so that the matrix is positive definite in spite of
+# rounding.
+JITTER = 1e-8
+# Standard deviations of log lambda, equivalent to factors of lambda from 1.3 to 3000.
+AMPLITUDES = (0.25, 0.5, 1, 2, 4, 8)
+RANGE_FRACTIONS = (0.1, 0.16, 0.25, 0.4, 0.63, 1, 1.6, 3)  # Correlation lengths, divided by the range of the places.
+WEIGHT_USED = 0.98  # The most likely scales are used until their weights sum to this. The others change nothing.
 MOST_STEPS = 200
 MOST_HALVINGS = 40
-SETTLED = 1e-10  # gain of log posterior below which Newton's iteration ends
+SETTLED = 1e-10  # Newton's iteration ends when the log posterior gains less than this.
 
 
 @dataclasses.dataclass(frozen=True)
 class Scales:
-    """Standard deviation of log lambda, and the correlation length of each key's logarithm."""
+    """The standard deviation of log lambda, and the correlation length of the logarithm of each key."""
 
     amplitude: float
     lengths: tuple[float, ...]
@@ -38,10 +44,12 @@ class Scales:
 
 @dataclasses.dataclass(frozen=True)
 class Points:
-    """Data: sums over all runs at each place. Points without a clog are lower bounds, which the fit uses, too.
+    """The data: sums over all runs at each place. Points without a clog give a lower bound, and the fit uses them, too.
 
-    `places` has a row for each point and a column for each key, its logarithm; `distances` [sigma].
-    @throws ValueError  unless there is a point, and each has a finite place, clogs >= 0 and a positive, finite distance
+    `places` has a row for each point and a column for each key, with the key's logarithm. `distances` are in units of
+    sigma.
+    @throws ValueError  if there is no point, or if a point has no finite place, fewer than 0 clogs, or a distance that
+    is not positive and finite
     """
 
     places: Numbers
@@ -57,15 +65,15 @@ class Points:
 
     @property
     def level(self) -> float:
-        """Logarithm of the common clogging length of all points. If there is no clog, half a clog is assumed."""
+        """Logarithm of the common clogging length of all points. Without any clog, half a clog is assumed."""
         return float(np.log(self.distances.sum() / max(self.clogs.sum(), 0.5)))
 
 
 @dataclasses.dataclass(frozen=True)
 class Curve:
-    """Normal distribution of log lambda at some places.
+    """The normal distribution of log lambda at some places.
 
-    `log_evidence` is the logarithm of the marginal likelihood, up to a constant that depends on the points alone.
+    `log_evidence` is the logarithm of the marginal likelihood, without a constant that depends only on the points.
     """
 
     mean: Numbers
@@ -79,17 +87,18 @@ class Curve:
 
 @dataclasses.dataclass(frozen=True)
 class Mode:
-    """The maximum of the posterior for known scales, and its curvature there."""
+    """The maximum of the posterior for given scales, and its curvature there."""
 
     scales: Scales
-    slopes: Numbers  # gradient of the log likelihood at the mode, which equals K^-1 f
-    roots: Numbers  # square roots of the expected clogs W = S exp(-f), which are the curvature of the log likelihood
-    factor: Numbers  # lower triangular factor of 1 + W^1/2 K W^1/2
+    slopes: Numbers  # Gradient of the log likelihood at the mode, equal to K^-1 f.
+    # Square roots of the expected numbers of clogs, W = S exp(-f). The curvature of the log likelihood is -W.
+    roots: Numbers
+    factor: Numbers  # Lower triangular factor of the matrix 1 + W^1/2 K W^1/2.
     log_evidence: float
 
 
 def matern(distance: Numbers) -> Numbers:
-    """Matern's correlation with smoothness 5/2. @param distance  in units of the correlation length"""
+    """The Matern correlation with smoothness 5/2. @param distance  in units of the correlation length"""
     x = np.sqrt(5) * np.abs(distance)
     return (1 + x + x * x / 3) * np.exp(-x)
 
@@ -97,7 +106,7 @@ def matern(distance: Numbers) -> Numbers:
 def kernel(rows: Numbers, columns: Numbers, scales: Scales) -> Numbers:
     product = np.full((len(rows), len(columns)), float(scales.amplitude**2))
     for key, length in enumerate(scales.lengths):
-        # On a grid each key has few different values, so the correlation is computed for these only.
+        # Each key has few different values on a grid, so the correlation is computed only for these values.
         first, row = np.unique(rows[:, key], return_inverse=True)
         second, column = np.unique(columns[:, key], return_inverse=True)
         product *= matern((first[:, None] - second) / length)[np.ix_(row, column)]
@@ -105,9 +114,9 @@ def kernel(rows: Numbers, columns: Numbers, scales: Scales) -> Numbers:
 
 
 def find_mode(points: Points, scales: Scales) -> Mode:
-    """Newton's iteration for a concave function, with steps halved where they are too long."""
+    """Maximises the posterior, which is concave, by Newton's iteration. Steps that are too long are halved."""
     covariance = kernel(points.places, points.places, scales) + JITTER * scales.amplitude**2 * np.eye(len(points.places))
-    exposures = points.distances * np.exp(-points.level)  # in units in which log lambda is about zero
+    exposures = points.distances * np.exp(-points.level)  # scaled such that log lambda is about zero
 
     def height(slopes: Numbers, f: Numbers) -> float:
         with np.errstate(over="ignore"):  # a step that is far too long gives -inf
@@ -131,7 +140,7 @@ def find_mode(points: Points, scales: Scales) -> Mode:
                 slopes, f = tried, covariance @ tried
                 break
         gain, best = reached - best, max(best, reached)
-        if not gain >= SETTLED:  # NaN, too
+        if not gain >= SETTLED:  # also true if the gain is NaN
             break
     roots, factor = curvature(f)
     return Mode(scales, slopes, roots, factor, float(best - np.log(np.diagonal(factor)).sum()))
@@ -144,21 +153,21 @@ def curve_of_mode(points: Points, mode: Mode, places: Numbers) -> Curve:
 
 
 def curve_of_scales(points: Points, scales: Scales, places: Numbers) -> Curve:
-    """The curve for known scales. @param places  in the form of Points.places"""
+    """The curve for given scales. @param places  in the form of Points.places"""
     return curve_of_mode(points, find_mode(points, scales), places)
 
 
 def all_scales(places: Numbers) -> list[Scales]:
-    """All combinations of amplitudes and correlation lengths, which are spread evenly on a logarithmic scale. A key
-    with one value has no correlation length."""
+    """All combinations of amplitudes and correlation lengths. Amplitudes and lengths are spread evenly on a logarithmic
+    scale. The correlation length of a key with a single value is arbitrary."""
     ranges = np.ptp(places, axis=0)
     lengths = [[fraction * extent for fraction in RANGE_FRACTIONS] if extent > 0 else [1.0] for extent in ranges]
     return [Scales(amplitude, chosen) for amplitude in AMPLITUDES for chosen in itertools.product(*lengths)]
 
 
 def fit_curve(points: Points, places: Numbers) -> Curve:
-    """The curve at these places, averaged over the scales by their marginal likelihood. @param places  in the form of
-    Points.places"""
+    """The curve at these places. The curve is averaged over the scales with the marginal likelihood as the weight.
+    @param places  in the form of Points.places"""
     modes = [find_mode(points, scales) for scales in all_scales(np.concatenate([points.places, places]))]
     modes.sort(key=lambda mode: -mode.log_evidence)
     weights = np.exp([mode.log_evidence - modes[0].log_evidence for mode in modes])
@@ -168,7 +177,7 @@ def fit_curve(points: Points, places: Numbers) -> Curve:
 
 
 def mixture(curves: Sequence[Curve], weights: Numbers, log_evidence: float) -> Curve:
-    """The normal distribution with the mean and the covariance of a weighted mixture."""
+    """The normal distribution that has the mean and the covariance of a weighted mixture."""
     weights = weights / weights.sum()
     mean = sum((weight * curve.mean for weight, curve in zip(weights, curves)), np.zeros_like(curves[0].mean))
     covariance = np.zeros_like(curves[0].covariance)

@@ -1,9 +1,9 @@
-"""Which groups of clogfit's table belong to a curve, and why others do not.
+"""Decides which groups of clogfit's table belong to a curve, and why others do not.
 
-Physical parameters of the schema separate curves. A numerical parameter, such as `inertia` or `box`, separates curves
-only where the sweep varies it at the same physics: a parameter set may need another box or more time than its
-neighbours. Values that follow from other parameters (automatic values, the preset's name, the density of a saturated
-array) never do.
+Groups with different physical parameters belong to different curves. A numerical parameter, such as `inertia` or `box`,
+usually does not separate curves, because some parameter sets need another box or more time than others. It separates
+curves if the sweep varies this parameter while the physics stays the same. Values that follow from other parameters
+never separate curves. Such values are automatic values, the name of the preset, and the density of a saturated array.
 """
 
 from __future__ import annotations
@@ -20,17 +20,19 @@ from ..tools.errors import UserError
 from ..tools.hints import Column, Group, Numbers, Records
 from ..tools.texts import did_you_mean
 
-FEWEST_VALUES = 4  # a curve needs at least this many values of the key: with two or three its shape would come from the prior
-FEWEST_CLOGGING = 3  # at least this many of these values need clogs: lower bounds alone do not determine a shape
+# A curve needs at least this many values of the key. With two or three values its shape would come from the prior.
+FEWEST_VALUES = 4
+FEWEST_CLOGGING = 3  # At least this many of these values need clogs. Lower bounds alone do not determine a shape.
 MOST_KEYS = 2
-SAME_SHARE = 6  # significant digits to which densities, in units of the saturated density, must agree
+# Densities, in units of the saturated density, are equal if they agree to this number of significant digits.
+SAME_SHARE = 6
 
 Fit = dict[str, Any]  # clogfit's JSON
 
 
 @dataclasses.dataclass(frozen=True)
 class Members:
-    """The groups of one curve, by their numbers in clogfit's table, in the order of the keys' values."""
+    """The groups of one curve, as their indices in clogfit's table, in the order of the keys' values."""
 
     shared: dict[str, Any]  # parameters that distinguish this curve from the others
     groups: list[int]
@@ -48,20 +50,23 @@ def place_of(group: Group, keys: Iterable[Column]) -> list[float]:
 
 
 def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
-    """Whether the parameter's value follows from others. It does not if the sweep lists the parameter."""
+    """Whether the parameter's value follows from other parameters. A value that the sweep itself lists never follows
+    from others."""
     return column.get("automatic_in") in ("all", group["model"]) and column["name"] not in fit["lists"]
 
 
 def may_be_key(fit: Fit, column: Column) -> bool:
-    """Whether the parameter is a number that the user chose and that affects the physics. A number that follows from
-    others is no key."""
+    """Whether the parameter can be a key of curves: a number that affects the physics and that the user chose. A number
+    that follows from other parameters cannot be a key."""
     return column.get("parameter_role") == "physics" and column["kind"] != "word" and all(
         group[column["name"]] is not None and not is_automatic(fit, column, group) for group in fit["groups"])
 
 
 def find_keys(fit: Fit, names: Sequence[str] = ()) -> list[Column]:
-    """The columns of these keys; if `names` is empty, the column of the only physical parameter that varies.
-    @throws UserError  if a name is no such key, does not vary or has values without a logarithm; or if none is given and several vary"""
+    """The columns of the keys with these names. If `names` is empty, the column of the only physical parameter that
+    varies.
+    @throws UserError  if a name is no such key, or if its values do not vary or have no logarithm; if `names` is empty
+    and not exactly one parameter varies"""
     groups: list[Group] = fit["groups"]
     possible = {column["key"].replace("-", "_"): column for column in fit["columns"] if may_be_key(fit, column)}
     if names:
@@ -84,7 +89,7 @@ def find_keys(fit: Fit, names: Sequence[str] = ()) -> list[Column]:
 
 
 def refuse_key(name: str, fit: Fit) -> Column:
-    """@throws UserError  that names the key that was probably meant"""
+    """Refuses a name that is no key of curves. @throws UserError  that names the key that was probably meant"""
     known = [column["key"] for column in fit["columns"] if "key" in column]
     hint = did_you_mean(name.replace("_", "-"), known)
     if name.replace("_", "-") not in known and hint:
@@ -93,12 +98,12 @@ def refuse_key(name: str, fit: Fit) -> Column:
 
 
 def physics_of(fit: Fit, group: Group, keys: Collection[Column]) -> dict[str, Any]:
-    """Values of the physical parameters, without the keys and without parameters that follow from others."""
+    """The values of the physical parameters, except for the keys and for parameters that follow from others."""
     values = {column["name"]: group[column["name"]] for column in fit["columns"]
               if column not in keys and column["name"] != "preset" and column.get("parameter_role", "physics") == "physics"
               and not is_automatic(fit, column, group)}
     if group["obstacle_filling"] != "density":
-        values.pop("obstacle_density", None)  # follows from gap and diameter
+        values.pop("obstacle_density", None)  # The density follows from gap and diameter.
     elif stored.settings(fit.get("sweep", {}).get("config", "")).get("obstacle-density", "").endswith("%"):
         spacing = group["obstacle_gap"] + group["obstacle_diameter"]
         values["obstacle_density"] = float(f"{group['obstacle_density'] * spacing**2:.{SAME_SHARE}g}")
@@ -115,7 +120,7 @@ def _key(values: dict[str, Any]) -> tuple[tuple[str, Any], ...]:
 
 
 def crossed_numerics(fit: Fit, groups: Iterable[int], keys: Collection[Column]) -> set[str]:
-    """Names of the numerical parameters that vary between groups with the same physics and the same values of the
+    """Names of the numerical parameters that vary among groups that have the same physics and the same values of the
     keys."""
     seen: dict[tuple[Any, ...], dict[str, set[Any]]] = {}
     for index in groups:
@@ -127,7 +132,7 @@ def crossed_numerics(fit: Fit, groups: Iterable[int], keys: Collection[Column]) 
 
 
 def why_too_few(fit: Fit, members: Members, keys: Sequence[Column]) -> str:
-    """Why these groups are too few for a curve; empty if they are enough."""
+    """The reason why these groups are too few for a curve. The text is empty if they are enough."""
     groups = [fit["groups"][index] for index in members.groups]
     names = " and ".join(key["key"] for key in keys)
     where = " with " + ", ".join(f"{name.replace('_', '-')}={told(value)}" for name, value in members.shared.items()) if members.shared else ""
@@ -148,15 +153,15 @@ def told(value: Any) -> str:
 
 
 def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Excluded]]:
-    """The groups of each curve that can be shown, and all others with the reason. Of the parameters that the groups of
-    a curve share, `shared` contains only those in which the curves differ."""
+    """The groups of each curve that can be drawn, and all other groups with the reason why they cannot. `shared`
+    contains the parameters in which the curves differ. Parameters that are the same in all curves are left out."""
     excluded, useful = [], []
     for index, group in enumerate(fit["groups"]):
         if not (group["total_distance"] or 0) > 0:
             excluded.append(Excluded(index, "no run of it has covered any distance"))
         elif group["exit"]:
-            # Few places of a short device hold droplets, so its clogs tell nothing about values of the key that were
-            # not run.
+            # In a short device only few places hold droplets. So the clogs in this device tell nothing about values of
+            # the key that were not run.
             excluded.append(Excluded(index, "the array ends at an exit, so its clogs are not at random places"))
         else:
             useful.append(index)
@@ -181,8 +186,8 @@ def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Exclude
 
 
 def grid_over(places: Numbers) -> Numbers:
-    """Places between the outermost values, evenly spaced on a logarithmic scale: 97 for one key (over two decades, a
-    step is 5 %), 25 x 25 for two keys."""
+    """Places between the outermost values, evenly spaced on a logarithmic scale. For one key there are 97 places, so
+    over two decades a step is 5 %. For two keys there are 25 x 25 places."""
     low, high = places.min(axis=0), places.max(axis=0)
     share = np.linspace(0, 1, 97 if len(low) == 1 else 25)
     axes = [(1 - share) * first + share * last for first, last in zip(low, high)]
@@ -190,7 +195,7 @@ def grid_over(places: Numbers) -> Numbers:
 
 
 def seeds_of_groups(fit: Fit, rows: Records) -> list[set[int]]:
-    """The seeds of each group's runs. @param rows  from all files of the sweep"""
+    """The seeds of the runs of each group. @param rows  from all files of the sweep"""
     names = [column["name"] for column in fit["columns"] if len({str(group[column["name"]]) for group in fit["groups"]}) > 1]
     failed = rows["status"] == b"failed"
 
@@ -207,7 +212,8 @@ def seeds_of_groups(fit: Fit, rows: Records) -> list[set[int]]:
 
 
 def have_common_obstacles(members: Members, keys: Iterable[Column], seeds: Sequence[set[int]]) -> bool:
-    """Whether points share obstacles, because they share seeds and no key shapes the array."""
+    """Whether the points of a curve share obstacles. Points share obstacles if they share seeds and no key shapes the
+    array."""
     if any(key["shapes_array"] for key in keys):
         return False
     own = [seeds[index] for index in members.groups]

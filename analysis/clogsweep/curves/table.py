@@ -12,29 +12,30 @@ from ..tools import rounded
 from .answer import ALL, CAUSES
 from .points import told
 
-EVERY_ON_LINE = 8  # every eighth of the 97 places on a curve of one key is printed
+EVERY_ON_LINE = 8  # A curve of one key has 97 places, and every eighth is printed.
 ON_SIDE = 25
 EVERY_ON_SIDE = 6
 
 
 def shortest(value: Any) -> str:
-    """A number in its shortest exact form; empty for None."""
+    """A number in its shortest exact form, or an empty text for None."""
     return "" if value is None else repr(value).removesuffix(".0") if isinstance(value, float) else str(value)
 
 
 def with_interval(values: Mapping[str, Any], name: str) -> str:
-    """A number such as `0.51 (0.44 to 0.60)`, without the interval if one of its ends is unknown."""
+    """A number with its interval, such as `0.51 (0.44 to 0.60)`. The interval is left out if one of its ends is
+    unknown."""
     value, lower, upper = (values[f"{name}{end}"] for end in ("", "_lower", "_upper"))
     return f"{value:.3g}" if lower is None or upper is None else rounded.with_interval(value, lower, upper)
 
 
 def unit_of(answer: dict[str, Any]) -> str:
-    """The unit of lengths: mm for droplets of several sizes."""
+    """The unit of lengths: sigma, or mm if the droplets have several sizes."""
     return str(answer["units"]["clogging_length"])
 
 
 def text(answer: dict[str, Any], crossing: list[float]) -> str:
-    """Peak, crossings and some places of every curve, and the points in no curve."""
+    """Prints the peak, the crossings and some places of every curve, and the points that belong to no curve."""
     keys = answer["keys"]
     lines = [f"lambda vs {' and '.join(keys)}, fitted; {100 * answer['confidence']:g} % intervals"]
     for curve in answer["curves"]:
@@ -94,15 +95,15 @@ def _comma_separated(rows: Iterable[Sequence[str]]) -> str:
 
 
 def comma_separated(answer: dict[str, Any]) -> str:
-    """CSV with a line for every place of every curve."""
+    """The curves as CSV, with a line for every place of every curve."""
     shared, names = list(answer["curves"][0]["shared"]), [*answer["keys"], *ALL, *(name for names in CAUSES.values() for name in names)]
     return _comma_separated([[*shared, *names], *([*(shortest(curve["shared"].get(name)) for name in shared), *(shortest(place.get(name)) for name in names)]
                                                   for curve in answer["curves"] for place in curve["curve"])])
 
 
 def peaks(answer: dict[str, Any]) -> str:
-    """CSV with a line for every curve. The line contains the peak, unless the curve may be highest at an end of the
-    range of values."""
+    """The peaks as CSV, with a line for every curve. The line contains the peak, unless the curve may be highest at an
+    end of the range of values."""
     shared, names = list(answer["curves"][0]["shared"]), [f"{name}{end}" for name in [*answer["keys"], ALL[0]] for end in ("", "_lower", "_upper")]
     found = [(curve["shared"], curve["peak"], curve["peak"]["probability_between_borders"]) for curve in answer["curves"]]
     return _comma_separated([[*shared, *names, "probability_between_borders"], *(
@@ -111,7 +112,7 @@ def peaks(answer: dict[str, Any]) -> str:
 
 
 def lengths(words: str) -> list[float]:
-    """A list such as `10,100` or `log(1,100,3)`. @throws ValueError  unless all are positive numbers"""
+    """Reads a list such as `10,100` or `log(1,100,3)`. @throws ValueError  unless all are positive numbers"""
     numbers: list[float] = []
     for word in words.replace(" ", "").replace("),", ");").replace(",log(", ";log(").replace(",lin(", ";lin(").split(";"):
         scale, is_range = word[:4], word.endswith(")")

@@ -1,4 +1,4 @@
-"""Areas in a drawing: outlines that are drawn twice, touch, or are holes in others."""
+"""Combines areas in a drawing: outlines that are drawn twice, outlines that touch, and holes in other outlines."""
 
 from __future__ import annotations
 
@@ -13,13 +13,15 @@ from .libraries import library
 from .shapes import Drawing, fitted_circle, holds
 from .walls import SHARE, is_rectangle
 
-NEAR = 1e-6  # outlines touch if the gap between them is at most this fraction of the size of all outlines: files round corners
-SAME = 1e-8  # corners are the same if they differ by at most this fraction of the largest coordinate
+# Outlines touch if the gap between them is at most this fraction of the size of all outlines. A small gap can come from
+# corners that a file rounds.
+NEAR = 1e-6
+SAME = 1e-8  # Corners are the same if they differ by at most this fraction of the largest coordinate.
 
 
 def tidy(drawing: Drawing, region: Numbers | None, tolerance: float) -> None:
-    """Drops duplicates, unites outlines that touch, and cuts out a region. @param region  two corners, as a drawing
-    program shows them, or None;
+    """Drops duplicates, unites outlines that touch, and cuts out a region.
+    @param region  two opposite corners in the coordinates that a drawing program shows, or None
     @param tolerance  as in fitted_circle()"""
     if not drawing.is_picture:
         drop_duplicates(drawing)
@@ -40,7 +42,7 @@ def polygon(corners: Numbers) -> Any:
 
 
 def union(shapes: list[Any], tolerance: float | None = None) -> Any:
-    """The union of polygons, with gaps up to twice the tolerance closed."""
+    """The union of polygons. Gaps of up to twice the tolerance are closed."""
     ops = library("shapely.ops", "python3-shapely")
     if tolerance is None:
         tolerance = NEAR * max(np.ptp(np.reshape(shape.bounds, (2, 2)), axis=0).max() for shape in shapes)
@@ -48,7 +50,7 @@ def union(shapes: list[Any], tolerance: float | None = None) -> Any:
 
 
 def add(drawing: Drawing, area: Any) -> None:
-    """Adds the outlines and holes of an area of shapely to the drawing."""
+    """Adds the outlines and holes of a shapely area to the drawing."""
     for part in getattr(area, "geoms", [area]):
         if part.geom_type == "Polygon" and not part.is_empty:
             drawing.outlines.append(np.asarray(part.exterior.coords)[:-1])
@@ -56,7 +58,8 @@ def add(drawing: Drawing, area: Any) -> None:
 
 
 def fill(drawing: Drawing, boundaries: list[Numbers], is_even_odd: bool) -> None:
-    """Adds the filled area of a hatch. @param is_even_odd  a boundary inside another is the edge of a hole"""
+    """Adds the filled area of a hatch. @param is_even_odd  whether a boundary inside another boundary is the edge of a
+    hole"""
     boundaries = [corners for corners in boundaries if len(corners) > 2]
     if len(boundaries) == 1:
         drawing.outlines += boundaries
@@ -66,7 +69,7 @@ def fill(drawing: Drawing, boundaries: list[Numbers], is_even_odd: bool) -> None
 
 
 def drop_duplicates(drawing: Drawing) -> None:
-    """Removes outlines that are drawn twice, and counts them."""
+    """Removes the copies of outlines that are drawn twice, and counts these outlines."""
     outlines = drawing.outlines
     step = SAME * max((float(np.abs(outline).max()) for outline in outlines), default=0.0) or 1.0
     kept = {frozenset(map(tuple, np.round(outline / step).astype(np.int64))): outline for outline in outlines}
@@ -75,8 +78,8 @@ def drop_duplicates(drawing: Drawing) -> None:
 
 
 def unite(drawing: Drawing) -> None:
-    """Unites outlines that touch, because programs that write GDSII cut circles into slices. Outlines within others,
-    the edge of the device and walls are not united."""
+    """Unites outlines that touch, because programs that write GDSII cut circles into slices. Some outlines are never
+    united: outlines within others, the edge of the device, and walls."""
     outlines = drawing.outlines
     pairs = meeting(outlines)
     if not pairs:
@@ -84,7 +87,7 @@ def unite(drawing: Drawing) -> None:
     geometry = library("shapely.geometry", "python3-shapely")
     shapes = {i: geometry.Polygon(outlines[i]) for i in {one for pair in pairs for one in pair}}
     tolerance = NEAR * float(np.ptp(np.vstack(outlines), axis=0).max())
-    root = list(range(len(outlines)))  # for each outline, another one that it touches, or itself
+    root = list(range(len(outlines)))  # for each outline, another outline that it touches, or itself
 
     def group_of(i: int) -> int:
         while root[i] != i:
@@ -106,8 +109,8 @@ def unite(drawing: Drawing) -> None:
 
 
 def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
-    """Pairs of outlines whose bounding boxes touch. Edges of the device (as long and as wide as the drawing) and walls
-    (rectangles as long as the drawing) are left out."""
+    """Pairs of outlines whose bounding boxes touch. Outlines as long and as wide as the drawing are left out, because
+    they are edges of the device. Rectangles as long as the drawing are left out, because they are walls."""
     if len(outlines) < 2:
         return []
     lows, highs = (np.array([end(outline, axis=0) for outline in outlines]) for end in (np.min, np.max))
@@ -119,8 +122,10 @@ def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
 
 
 def cut(drawing: Drawing, region: tuple[float, float, float, float], tolerance: float) -> None:
-    """Keeps what is in a region, which becomes the frame. Round posts at its border stay whole; other outlines and
-    lines are cut there. @param region left, bottom, right, top; @param tolerance  as in fitted_circle()"""
+    """Keeps the part of the drawing that is in a region. The region becomes the frame. Round posts that cross the
+    region's border stay whole; other outlines and lines are cut at the border.
+    @param region  left, bottom, right, top
+    @param tolerance  as in fitted_circle()"""
     geometry = library("shapely.geometry", "python3-shapely")
     box = geometry.box(*region)
     number = len(drawing.circles) + len(drawing.outlines) + len(drawing.lines)
@@ -146,5 +151,5 @@ def cut(drawing: Drawing, region: tuple[float, float, float, float], tolerance: 
 
 
 def is_near(outline: Numbers, region: tuple[float, float, float, float]) -> bool:
-    """Whether the box around an outline meets a region."""
+    """Whether the bounding box of an outline meets a region."""
     return bool((outline.min(axis=0) < region[2:]).all() and (outline.max(axis=0) > region[:2]).all())

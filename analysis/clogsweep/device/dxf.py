@@ -1,4 +1,4 @@
-"""Circles and outlines of DXF drawings, as a drawing program shows them."""
+"""Reads circles and outlines from DXF drawings, with the shapes that a drawing program shows."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from .shapes import Drawing
 
 UNITS = {1: 25.4e-3, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 8: 25.4e-9, 9: 25.4e-6, 11: 1e-10, 12: 1e-9, 13: 1e-6, 14: 0.1}  # $INSUNITS, in metres
 UNITLESS = 0
-FLATNESS = 1e-4  # largest deviation of straight pieces from a curve, as a fraction of its size
+FLATNESS = 1e-4  # Largest deviation of straight pieces from a curve, as a fraction of its size.
 CURVES = ("LINE", "ARC", "LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE", "SOLID", "TRACE")
 FILLED = ("SOLID", "TRACE")
 HATCHES = ("HATCH", "MPOLYGON")
-HATCH_IGNORES_HOLES = 2  # a value of hatch_style
-SEGMENTS = 256  # number of straight pieces that a full circle would have, for the arcs of wide lines
+HATCH_IGNORES_HOLES = 2  # A value of hatch_style.
+SEGMENTS = 256  # Number of straight pieces of a full circle. An arc of a wide line has a proportional number of pieces.
 
 
 def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
-    """Circles and closed outlines of the model space, including blocks."""
+    """Reads circles and closed outlines of the model space, also those in blocks."""
     ezdxf = library("ezdxf", "python3-ezdxf")
     document = ezdxf.readfile(path)
     found = Drawing([], [], metres_of(document, path), skipped=collections.Counter())
@@ -42,7 +42,8 @@ def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
 
 
 def metres_of(document: Any, path: pathlib.Path) -> float | None:
-    """Length of the unit in $INSUNITS. @throws UserError  if it is a mile, a light year or the like"""
+    """The length of the unit in $INSUNITS. @throws UserError  if the unit cannot be meant, such as a mile or a light
+    year"""
     code = document.header.get("$INSUNITS", UNITLESS)
     if code == UNITLESS:
         return None
@@ -52,9 +53,10 @@ def metres_of(document: Any, path: pathlib.Path) -> float | None:
 
 
 def visible(entities: Any, layers: Any, parent: str | None, skipped: dict[str, int]) -> Iterator[tuple[Any, str]]:
-    """Entities and their layers. Entities of blocks are in world coordinates; in a block, layer 0 means the layer of
-    the block's reference.
-    @param parent  layer of the block's reference. @throws UserError  if a block is in another file"""
+    """Yields the visible entities with their layers. Entities in blocks come in world coordinates. In a block, layer 0
+    means the layer of the reference to this block.
+    @param parent  layer of the reference to the block
+    @throws UserError  if a block is in another file"""
     def count_distorted(part: Any, _: str) -> None:
         skipped[f"{part.dxftype()} in a distorted block"] += 1
 
@@ -106,10 +108,11 @@ def has_width(entity: Any) -> bool:
 
 
 def trace_of(polyline: Any) -> list[Any]:
-    """The quadrilaterals of which a wide LWPOLYLINE consists. A DONUT is a wide LWPOLYLINE with two arcs."""
+    """The quadrilaterals of which a wide LWPOLYLINE consists. The command DONUT of drawing programs makes a wide
+    LWPOLYLINE from two arcs."""
     trace, geometry = library("ezdxf.render.trace", "python3-ezdxf"), library("shapely.geometry", "python3-shapely")
     builder = trace.TraceBuilder.from_polyline(polyline, segments=SEGMENTS)
-    faces = builder.faces_wcs(polyline.ocs(), 0.0)  # the elevation is along z and does not count
+    faces = builder.faces_wcs(polyline.ocs(), 0.0)  # The elevation is a position along z, which has no meaning here.
     return [geometry.MultiPoint([(point.x, point.y) for point in face]).convex_hull for face in faces]
 
 

@@ -1,4 +1,4 @@
-"""Outlines of GDSII drawings, with all cells that the top cells refer to."""
+"""Reads outlines from GDSII drawings, with all cells to which the top cells refer."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ from ..tools.errors import UserError
 from .libraries import library
 from .shapes import Drawing
 
-CORNERS_OF_DISC = 128  # such a polygon is wider than a circle of the same area by 1e-4 of the diameter
+# A polygon with this many corners is wider than a circle of the same area by 1e-4 of the diameter.
+CORNERS_OF_DISC = 128
 
 
 def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
-    """Polygons of the top cells, with all that they refer to."""
+    """Reads the polygons of the top cells, and those of all cells to which they refer."""
     gdspy = library("gdspy", "python3-gdspy")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("error", UserWarning)  # gdspy only warns of records that it ignores
+            warnings.simplefilter("error", UserWarning)  # gdspy only prints a warning about records that it ignores
             content = exact_library(gdspy)(infile=str(path), units="import")
     except UserWarning as warning:
         raise UserError(f"cannot read {path} ({warning}); convert everything to polygons in the layout program") from warning
@@ -29,7 +30,8 @@ def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
     missing = {str(part.ref_cell) for part in references if not isinstance(part.ref_cell, gdspy.Cell)}
     if missing:
         raise UserError(f"cannot read {path} (it lacks the cells {', '.join(sorted(missing))}, to which it refers); save it with these")
-    if any(isinstance(part, gdspy.CellArray) for part in references):  # this version of gdspy does not call _create_array()
+    # A gdspy that leaves a CellArray here does not call _create_array().
+    if any(isinstance(part, gdspy.CellArray) for part in references):
         raise UserError(f"cannot read {path} (gdspy {gdspy.__version__} may misplace its arrays of cells); flatten them in the layout program")
     cells = content.top_level()
     drawn = [item for cell in cells for item in cell.get_polygons(by_spec=True).items()]
@@ -46,12 +48,14 @@ def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
 
 
 def exact_library(gdspy: Any) -> Any:
-    """gdspy's reader with two changes: an array becomes one reference for each of its places, and a round path without
-    length becomes a disc. gdspy's own arrays have only two spacings, along the axes of the cell, so gdspy misplaces an
-    array whose lattice is oblique or is turned by another angle than the cell."""
+    """gdspy's reader with two changes. An array becomes one reference for each of its places, and a round path without
+    length becomes a disc.
+
+    gdspy's own arrays have only two spacings, along the axes of the cell. So gdspy misplaces an array whose lattice is
+    oblique, or is turned by another angle than the cell."""
     class Library(gdspy.GdsLibrary):  # type: ignore[misc]
         def _create_path(self, *, xy: Any, **path: Any) -> Any:
-            """@throws UserWarning  if it has no length and no round ends"""
+            """@throws UserWarning  if the path has neither length nor round ends"""
             if np.ptp(np.reshape(xy, (-1, 2)), axis=0).any():
                 return super()._create_path(xy=xy, **path)
             if path.get("ends") != "round":
@@ -59,8 +63,8 @@ def exact_library(gdspy: Any) -> Any:
             return gdspy.Round(xy[:2], abs(path["width"]) / 2, number_of_points=CORNERS_OF_DISC, layer=path["layer"], datatype=path["datatype"])
 
         def _create_array(self, *, columns: int, rows: int, xy: Any, **reference: Any) -> list[Any]:
-            """@param xy  three points: the origin, the point `columns` columns away from it, and the point `rows` rows
-            away from it"""
+            """@param xy  three points: the origin, the point that is `columns` columns away from the origin, and the
+            point that is `rows` rows away"""
             origin, end_of_columns, end_of_rows = np.reshape(xy, (3, 2))
             along, across = (end_of_columns - origin) / columns, (end_of_rows - origin) / rows
             return [self._create_reference(xy=origin + i * along + j * across, **reference) for i in range(columns) for j in range(rows)]

@@ -1,4 +1,4 @@
-"""Libraries that read drawings, loaded only when they are needed."""
+"""Loads the libraries that read drawings, when they are first needed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..tools.errors import UserError
 
 
 def library(name: str, package: str) -> Any:
-    """@throws UserError  that names the package of Debian"""
+    """Imports a library. @throws UserError  that names the Debian package if the library is missing"""
     try:
         return importlib.import_module(name)
     except ImportError as error:

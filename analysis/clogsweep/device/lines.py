@@ -1,4 +1,4 @@
-"""Lines that are drawn separately but form closed outlines, such as the three sides of a triangle."""
+"""Joins lines that are drawn separately but form closed outlines, such as the three sides of a triangle."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from ..tools.hints import Numbers
 from .libraries import library
 from .shapes import Drawing
 
-MISSED = 1e-5  # ends of lines meet if their distance is at most this fraction of the size of all lines
+MISSED = 1e-5  # Ends of lines meet if their distance is at most this fraction of the size of all lines.
 
 
 def join(drawing: Drawing) -> None:
-    """Moves the pieces that form closed outlines to `outlines`. The others become `lines`, and so do all pieces if
-    shapely is not installed."""
+    """Moves the pieces that form closed outlines to `outlines`, and all other pieces to `lines`. Without shapely, all
+    pieces become `lines`."""
     pieces = [(kind, piece) for kind, piece in drawing.pieces if np.ptp(piece, axis=0).max() > 0]
     if not pieces:
         return
@@ -30,7 +30,8 @@ def join(drawing: Drawing) -> None:
     shapes = [geometry.LineString(piece) for piece in meeting([piece for _, piece in pieces], tolerance)]
     faces: list[Any] = []
     left = list(range(len(pieces)))
-    for cut in (distinct, ops.unary_union):  # first lines that meet at their ends, so that a centre line cuts no post in two; then lines that cross
+    # Lines that meet at their ends come first, so that a centre line cuts no post in two. Lines that cross come second.
+    for cut in (distinct, ops.unary_union):
         found = [face for face in ops.polygonize(cut([shapes[index] for index in left])) if face.is_valid]
         near = ops.unary_union([face.boundary for face in found]).buffer(tolerance)
         within = prepared.prep(near)
@@ -42,17 +43,17 @@ def join(drawing: Drawing) -> None:
 
 
 def distinct(shapes: list[Any]) -> list[Any]:
-    """Removes lines that are drawn twice."""
+    """Keeps one of several lines that are drawn at the same place."""
     return list({shape.normalize().wkb: shape for shape in shapes}.values())
 
 
 def is_off(outlines: Any, line: Any) -> bool:
-    """Whether most of a line is not part of the outlines."""
+    """Whether more than half of a line is outside the outlines."""
     return bool(line.difference(outlines).length > line.length / 2)
 
 
 def meeting(pieces: list[Numbers], tolerance: float) -> list[Numbers]:
-    """The pieces, with ends that nearly meet moved to the same place."""
+    """The pieces, after ends that nearly meet were moved to the same place."""
     known: dict[tuple[int, int], Numbers] = {}
 
     def place(end: Numbers) -> Numbers:

@@ -1,4 +1,4 @@
-"""Outlines in pictures in black and white, such as masks."""
+"""Reads outlines from black-and-white pictures, such as masks."""
 
 from __future__ import annotations
 
@@ -16,24 +16,27 @@ from .shapes import METRES, Drawing
 from .walls import area
 
 ENDINGS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg")
-FEWEST_CORNERS = 12  # outlines with fewer corners are specks; the outline of three pixels has so many
-MOST_OF_BORDER = 0.95  # posts may be bright only if this fraction of the picture's border is dark
+FEWEST_CORNERS = 12  # Outlines with fewer corners are specks. The outline of three pixels has this many corners.
+MOST_OF_BORDER = 0.95  # Posts may be bright only if at least this fraction of the picture's border is dark.
 X_RESOLUTION, Y_RESOLUTION, RESOLUTION_UNIT, DESCRIPTION, PHOTOMETRIC = 282, 283, 296, 270, 262  # tags of TIFF
-MODES = ("1", "L", "RGB", "RGBA")  # modes of Pillow with up to 8 bits per channel
-ORIENTATION = 274  # tag of EXIF and TIFF
+MODES = ("1", "L", "RGB", "RGBA")  # Modes of Pillow with up to 8 bits per channel.
+ORIENTATION = 274  # Tag of EXIF and TIFF.
 METRES_IN_TIFF = {2: METRES["in"], 3: METRES["cm"]}
 UNITS_OF_IMAGEJ = {"micron": "um", "microns": "um", "\\u00b5m": "um", "inch": "in", "centimeter": "cm", "millimeter": "mm"}
 
 
 def read_picture(path: pathlib.Path, posts: str | None) -> Drawing:
-    """Outlines of the dark or bright parts, between pixels; the unit is a pixel. Specks of a few pixels do not count.
-    @param posts  dark or bright; None: bright if the border and most of the picture are dark, or if they are on a transparent ground"""
+    """Reads the outlines of the dark or the bright parts. Outlines run between pixels, and the unit of length is a
+    pixel. Specks of a few pixels are left out.
+    @param posts  dark or bright. If None, posts are bright if the border and most of the picture are dark, or if bright
+    parts are on a transparent ground; otherwise they are dark"""
     measure, filters = (library(f"skimage.{name}", "python3-skimage") for name in ("measure", "filters"))
     tags = tags_of(path)
     image = grey(path, tags)
     threshold = filters.threshold_otsu(image)
     is_dark = image <= threshold
-    level = (image[is_dark].mean() + image[~is_dark].mean()) / 2  # half-way, so that edges lie between pixels
+    # half-way between dark and bright, so that outlines run between pixels.
+    level = (image[is_dark].mean() + image[~is_dark].mean()) / 2
     found = Drawing([], [], metres_of(path, tags), frame=(0.0, 0.0, float(image.shape[1]), float(image.shape[0])), is_picture=True, skipped=collections.Counter())
     found.unit_hint = printed(tags)
     high = image.shape[0]
@@ -54,13 +57,14 @@ def read_picture(path: pathlib.Path, posts: str | None) -> Drawing:
 
 
 def are_bright(is_dark: Any) -> bool:
-    """Whether posts are bright, on a dark ground. A dark frame around a bright channel does not count."""
+    """Whether posts are bright on a dark ground. A dark frame around a bright channel does not mean that posts are
+    bright."""
     border = np.concatenate([is_dark[0], is_dark[-1], is_dark[:, 0], is_dark[:, -1]])
     return bool(border.mean() >= MOST_OF_BORDER and is_dark.mean() > 0.5)
 
 
 def tags_of(path: pathlib.Path) -> dict[int, Any]:
-    """The picture's tags of TIFF and EXIF."""
+    """The picture's TIFF and EXIF tags."""
     with library("PIL.Image", "python3-pil").open(path) as file:
         return {**file.getexif(), **getattr(file, "tag_v2", {})}
 
@@ -78,7 +82,8 @@ def grey(path: pathlib.Path, tags: dict[int, Any]) -> Numbers:
     if image.ndim == 3:
         opacity = image[..., -1] if image.shape[2] in (2, 4) else np.ones(image.shape[:2])
         image = colour.rgb2gray(image[..., :3]) if image.shape[2] >= 3 else image[..., 0]
-        ground = 1.0 if opacity.any() and image[opacity > 0].mean() < 0.5 else 0.0  # brightness of transparent parts, unlike that of the posts
+        # Transparent parts get the opposite of the posts' brightness.
+        ground = 1.0 if opacity.any() and image[opacity > 0].mean() < 0.5 else 0.0
         image = opacity * image + (1 - opacity) * ground
     if np.ptp(image) == 0:
         raise UserError(f"cannot read {path} (it is of one colour); give a mask in black and white")
@@ -86,8 +91,10 @@ def grey(path: pathlib.Path, tags: dict[int, Any]) -> Numbers:
 
 
 def pixels(path: pathlib.Path, tags: dict[int, Any]) -> tuple[Any, bool]:
-    """The pixels of a picture, and whether 0 is white. Pillow reads TIFF with LZW or fax compression, for which
-    scikit-image needs another library. Pillow itself converts pictures in which 0 is white. @throws UserError"""
+    """The pixels of a picture, and whether a value of 0 means white. TIFF files with LZW or fax compression are read
+    with Pillow, because scikit-image would need another library for them. Pillow itself converts pictures in which 0
+    means white.
+    @throws UserError"""
     try:
         return np.asarray(library("skimage.io", "python3-skimage").imread(path)), tags.get(PHOTOMETRIC) == 0
     except ValueError as error:
@@ -98,7 +105,7 @@ def pixels(path: pathlib.Path, tags: dict[int, Any]) -> tuple[Any, bool]:
 
 
 def metres_of(path: pathlib.Path, tags: dict[int, Any]) -> float | None:
-    """Size of a pixel as ImageJ writes it. @throws UserError  if pixels are not square"""
+    """The size of a pixel, if ImageJ has stored it. @throws UserError  if pixels are not square"""
     found = re.search(r"^unit=(\S+)", str(tags.get(DESCRIPTION, "")), re.MULTILINE)
     unit = UNITS_OF_IMAGEJ.get(found[1].lower(), found[1]) if found else ""
     horizontal, vertical = (float(tags.get(tag, 0)) for tag in (X_RESOLUTION, Y_RESOLUTION))
@@ -110,6 +117,7 @@ def metres_of(path: pathlib.Path, tags: dict[int, Any]) -> float | None:
 
 
 def printed(tags: dict[int, Any]) -> str:
-    """The size of a pixel from the resolution of a TIFF, which is often a printer's."""
+    """Words that state the size of a pixel according to the resolution of a TIFF. The resolution often belongs to a
+    printer."""
     metres, number = METRES_IN_TIFF.get(tags.get(RESOLUTION_UNIT, 0), 0.0), float(tags.get(X_RESOLUTION, 0))
     return f" (its resolution would mean {metres / number * 1e6:.6g}um, if that is not a printer's)" if metres and number else ""

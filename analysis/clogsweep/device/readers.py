@@ -1,4 +1,5 @@
-"""Readers of drawings: DXF, GDSII, SVG, and pictures in black and white. Each loads its library when it is needed."""
+"""Chooses the reader of a drawing: DXF, GDSII, SVG, or a black-and-white picture. Each reader loads its library when it
+is needed."""
 
 from __future__ import annotations
 
@@ -14,8 +15,10 @@ from .svg import read_svg
 
 
 def read(path: pathlib.Path, layer: str | None = None, posts: str | None = None) -> Drawing:
-    """@param layer  the only layer to be read of a DXF or GDSII file; None: all; @param posts  of a picture: dark or
-    bright; None: decided from the picture. @throws UserError"""
+    """Reads a drawing.
+    @param layer  the only layer to be read from a DXF or GDSII file, or None for all layers
+    @param posts  of a picture: dark or bright, or None if the picture decides
+    @throws UserError"""
     readers: dict[str, Callable[[], Drawing]] = {".dxf": lambda: read_dxf(path, layer), ".gds": lambda: read_gds(path, layer), ".gdsii": lambda: read_gds(path, layer),
                                                  ".svg": lambda: read_svg(path), **{ending: lambda: read_picture(path, posts) for ending in ENDINGS}}
     reader = readers.get(path.suffix.lower())
@@ -29,5 +32,5 @@ def read(path: pathlib.Path, layer: str | None = None, posts: str | None = None)
         return found
     except UserError:
         raise
-    except Exception as error:  # each library raises errors of its own
+    except Exception as error:  # Each library raises its own kinds of errors.
         raise UserError(f"cannot read {path} ({type(error).__name__}: {error}); is it really of this kind?") from error

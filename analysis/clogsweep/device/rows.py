@@ -1,4 +1,5 @@
-"""Posts that are not round, as rows of overlapping circles along their outline, which form a wall without gaps."""
+"""Replaces posts that are not round by rows of overlapping circles along their outlines. Each row is a wall without
+gaps."""
 
 from __future__ import annotations
 
@@ -13,14 +14,16 @@ from ..tools.hints import Numbers
 from .libraries import library
 from .shapes import Device
 
-SPACING = 1 / 3  # distance between neighbouring circles of a row, divided by their radius: the row's roughness is 1.4 % of the radius
-SMALLEST_VOID = 0.35  # largest radius of an empty space inside a post: no droplet fits in [sigma]
+# Distance between neighbouring circles of a row, divided by their radius. The roughness of the row is then 1.4 % of the
+# radius.
+SPACING = 1 / 3
+SMALLEST_VOID = 0.35  # Largest radius of an empty space inside a post [sigma]. No droplet fits into such a space.
 MOST_FILLERS = 100
 MOST_CIRCLES, MANY_CIRCLES = 200000, 20000
 
 
 def shapely(part: str) -> Any:
-    """@throws UserError  if it is not installed"""
+    """Imports a part of shapely. @throws UserError  if shapely is not installed"""
     try:
         return library(f"shapely.{part}", "python3-shapely")
     except UserError as error:
@@ -29,18 +32,19 @@ def shapely(part: str) -> Any:
 
 @dataclasses.dataclass
 class Rows:
-    """The resulting posts, in droplet diameters."""
+    """The resulting posts. Lengths are in droplet diameters."""
 
     device: Device
-    corner: float  # the largest radius of circles in a row
-    farthest: float  # largest distance of a drawn outline from the circles, which do not reach into its corners
+    corner: float  # The largest radius of circles in a row.
+    farthest: float  # Largest distance of a drawn outline from the circles, which do not fill its corners.
     roughness: float
 
 
 def as_rows(device: Device, corner: float) -> Rows:
-    """The posts of the device, with rows of circles in place of each outline that is not round. @param corner  radius
-    to which corners are rounded; in a post that is too thin for it, nearly half of the post's width. @throws UserError
-    if an outline crosses itself"""
+    """The posts of the device, with rows of circles in place of each outline that is not round.
+    @param corner  radius to which corners are rounded. If a post is too thin for this radius, nearly half of its width
+    is taken.
+    @throws UserError  if an outline crosses itself"""
     geometry = shapely("geometry")
     frame = geometry.box(0, 0, device.length, device.width)
     circles, posts = [device.circles], [np.arange(len(device.circles))]
@@ -67,7 +71,7 @@ def valid(polygon: Any) -> Any:
 
 
 def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:
-    """@throws UserError  if there would be more circles than are usable"""
+    """Refuses outlines that need too many circles. @throws UserError  if there would be more circles than are usable"""
     number = sum(core.exterior.length / (SPACING * radius) for of_part in all_cores for core, radius in of_part)
     if number > MOST_CIRCLES:
         raise UserError(f"--as-rows needs {number:.2g} circles (at most {MOST_CIRCLES}); give a larger --corner, or check --unit and --droplet")
@@ -76,7 +80,7 @@ def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:
 
 
 def parts(shape: Any) -> list[Any]:
-    """The polygons of a shape, which is one polygon or several."""
+    """The polygons of a shape, which consists of one or several."""
     return [part for part in getattr(shape, "geoms", [shape]) if part.geom_type == "Polygon" and part.area > 0]
 
 
@@ -88,15 +92,16 @@ def deepest(polygon: Any) -> tuple[Any, float]:
 
 
 def cores(polygon: Any, corner: float) -> list[tuple[Any, float]]:
-    """Possible centres of circles of this radius that are within the polygon and touch its outline. For a thin
-    polygon the radius is smaller."""
+    """The cores of a polygon. Circles of the returned radius whose centres are on the edge of a core lie within the
+    polygon and touch its outline. In a thin polygon this radius is smaller than `corner`."""
     _, half_width = deepest(polygon)
     radius = min(corner, 0.9 * half_width)
     return [(core, radius) for core in parts(polygon.buffer(-radius))]
 
 
 def of_part(core: Any, polygon: Any, radius: float) -> Numbers:
-    """A row along the edge of a core, and larger circles in the interior, where a droplet would fit."""
+    """Covers a polygon by a row of circles along the edge of a core. Larger circles fill the interior where a droplet
+    would fit."""
     found = [(x, y, 2 * radius) for x, y in places(core.exterior.simplify(0.01 * radius), SPACING * radius)]
     rest = core
     for _ in range(MOST_FILLERS):
@@ -111,17 +116,18 @@ def of_part(core: Any, polygon: Any, radius: float) -> Numbers:
 
 
 def places(ring: Any, spacing: float) -> Numbers:
-    """The corners, and points evenly spaced between them."""
+    """The corners of a ring, and evenly spaced points between them."""
     corners = np.asarray(ring.coords)
     return np.vstack([begin + np.linspace(0, 1, max(1, int(np.ceil(np.hypot(*(end - begin)) / spacing))), endpoint=False)[:, None] * (end - begin)
                       for begin, end in zip(corners, corners[1:])])
 
 
 def distance_left(polygon: Any, circles: Numbers) -> float:
-    """The largest distance of the outline from the circles."""
+    """The largest distance of a point of the outline from the circles."""
     corners = places(polygon.exterior, polygon.exterior.length / 2000)
     nearest = np.full(len(corners), np.inf)
-    for some in np.array_split(circles, 1 + len(circles) // 1000):  # all distances at once need gigabytes
+    # The distances of all circles at once would need gigabytes.
+    for some in np.array_split(circles, 1 + len(circles) // 1000):
         gaps = np.hypot(corners[:, None, 0] - some[None, :, 0], corners[:, None, 1] - some[None, :, 1]) - some[None, :, 2] / 2
         nearest = np.minimum(nearest, gaps.min(axis=1))
     return float(nearest.max())

@@ -1,4 +1,4 @@
-"""Content of a drawing of a device: round posts, other outlines, its frame, and its unit of length."""
+"""Interprets the content of a drawing of a device: its round posts, other outlines, frame, and unit of length."""
 
 from __future__ import annotations
 
@@ -16,37 +16,42 @@ from . import walls
 from .walls import area, centroid
 
 METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3, "mil": 25.4e-6}
-MARGIN = 0.5  # distance between the posts and the edge, in a device whose edge is not drawn [sigma]
-NEAR = 0.01  # a line that is part of the edge may be this far outside [sigma]
-SAME = 1e-3  # two circles are the same if they differ by at most this fraction of the diameter
-WINDOW = 1000  # a circle drawn twice is looked for among this number of neighbours along x
-LONGEST = 10000  # a longer side of a device is taken for a mistake of the unit [sigma]
-Line = tuple[str, Numbers]  # the kind of an object in a drawing, and its points (n, 2)
+MARGIN = 0.5  # Distance between the posts and the edge of a device whose edge is not drawn [sigma].
+NEAR = 0.01  # A line that is part of the edge may be this far outside the edge [sigma].
+SAME = 1e-3  # Two circles are the same if they differ by at most this fraction of the diameter.
+WINDOW = 1000  # Copies of a circle are searched for among this number of neighbours along x.
+LONGEST = 10000  # A side of a device that is longer than this probably comes from a wrong unit [sigma].
+Line = tuple[str, Numbers]  # The kind of an object in a drawing, and its points (n, 2).
 
 
 @dataclasses.dataclass
 class Drawing:
-    """A drawing as read from its file. Lengths are in its own unit; y points upwards."""
+    """A drawing as read from its file. Lengths are in the drawing's own unit, and y points upwards."""
 
-    circles: list[tuple[float, float, float]]  # x, y, diameter
-    outlines: list[Numbers]  # corners (n, 2); the last one is joined to the first unless the border of a picture cuts it
-    metres: float | None  # length of the drawing's unit [m]; None if the drawing does not state it
-    frame: tuple[float, float, float, float] | None = None  # left, bottom, right, top of a picture, or of the region that the user gave
-    is_picture: bool = False  # it consists of pixels
-    holes: list[Numbers] = dataclasses.field(default_factory=list)  # holes in outlines: none is a post, but one may be the device's edge
-    pieces: list[Line] = dataclasses.field(default_factory=list)  # open lines, before they are joined
-    lines: list[Line] = dataclasses.field(default_factory=list)  # the pieces that do not form a closed outline
-    objects: int = 0  # circles, outlines and lines that were read
-    joined: tuple[int, int] = (0, 0)  # how many pieces were joined, and into how many outlines
-    united: tuple[int, int] = (0, 0)  # how many outlines touched, and how many they became
-    duplicates: int = 0  # how many outlines and circles were drawn twice
-    unit_hint: str = ""  # names a unit that the drawing may mean
-    notes: list[str] = dataclasses.field(default_factory=list)  # messages about how it was read
-    outside: int = 0  # how many outlines, circles and lines are outside the region that the user gave
+    circles: list[tuple[float, float, float]]  # Each has x, y and diameter.
+    # Corners (n, 2). The last corner is joined to the first, unless the border of a picture cuts the outline.
+    outlines: list[Numbers]
+    metres: float | None  # Length of the drawing's unit [m]; None if the file does not state it.
+    # Left, bottom, right and top of a picture, or of the region that the user gave.
+    frame: tuple[float, float, float, float] | None = None
+    is_picture: bool = False  # Whether the drawing consists of pixels.
+    # Holes in outlines. Holes are no posts, but a hole may be the device's edge.
+    holes: list[Numbers] = dataclasses.field(default_factory=list)
+    pieces: list[Line] = dataclasses.field(default_factory=list)  # Open lines, before they are joined.
+    lines: list[Line] = dataclasses.field(default_factory=list)  # The pieces that do not form a closed outline.
+    objects: int = 0  # Number of circles, outlines and lines that were read.
+    joined: tuple[int, int] = (0, 0)  # Number of pieces that were joined, and number of outlines that they became.
+    united: tuple[int, int] = (0, 0)  # Number of outlines that touched, and number of outlines that they became.
+    duplicates: int = 0  # Number of outlines and circles that were drawn twice.
+    unit_hint: str = ""  # Words that name a unit that the drawing may mean.
+    notes: list[str] = dataclasses.field(default_factory=list)  # Messages about how the drawing was read.
+    outside: int = 0  # Number of outlines, circles and lines outside the region that the user gave.
     can_join: bool = True
-    unit_in_words: str | None = None  # the unit's name, if it is not the name of the length `metres`
-    from_own: Callable[[Any], Numbers] = np.asarray  # converts points (n, 2) from the coordinates that a drawing program shows to those of this object
-    skipped: dict[str, int] = dataclasses.field(default_factory=dict)  # how many objects of each kind are no posts; lines are not counted here
+    unit_in_words: str | None = None  # Name of the unit, if this is not the usual name of a length of `metres`.
+    # Converts points (n, 2) from the coordinates of a drawing program to those of this object.
+    from_own: Callable[[Any], Numbers] = np.asarray
+    # Number of objects of each kind that are no posts. Lines are not counted here.
+    skipped: dict[str, int] = dataclasses.field(default_factory=dict)
 
     @property
     def unit(self) -> str:
@@ -55,36 +60,40 @@ class Drawing:
 
 @dataclasses.dataclass
 class Device:
-    """Posts in droplet diameters; the flow goes along +x, and the frame begins at (0, 0)."""
+    """The posts of a device. Lengths are in droplet diameters, the flow goes along +x, and the frame begins at (0,
+    0)."""
 
-    circles: Numbers  # (n, 3): x, y, diameter
-    others: list[Numbers]  # outlines that are not round
+    circles: Numbers  # Array (n, 3) of x, y and diameter.
+    others: list[Numbers]  # Outlines that are not round.
     length: float
     width: float
     has_frame: bool
     droplet_metres: float
-    post_of: Numbers | None = None  # number of the post to which each circle belongs; None: each circle is a post
-    replaced: list[Numbers] = dataclasses.field(default_factory=list)  # outlines that circles have replaced
-    walls: list[Numbers] = dataclasses.field(default_factory=list)  # outlines or lines beside the device, replaced by side-walls=on
-    lines: list[Line] = dataclasses.field(default_factory=list)  # lines that form no closed outline and are no walls
+    post_of: Numbers | None = None  # Number of the post to which each circle belongs. If None, each circle is a post.
+    replaced: list[Numbers] = dataclasses.field(default_factory=list)  # Outlines that were replaced by circles.
+    # Outlines or lines beside the device that side-walls=on replaces.
+    walls: list[Numbers] = dataclasses.field(default_factory=list)
+    # Lines that neither form a closed outline nor are walls.
+    lines: list[Line] = dataclasses.field(default_factory=list)
 
     @property
     def droplet_micrometres(self) -> float:
         return self.droplet_metres / METRES["um"]
 
     def overlaps(self) -> list[tuple[int, int]]:
-        """Circles of each pair of posts that touch, which clogsweep refuses."""
+        """Pairs of circles that belong to different posts and touch. clogsweep refuses such posts."""
         return self._gaps[1]
 
     def smallest_gap(self) -> float:
-        """The narrowest gap between two posts; infinite if there are fewer than two."""
+        """The narrowest gap between two posts. The gap is infinite if there are fewer than two posts."""
         return self._gaps[0]
 
     @functools.cached_property
     def _gaps(self) -> tuple[float, list[tuple[int, int]]]:
-        """The narrowest gap, and two circles of each pair of posts that touch. Circles are sorted by x. Each is
-        compared with the next one, then with the next but one, and so on, until all compared circles are farther apart
-        along x than the narrowest gap so far."""
+        """The narrowest gap, and two circles of each pair of posts that touch.
+
+        Circles are sorted by x. Each circle is compared with the next one, then with the next but one, and so on. The
+        comparison stops when all compared circles are farther apart along x than the narrowest gap so far."""
         posts = np.arange(len(self.circles)) if self.post_of is None else self.post_of
         order = np.argsort(self.circles[:, 0], kind="stable")
         x, y, diameter = self.circles[order].T
@@ -104,13 +113,15 @@ class Device:
         return float(narrowest), sorted(touching.values())
 
     def gap_to_sides(self) -> float:
-        """The narrowest gap between a post and a side of the device; infinite where all posts overlap a side."""
+        """The narrowest gap between a post and a side of the device. The gap is infinite if all posts overlap a
+        side."""
         x, y, diameter = self.circles.T
         gaps = np.concatenate([y, self.width - y]) - np.tile(diameter / 2, 2)
         return float(gaps.min(initial=np.inf, where=gaps > 0))
 
     def drawn_size(self) -> Numbers:
-        """Length and width of the drawing: the frame, or else posts and walls without a margin."""
+        """The length and the width of the drawing: those of the frame, or, without a frame, those of posts and walls
+        without a margin."""
         if self.has_frame:
             return np.array([self.length, self.width])
         return np.ptp(np.vstack([surroundings(self.circles, self.others), *self.walls]), axis=0)
@@ -120,7 +131,7 @@ class Device:
 
 
 def length_in_metres(text: str, option: str) -> float:
-    """A length in metres from text such as 200um. @throws UserError"""
+    """Reads a length with its unit, such as 200um, in metres. @throws UserError"""
     found = re.fullmatch(r"([0-9.]+(?:e[+-]?[0-9]+)?)(nm|um|µm|mm|cm|mil|m|in)", text)
     try:
         value = float(found[1]) * METRES[found[2]] if found else 0.0
@@ -132,19 +143,20 @@ def length_in_metres(text: str, option: str) -> float:
 
 
 def unit_name(metres: float) -> str:
-    """A unit's name, such as um, or the unit's length if it has no name."""
+    """The name of a unit, such as um. A unit without a name gets its length instead."""
     return next((name for name, size in METRES.items() if np.isclose(size, metres, rtol=1e-6, atol=0)), f"{metres:.4g} m")
 
 
 def is_likely(length: float, width: float) -> bool:
-    """@param length, width  of a device [sigma]"""
+    """Whether a device of this size is likely. @param length, width  of the device [sigma]"""
     return max(length, width) <= LONGEST and min(length, width) >= 1
 
 
 def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_picture: bool) -> None:
-    """@param unit, metres  in which the drawing was read; @param is_picture  the drawing consists of pixels, whose size
-    is no unit.
-    @throws UserError  if the device is too large or too small for such droplets"""
+    """Refuses a device that is too large or too small for its droplets, because the unit is probably wrong.
+    @param unit, metres  unit in which the drawing was read, and its length
+    @param is_picture  whether the drawing consists of pixels
+    @throws UserError"""
     if is_likely(device.length, device.width):
         return
     drawn = device.drawn_size()
@@ -156,7 +168,8 @@ def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_pi
 
 
 def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
-    """Evenly spaced points along the edges. The corners of a square alone would lie on a circle."""
+    """Evenly spaced points along the edges. The corners alone would not be enough, because the corners of a square lie
+    on a circle."""
     ends = np.vstack([outline, outline[:1]]) if is_closed else outline
     ways = np.hypot(*np.diff(ends, axis=0).T)
     places = np.concatenate([[0], np.cumsum(ways)])
@@ -165,8 +178,8 @@ def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
 
 
 def fitted_circle(outline: Numbers, is_closed: bool, tolerance: float) -> tuple[float, float, float] | None:
-    """The closest circle to an outline by least squares (Kasa's method): x, y, diameter. None if a point deviates by
-    more than `tolerance` times the radius."""
+    """Fits a circle to an outline by least squares (Kasa's method). @return x, y and diameter; None if a point deviates
+    by more than `tolerance` times the radius"""
     points = along_edges(outline, is_closed)
     middle = points.mean(axis=0)
     near = points - middle
@@ -183,8 +196,9 @@ def fitted_circle(outline: Numbers, is_closed: bool, tolerance: float) -> tuple[
 
 
 def edges_among(outlines: list[Numbers], holes: list[Numbers], centres: Numbers) -> tuple[Numbers | None, list[Numbers]]:
-    """The edge of the device, and the other outlines. The edge is an outline that contains everything else; if a
-    rectangle or hole in it contains all the rest, this is the edge. @param centres  of circles"""
+    """The edge of the device, and the other outlines. The edge is an outline that contains everything else. If a
+    rectangle or a hole within this outline contains all the rest, the rectangle or hole is the edge.
+    @param centres  of circles"""
     edge: Numbers | None = None
     while (index := holder_among(outlines, centres)) is not None and (edge is None or walls.is_rectangle(outlines[index])):
         edge, outlines = outlines[index], outlines[:index] + outlines[index + 1:]
@@ -195,20 +209,21 @@ def edges_among(outlines: list[Numbers], holes: list[Numbers], centres: Numbers)
 
 
 def holder_among(outlines: list[Numbers], centres: Numbers) -> int | None:
-    """Index of the outline that contains everything else."""
+    """The index of the outline that contains everything else, or None."""
     if len(outlines) + len(centres) < 2:
         return None
     return next((index for index, outline in enumerate(outlines) if holds(outline, [*outlines, centres])), None)
 
 
 def holds(outline: Numbers, others: list[Numbers]) -> bool:
-    """Whether all points are in the box around an outline."""
+    """Whether all points are in the bounding box of an outline."""
     points = np.vstack(others)
     return bool((outline.min(axis=0) <= points.min(axis=0)).all() and (outline.max(axis=0) >= points.max(axis=0)).all())
 
 
 def distinct(circles: Numbers) -> Numbers:
-    """Removes circles that are drawn twice. The two may differ slightly, because curves in a drawing are inaccurate."""
+    """Removes circles that are drawn twice. Two copies may differ slightly, because curves in a drawing are
+    inaccurate."""
     kept: list[int] = []
     for index in np.argsort(circles[:, 0], kind="stable"):
         near = np.array(kept[-WINDOW:], dtype=int)
@@ -218,8 +233,11 @@ def distinct(circles: Numbers) -> Numbers:
 
 
 def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float, turns: int) -> Device:
-    """@param metres  length of the drawing's unit; @param droplet  diameter of the droplet [m]; @param turns  number of
-    turns by 90 degrees counter-clockwise that bring the flow to +x. @throws UserError  for an empty drawing"""
+    """Interprets a drawing as a device.
+    @param metres  length of the drawing's unit
+    @param droplet  diameter of the droplet [m]
+    @param turns  number of counter-clockwise turns by 90 degrees that make the flow point along +x
+    @throws UserError  for an empty drawing"""
     found, others = list(drawing.circles), []
     outlines = drawing.outlines
     edge: Numbers | None = None
@@ -238,7 +256,7 @@ def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float
 
 
 def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tuple[float, ...] | None, scale: float, droplet: float, turns: int) -> Device:
-    """Points turned, moved to (0, 0), and in droplet diameters."""
+    """Turns all points, moves them to (0, 0), and converts lengths to droplet diameters."""
     turn = scale * np.linalg.matrix_power(np.array([[0, -1], [1, 0]]), turns % 4)
     circles = np.column_stack([circles[:, :2] @ turn.T, scale * circles[:, 2]])
     others = [outline @ turn.T for outline in others]
@@ -269,19 +287,20 @@ def is_within(line: Numbers, edges: Numbers) -> bool:
 
 
 def surroundings(circles: Numbers, others: list[Numbers]) -> Numbers:
-    """Points with the same bounding box as all posts together."""
+    """Points that have the same bounding box as all posts together."""
     radii = circles[:, 2:] / 2
     return np.vstack([circles[:, :2] - radii, circles[:, :2] + radii, *others])
 
 
 def as_circles(device: Device) -> Device:
-    """The device with a circle of the same area in place of each outline that is not round."""
+    """The device with a circle in place of each outline that is not round. The circle has the same area as the
+    outline."""
     made = [(*centroid(outline), 2 * np.sqrt(abs(area(outline)) / np.pi)) for outline in device.others]
     return dataclasses.replace(device, circles=np.vstack([device.circles, np.array(made or np.empty((0, 3)))]), others=[])
 
 
 def csv_of(device: Device, source: str) -> str:
-    """A file of circles for clogsweep, in micrometres. Rounded to a nanometre."""
+    """A CSV file of circles for clogsweep, in micrometres, rounded to a nanometre."""
     unit = device.droplet_micrometres
     lines = [f"# circles of {source}", f"# units=um droplet={unit:.10g}um", f"# the device is {device.length * unit:.10g} long and {device.width * unit:.10g} wide", "x,y,diameter"]
     lines += [",".join(f"{round(value * unit, 3):.12g}" for value in circle) for circle in device.circles]

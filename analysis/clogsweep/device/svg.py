@@ -1,4 +1,5 @@
-"""Outlines of SVG drawings, with all transforms. Length unit: a CSS pixel, 96 in an inch."""
+"""Reads outlines from SVG drawings, and applies all transforms. The unit of length is a CSS pixel. An inch has 96 of
+them."""
 
 from __future__ import annotations
 
@@ -20,14 +21,16 @@ from .shapes import Drawing, holds
 
 METRES_IN_PIXEL = 25.4e-3 / 96
 LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
-PIECES_OF_CURVE = 64  # straight pieces of each curved segment: those of a quarter of a circle deviate by 2e-5 of its radius
+# Number of straight pieces of each curved segment. For a quarter of a circle they deviate by 2e-5 of its radius.
+PIECES_OF_CURVE = 64
 NAMESPACE = "{http://www.w3.org/2000/svg}"
-TEMPLATES = [NAMESPACE + name for name in ("symbol", "marker", "mask")]  # drawn only if something refers to them
+# Elements that are drawn only if something refers to them.
+TEMPLATES = [NAMESPACE + name for name in ("symbol", "marker", "mask")]
 LINKS = ("href", "{http://www.w3.org/1999/xlink}href")
 
 
 def read_svg(path: pathlib.Path) -> Drawing:
-    """Visible circles, and closed outlines with their curves."""
+    """Reads visible circles and closed outlines, including curves."""
     svgelements = library("svgelements", "python3-svgelements")
     root = ElementTree.parse(path).getroot()
     expand(root, {element.get("id"): element for element in root.iter()}, path)
@@ -65,17 +68,17 @@ def read_svg(path: pathlib.Path) -> Drawing:
 
 
 def transform_length(matrix: Any) -> float:
-    """Average factor by which a matrix of the library scales lengths."""
+    """The average factor by which a matrix of the library scales lengths."""
     return float(np.sqrt(abs(matrix.determinant)))
 
 
 def is_painted(colour: Any) -> bool:
-    """@param colour  fill or stroke, as the library reads it"""
+    """Whether a fill or a stroke is visible. @param colour  of the fill or stroke, as the library reads it"""
     return colour is not None and colour.value is not None and colour.opacity > 0
 
 
 def invisible(element: Any) -> str:
-    """Why a shape is invisible; empty if it is visible."""
+    """The reason why a shape is invisible, or an empty text if it is visible."""
     if element.values.get("visibility") in ("hidden", "collapse"):
         return "hidden"
     if number(element.values.get("opacity", "1")) == 0:
@@ -84,7 +87,7 @@ def invisible(element: Any) -> str:
 
 
 def number(text: Any) -> float:
-    """An opacity as a number; 1 if the text is no number."""
+    """An opacity as a number. Text that is no number counts as 1."""
     try:
         return float(str(text).rstrip("%"))
     except ValueError:
@@ -92,22 +95,23 @@ def number(text: Any) -> float:
 
 
 def expand(element: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> None:
-    """Replaces each <use> by a group with a copy of its target, because the library does this wrongly: it drops
-    references to elements further down in the file, draws a <symbol> where it is defined, and ignores the viewBox of a
-    <symbol>."""
+    """Replaces each <use> by a group with a copy of its target.
+
+    The library makes three mistakes in this step: it drops references to elements further down in the file, draws a
+    <symbol> where it is defined, and ignores the viewBox of a <symbol>."""
     element[:] = [group_of(child, by_id, path) if child.tag == NAMESPACE + "use" else child for child in element if child.tag not in TEMPLATES]
     for child in element:
         expand(child, by_id, path)
 
 
 def group_of(use: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> Any:
-    """@throws UserError  if the file lacks the target"""
+    """A group with a copy of the target of a <use>. @throws UserError  if the file lacks the target"""
     link = next((use.get(name) for name in LINKS if use.get(name)), "")
     if link[:1] != "#" or link[1:] not in by_id:
         raise UserError(f"cannot read {path} (<use> refers to '{link[:60]}', which is not in the file); embed it, or unlink clones, in the drawing program")
     original = copy.deepcopy(by_id[link[1:]])
     if original.tag == NAMESPACE + "symbol":
-        original.tag = NAMESPACE + "svg"  # a <symbol> is drawn like an <svg> inside the drawing
+        original.tag = NAMESPACE + "svg"  # A <symbol> is drawn like an <svg> inside the drawing.
         original.attrib.update({name: use.get(name) for name in ("width", "height") if use.get(name)})
     attributes = {name: value for name, value in use.attrib.items() if name not in ("x", "y", "width", "height", *LINKS)}
     attributes["transform"] = f"{use.get('transform', '')} translate({use.get('x', 0)}, {use.get('y', 0)})"
@@ -117,9 +121,12 @@ def group_of(use: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> Any:
 
 
 class Clips:
-    """The part of a shape inside its own clip-path or the clip-path of a group around it. The library ignores clips. So
-    the shapes of each clip are added to the clipped group, where they get its transform. Attributes that the library
-    keeps mark these shapes, and the shapes that they clip."""
+    """Clips shapes: only the part inside a clip-path is visible. The clip-path belongs to the shape itself or to a
+    group around it.
+
+    The library ignores clip-paths. So the shapes of each clip-path are added to the clipped group, and the library
+    applies the group's transform to them. Both the clipping and the clipped shapes are marked with attributes that the
+    library keeps."""
 
     SHAPE, USED = "clip-shape", "clipped-by"
 
@@ -139,7 +146,8 @@ class Clips:
         return next((link.strip(" '\"#") for link in [*(found[1] for found in (styled, own) if found), *classes]), "")
 
     def _draw(self, element: Any, outer: str) -> None:
-        """@param outer  numbers of the clips around the element"""
+        """Adds the shapes of clip-paths to the groups that they clip. @param outer  numbers of the clips around the
+        element"""
         for index, child in enumerate(list(element)):
             if child.tag in (NAMESPACE + "clipPath", NAMESPACE + "defs"):
                 continue
@@ -160,14 +168,14 @@ class Clips:
             self._draw(child, clips)
 
     def define(self, values: dict[str, Any], parts: list[Numbers]) -> bool:
-        """Whether a shape is part of a clip."""
+        """Stores a shape if it is part of a clip. @return whether it is"""
         name = values.get(self.SHAPE)
         if name is not None:
             self._areas[name] += [part for part in parts if len(part) > 2]
         return name is not None
 
     def cut(self, found: Drawing, values: dict[str, Any], tag: Any, corners: Numbers) -> None:
-        """Adds the visible part of an outline or line."""
+        """Adds the part of an outline or a line that is inside all its clips."""
         clips = [self._areas[name] for name in values.get(self.USED, "").split()]
         if len(corners) == 0 or all(len(clip) == 1 and walls.is_rectangle(clip[0][:-1]) and holds(clip[0], [corners]) for clip in clips):
             add(found, corners)
@@ -188,7 +196,7 @@ class Clips:
 
 
 def corners_of(svgelements: Any, outline: Any) -> Numbers:
-    """Corners of straight parts, and points along curves, before any transform."""
+    """The corners of straight parts, and points along curves. No transform is applied."""
     points: list[tuple[float, float]] = []
     for segment in outline:
         is_straight = isinstance(segment, (svgelements.Move, svgelements.Line, svgelements.Close))
@@ -198,14 +206,14 @@ def corners_of(svgelements: Any, outline: Any) -> Numbers:
 
 
 def applied(matrix: Any) -> Any:
-    """A function that transforms points (n, 2) into the drawing's axes, y upwards."""
+    """Returns a function that transforms points (n, 2) into the coordinates of a Drawing, with y upwards."""
     linear = np.array([[matrix.a, matrix.c], [-matrix.b, -matrix.d]], dtype=float)
     shift = np.array([matrix.e, -matrix.f], dtype=float)
     return lambda points: np.asarray(points) @ linear.T + shift
 
 
 def add(found: Drawing, corners: Numbers) -> None:
-    """Adds a path as an outline if its ends meet, otherwise as a line."""
+    """Adds a path as an outline if its ends meet, and as a line otherwise."""
     size = float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0
     if size == 0:
         if len(corners) > 1:

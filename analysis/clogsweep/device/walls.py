@@ -1,4 +1,5 @@
-"""Side walls that are drawn as long, thin outlines or as lines: side-walls=on replaces them, so they are not posts."""
+"""Finds side walls that are drawn as long, thin outlines or as lines. Side walls are no posts: side-walls=on replaces
+them."""
 
 from __future__ import annotations
 
@@ -6,14 +7,14 @@ import numpy as np
 
 from ..tools.hints import Numbers
 
-SHARE = 0.9  # an outline at a side is a wall if its length is at least this fraction of the device's length
-SLENDER = 3  # smallest length of a wall divided by its thickness, so that square posts are no walls
-FLAT = 0.05  # largest deviation of a wall's outline from a rectangle [sigma]
+SHARE = 0.9  # An outline at a side is a wall if its length is at least this fraction of the device's length.
+SLENDER = 3  # Smallest length of a wall divided by its thickness. So square posts are no walls.
+FLAT = 0.05  # Largest deviation of a wall's outline from a rectangle [sigma].
 
 
 def among(circles: Numbers, outlines: list[Numbers], lines: list[Numbers], length: float) -> tuple[list[Numbers], list[Numbers]]:
-    """The lower and the upper walls among outlines and lines, the nearest to the posts first, all in droplet diameters.
-    None if no other post would remain."""
+    """The lower and the upper walls among outlines and lines. The walls nearest to the posts come first. Lengths are in
+    droplet diameters. If no other post would remain, both lists are empty."""
     flat = [candidate for candidate in [*outlines, *lines] if is_wall(candidate, length)]
     posts = np.array([*circles[:, 1], *(outline.mean(axis=0)[1] for outline in outlines if not is_one_of(outline, flat))])
     if len(posts) == 0:
@@ -28,7 +29,7 @@ def is_one_of(outline: Numbers, others: list[Numbers]) -> bool:
 
 
 def is_wall(outline: Numbers, length: float) -> bool:
-    """Whether an outline is a flat rectangle along the flow, which a wall with teeth is not."""
+    """Whether an outline is a flat rectangle along the flow. A wall with teeth is not flat."""
     low, high = outline.min(axis=0), outline.max(axis=0)
     along, across = high - low
     if along < SHARE * length or along < SLENDER * across:
@@ -38,7 +39,7 @@ def is_wall(outline: Numbers, length: float) -> bool:
 
 
 def area(outline: Numbers) -> float:
-    """The area within a closed outline, positive if the outline is counter-clockwise."""
+    """The area within a closed outline. The area is positive if the outline is counter-clockwise."""
     x, y = outline.T
     return float(0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
 
@@ -52,5 +53,5 @@ def centroid(outline: Numbers) -> Numbers:
 
 
 def is_rectangle(outline: Numbers) -> bool:
-    """Whether the outline is a rectangle along the axes."""
+    """Whether the outline is a rectangle with sides parallel to the axes."""
     return abs(area(outline)) >= 0.98 * float(np.ptp(outline, axis=0).prod())

@@ -1,4 +1,4 @@
-"""How many ranks were busy during the sessions of a sweep, and the time lost by idle ones."""
+"""Shows how many ranks were busy during the sessions of a sweep, and how much time idle ranks lost."""
 
 from __future__ import annotations
 
@@ -12,17 +12,18 @@ from .. import style
 from ..tools import rounded
 
 Session = dict[str, Any]
-UNITS = [("s", 1.0, 120.0), ("min", 60.0, 7200.0), ("h", 3600.0, float("inf"))]  # name, length in seconds, largest time that is given in it [s]
+# Name of a unit of time, its length [s], and the largest time that is given in this unit [s].
+UNITS = [("s", 1.0, 120.0), ("min", 60.0, 7200.0), ("h", 3600.0, float("inf"))]
 
 
 def sessions_of(attributes: dict[str, str]) -> list[Session]:
-    """The sessions of a sweep's file in which a task ran; files of older programs have none."""
+    """The sessions in which a task of the sweep ran. Files of older programs have no sessions."""
     lines = attributes.get("activity", "").splitlines()
     return [session for session in map(json.loads, lines) if session["seconds"] > 0 and any(session["busy"])]
 
 
 def draw_on(axes: Axes, sessions: Sequence[Session]) -> None:
-    """Draws one session after the other."""
+    """Draws the sessions one after the other."""
     whole = sum(session["seconds"] for session in sessions)
     name, unit, _ = next(known for known in UNITS if whole <= known[2])
     begin = 0.0

@@ -1,4 +1,4 @@
-"""Clogged droplets of a sweep, replayed until they rest, and their mechanisms."""
+"""Draws clogged droplets of a sweep and their mechanisms. The droplets are replayed until they rest."""
 
 from __future__ import annotations
 
@@ -27,21 +27,22 @@ MECHANISMS = ("wrapped", "squeezed", "hybrid", "other")
 
 
 def of_polygons(rows: Records, path: object) -> list[np.void]:
-    """Rows of the polygons that have clogged. @param path  the sweep's file. @throws UserError  if they were in a
-    channel or on a wall"""
+    """The rows of the polygons that have clogged. @param path  the sweep's file. @throws UserError  if the droplets
+    were in a channel or on a wall"""
     if len(rows) > 0 and rows["obstacle_filling"][0] in (b"channel", b"wall"):
         raise UserError(f"cannot draw clogs of {path} (its droplets were in a channel or on a wall); clogfit report draws their results")
     return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"]
 
 
 def mechanism_of(row: np.void) -> str:
-    """The mechanism, by the name that clogfit uses: `other` if it is not wrapped, squeezed or hybrid."""
+    """The mechanism by the name that clogfit uses. Every mechanism except wrapped, squeezed and hybrid is `other`."""
     name = stored.text(row["mechanism"])
     return name if name in MECHANISMS else "other"
 
 
 def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: Collection[int] | None, most: int) -> list[np.void]:
-    """@param rows  clogs of the sweep. @throws UserError  if there are none, or if one of `tasks` has no clog"""
+    """Chooses the clogs to draw. @param rows  clogs of the sweep. @throws UserError  if there are none, or if one of
+    `tasks` has no clog"""
     if not rows:
         raise UserError(f"{path} holds no clogged polygon (soft disks do not count); resume it, or sweep with a longer max-time into another file")
     if mechanism not in (None, *MECHANISMS):
@@ -56,13 +57,13 @@ def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: C
 
 @dataclasses.dataclass(frozen=True)
 class Clog:
-    """A droplet at rest. Shows itself in a notebook."""
+    """A droplet at rest. In a notebook the object shows itself as a picture."""
 
-    row: np.void  # the sweep's row
-    polygon: Numbers  # 2 x N, the interface that walls meet [sigma]
-    obstacles: Numbers  # n x 3: x, y, diameter [sigma]
-    wedges: Numbers  # n x 6: side walls, as in a trajectory's file [sigma]
-    source: str = ""  # provenance of the row, in words
+    row: np.void  # The sweep's row.
+    polygon: Numbers  # Vertices of the interface that meets walls, 2 x N [sigma].
+    obstacles: Numbers  # Array n x 3 of x, y and diameter [sigma].
+    wedges: Numbers  # Side walls as in a trajectory's file, n x 6 [sigma].
+    source: str = ""  # Provenance of the row, in words.
 
     @property
     def task(self) -> int:
@@ -85,7 +86,7 @@ class Clog:
 
 
 class Clogs(Sequence[Clog]):
-    """Several clogs of a sweep. They show themselves on one sheet."""
+    """Several clogs of a sweep. In a notebook the object shows all of them on one sheet."""
 
     def __init__(self, clogs: list[Clog]) -> None:
         self._clogs = clogs
@@ -117,16 +118,18 @@ class Clogs(Sequence[Clog]):
 
 
 def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, source: str, row: np.void, folder: str) -> Clog:
-    """@throws ProgramFailed"""
+    """Computes a run again until its droplet rests. @throws ProgramFailed"""
     output = pathlib.Path(folder) / f"{row['task']}.h5"
-    # --to-rest: a run whose clog was certified ends before the droplet reaches the equilibrium in its row.
+    # A run whose clog was certified ended before the droplet reached the equilibrium that is in its row. With --to-rest
+    # the replay continues to the equilibrium.
     replays.replay(clogrun, sweep, row["task"], output, "--to-rest", "--polygon-interval", "1e9", "--sample-interval", "1e9")
     with stored.opened(output) as file:
         return Clog(row, trajectory.refined(file["polygons"][-1], row), file["obstacles"][:], file["wedges"][:] if "wedges" in file else np.empty((0, 6)), source)
 
 
 def run_all(clogrun: pathlib.Path, sweep: pathlib.Path, rows: Sequence[np.void], jobs: int) -> Clogs:
-    """@param jobs  number of simultaneous replays. @throws UserError  with clogrun's reason"""
+    """Computes several runs again. @param jobs  number of simultaneous replays. @throws UserError  with clogrun's
+    reason"""
     with stored.opened(sweep, folder=clogrun.parent) as file:
         source = stored.source(stored.attributes(file))
     with tempfile.TemporaryDirectory(prefix="clogsweep-clogs-") as folder, concurrent.futures.ThreadPoolExecutor(jobs) as pool:
@@ -137,7 +140,7 @@ def run_all(clogrun: pathlib.Path, sweep: pathlib.Path, rows: Sequence[np.void],
 
 
 def distances(polygon: Numbers, obstacle: Numbers) -> Numbers:
-    """Distance of each edge from an obstacle's surface."""
+    """The distance of each edge from the surface of an obstacle."""
     begin, way = polygon, np.roll(polygon, -1, axis=1) - polygon
     to_centre = obstacle[:2, None] - begin
     along = np.clip((to_centre * way).sum(axis=0) / (way**2).sum(axis=0), 0, 1)
@@ -145,7 +148,7 @@ def distances(polygon: Numbers, obstacle: Numbers) -> Numbers:
 
 
 def distances_to_wedge(polygon: Numbers, wedge: Numbers) -> Numbers:
-    """Distance of each edge from a wedge's surface, measured at the edge's nearer end."""
+    """The distance of each edge from the surface of a wedge, measured at the nearer end of the edge."""
     tip, axis, half_angle, radius = wedge[:2], wedge[2:4], wedge[4], wedge[5]
     from_centre = polygon - (tip + radius * axis)[:, None]
     along, across = axis @ from_centre, np.abs([-axis[1], axis[0]] @ from_centre)
@@ -156,14 +159,15 @@ def distances_to_wedge(polygon: Numbers, wedge: Numbers) -> Numbers:
 
 
 def overlaps(clog: Clog) -> Numbers:
-    """Overlap of every obstacle, then every wedge (rows), with every edge (columns) [sigma]; above 0 they touch."""
+    """The overlap of each edge (columns) with each obstacle and then each wedge (rows) [sigma]. An edge touches a
+    surface if the overlap is positive."""
     surfaces = [distances(clog.polygon, obstacle) for obstacle in clog.obstacles]
     surfaces += [distances_to_wedge(clog.polygon, wedge) for wedge in clog.wedges]
     return clog.row["contact_range"] - np.array(surfaces)
 
 
 def title(row: np.void) -> str:
-    """Describes in words the droplet and its clog."""
+    """Describes the droplet and its clog in words."""
     wrapped = f"{row['num_wrapped']} wrapped ({100 * row['wrapped_support']:.0f} % of support)" if row["num_wrapped"] > 0 else "none wrapped"
     return (rf"{mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$, task {row['task']}" "\n"
             rf"$\Gamma = {row['line_tension']:.4g}$, minimum gap ${row['obstacle_gap']:.4g}\,\sigma$, seed {row['seed']}" "\n"
@@ -171,13 +175,13 @@ def title(row: np.void) -> str:
 
 
 def view_of(clogs: Sequence[Clog]) -> Numbers:
-    """Width and height with room for each of the clogs and for the guides [sigma]."""
+    """Width and height of a view that has room for each of the clogs and for the guides [sigma]."""
     width, height = np.max([np.ptp(clog.polygon, axis=1) for clog in clogs], axis=0) + 0.6
     return np.array([max(width, height / 1.4), max(1.2 * height, 0.5 * width)])
 
 
 def draw(axes: Axes, clog: Clog, view: Numbers, has_guides: bool = True) -> None:
-    """Draws a clog, with the droplet in the middle. @param view  from view_of()"""
+    """Draws a clog. The droplet is in the middle. @param view  from view_of()"""
     polygon = clog.polygon
     middle = (polygon.min(axis=1) + polygon.max(axis=1)) / 2
     interface = polygon - middle[:, None]
@@ -200,7 +204,7 @@ def draw(axes: Axes, clog: Clog, view: Numbers, has_guides: bool = True) -> None
 
 
 def sheet(clogs: Sequence[Clog]) -> Figure:
-    """All clogs in one scale, with the guides in the first panel."""
+    """Draws all clogs on the same scale. The first panel has the guides."""
     view = view_of(clogs)
     across = min(3 if view[0] > 1.5 * view[1] else 4, len(clogs))
     down = -(-len(clogs) // across)

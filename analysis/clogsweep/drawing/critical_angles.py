@@ -1,4 +1,4 @@
-"""Critical angles of lattices vs line tension, or another parameter."""
+"""Draws the critical angles of lattices against the line tension, or against another parameter."""
 
 import pandas
 from matplotlib.axes import Axes
@@ -12,7 +12,8 @@ FOUND = ("lower", "upper", "runs")
 
 
 def abscissa_of(table: pandas.DataFrame) -> str:
-    """Line tension if it varies, otherwise the number with most values. @throws UserError  if there is none"""
+    """The parameter for the abscissa: the line tension if it varies, otherwise the number with the most values.
+    @throws UserError  if no number varies"""
     numbers = [name for name in table.select_dtypes("number") if name not in FOUND]
     if not numbers:
         raise UserError("cannot draw critical angles (one set of parameters has one angle, and nothing varies); vary line-tension")
@@ -20,7 +21,8 @@ def abscissa_of(table: pandas.DataFrame) -> str:
 
 
 def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> None:
-    """@param table  has the ends of the brackets, `lower` and `upper` [degrees], and the parameters that vary;
+    """Draws the critical angles.
+    @param table  with the ends of the brackets, `lower` and `upper` [degrees], and the parameters that vary
     @param columns  from clogsweep --schema"""
     abscissa = abscissa_of(table)
     others = [name for name in table if name not in (abscissa, *FOUND)]
@@ -31,10 +33,10 @@ def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> 
         look = style.curve_style(index)
         places = points[abscissa] * style.side_by_side(index, len(curves), table[abscissa].tolist())
         middle = (points["lower"] + points["upper"]) / 2
-        half = (points["upper"] - points["lower"]).fillna(0) / 2  # matplotlib takes no list of NaN alone
+        half = (points["upper"] - points["lower"]).fillna(0) / 2  # matplotlib refuses a list that contains only NaN.
         with style.curve(axes, label):
             axes.errorbar(places, middle, yerr=half, label=label or None, capsize=2, **look)
-            for bound, marker in (("lower", "^"), ("upper", "v")):  # brackets of which only one end is known
+            for bound, marker in (("lower", "^"), ("upper", "v")):  # draws brackets of which only one end is known
                 axes.plot(places[middle.isna()], points[bound][middle.isna()], marker, color=look["color"], fillstyle="none")
     style.logarithmic_abscissa(axes, table[abscissa].tolist())
     axes.set_xlabel(axis_label(columns[abscissa]))

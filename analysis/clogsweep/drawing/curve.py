@@ -1,4 +1,4 @@
-"""The figure of a sweep of droplets among obstacles."""
+"""Draws the curves of a sweep of droplets among obstacles."""
 
 from matplotlib.axes import Axes
 

@@ -1,4 +1,4 @@
-"""A device: where droplets of a sweep were released, where they passed, and where they clogged."""
+"""Draws a device, and shows where the droplets of a sweep were released, passed and clogged."""
 
 from __future__ import annotations
 
@@ -25,25 +25,26 @@ from . import device_plan
 
 T = TypeVar("T")
 MOST_PANELS = 6
-BESIDE, OF_LETTER = 0.9, 0.055  # width of the colour bar, or of the legend without its text; width of a letter of this text [inches]
-STEP = 0.1  # distance between two points of the path of a free droplet [sigma]
-CELL = 0.1  # side of a cell of the map of passages [sigma]
+# Width of the colour bar, or of the legend without its text, and width of a letter of this text [inches].
+BESIDE, OF_LETTER = 0.9, 0.055
+STEP = 0.1  # Distance between two points of the path of a free droplet [sigma].
+CELL = 0.1  # Side of a cell of the map of passages [sigma].
 
 
 @dataclasses.dataclass
 class Place:
-    """User-supplied circles, and the runs of a sweep among them."""
+    """User-supplied circles, and the runs of a sweep among these circles."""
 
     name: str
     circles: Numbers  # (n, 3): x, y, diameter
     length: float
     width: float
     has_walls: bool
-    exit: float  # 0: there is none
+    exit: float  # distance of the exit from the entrance, or 0 if there is no exit
     rows: Records
 
     def wrapped(self, points: Numbers) -> Numbers:
-        """Maps positions (n, 2) back into the device, along each direction in which it is periodic."""
+        """Maps positions (n, 2) back into the device in each direction in which the device is periodic."""
         x, y = points.T
         return np.column_stack([x if self.exit > 0 else x % self.length, y if self.has_walls else y % self.width])
 
@@ -68,7 +69,7 @@ class Place:
 
 
 def panel_label(groups: Groups, member: Group) -> str:
-    """What distinguishes a group, with the interfacial tension if there is a laboratory."""
+    """The parameters that distinguish a group. If the laboratory is known, they include the interfacial tension."""
     tension = member.get("tension_mN_per_m") if groups.varies("line_tension") else None
     return groups.label_of(member) + (f" ({rounded.plain(tension)} mN/m)" if tension else "")
 
@@ -79,15 +80,16 @@ class Part:
 
     label: str
     place: Place
-    lines: Sequence[Numbers] = ()  # the paths of centres that are drawn as lines (n, 2)
-    mapped: Sequence[Numbers] = ()  # the paths behind the map of passages (n, 2)
+    lines: Sequence[Numbers] = ()  # Paths of droplet centres that are drawn as lines (n, 2).
+    mapped: Sequence[Numbers] = ()  # Paths of droplet centres that make up the map of passages (n, 2).
 
 
 DEVICE_COLUMNS = ["obstacles", "obstacle_diameter", "box", "boxes", "length", "side_walls", "exit"]
 
 
 def places(path: AnyPath, folder: AnyPath | None = None) -> list[Place]:
-    """The devices of a sweep. @throws UserError  if it has none, or does not say where droplets were released"""
+    """The devices of a sweep. @throws UserError  if the sweep has no device, or does not state where droplets were
+    released"""
     with stored.opened(path, stored.SWEEP, folder) as file:
         rows, circles, names = file["runs"][:], stored.circles(file), stored.circle_files(file)
     own = rows[rows["obstacle_filling"] == b"file"]
@@ -108,7 +110,7 @@ def places(path: AnyPath, folder: AnyPath | None = None) -> list[Place]:
 
 
 def the_place(path: AnyPath, folder: AnyPath | None = None) -> Place:
-    """@throws UserError  as places(), and if there are several"""
+    """The only device of a sweep. @throws UserError  as places(), and if there are several devices"""
     found = places(path, folder)
     if len(found) > 1:
         names = ", ".join(sorted({f"{place.name}: {stored.text(place.rows[0]['obstacles'])}" for place in found}))
@@ -117,20 +119,21 @@ def the_place(path: AnyPath, folder: AnyPath | None = None) -> Place:
 
 
 def chosen(rows: Records, number: int) -> list[np.void]:
-    """The runs whose paths are shown: of all runs that are over, sorted by distance, evenly spaced ones."""
+    """Chooses the runs whose paths are shown. The runs that are over are sorted by distance, and evenly spaced ones are
+    taken."""
     over = np.sort(rows[np.isin(rows["status"], [b"clogged", b"flowing", b"passed", b"broken"])], order=["distance", "task"])
     return evenly(list(over), number)
 
 
 def evenly(members: list[T], number: int) -> list[T]:
-    """At most `number` of the members, evenly spaced, including the first and the last."""
+    """At most `number` of the members, evenly spaced, including the first and the last member."""
     if number == 0 or not members:
         return []
     return [members[i] for i in np.unique(np.linspace(0, len(members) - 1, min(number, len(members))).round().astype(int))]
 
 
 def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: int, jobs: int) -> list[Numbers]:
-    """The paths of the droplets' centres (n, 2), from replayed runs."""
+    """Replays runs. @return the paths of the droplets' centres (n, 2)"""
     rows = chosen(place.rows, number)
     if not rows:
         return []
@@ -143,8 +146,10 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
 
 def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> tuple[list[Part], int]:
     """The parameter sets that have a panel, with their paths, and the number of all parameter sets. Prints a line if
-    some parameter sets are left out. @param num_lines  number of runs of each panel whose paths are drawn as lines;
-    @param num_mapped  number of runs behind its map. @throws UserError  if no run has ended"""
+    some parameter sets are left out.
+    @param num_lines  number of runs of each panel whose paths are drawn as lines
+    @param num_mapped  number of runs in the map of each panel
+    @throws UserError  if no run has ended"""
     every = place.parts(groups)
     if not every:
         raise UserError(f"no run among the circles of {place.name} has ended; let the sweep finish some first")
@@ -158,14 +163,16 @@ def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: path
 
 
 def unbroken(points: Numbers, place: Place) -> Numbers:
-    """A path in the device, with a gap wherever it leaves the device at one side and enters it at the opposite side."""
+    """A path in the device. Where the path leaves the device at one side and enters it at the opposite side, it has a
+    gap."""
     inside = place.wrapped(points)
     jumps = np.flatnonzero((np.abs(np.diff(inside, axis=0)) > [place.length / 2, place.width / 2]).any(axis=1)) + 1
     return np.insert(inside, jumps, np.nan, axis=0)
 
 
 def draw_ends(axes: Axes, place: Place) -> None:
-    """Draws where droplets clogged and by which mechanism, and where they passed the exit, broke up, or ran out of time."""
+    """Draws where droplets clogged and by which mechanism. Also draws where droplets passed the exit, broke up, or ran
+    out of time."""
     ends = place.wrapped(place.ends)
     words = {"flowing": (".", "0.2", "still moving"), "passed": (">", "0.2", "passed"), "broken": ("*", style.CAUSE_COLOURS["broken"], "broken")}
     for status, (marker, colour, name) in words.items():
@@ -183,7 +190,7 @@ def draw_ends(axes: Axes, place: Place) -> None:
 
 
 def came_past(place: Place) -> tuple[Numbers, Numbers]:
-    """Places along the flow, and the number of droplets that passed each at least once."""
+    """Places along the flow, and for each place the number of droplets that passed it at least once."""
     cells = np.linspace(0, place.length, 201)
     middles = (cells[1:] + cells[:-1]) / 2
     if place.exit > 0:
@@ -208,8 +215,8 @@ def draw_passages(axes: Axes, parts: Sequence[Part]) -> None:
 
 
 def passages(place: Place, ways: Sequence[Numbers]) -> Numbers:
-    """Fraction of the droplets that passed over each cell (y, x) of the device, each as a disk of its diameter around
-    its centre."""
+    """The fraction of the droplets that passed over each cell (y, x) of the device. Each droplet covers a disk of its
+    diameter around its centre."""
     rows, columns = (max(1, round(size / CELL)) for size in (place.width, place.length))
     reach = np.arange(-int(0.5 / CELL), int(0.5 / CELL) + 1)
     disk = np.array([(i, j) for i in reach for j in reach if np.hypot(i, j) * CELL < 0.5])
@@ -218,7 +225,7 @@ def passages(place: Place, ways: Sequence[Numbers]) -> Numbers:
         points = place.wrapped(along(way))
         cells = np.unique((points / (place.length, place.width) * (columns, rows)).astype(int), axis=0)[:, ::-1]
         covered = (cells[:, None, :] + disk[None, :, :]).reshape(-1, 2)
-        # No droplet moves beyond a wall or an exit; in other directions the device repeats.
+        # No droplet moves beyond a wall or an exit. In a direction without walls or exit, the device repeats.
         inside = ((not place.has_walls) | (covered[:, 0] >= 0) & (covered[:, 0] < rows)) & ((place.exit == 0) | (covered[:, 1] >= 0) & (covered[:, 1] < columns))
         covered = covered[inside] % (rows, columns)
         over = np.zeros_like(counts, dtype=bool)
@@ -228,7 +235,7 @@ def passages(place: Place, ways: Sequence[Numbers]) -> Numbers:
 
 
 def along(way: Numbers) -> Numbers:
-    """Adds points where neighbouring points are farther apart than a cell."""
+    """Inserts points into a path where neighbouring points are farther apart than a cell."""
     ways = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))])
     wanted = np.linspace(0, ways[-1], int(ways[-1] / CELL) + 2)
     return np.column_stack([np.interp(wanted, ways, way[:, axis]) for axis in (0, 1)])
@@ -242,7 +249,7 @@ def draw_map(axes: Axes, part: Part) -> AxesImage:
 
 
 def draw_scale(figure: Figure, panels: Sequence[Axes], drawn: AxesImage, parts: Sequence[Part]) -> None:
-    """Explains the colours of the maps."""
+    """Draws the colour bar of the maps."""
     counts = {len(part.mapped) for part in parts if part.mapped}
     most = ("" if len(counts) == 1 else "up to ") + rounded.counted(max(counts), "droplet")
     scale = figure.colorbar(drawn, ax=list(panels), pad=0.01, fraction=0.05)
@@ -265,9 +272,10 @@ def draw_part(axes: Axes, part: Part, legend_columns: int) -> None:
 
 
 def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None) -> Figure:
-    """Draws a panel for each part, and a strip that compares the parts. @param parts  of one device; @param num_parts
-    number of all parameter sets of the device;
-    @param droplet_mm  diameter of the droplet, if it is known [mm]"""
+    """Draws a panel for each part, and a strip that compares the parts.
+    @param parts  of one device
+    @param num_parts  number of all parameter sets of the device
+    @param droplet_mm  diameter of the droplet [mm], if it is known"""
     place = parts[0].place
     beside = BESIDE + OF_LETTER * max(len(part.label) for part in parts) if len(parts) > 1 else BESIDE if parts[0].mapped else 0
     figure, (*panels, below) = device_plan.axes_for(place.length, place.width, len(parts), strip=1.5, beside=beside)
@@ -289,8 +297,8 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
 
 
 def align(strip: Axes, panel: Axes) -> None:
-    """Makes the strip as wide as the panel above it. Because a panel has equal scales, it may be narrower than its slot
-    in the layout."""
+    """Makes the strip as wide as the panel above it. A panel has equal scales, so it may be narrower than its slot in
+    the layout."""
     strip.figure.draw_without_rendering()
     strip.figure.set_layout_engine("none")
     panel.apply_aspect()

@@ -1,4 +1,4 @@
-"""A device on paper: posts, edges, the direction of the flow; and the interpretation of a drawing."""
+"""Draws a device with its posts, its edges and the direction of the flow, and shows how a drawing was interpreted."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from ..tools.hints import Numbers
 from ..tools.texts import literal
 from . import surroundings
 
-WIDEST, NARROWEST = 14.0, 5.0  # limits of a figure's width [inches]
-TALLEST = 11.0  # largest height of all panels together [inches]
+WIDEST, NARROWEST = 14.0, 5.0  # Limits of a figure's width [inches].
+TALLEST = 11.0  # Largest height of all panels together [inches].
 RED = "#D00000"
 
 
 def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0, beside: float = 0.0) -> tuple[Figure, list[Axes]]:
-    """A figure and its axes, with equal scales along and across a device of this shape. Panels are in one column, or in
-    several if one column would be too tall.
-    @param strip  height of an additional panel below the devices [inches]; @param beside  width for what is drawn
-    beside the devices [inches]"""
+    """A figure and its axes. The scales along and across a device of this size are equal. Panels are in one column, or
+    in several columns if one would be too tall.
+    @param strip  height of an additional panel below the devices [inches]
+    @param beside  width for what is drawn beside the devices [inches]"""
     figure_width = min(WIDEST, max(NARROWEST, 0.45 * length))
     shapes = [(columns, -(-panels // columns)) for columns in range(1, panels + 1)]
     columns, rows = next((shape for shape in shapes if figure_width / shape[0] * shape[1] * width / length <= TALLEST), shapes[-1])
@@ -47,21 +47,21 @@ def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0, b
 
 
 def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> None:
-    """@param circles  (n, 3): x, y, diameter"""
+    """Draws posts as filled circles. @param circles  (n, 3): x, y, diameter"""
     rings = [Polygon(ring) for ring in rings_among(circles)]
     axes.add_collection(PatchCollection([*(Circle((x, y), diameter / 2) for x, y, diameter in circles), *rings], facecolor=colour, edgecolor="none"))
 
 
 def rings_among(circles: Numbers) -> list[Numbers]:
-    """Closed chains of overlapping circles, as centres (n, 2). They are drawn filled, because no droplet gets into the
-    space inside."""
+    """Closed chains of overlapping circles, as centres (n, 2). The space inside such a chain is drawn filled, because
+    no droplet can enter it."""
     def overlap(i: int, j: int) -> bool:
         return bool(np.hypot(*(circles[i, :2] - circles[j, :2])) < max(circles[i, 2], circles[j, 2]) / 2)
 
     breaks = [i for i in range(1, len(circles)) if not overlap(i - 1, i)]
     found = []
     for begin, end in zip([0, *breaks], [*breaks, len(circles)]):
-        # Circles that fill the inside of a post may follow its row.
+        # The row of circles along a post may be followed by circles that fill the inside of the post.
         last = next((j for j in range(end - 1, begin + 2, -1) if overlap(j, begin)), None)
         if last is not None:
             found.append(circles[begin:last + 1, :2])
@@ -69,8 +69,8 @@ def rings_among(circles: Numbers) -> list[Numbers]:
 
 
 def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[Numbers] = ()) -> None:
-    """The edge of the device, and its surroundings. @param beside  lines to include in the picture, unless they are
-    farther away than the size of the device"""
+    """Draws the edge of the device and its surroundings. @param beside  lines to include in the picture, unless they
+    are farther away than the size of the device"""
     axes.add_patch(Rectangle((0, 0), length, width, fill=False, edgecolor="0.3", linestyle=line))
     size = np.array([length, width])
     points = np.clip(np.vstack([np.zeros(2), size, *beside]), -size, 2 * size)
@@ -81,8 +81,8 @@ def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[N
 
 
 def draw_flow(axes: Axes, points_below: float) -> None:
-    """Draws an arrow along the flow, `points_below` points below the right end of the axes, where there are no
-    posts."""
+    """Draws an arrow along the flow, where there are no posts: below the right end of the axes, at a distance of
+    `points_below` points."""
     place = axes.transAxes + ScaledTranslation(0, -points_below / 72, axes.figure.dpi_scale_trans)
     start = axes.transAxes + ScaledTranslation(-0.6, -points_below / 72, axes.figure.dpi_scale_trans)
     axes.annotate("flow", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9, annotation_clip=False,
@@ -90,8 +90,8 @@ def draw_flow(axes: Axes, points_below: float) -> None:
 
 
 def understood(device: Device, source: str) -> Figure:
-    """Draws how a drawing was interpreted: posts grey, other shapes red, the edge dashed. @param source  name of the
-    drawing"""
+    """Draws how a drawing was interpreted. Posts are grey, other shapes are red, and the edge is dashed. @param source
+    name of the drawing"""
     figure, (axes,) = axes_for(device.length, device.width)
     draw_posts(axes, device.circles)
     for outline in device.others:

@@ -1,4 +1,4 @@
-"""The clogging length vs the waiting time after which a resting droplet counts as clogged."""
+"""Draws the clogging length against the waiting time after which a resting droplet counts as clogged."""
 
 from collections.abc import Sequence
 
@@ -16,19 +16,20 @@ NUM_TIMES = 12
 
 
 def times_of(groups: Groups) -> list[float]:
-    """Waiting times for all groups, evenly spaced on a logarithmic scale. @throws UserError  if there are none"""
+    """Waiting times for all groups, evenly spaced on a logarithmic scale. @throws UserError  if no waiting time is
+    possible"""
     known = [group["dwells_known_from"] for group in groups.members]
     if None in known:
         raise UserError("cannot draw dwells (the file holds rows of a version that did not look for them); compute the sweep anew, into another file")
     first, last = max(known), max(groups.values("max_time"))
     if not 0 < first < last:
         raise UserError(f"cannot draw dwells (they are known from {first:.4g} t0 on, and no run is longer); make max-time longer")
-    # clogfit would refuse a first time that is rounded down, so the ends are exact.
+    # clogfit would refuse a first time that is rounded down, so both ends are exact.
     return [first, *np.geomspace(first, last, NUM_TIMES)[1:-1].tolist(), last]
 
 
 def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
-    """@param fits  the groups of the sweep for each of these times"""
+    """Draws a curve for each group of the sweep. @param fits  the groups, fitted with each of these times"""
     figure, axes = style.subplots(figsize=(6.4, 4.8))
     curves = list(zip(*(groups.members for groups in fits)))
     for index, members in enumerate(curves):
@@ -48,11 +49,11 @@ def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
 
 
 def add_laboratory(axes: Axes, groups: Groups) -> None:
-    """Second scales in millimetres and seconds, if the sweep or clogfit has a laboratory."""
+    """Adds scales in millimetres and seconds, if the sweep or clogfit knows the laboratory."""
     lab = groups.laboratory
     if length := lab.get("length_mm"):
         add_scale(axes, "right", length, LABORATORY["length"])
     speeds = groups.values("terminal_speed")
     if length and (speed := lab.get("speed_mm_per_s")) and len(speeds) == 1:
-        # Motion is overdamped, so times scale with the ratio of the terminal speeds.
+        # Motion is overdamped, so all times are proportional to the inverse terminal speed.
         add_scale(axes, "top", speeds.pop() * length / speed, LABORATORY["time"])

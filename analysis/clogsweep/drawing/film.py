@@ -1,4 +1,5 @@
-"""A film of one droplet: the camera follows it, r(t) grows beside it, and the last frame shows how it ended."""
+"""Makes a film of one droplet. The camera follows the droplet, the curve r(t) grows beside it, and the last frame shows
+how the run ended."""
 
 import pathlib
 import shutil
@@ -26,23 +27,28 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from . import surroundings
 
-Pixels = npt.NDArray[np.uint8]  # height x width x 4: red, green, blue, alpha
+Pixels = npt.NDArray[np.uint8]  # height x width x 4, for red, green, blue and alpha
 
-FORMAT = (9.6, 5.4)  # inches
-SIZES = {"540p": 100, "1080p": 200, "2160p": 400}  # pixels per inch
-LINE = 0.002  # margin, as a fraction of the figure: without it half of the frame's line would be outside
-HEIGHT = 0.93  # height of the droplet's surroundings, as a fraction of the figure
-WIDTHS = {"speed": 0.91, "mechanism": 1 - 2 * LINE}  # their width, with and without room for a colour bar
-LONGEST_STEP = 0.5  # largest distance between two frames [sigma]: the eye cannot follow a droplet that moves farther
+FORMAT = (9.6, 5.4)  # Inches.
+SIZES = {"540p": 100, "1080p": 200, "2160p": 400}  # Pixels per inch.
+# Margin as a fraction of the figure. Without the margin, half of the line around the frame would be outside the
+# picture.
+LINE = 0.002
+HEIGHT = 0.93  # Height of the droplet's surroundings, as a fraction of the figure.
+# Width of the droplet's surroundings as a fraction of the figure, with and without room for a colour bar.
+WIDTHS = {"speed": 0.91, "mechanism": 1 - 2 * LINE}
+# Largest distance that the droplet moves between two frames [sigma]. The eye cannot follow a droplet that moves
+# farther.
+LONGEST_STEP = 0.5
 SECONDS_OF_VERDICT = 2
 ENDINGS = (".mp4", ".gif")
 COLOURS = tuple(WIDTHS)
-SHADES = 96  # number of colours in a palette for the first frame, and for the colour bar
+SHADES = 96  # Number of colours of a palette for the first frame, and number of colours for the colour bar.
 
 
 def chosen_frames(run: trajectory.Trajectory, most: int) -> npt.NDArray[np.int64]:
-    """Every n-th frame, at most `most` frames. If the droplet moved too far in n frames, n is reduced, and the film
-    shows only the end of the run."""
+    """Chooses every n-th frame, and at most `most` frames. If the droplet moved too far in n frames, n is reduced, and
+    the film shows only the end of the run."""
     count = len(run.times)
     way = np.abs(np.diff(trajectory.centroids(run.polygons), axis=0)).sum()
     step = max(1, -(-(count - 1) // max(1, most - 1)))
@@ -51,25 +57,25 @@ def chosen_frames(run: trajectory.Trajectory, most: int) -> npt.NDArray[np.int64
 
 
 def smoothed(values: Numbers, width: int) -> Numbers:
-    """Moving average with weights that rise and fall. @param width  in frames"""
+    """A moving average with weights that rise and fall. @param width  in frames"""
     weights = np.hanning(2 * width + 3)[1:-1]
     return np.asarray(ndimage.convolve1d(values, weights / weights.sum(), mode="nearest"))
 
 
 class Camera:
-    """Follows the droplet smoothly, and zooms out for a long droplet."""
+    """A view that follows the droplet smoothly, and zooms out if the droplet is long."""
 
-    HALF_HEIGHT = 2.0  # smallest value [sigma]
-    LEAD = 0.12  # the view's centre is this fraction of its width ahead of the droplet
+    HALF_HEIGHT = 2.0  # Smallest half height of the view [sigma].
+    LEAD = 0.12  # The centre of the view is ahead of the droplet by this fraction of the view's width.
 
     def __init__(self, polygons: Numbers, frames_of_a_turn: int, aspect: float) -> None:
-        """@param aspect  width divided by height of its view"""
+        """@param aspect  width of the view divided by its height"""
         low, high = polygons.min(axis=2), polygons.max(axis=2)
         length, height = (high - low).T
         half_height = np.maximum(self.HALF_HEIGHT, 0.75 * np.maximum(length / aspect, height))
         self._aspect = aspect
         self._middle = np.stack([smoothed(middle, frames_of_a_turn) for middle in ((low + high) / 2).T], axis=1)
-        # The average of local maxima is never too small for the droplet.
+        # The average of local maxima never makes the view too small for the droplet.
         self._half_height = smoothed(ndimage.maximum_filter1d(half_height, 2 * frames_of_a_turn + 1, mode="nearest"), frames_of_a_turn)
 
     def corners(self, frame: int) -> tuple[Numbers, Numbers]:
@@ -79,7 +85,7 @@ class Camera:
 
 
 class Layer:
-    """A static overlay: drawn once, then copied onto every frame."""
+    """A static overlay, which is drawn once and then copied onto every frame."""
 
     def __init__(self, figure: Figure, artists: Iterable[Artist]) -> None:
         renderer = figure.canvas.get_renderer()
@@ -97,17 +103,18 @@ class Layer:
 
 
 def pixels_of(figure: Figure) -> Pixels:
-    """The pixels drawn so far, not as a copy: further drawing changes them."""
+    """The pixels that are drawn so far. The array is no copy: further drawing changes it."""
     return np.asarray(figure.canvas.buffer_rgba())
 
 
 class Film:
     """One canvas on which a droplet moves from frame to frame.
 
-    Only moving parts are redrawn: the whole figure would take four times as long.
+    Only moving parts are redrawn, because the whole figure would take four times as long.
 
-    @param colour  "speed": the outline has the colour of its speed; "mechanism": the last frame shows how it clogged
-    @param size  of SIZES
+    @param colour  "speed": the outline is coloured by its speed; "mechanism": the last frame shows how the droplet
+    clogged
+    @param size  a key of SIZES
     """
 
     def __init__(self, run: trajectory.Trajectory, frames: Sequence[int] | npt.NDArray[np.int64], colour: str, rate: int, size: str = "1080p") -> None:
@@ -142,8 +149,8 @@ class Film:
         return self._axes.legend(handles=shown, loc="upper right", fontsize=9, edgecolor="0.7", framealpha=1)
 
     def _separate(self, inset: list[Artist], still: list[Artist]) -> None:
-        """Separates the static from the moving parts. The bar is as long as a droplet is wide, so it moves when the
-        camera zooms."""
+        """Separates the static parts from the moving parts. The scale bar is as long as a droplet is wide. So it
+        changes when the camera zooms."""
         under = [*self._axes.patches[:self._num_walls], self._obstacles, self._trail, self._inside, self._outline, self._frame]
         over = [self._course, self._head, self._clock, self._verdict]
         for artist in (*under, *inset, *still, *over, self._bar):
@@ -163,15 +170,16 @@ class Film:
     def _draw_droplet(self, colour: str) -> None:
         self._trail, = self._axes.plot([], [], color=style.DROPLET, linewidth=1.5, alpha=0.6)
         self._inside, = self._axes.fill([0], [0], facecolor=style.DROPLET if colour == "speed" else "0.6", alpha=0.75)
-        # One path per edge. All paths are views of one array: making new paths for each frame would take longer than
-        # drawing them.
+        # There is one path per edge. All paths are views of one array, because making new paths for each frame would
+        # take longer than drawing them.
         self._edges = np.zeros((self._run.polygons.shape[2], 2, 2))
         self._outline = PathCollection([Path(edge) for edge in self._edges], cmap="viridis", facecolor="none", linewidth=2, capstyle="round")
         self._axes.add_collection(self._outline)
         self._speeds = None
         if colour == "speed":
             self._speeds = trajectory.interface_speeds(self._run) / self._run.row["terminal_speed"]
-            # Without a limit the colours of a few fast moments would leave all other moments dark.
+            # Speeds above this limit share the brightest colour. Otherwise a few fast moments would leave all other
+            # moments dark.
             self._outline.set_norm(matplotlib.colors.Normalize(0, max(1e-3, np.percentile(self._speeds, 98))))
             self.figure.colorbar(self._outline, cax=self.figure.add_axes((0.92, 0.2, 0.012, 0.6)),
                                  label="speed of the interface $/v_t$")
@@ -180,7 +188,7 @@ class Film:
         self._colour_of_the_end = style.MECHANISM_COLOURS.get(self._run.word("mechanism")) if colour == "mechanism" else None
 
     def _draw_course(self) -> list[Artist]:
-        """@return the artists that are static"""
+        """Draws the axes of r(t). @return the artists that are static"""
         table = self._run.table
         paper = self._axes.add_patch(Rectangle((0.69, 0), 0.31, 0.37, transform=self._axes.transAxes, facecolor="white", alpha=0.85))
         inset = self._axes.inset_axes((0.745, 0.1, 0.24, 0.25))
@@ -198,7 +206,7 @@ class Film:
         return len(self._frames)
 
     def show(self, index: int) -> None:
-        """Moves the droplet, and draws nothing. @param index  index among the chosen frames"""
+        """Moves the droplet to a frame, but draws nothing. @param index  index among the chosen frames"""
         frame = self._frames[index]
         polygon = self._run.polygons[frame].T
         self._look(*self._camera.corners(index))
@@ -214,7 +222,7 @@ class Film:
             self._show_time(time, float(np.interp(time, table["time"], table["distance"])))
 
     def pixels(self, index: int) -> Pixels:
-        """A drawn frame, valid until the next one."""
+        """Draws a frame. @return its pixels, valid until the next frame is drawn"""
         self.show(index)
         canvas = self.figure.canvas
         self._renew_bar()
@@ -244,8 +252,8 @@ class Film:
         self._clock.set_text(f"t = {time:.0f} t\N{SUBSCRIPT ZERO},  r = {distance:.2f} \N{GREEK SMALL LETTER SIGMA}")
 
     def _show_end(self) -> None:
-        # If the clog is certified, its distance is that of the equilibrium, which is up to a hundredth of a diameter
-        # beyond the last frame.
+        # If the clog is certified, the row has the distance of the equilibrium. The equilibrium is up to a hundredth of
+        # a diameter beyond the last frame.
         self._show_time(self._run.row["time"], self._run.row["distance"])
         self._verdict.set_text(trajectory.verdict(self._run))
         self._verdict.set_visible(True)
@@ -253,7 +261,7 @@ class Film:
             self._inside.set_facecolor(self._colour_of_the_end)
 
     def play(self) -> Iterator[Pixels]:
-        """Draws one frame after the other, and reports its progress."""
+        """Draws one frame after the other, and reports the progress."""
         for index in progress.shown(range(len(self)), "drawing frame", len(self)):
             yield self.pixels(index)
 
@@ -265,14 +273,16 @@ class Film:
 
 
 def size_for(path: pathlib.Path | None) -> str:
-    """The default among SIZES. It is smaller for a .gif, because this is a large file that is held in memory.
-    @param path  of a film; None: pictures"""
+    """The default size, a key of SIZES. For a .gif the size is smaller, because such a file is large and is held in
+    memory.
+    @param path  of a film, or None for pictures"""
     return "540p" if path is not None and path.suffix == ".gif" else "1080p"
 
 
 def path_of(output: pathlib.Path) -> pathlib.Path:
-    """The file of a film: with the requested ending, or .mp4 with ffmpeg, .gif otherwise. @throws UserError  if it
-    cannot be made, or exists"""
+    """The file of a film. The file has the requested ending. If none is requested, it ends in .mp4 if ffmpeg is
+    installed, and in .gif otherwise.
+    @throws UserError  if such a film cannot be made, or if the file exists"""
     outputs.refuse_ending(output, *ENDINGS)
     has_ffmpeg = shutil.which("ffmpeg") is not None
     if output.suffix not in ENDINGS:
@@ -285,16 +295,16 @@ def path_of(output: pathlib.Path) -> pathlib.Path:
 
 
 def write_film(film: Film, path: pathlib.Path, rate: int) -> pathlib.Path:
-    """Writes a complete film, or nothing. @param path  see path_of(). @return the file written"""
+    """Writes a complete film, or no file. @param path  from path_of(). @return the file written"""
     with outputs.replaced(path) as fresh:
         (write_mp4 if path.suffix == ".mp4" else write_gif)(film, fresh, rate)
     return path
 
 
 def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
-    """@throws UserError  with the reason of ffmpeg"""
+    """Writes the film with ffmpeg. @throws UserError  with the reason of ffmpeg"""
     height, width, _ = pixels_of(film.figure).shape
-    # The encoder takes most of the time. With `veryfast` it takes two thirds of its default time, and the file is a
+    # The encoder takes most of the time. `veryfast` reduces its time to two thirds of the default, and makes the file a
     # sixth larger. Players require `yuv420p`.
     command = ["ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba", "-video_size", f"{width}x{height}", "-framerate", str(rate),
                "-i", "pipe:", "-c:v", "libx264", "-preset", "veryfast", "-pix_fmt", "yuv420p", f"file:{path}"]
@@ -305,21 +315,21 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
                 process.stdin.write(pixels.data)
             process.stdin.close()
         except BrokenPipeError:
-            pass  # ffmpeg has ended, and prints why
+            pass  # ffmpeg has ended, and prints the reason.
         if process.wait() != 0:
             said.seek(0)
             raise UserError(f"cannot write {path.name} (ffmpeg: {' '.join(said.read().decode(errors='replace').split())}); look at the folder and its disk")
 
 
 def palette_of(first: Pixels) -> Image.Image:
-    """One palette for all frames: the colours of the first frame, shades of the colour bar, greys, and colours that
-    only occur at the end."""
+    """One palette for all frames. The palette has the colours of the first frame, shades of the colour bar, greys, and
+    colours that only occur at the end."""
     seen = np.reshape(Image.fromarray(first[..., :3]).quantize(SHADES).getpalette()[:3 * SHADES], (-1, 3)) / 255
     bar = style.VIRIDIS(np.linspace(0, 1, SHADES))[:, :3]
     greys = np.repeat(np.linspace(0, 1, 32), 3).reshape(-1, 3)
     ends = matplotlib.colors.to_rgba_array(list(style.MECHANISM_COLOURS.values()))[:, :3]
     all_ = np.concatenate([seen, bar, greys, ends, 0.25 + 0.75 * ends])
-    # Pillow compares only some bits of a colour: white would become a lighter grey.
+    # Pillow compares only some bits of a colour, and would replace white by a light grey.
     is_white = all_.min(axis=1) > 0.97
     palette = Image.new("P", (1, 1))
     palette.putpalette([255, 255, 255, *(255 * all_[~is_white]).round().astype(int).ravel().tolist()])
@@ -334,13 +344,13 @@ def write_gif(film: Film, path: pathlib.Path, rate: int) -> None:
 
 
 def write_pictures(film: Film, output: str) -> pathlib.Path:
-    """Writes numbered pictures. @param output  their folder"""
+    """Writes numbered pictures into a folder. @param output  the folder"""
     folder = pathlib.Path(output)
     folder.mkdir(parents=True, exist_ok=True)
     for index, pixels in enumerate(film.play()):
         with outputs.replaced(folder / f"{index:05d}.png") as fresh:
             Image.fromarray(pixels[..., :3]).save(fresh)
-    # Frames that an earlier, longer film left behind do not belong to this one.
+    # Deletes pictures that an earlier, longer film left behind.
     for earlier in folder.glob("[0-9]" * 5 + ".png"):
         if int(earlier.stem) >= len(film):
             earlier.unlink()

@@ -1,4 +1,4 @@
-"""Clogging lengths and mean speeds vs the varied parameter, a curve for each obstacle array."""
+"""Draws clogging lengths and mean speeds against the varied parameter, with a curve for each obstacle array."""
 
 import functools
 import math
@@ -13,7 +13,7 @@ from ..labels.groups import Groups
 from ..tools import rounded
 from ..tools.hints import Group
 
-# The doubts of clogfit that concern a length itself, and the words that explain them in a note.
+# The doubts of clogfit that concern the length itself, with the words for them in a note.
 HOLLOW_MARKERS = {
     "few_clogs": "fewer than 5 clogs",
     "held_by_mesh": "clogs that the polygon's corners may hold",
@@ -25,21 +25,22 @@ HOLLOW_MARKERS = {
 
 
 def reasons_for_hollow_marker(group: Group) -> list[str]:
-    """The doubts that make a group's marker hollow. A group without clogs has no marker: its arrow shows that there are
-    few clogs."""
+    """The doubts that make a group's marker hollow. A group without clogs has an arrow instead of a marker, which
+    already shows that clogs are few."""
     return [doubt for doubt in style.doubts(group) if doubt in HOLLOW_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
 
 
 SPEED_NOTES = ["bars: standard errors"]
-NOTE_WIDTH = 100  # number of characters in a line below a picture
-OF_ALL_RUNS = "relative_speed_all"  # clogfit's name for distance divided by time, of runs of any distance
-THROUGH_BOUNDS = "_through bounds"  # label of a line that no legend shows
-FITTED = "_fitted"  # likewise
-FITTED_TO_COMMON_OBSTACLES = "_fitted, common obstacles"  # likewise, for points that share seeds
+NOTE_WIDTH = 100  # Number of characters in a line below a picture.
+# clogfit's name for distance divided by time, averaged over all runs whatever their distance.
+OF_ALL_RUNS = "relative_speed_all"
+THROUGH_BOUNDS = "_through bounds"  # The underscore hides a line from matplotlib's legends.
+FITTED = "_fitted"
+FITTED_TO_COMMON_OBSTACLES = "_fitted, common obstacles"  # Fitted curve through points that share seeds.
 
 
 def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> list[str]:
-    """Explains the bars, hollow markers, arrows and dotted lines of draw_lengths() that occur.
+    """Explains those bars, hollow markers, arrows and dotted lines of draw_lengths() that occur in the picture.
     @param panels  the axes with the curves
     @return  lines of text"""
     labels = {line.get_label() for axes in panels for line in axes.lines}
@@ -59,13 +60,15 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
 
 
 def excluded_notes(groups: Groups) -> list[str]:
-    """Names the points through which no fitted curve goes."""
+    """Names the points that belong to no fitted curve."""
     excluded = groups.excluded_from_curves()
     return textwrap.wrap(f"not in a curve: {'; '.join(excluded)}", NOTE_WIDTH) if excluded else []
 
 
 def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs", title: str = "") -> None:
-    """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given; @param other, title  see style.legend()"""
+    """Adds the ordinate, the legend and the caption to a picture of clogging lengths.
+    @param drawn  all groups that were passed to draw_lengths()
+    @param other, title  see style.legend()"""
     style.logarithmic_ordinate(axes)
     style.finish(axes, (LABORATORY if groups.are_in_mm else AXES)["length"], groups.caption(), [*length_notes(drawn, groups.confidence, [axes]), *excluded_notes(groups)], drawn,
                  other, title)
@@ -73,13 +76,15 @@ def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: 
 
 def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
                  size: float = 5.5, unit: str = "") -> None:
-    """Draws clogging lengths with clogfit's intervals. A marker shows the most frequent mechanism of its clogs and is hollow if the
-    length is in doubt (HOLLOW_MARKERS). If no run clogged, an arrow begins at the lower bound. @param linestyle  None:
-    that of `index`; @param size  of markers [pt]; @param unit  end of the names of clogfit's columns: "_mm", or "" for
-    sigma"""
+    """Draws clogging lengths with clogfit's intervals. The shape of a marker shows the most frequent mechanism of the
+    clogs. The marker is hollow if the length is in doubt (HOLLOW_MARKERS). If no run clogged, an arrow begins at the
+    lower bound.
+    @param linestyle  None: that of `index`
+    @param size  of markers [pt]
+    @param unit  end of the names of clogfit's columns: "_mm", or "" for sigma"""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
-    # A length is NaN if no run clogged. There the solid line is interrupted and a dotted one continues.
+    # A length is NaN if no run clogged. The solid line is interrupted there, and a dotted line continues it.
     middle, lower, upper = (f"clogging_length{end}{unit}" for end in ("", "_lower", "_upper"))
     lengths = [math.nan if group["clogs"] == 0 else group[middle] for group in groups]
     bars = [[math.nan if group["clogs"] == 0 else abs(group[middle] - group[end]) for group in groups] for end in (lower, upper)]
@@ -88,7 +93,8 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     axes.errorbar(places, lengths, yerr=bars if has_bars else None, color=colour, linestyle=linestyle or line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
                   gid=style.mark("curve", groups))
     for x, y, group in zip(places, lengths, groups):
-        face = "white" if reasons_for_hollow_marker(group) else "auto"  # "auto" follows the line's colour, even if this is changed later
+        # "auto" follows the line's colour, even if a user changes it later.
+        face = "white" if reasons_for_hollow_marker(group) else "auto"
         axes.plot(x, y, color=colour, marker=style.MECHANISM_MARKERS[style.main_mechanism(group)], markerfacecolor=face, markersize=size, zorder=3,
                   gid=style.mark("point", [group]) if group["clogs"] > 0 else None)
     if linestyle != "none" and len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
@@ -100,9 +106,10 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
 
 
 def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, column: str = "relative_speed") -> None:
-    """Draws mean speeds relative to the terminal speed. Groups of several runs have standard errors, from the scatter
-    between runs. @param column  "relative_speed" (the mean of runs that went far enough to have a speed, as published),
-    OF_ALL_RUNS, or "lateral_slope" """
+    """Draws mean speeds relative to the terminal speed. If a group has several runs, its bar is the standard error from
+    the scatter between runs.
+    @param column  "relative_speed" is the mean of the runs that went far enough to have a speed, as published. The
+    other columns are OF_ALL_RUNS and "lateral_slope"."""
     points = sorted(((place, group) for place, group in zip(places, groups) if group[column] is not None), key=lambda point: point[0])
     known = [group for _, group in points]
     drawn = axes.errorbar(
@@ -112,8 +119,8 @@ def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], in
 
 
 def speed_column(groups: Iterable[Group]) -> str:
-    """The column with the mean speed. The mean of the runs that went far enough to have a speed is too high, because
-    these are mostly the fast runs. So the speed of all runs is preferred; files without dwells have no such column."""
+    """The column with the mean speed. The mean over the runs that went far enough to have a speed is too high, because
+    these are mostly fast runs. So the speed of all runs is preferred. Files without dwells do not have this column."""
     return OF_ALL_RUNS if any(group.get(OF_ALL_RUNS) is not None for group in groups) else "relative_speed"
 
 
@@ -130,8 +137,9 @@ def speed_notes(groups: Collection[Group]) -> list[str]:
 
 
 def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
-    """A second scale in the units of the laboratory, if the sweep or clogfit has one. @param ordinate  "length" or
-    "speed" """
+    """Adds a second scale in the units of the laboratory, if the sweep or clogfit knows the laboratory. @param ordinate
+    "length" or "speed"
+    """
     if upright := groups.laboratory.get({"length": "length_mm", "speed": "speed_mm_per_s"}[ordinate]):
         add_scale(axes, "right", upright, LABORATORY[ordinate])
     tension = groups.laboratory.get("tension_mN_per_m_of_gamma_1")
@@ -140,8 +148,8 @@ def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
 
 
 def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
-    """Adds a second scale with other units at a side, "top" or "right". The first scale must be complete, because a
-    later change would undo the ticks of the second."""
+    """Adds a second scale in other units at a side, "top" or "right". Complete the first scale before this call,
+    because later changes would remove the ticks of the second scale."""
     upright = side == "right"
     second = (axes.secondary_yaxis if upright else axes.secondary_xaxis)(side, functions=(lambda value: value * factor, lambda value: value / factor))
     axis = second.yaxis if upright else second.xaxis
@@ -152,8 +160,8 @@ def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
 
 
 def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> None:
-    """@param draw_curve  draw_lengths or draw_speeds. It is called with the axes, the places and groups of the curve,
-    its index and its label"""
+    """Draws each curve of the groups. @param draw_curve  draw_lengths or draw_speeds. The function is called with the
+    axes, the places and groups of a curve, its index and its label"""
     curves = groups.curves()
     for index, (label, members) in enumerate(curves):
         with style.curve(axes, label):
@@ -162,7 +170,7 @@ def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> 
 
 
 def places(groups: Groups, members: Sequence[Group], index: int, num_curves: int) -> list[float]:
-    """The places of a curve's points, shifted so that its bars do not cover the bars of other curves."""
+    """The places of a curve's points. Points are shifted so that their bars do not cover the bars of other curves."""
     values = groups.values(groups.abscissa)
     if groups.is_logarithmic():
         return [group[groups.abscissa] * style.side_by_side(index, num_curves, values) for group in members]
@@ -178,7 +186,7 @@ def draw_abscissa(axes: Axes, groups: Groups) -> None:
 
 
 def draw_fitted(axes: Axes, groups: Groups, members: Sequence[Group], index: int) -> bool:
-    """The smooth fitted curve through these groups, with its band. @return whether there is one"""
+    """Draws the smooth curve that was fitted to these groups, with its band. @return whether such a curve exists"""
     fitted = groups.fitted_curve(members)
     if not fitted:
         return False
@@ -192,7 +200,8 @@ def draw_fitted(axes: Axes, groups: Groups, members: Sequence[Group], index: int
 
 
 def draw_on(axes: Axes, groups: Groups) -> None:
-    """Draws points with their bars, and fitted curves through them; where none could be fitted, straight lines."""
+    """Draws points with their bars, and fitted curves through the points. Where no curve could be fitted, straight
+    lines join the points."""
     def draw_curve(axes: Axes, places: Sequence[float], members: Sequence[Group], index: int, label: str) -> None:
         is_fitted = draw_fitted(axes, groups, members, index)
         draw_lengths(axes, places, members, index, label, linestyle="none" if is_fitted else None, unit="_mm" if groups.are_in_mm else "")

@@ -1,4 +1,4 @@
-"""Measured clogging lengths beside the simulated ones."""
+"""Draws measured clogging lengths beside the simulated ones."""
 
 import json
 import pathlib
@@ -12,13 +12,14 @@ from ..reading import programs
 from ..tools.errors import UserError
 
 COLOUR = "#444444"
-ABOVE = 4  # drawing order: in front of the simulated markers, which have 3
+ABOVE = 4  # Drawing order in front of the simulated markers, which have 3.
 LENGTHS = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 
 
 def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None, *options: object) -> list[dict[str, Any]]:
-    """The groups that clogfit lengths finds in a table of distances, in the unit of the picture.
-    @param groups  of the sweep, whose laboratory gives the diameter. @throws UserError  if the table is in mm and no diameter is known"""
+    """The groups that clogfit lengths finds in a table of distances. Lengths are in the unit of the picture.
+    @param groups  of the sweep, whose laboratory gives the diameter
+    @throws UserError  if the table is in mm and no diameter is known"""
     told = json.loads(programs.run_program(programs.programs_in(folder) / "clogfit", "lengths", table, "--format", "json", *options))
     members: list[dict[str, Any]] = told["groups"]
     if told["unit"] == ("mm" if groups.are_in_mm else "sigma"):
@@ -30,8 +31,9 @@ def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None,
 
 
 def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: str) -> None:
-    """Draws a star with its interval for each group that has a value of the abscissa, and a band over the whole range
-    of the abscissa for each other group. If no droplet of a group clogged, an arrow points up from its lower bound."""
+    """Draws a star with an interval for each group with a value of the abscissa. A group without this value becomes a
+    band over the whole range of the abscissa. If no droplet of a group clogged, an arrow points up from the lower
+    bound."""
     drawn = False
     for group in measured:
         place = next((value for name, value in group.items() if name.replace("-", "_") == groups.abscissa_key()), None)
@@ -48,4 +50,4 @@ def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: s
         else:
             axes.errorbar(place, length, yerr=[[length - lower], [upper - length]], fmt="*", color=COLOUR, markersize=9, capsize=2.5, label=name, zorder=ABOVE)
         drawn = True
-    style.legend(axes)  # entries for the sweep's markers exist already
+    style.legend(axes)  # The legend has entries for the sweep's markers already.

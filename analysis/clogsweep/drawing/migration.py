@@ -1,4 +1,5 @@
-"""Lateral displacement of droplets in lattices vs the varied parameter, usually the angle of the rows."""
+"""Draws the lateral displacement of droplets in lattices against the varied parameter, usually the angle of the
+rows."""
 
 import functools
 import math
@@ -32,7 +33,7 @@ def draw_rows(axes: Axes, groups: Groups) -> bool:
 
 
 def notes(groups: Groups, has_rows: bool) -> list[str]:
-    """Explains the picture, and counts the droplets without a value."""
+    """Explains the picture, and states the number of droplets without a value."""
     lines = ["dashed: along the rows; " * has_rows + "dotted: straight on; bars: standard errors"]
     unknown = sum(group["lateral_slope"] is None for group in groups.members)
     return lines + ([f"{unknown} of {len(groups.members)} points: no droplet went half a diameter"] if unknown else [])

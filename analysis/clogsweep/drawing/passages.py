@@ -1,4 +1,5 @@
-"""Results of single droplets: their passage through a channel, or their sag on a wall, vs the varied parameter."""
+"""Draws results of single droplets against the varied parameter: their passage through a channel, or their sag on a
+wall."""
 
 import dataclasses
 import os
@@ -22,13 +23,13 @@ from . import lengths, surroundings
 
 @dataclasses.dataclass(frozen=True)
 class Kind:
-    """Headings, labels and columns for droplets in a channel, or on a wall."""
+    """The headings, labels and columns for droplets in a channel, or for droplets on a wall."""
 
     heading: str
-    goal: str  # the status of droplets that passed, or came to rest
-    outcomes: dict[str, str]  # words for each status
-    curves: dict[str, str]  # a picture is drawn of each of these columns; labels of their axes
-    columns: dict[str, str]  # the table's columns, and their headings
+    goal: str  # Status of droplets that passed the channel, or came to rest on the wall.
+    outcomes: dict[str, str]  # Words for each status.
+    curves: dict[str, str]  # Columns that have a picture, with the labels of their axes.
+    columns: dict[str, str]  # Columns of the table, with their headings.
     outline: str
     about: str
 
@@ -54,19 +55,19 @@ def kind_of(groups: Groups) -> Kind:
 
 
 def share(kind: Kind, members: Sequence[Group]) -> str:
-    """How many of a curve's droplets passed, or came to rest."""
+    """The number of a curve's droplets that passed, or came to rest, and the number of all its droplets."""
     return f"{sum(group['status'] == kind.goal for group in members)} of {len(members)} {kind.outcomes[kind.goal]}"
 
 
 def drawn_columns(groups: Groups) -> dict[str, str]:
     """The quantities with a curve, and their names."""
     return {column: column.replace("_", " ") for column in kind_of(groups).curves
-            if groups.are_polygons or column != "largest_shape_parameter"}  # a soft disk stays a circle
+            if groups.are_polygons or column != "largest_shape_parameter"}  # A soft disk always stays a circle.
 
 
 def draw_curves(axes: Axes, groups: Groups, column: str) -> None:
-    """Draws one point for each droplet. A cross means that the droplet clogged in a channel, a hollow marker that the
-    run ended before the droplet passed or rested."""
+    """Draws one point for each droplet. A cross means that the droplet clogged in a channel. A hollow marker means that
+    the run ended before the droplet passed or came to rest."""
     kind = kind_of(groups)
     markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}
     for index, (label, members) in enumerate(groups.curves()):
@@ -85,8 +86,8 @@ def draw_curves(axes: Axes, groups: Groups, column: str) -> None:
 
 
 def shares(groups: Groups, value: Callable[[Any], str]) -> list[tuple[str, str]]:
-    """For every curve its label, and how many of its droplets passed or came to rest. @param value  formats a
-    parameter's value"""
+    """For every curve, its label and the number of its droplets that passed or came to rest. @param value  formats the
+    value of a parameter"""
     kind, names = kind_of(groups), groups.curve_parameters()
     return [(", ".join(f"{name.replace('_', ' ')} {value(members[0][name])}" for name in names), share(kind, members)) for _, members in groups.curves()]
 
@@ -98,7 +99,7 @@ def examples(rows: npt.NDArray[np.void], count: int) -> list[np.void]:
 
 
 def followed(rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path, folder: str | os.PathLike[str]) -> list[Trajectory]:
-    """Replays each row's droplet. @param folder  for their files"""
+    """Replays the droplet of each row. @param folder  for the files of the replays"""
     if not rows:
         return []
     # At terminal speed a droplet moves by a fiftieth of its diameter between two frames.
@@ -107,7 +108,7 @@ def followed(rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path
 
 
 def draw_outlines(groups: Groups, rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path, folder: str | os.PathLike[str]) -> list[Figure]:
-    """One picture of each row's droplet."""
+    """Draws one picture for each row's droplet."""
     pictures = []
     for run in followed(rows, clogrun, sweep, folder):
         figure, axes = style.subplots(figsize=(4.6, 4.6))

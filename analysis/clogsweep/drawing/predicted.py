@@ -1,4 +1,5 @@
-"""Predicted clogging lengths against line tension: from pairs of obstacles, from single obstacles, and from both, beside measured lengths."""
+"""Draws predicted clogging lengths against the line tension, beside measured lengths. Pairs of obstacles, single
+obstacles, and both together have a line each."""
 
 import math
 from collections.abc import Sequence
@@ -14,12 +15,13 @@ from .lengths import draw_lengths, length_notes
 
 
 def draw(found: Sequence[Prediction], measured: Sequence[Group], confidence: float, shared: Sequence[str]) -> Figure:
-    """@param measured  groups of a sweep in the same array; @param shared  phrases of the caption"""
+    """Draws the predictions. @param measured  groups of a sweep in the same array; @param shared  phrases of the
+    caption"""
     figure, axes = style.subplots(figsize=(6.8, 5.0))
     tensions = [one.tension for one in found]
     for label, name, look in (("both", "length", {"color": "0.8", "linewidth": 5}), ("squeezed, by two obstacles", "squeezed", {"color": style.COLOURS[0]}),
                               ("wrapped, by one obstacle", "wrapped", {"color": style.COLOURS[1]})):
-        # Where only one of the laws has a length, its line shows both.
+        # Where only one of the two laws has a length, the line for both also has this length.
         known = [math.isfinite(max(one.squeezed, one.wrapped) if name == "length" else getattr(one, name)) for one in found]
         if any(known):
             axes.plot(tensions, np.where(known, [getattr(one, name) for one in found], np.nan), marker=".", label=f"predicted: {label}", **look)

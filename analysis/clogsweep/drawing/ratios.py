@@ -1,4 +1,4 @@
-"""Ratios of the clogging lengths of sweeps."""
+"""Draws the ratios of the clogging lengths of several sweeps."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ Comparison = dict[str, Any]
 
 
 def abscissa_of(told: dict[str, Any]) -> str:
-    """The parameter for the abscissa: the number with most values, line tension among equals; empty if nothing
-    varies."""
+    """The parameter for the abscissa: the number with the most values. If several numbers have equally many values, it
+    is the line tension. The text is empty if nothing varies."""
     comparisons = told["comparisons"]
     numbers = [name for name in told["columns"] if all(is_number(str(one[name])) for one in comparisons)]
     return max(numbers, key=lambda name: (len({one[name] for one in comparisons}), name == "line_tension"), default="")
 
 
 def curves_of(told: dict[str, Any], abscissa: str) -> list[tuple[str, list[Comparison]]]:
-    """For every curve a label, and its comparisons, which differ in the abscissa only."""
+    """For every curve, a label and its comparisons. The comparisons of a curve differ only in the abscissa."""
     others = [name for name in told["columns"] if name != abscissa]
     curves: dict[tuple[Any, ...], list[Comparison]] = {}
     for one in told["comparisons"]:
@@ -38,7 +38,7 @@ def curves_of(told: dict[str, Any], abscissa: str) -> list[tuple[str, list[Compa
 
 
 def side(told: dict[str, Any], name: str) -> str:
-    """What is compared, in words: a file, or a key and its value."""
+    """One side of a comparison in words: a file, or a key and its value."""
     key, _, value = name.partition("=")
     return f"{key.replace('_', ' ')} {literal(value)}" if key in told["differing"] else literal(name)
 
@@ -67,7 +67,7 @@ def note_lines(told: dict[str, Any]) -> list[str]:
 
 
 def draw_on(axes: Axes, told: dict[str, Any]) -> None:
-    """@param told  the JSON of clogfit compare. @throws UserError  if there is no ratio"""
+    """Draws the ratios. @param told  the JSON output of clogfit compare. @throws UserError  if there is no ratio"""
     comparisons = told["comparisons"]
     if all(one["ratio_lower"] is None for one in comparisons):
         raise UserError("no ratio to draw: in every comparison one side has no clogs")

@@ -1,4 +1,4 @@
-"""A droplet among obstacles and walls, with guides for the eye."""
+"""Draws a droplet among obstacles and walls, with guides for the eye."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,11 +12,11 @@ from .. import style
 from ..reading.trajectory import Trajectory, wedge_outline, with_middles
 from ..tools.hints import Numbers, Point
 
-HALO = withStroke(linewidth=3, foreground="white")  # outline of guides, which may lie over obstacles
+HALO = withStroke(linewidth=3, foreground="white")  # white outline of guides, which may overlap obstacles
 
 
 def draw_surroundings(axes: Axes, trajectory: Trajectory, origin: Point = (0.0, 0.0)) -> None:
-    """Obstacles and walls, grey."""
+    """Draws obstacles and walls in grey."""
     shift = np.asarray(origin)
     circles = [Circle((x - shift[0], y - shift[1]), diameter / 2) for x, y, diameter in trajectory.obstacles]
     axes.add_collection(PatchCollection(circles, facecolor=style.OBSTACLE, edgecolor="none"))
@@ -24,7 +24,8 @@ def draw_surroundings(axes: Axes, trajectory: Trajectory, origin: Point = (0.0, 
 
 
 def draw_droplet(axes: Axes, trajectory: Trajectory, frame: int, origin: Point = (0.0, 0.0)) -> None:
-    """Draws one outline among its surroundings, as a smooth curve through the vertices."""
+    """Draws the droplet's outline in one frame as a smooth curve through the vertices, among the droplet's
+    surroundings."""
     draw_surroundings(axes, trajectory, origin)
     outline = with_middles(with_middles(trajectory.polygons[frame]))
     axes.fill(*(outline - np.asarray(origin)[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
@@ -36,8 +37,8 @@ def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0)
 
 
 def draw_guides(axes: Axes) -> None:
-    """Draws a bar as long as a droplet is wide, and an arrow along the flow. Each stays in its corner when the axes are
-    moved."""
+    """Draws a bar as long as a droplet is wide, and an arrow along the flow. Bar and arrow keep their corners of the
+    axes when the view moves."""
     draw_bar(axes)
     arrow = axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
                           arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})

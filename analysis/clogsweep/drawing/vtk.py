@@ -1,5 +1,5 @@
-"""A run for ParaView: the droplet's outline against time, and the obstacles around it. All files are VTK's XML
-PolyData, as text."""
+"""Exports a run for ParaView, with the droplet's outline at each time and the obstacles around it. All files are text
+in VTK's XML format PolyData."""
 
 import math
 import pathlib
@@ -29,7 +29,7 @@ def data_array(parent: xml.Element, name: str, values: npt.ArrayLike, components
 
 def polydata(outlines: Sequence[Numbers], point_data: Mapping[str, Numbers] | None = None, cell_data: Mapping[str, Numbers] | None = None,
              field_data: Mapping[str, float] | None = None) -> xml.ElementTree:
-    """Closed polygons. @param outlines  arrays n x 2; @param point_data, cell_data  name -> values"""
+    """Closed polygons as PolyData. @param outlines  arrays n x 2; @param point_data, cell_data  arrays by name"""
     root = xml.Element("VTKFile", type="PolyData", version="1.0", byte_order="LittleEndian", header_type="UInt64")
     body = xml.SubElement(root, "PolyData")
     if field_data:
@@ -75,7 +75,7 @@ def surroundings(run: trajectory.Trajectory) -> xml.ElementTree:
 
 
 def export(run: trajectory.Trajectory, output: pathlib.Path) -> pathlib.Path:
-    """@return the .pvd file"""
+    """Writes the files. @return the .pvd file"""
     folder = output.with_name(output.name + "-vtk")
     pvd, around = output.with_name(output.name + ".pvd"), output.with_name(output.name + "-obstacles.vtp")
     for path in (pvd, around):

@@ -1,4 +1,4 @@
-"""The path of one droplet among obstacles: several moments of a run in one picture."""
+"""Draws the path of one droplet among obstacles, with several moments of the run in one picture."""
 
 import math
 from collections.abc import Iterable
@@ -16,16 +16,16 @@ from . import surroundings
 
 
 def view(run: trajectory.Trajectory) -> tuple[Numbers, Numbers]:
-    """Bounding box of the droplet's surroundings."""
+    """The bounding box of all outlines of the droplet, with a margin."""
     return run.polygons.min(axis=(0, 2)) - 0.5, run.polygons.max(axis=(0, 2)) + 0.5
 
 
-LONGEST_STRIP = 30.0  # a longer path is drawn in several strips, one below the other [sigma]
-MOST_STRIPS = 10  # if the path needs more strips, these are longer instead
+LONGEST_STRIP = 30.0  # A longer path is drawn in several strips, one below the other [sigma].
+MOST_STRIPS = 10  # If the path needs more strips than this, the strips become longer instead.
 
 
 def draw(run: trajectory.Trajectory, num_outlines: int) -> Figure:
-    """@param run  a run with outlines; @param num_outlines  number of outlines in each strip"""
+    """Draws a path. @param run  a run with outlines; @param num_outlines  number of outlines in each strip"""
     low, high = view(run)
     width, height = high - low
     if width > LONGEST_STRIP and len(run.wedges) != 2:
@@ -37,7 +37,7 @@ def draw(run: trajectory.Trajectory, num_outlines: int) -> Figure:
 
 
 def draw_strips(run: trajectory.Trajectory, num_outlines: int) -> Figure:
-    """Draws a long path in strips, which follow one another from the top to the bottom."""
+    """Draws a long path in several strips. The path continues from the end of each strip in the strip below."""
     low, high = view(run)
     count = min(math.ceil((high[0] - low[0]) / LONGEST_STRIP), MOST_STRIPS)
     ends = np.linspace(low[0], high[0], count + 1)
@@ -75,18 +75,18 @@ def draw_on(axes: Axes, run: trajectory.Trajectory, num_outlines: int) -> None:
     surroundings.draw_guides(axes)
     axes.set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
     draw_outlines(axes, run, trajectory.along_the_way(run.polygons, num_outlines), origin)
-    # The colour bar is as high as the axes, whose shape is fixed; by default it would be as high as the figure.
+    # The colour bar is as high as the axes, whose shape is fixed. By default it would be as high as the figure.
     axes.figure.colorbar(time_scale(run), cax=axes.inset_axes((1.01, 0, 0.02, 1)), label=r"$t/t_0$")
 
 
 def time_scale(run: trajectory.Trajectory) -> matplotlib.cm.ScalarMappable:
-    """Colours of times until the droplet nearly rests."""
+    """A scale of colours for the times until the droplet nearly rests."""
     last = trajectory.along_the_way(run.polygons, 20)[-2:][0]
     return matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, run.times[last]), cmap=style.VIRIDIS)
 
 
 def draw_outlines(axes: Axes, run: trajectory.Trajectory, frames: Iterable[int], origin: Point = (0.0, 0.0)) -> None:
-    """The run's last outline is filled."""
+    """Draws the outlines of these frames. The last outline of the run is filled."""
     colours = time_scale(run)
     for frame in frames:
         x, y = run.polygons[frame] - np.asarray(origin)[:, None]

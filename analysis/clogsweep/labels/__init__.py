@@ -1,5 +1,5 @@
-"""Names of parameters and axes. Names, symbols, units and defaults of the parameters are clogsweep's own; clogfit
-passes them on (`columns` of its JSON)."""
+"""Names parameters and axes. The names, symbols, units and defaults of the parameters come from clogsweep. clogfit
+passes them on as `columns` of its JSON."""
 
 import math
 from collections.abc import Collection
@@ -30,7 +30,7 @@ LABORATORY = {
 }
 
 
-# The main difference between the presets of the interface; docs/explanation/model.md lists all differences.
+# The main difference between the presets of the interface. docs/explanation/model.md lists all differences.
 INTERFACES = {
     "robust": "constant tension",
     "heavy-interface": "constant tension, weight on the interface",
@@ -44,8 +44,8 @@ def interface_of(preset: str) -> str:
 
 
 def tex(unit: str) -> str:
-    """A unit that clogsweep writes as, e.g., g rho sigma^2, for matplotlib: units of the model in italics, millimetres
-    upright."""
+    """Converts a unit for matplotlib. clogsweep writes units such as g rho sigma^2. Units of the model become italic,
+    and millimetres upright."""
     unit = unit.replace("mm", r"\mathrm{mm}")
     for word in ("rho", "sigma"):
         unit = unit.replace(word, rf"\{word}")
@@ -53,7 +53,7 @@ def tex(unit: str) -> str:
 
 
 def number(value: float | None) -> str:
-    # The density of a saturated mixture is unknown in advance: clogfit has no number for it.
+    # clogfit has no number for the density of a saturated mixture, because it is unknown before the run.
     return r"\mathrm{saturated}" if value is None else f"{value:.4g}"
 
 
@@ -65,8 +65,8 @@ def is_number(word: str) -> bool:
 
 
 def symbol(column: Column) -> str:
-    """A parameter's symbol divided by its unit, which is a pure number; for a parameter whose values are words, its
-    name. The symbols in AXES are pure numbers already."""
+    """The symbol of a parameter divided by its unit, so that the label belongs to a pure number. A parameter whose
+    values are words has its name instead. The symbols in AXES belong to pure numbers already."""
     if column["symbol"] and column["name"] in AXES:
         return column["symbol"]
     if not column["symbol"]:
@@ -77,7 +77,7 @@ def symbol(column: Column) -> str:
 
 
 def said(column: Column, value: float | str | None) -> str:
-    """A parameter and its value in words, e.g. $N_v = 128$."""
+    """A parameter and its value in words, such as $N_v = 128$."""
     if "label" in column:
         return str(column["label"].format(value))
     if isinstance(value, str):

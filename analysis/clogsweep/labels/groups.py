@@ -1,4 +1,4 @@
-"""The groups of a fit: what varies between them, their abscissa, and all labels."""
+"""The groups of a fit. Decides which parameters vary between the groups, chooses the abscissa, and makes all labels."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from ..tools.texts import literal
 from . import AXES, INTERFACES, axis_label, interface_of, is_number, runs_a_point, said, symbol
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
-LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # by obstacle_filling
+LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # names by obstacle_filling
 FINISHED = ("passed", "clogged", "broken", "flowing")
 
 
 class Groups:
-    """Groups of one sweep that have runs, drawn vs one of its parameters."""
+    """Those groups of one sweep that have runs. The groups are drawn against one parameter of the sweep."""
 
     def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
-        """@param fit  the JSON of clogfit; @param circle_files  see stored.circle_files()"""
-        # Nothing is random in a channel or on a wall, so each group is one run and has a status.
+        """@param fit  the JSON output of clogfit; @param circle_files  see stored.circle_files()"""
+        # Nothing in a channel or on a wall is random, so each group consists of one run and has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
         self._fit = fit
         fit = fits.in_millimetres(fit)
@@ -31,24 +31,27 @@ class Groups:
         self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] + group["met_none"] > 0)]
         self._told: list[Group] = fit["groups"]
         self.confidence: float = fit["confidence"]
-        self.laboratory: dict[str, float | None] = fit.get("laboratory", {})  # the model's units in the laboratory, if all groups share one
-        self.laboratories: dict[str, str] = fit.get("laboratories", {})  # descriptions of the laboratories, by their checksums
+        # The model's units in the laboratory, if all groups have the same ones.
+        self.laboratory: dict[str, float | None] = fit.get("laboratory", {})
+        # Descriptions of the laboratories, by their checksums.
+        self.laboratories: dict[str, str] = fit.get("laboratories", {})
         self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
         self.lists: Collection[str] = fit["lists"]
         self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # empty for files of older programs
         self._circle_files = circle_files or self._only_circle_file()
-        self.tells_what_all_share = True  # whether caption() describes what all groups share
-        self.abscissa = self._choose_abscissa() if self.members else ""  # without members there is nothing to draw
+        self.tells_what_all_share = True  # Whether caption() describes the parameters that all groups share.
+        self.abscissa = self._choose_abscissa() if self.members else ""  # Without members there is nothing to draw.
         self._ask_for_curves: Callable[[], dict[str, Any]] = lambda: NO_CURVES  # see fit_curves()
 
     def finished(self, source: object = "the sweep") -> Groups:
-        """@throws UserError  if no run has finished"""
+        """Returns the groups. @throws UserError  if no run has finished"""
         if not self.members:
             raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
         return self
 
     def with_lengths(self, source: object = "the sweep") -> Groups:
-        """As finished(). @throws UserError  also for a sweep of channels or walls, which has no clogging lengths"""
+        """Returns the groups, as finished() does. @throws UserError  also for droplets in a channel or on a wall, which
+        have no clogging lengths"""
         if self.are_passages:
             raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws their results")
         if not any(group["runs"] for group in self.finished(source).members):
@@ -56,14 +59,14 @@ class Groups:
         return self
 
     def fit_curves(self, sweep: AnyPath, folder: pathlib.Path) -> Groups:
-        """Asks for smooth curves as a function of the abscissa, which are fitted on first use, if that is possible.
+        """Arranges that smooth curves over the abscissa are fitted on first use, if that is possible.
         @param sweep  the file that was fitted; @param folder  of the programs"""
         def ask() -> dict[str, Any]:
             from ..curves import answer, points  # SciPy is slow to load
 
             try:
                 return answer.of_fit(self._fit, points.seeds_of_groups(self._fit, stored.read_rows(sweep, folder)), [self.abscissa])
-            except UserError:  # no curve can be fitted, e.g. because the abscissa has the value 0
+            except UserError:  # No curve can be fitted, for instance because the abscissa has the value 0.
                 return NO_CURVES
 
         if self.members and not self.are_passages and self.is_logarithmic():
@@ -75,15 +78,15 @@ class Groups:
         return self._ask_for_curves()
 
     def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
-        """The fitted curve through these groups, if there is one. If a fitted curve goes through groups of several
-        drawn curves, it belongs to the drawn curve that has its first point."""
+        """The fitted curve for these groups, if one exists. If a fitted curve contains groups of several drawn curves,
+        it belongs to the drawn curve that has its first point."""
         for curve in self._fitted["curves"]:
             if any(self._told[curve["points"][0]["group"]] is group for group in members):
                 return curve
         return None
 
     def excluded_from_curves(self) -> list[str]:
-        """The points outside all fitted curves, grouped by reason; empty if no curve was fitted."""
+        """The points that belong to no fitted curve, grouped by reason. The list is empty if no curve was fitted."""
         if not self._fitted["curves"]:
             return []
         points: dict[str, list[str]] = {}
@@ -106,11 +109,11 @@ class Groups:
         return len(self.values(name)) > 1
 
     def follows(self, name: str, others: Iterable[str]) -> bool:
-        """Whether this parameter's value follows from the others'."""
+        """Whether the value of this parameter follows from the values of the others."""
         return fits.follows(self.members, name, others)
 
     def _choose_abscissa(self) -> str:
-        """The usual abscissa if it varies, otherwise the numeric parameter with most values."""
+        """Chooses the abscissa: the usual one if it varies, otherwise the numeric parameter with the most values."""
         usual = "line_tension" if self.are_polygons else "wall_stiffness"
         if self.are_in_mm and self.follows(usual, fits.DROPLETS):
             return max(fits.DROPLETS, key=lambda name: len(self.values(name)))
@@ -125,10 +128,11 @@ class Groups:
         return self.columns[name]["kind"] != "word"
 
     def _is_automatic(self, name: str) -> bool:
-        """Whether the parameter's values can follow from others. They cannot if the sweep gives a number or a list for it."""
+        """Whether values of the parameter can follow from other parameters. Values cannot follow from others if the
+        sweep gives a number or a list for the parameter."""
         fillings = self.values("obstacle_filling")
         if name in ("obstacle_gap", "obstacle_density") and fillings == {"file"}:
-            return True  # both follow from the circles and the length of their array
+            return True  # Gap and density follow from the circles and the length of their array.
         if name in self.lists or self._is_given_number(name):
             return False
         of_filling = fillings <= {"saturated", *LATTICES} or bool(self._share_of_saturated())
@@ -136,23 +140,23 @@ class Groups:
         return from_array or all(name in group["automatic"] for group in self.members)
 
     def _is_of_preset(self, name: str) -> bool:
-        """Whether the parameter's value follows from abscissa and preset, because it is automatic for some presets and
-        a number for others."""
+        """Whether the parameter's value follows from the abscissa and the preset, because the value is automatic for
+        some presets and a number for others."""
         return any(name in group["automatic"] for group in self.members) and self.follows(name, [self.abscissa, "preset"])
 
     def _share_of_saturated(self) -> str:
-        """The filling of all random arrays, such as `12%`; empty if they differ."""
+        """The filling of all random arrays, such as `12%`. The text is empty if the arrays have different fillings."""
         share = self.settings.get("obstacle-density", "")
         return share if share.endswith("%") and is_number(share[:-1]) and self.values("obstacle_filling") == {"density"} else ""
 
     def _is_given_number(self, name: str) -> bool:
-        """Whether the config gives the parameter as a number. The box does not count: a lattice's own box follows from
-        the number."""
+        """Whether the config gives the parameter as a number. `box` never counts, because the box of a lattice follows
+        from the number that was given."""
         return name != "box" and is_number(self.settings.get(name.replace("_", "-"), ""))
 
     def curve_parameters(self) -> list[str]:
-        """Names of the parameters that separate the curves."""
-        # What follows from the laboratory or the circles, such as the place of an exit, adds nothing to their names.
+        """Names of the parameters in which the curves differ."""
+        # Other values, such as the place of an exit, follow from the laboratory or the circles, so they are not needed.
         told = [name for name in ("laboratory", "obstacles") if self.varies(name)]
         if self.are_in_mm:
             droplet = [name for name in fits.DROPLETS if self.varies(name) and name != self.abscissa]
@@ -160,7 +164,8 @@ class Groups:
         else:
             told += [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
                      and not self._is_automatic(name) and not self._is_of_preset(name) and not (told and self.follows(name, told))]
-        # Words and automatic values that follow from labelled parameters add nothing, except an interface of a preset. A preset includes its parts.
+        # Words and automatic values that follow from labelled parameters add nothing, so they are left out, except for
+        # the interface of a preset. A preset comes before the parameters that it sets.
         rest = [name for name in self.columns if name not in told and name != self.abscissa]
         for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):
             if name == "preset" and len(self.values(name) & INTERFACES.keys()) > 1 or not self.follows(name, [self.abscissa, *told]):
@@ -176,46 +181,46 @@ class Groups:
         return interface_of(str(value)) if name == "preset" else said(self.columns[name], self.named(name, value))
 
     def named(self, name: str, value: Any) -> Any:
-        """A parameter's value. User-supplied circles are stored as a checksum; it is replaced by the name of their
-        file, if this is known."""
+        """A parameter's value. User-supplied circles are stored as a checksum. The name of their file replaces the
+        checksum if the name is known."""
         return self._circle_files.get(value, value) if name == "obstacles" else value
 
     def laboratory_label(self, check_sum: str) -> str:
-        """The entries in which a laboratory differs from the others; all entries if there is only one laboratory."""
+        """The entries in which a laboratory differs from the others, or all entries if it is the only laboratory."""
         parts = {one: text.split("; ") for one, text in self.laboratories.items()}
         own = [part for part in parts[check_sum] if not all(part in other for other in parts.values())]
         return "; ".join(own or parts[check_sum])
 
     def distinguishing(self) -> list[str]:
-        """Names of the parameters in which the groups differ. If the groups have several models, a parameter is left
-        out that only one model has, with a single value: the model's name implies it."""
+        """Names of the parameters in which the groups differ. If the groups have several models, some parameters are
+        left out: those that only one model has, with a single value. The model's name implies them."""
         names = [name for name in [self.abscissa, *self.curve_parameters()] if name != "model" and self.varies(name)]
         if not self.varies("model"):
             return names
         return ["model", *(name for name in names if len(self.values(name) - {None}) > 1)]
 
     def row_values(self, member: Group) -> dict[str, Any]:
-        """Values that identify the rows of a group. Values unknown to clogfit, such as the density of a saturated
-        array, are left out because they follow from the others, and so are parameters that the model of these runs
-        lacks."""
+        """The values that identify the rows of a group. Values that clogfit does not know, such as the density of a
+        saturated array, are left out, because they follow from the others. Parameters that the model of these runs
+        lacks are also left out."""
         values = member.get("in_table", member)
         names = [name for name in self.distinguishing() if name not in fits.DROPLETS] + (["laboratory"] if self.are_in_mm else [])
         return {name: values[name] for name in names if values[name] is not None}
 
     def label_of(self, member: Group) -> str:
-        """The values that distinguish a group from the others."""
+        """A label with the values that distinguish a group from the others."""
         is_lacking = {name for name in self.distinguishing() if member[name] is None and self.varies("model")}
         return ", ".join(self.said(name, member[name]) for name in self.distinguishing() if name not in is_lacking)
 
     def abscissa_key(self) -> str:
-        """The name of the abscissa as a column of the user's table."""
+        """The name of the abscissa as a column of a user's table."""
         return fits.DROPLETS[self.abscissa]["key"] if self.abscissa in fits.DROPLETS else self.abscissa
 
     def axis_label(self) -> str:
         return axis_label(self.columns[self.abscissa])
 
     def curves(self) -> list[tuple[str, list[Group]]]:
-        """For every curve a label, and its groups, which differ in the abscissa only."""
+        """For every curve, a label and its groups. The groups of a curve differ only in the abscissa."""
         names = self.curve_parameters()
         keys = sorted({tuple(group[name] for name in names) for group in self.members},
                       key=lambda key: [(value is None, isinstance(value, str), value) for value in key])
@@ -231,7 +236,7 @@ class Groups:
         return None not in values and min(values) > 0 and (self.abscissa in AXES or max(values) > 5 * min(values))
 
     def caption(self) -> str:
-        """The parameters that all curves share, and their number of runs."""
+        """The parameters that all curves share, and the number of runs."""
         if not self.tells_what_all_share:
             return ""
         first = self.members[0]
@@ -253,8 +258,8 @@ class Groups:
         return ", ".join(words)
 
     def _only_circle_file(self) -> dict[str, str]:
-        """The name of the file of circles in the config, for a fit without its sweep. If there are several, the config
-        does not tell which file has which checksum."""
+        """The name of the only file of circles in the config, for a fit whose sweep is missing. If the config names
+        several files, nothing shows which file has which checksum."""
         name = self.settings.get("obstacles", "none")
         if name == "none" or "," in name:
             return {}
@@ -265,16 +270,17 @@ class Groups:
         return str(self.named("obstacles", *sums)) if len(sums) == 1 and sums <= self._circle_files.keys() else "a file" if len(sums) == 1 else "files"
 
     def _is_worth_a_word(self, name: str, value: Any) -> bool:
-        """Whether the caption names a parameter: it does if the parameter shapes the array, or differs from its
-        default."""
+        """Whether the caption names a parameter. The caption names a parameter that shapes the array, or that differs
+        from its default."""
         column = self.columns[name]
         if name == "obstacle_diameter" and self.values("obstacle_filling") == {"file"}:
-            return False  # it only applies to circles without a diameter of their own
+            return False  # The parameter applies only to circles without a diameter of their own.
         if self.varies(name) or not self._is_number(name) or value is None or name == self.abscissa or self._is_automatic(name):
             return False
         if name == "obstacle_density":
-            return self.values("obstacle_filling") == {"density"}  # in other arrays the density is a result
+            return self.values("obstacle_filling") == {"density"}  # In other arrays the density is a result.
         is_array = column["shapes_array"] and column.get("parameter_role") == "physics" and value != 0
-        is_default = column.get("default") in (str(value), f"{value:g}") or (name, value) == ("wall_tension", 1)  # the value of `auto` if no contact angles are given
+        # The value to which `auto` evaluates if no contact angles are given.
+        is_default = column.get("default") in (str(value), f"{value:g}") or (name, value) == ("wall_tension", 1)
         is_special = column.get("parameter_role") == "physics" and not is_default
         return is_array or is_special or (name == "vertices" and self.are_polygons)

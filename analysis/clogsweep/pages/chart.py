@@ -1,7 +1,7 @@
-"""A figure as a drawing inside a page: its colours follow light and dark mode, and elements that represent groups are
-marked.
+"""Puts a figure into a page as a drawing. The drawing's colours follow light and dark mode, and the elements that
+represent groups are marked.
 
-The drawing functions mark these by style.mark().
+The drawing functions mark these elements with style.mark().
 """
 
 import io
@@ -18,11 +18,11 @@ COLOUR = re.compile(r"#([0-9a-f]{6})\b")
 REFERENCE = re.compile(r"url\(#(\w+)\)")
 DIGITS = re.compile(r"(\.\d\d)\d+")
 MARK = re.compile(r"(point|curve|legend)-([\d,]+)")
-REACH = 7  # radius around a point in which a mouse selects it [pt]
+REACH = 7  # A mouse selects a point within this radius around it [pt].
 
 DARK_PAPER = (0x16, 0x18, 0x1D)
 DARK_INK = (0xE6, 0xE6, 0xE6)
-LEAST_CONTRAST = 3.5  # smallest contrast of a colour on dark paper; WCAG 2.1 requires 3
+LEAST_CONTRAST = 3.5  # Smallest contrast of a colour on dark paper. WCAG 2.1 requires 3.
 
 BLACK = "000000"
 Colour = tuple[float, float, float]
@@ -33,20 +33,21 @@ def element(name: str, **attributes: str) -> ElementTree.Element:
 
 
 def luminance(colour: Colour) -> float:
-    """Relative luminance as WCAG 2.1 defines it, from 0 to 1. @param colour  red, green, blue, to 255"""
+    """The relative luminance as WCAG 2.1 defines it, from 0 to 1. @param colour  red, green and blue, each from 0 to
+    255"""
     linear: list[float] = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in (channel / 255 for channel in colour)]
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
 
 def mixed(colour: Colour, other: Colour, share: float) -> Colour:
-    """@param share  fraction of the other colour"""
+    """A mixture of two colours. @param share  fraction of the other colour"""
     red, green, blue = ((1 - share) * a + share * b for a, b in zip(colour, other))
     return red, green, blue
 
 
 def in_the_dark(colour: Colour) -> Colour:
-    """The colour for dark mode. Greys are inverted, so that white paper becomes dark and black ink light; other colours
-    are made lighter until they are visible."""
+    """The colour for dark mode. Greys are inverted, so that white paper becomes dark and black ink becomes light. Other
+    colours are made lighter until they are visible."""
     if len(set(colour)) == 1:
         return mixed(DARK_INK, DARK_PAPER, colour[0] / 255)
     shares = (step / 20 for step in range(21))
@@ -55,7 +56,7 @@ def in_the_dark(colour: Colour) -> Colour:
 
 
 class Charts:
-    """The charts of one page. They share letters, markers and colours.
+    """The charts of one page. The charts share the shapes of letters, the markers and the colours.
 
     @param labels  the label of each group
     """
@@ -67,10 +68,10 @@ class Charts:
         self._number = 0
 
     def draw(self, figure: Figure, caption: str) -> str:
-        """@return an element of HTML"""
+        """Draws a chart. @return an HTML element"""
         out = io.StringIO()
-        # Letters are drawn as shapes, because the fonts of another machine would misplace the letters of a formula. The
-        # salt is constant, so that equal elements of two charts have the same name.
+        # Letters are drawn as shapes, because with the fonts of another machine the letters of a formula would be
+        # misplaced. The salt is constant, so that equal elements of two charts have the same name.
         with matplotlib.rc_context({"svg.fonttype": "path", "svg.hashsalt": "clogsweep"}):
             figure.savefig(out, format="svg", transparent=True, metadata={"Date": None})
         ElementTree.register_namespace("", SVG)
@@ -88,7 +89,7 @@ class Charts:
         return ElementTree.tostring(root, encoding="unicode")
 
     def colours(self) -> tuple[str, str]:
-        """Declarations of CSS for the colours drawn so far, in light and dark mode."""
+        """CSS declarations of the colours that were drawn so far, in light and in dark mode."""
         def declared(colours: Iterable[tuple[str, Colour]]) -> str:
             return " ".join(f"--c{name}: #{''.join(f'{round(channel):02x}' for channel in colour)};" for name, colour in colours)
 
@@ -96,8 +97,8 @@ class Charts:
         return declared(named.items()), declared((name, in_the_dark(colour)) for name, colour in named.items())
 
     def _rename(self, root: ElementTree.Element) -> None:
-        """Replaces colours by names, removes unused names, and renames clips, because a clip of another chart may have
-        the same name."""
+        """Replaces colours by names, and removes unused names. Also renames clips, because a clip of another chart may
+        have the same name."""
         for node in root.iter():
             node.text = node.tail = None  # line breaks
             if HREF in node.attrib:
@@ -149,7 +150,7 @@ class Charts:
             node.append(inner)
 
     def _point(self, group: str, kind: str, parts: Iterable[ElementTree.Element]) -> ElementTree.Element:
-        """The part that a mouse or the keyboard can select."""
+        """The element of a point that a mouse or the keyboard can select."""
         label = self._labels[int(group)]
         made = element("g", tabindex="0", role="img", aria_label=label, data_groups=group, **{"class": kind})
         title = element("title")
@@ -159,7 +160,8 @@ class Charts:
 
 
 def drop_doubles(parent: ElementTree.Element) -> None:
-    """Removes markers of the same kind at the same place: thousands of runs may have ended at one distance."""
+    """Removes all but one marker of the same kind at the same place, because thousands of runs may have ended at one
+    distance."""
     seen = set()
     for child in list(parent):
         if child.tag == f"{{{SVG}}}use" and "x" in child.attrib:

@@ -1,4 +1,4 @@
-"""A poster of a sweep: one page with its curves, some of its droplets, and the origin of its numbers."""
+"""Draws a poster of a sweep: one page with its curves, some of its droplets, and the origin of its numbers."""
 
 from __future__ import annotations
 
@@ -25,18 +25,21 @@ from . import report
 if TYPE_CHECKING:
     import pandas
 
-PAGE = (11.69, 16.54)  # A3 [inches]; a print on A2 has letters 1.4 times as large
+PAGE = (11.69, 16.54)  # A3 [inches]. On A2 the letters are 1.4 times as large.
 MARGIN = 0.5
-MOST_CURVES = 2  # P(r) and causes are drawn for the first and the last curve only
-WAY = 8.0  # [sigma]: the path of a droplet that clogged near this distance shows how droplets move, and the droplet is still drawn large
+MOST_CURVES = 2  # P(r) and the causes are drawn only for the first and the last curve.
+# The poster shows the path of a droplet that clogged near this distance [sigma]. Such a path shows how droplets move,
+# and the droplet can still be drawn large.
+WAY = 8.0
 FRAMES_OF_WAY = 300
 
 Draw = Callable[[Axes], None]
-Row = tuple[float, Sequence[Draw]]  # a row's height relative to the other rows, and its drawings, side by side
+# The height of a row relative to the other rows, and its drawings from left to right.
+Row = tuple[float, Sequence[Draw]]
 
 
 def page(title: str, about: str, rows: Sequence[Row], footer: str) -> Figure:
-    """@param about, footer  text of one or more lines"""
+    """Draws the page. @param about, footer  text of one or more lines"""
     figure = style.new_figure(figsize=PAGE, layout="constrained")
     _, body, _ = figure.subfigures(1, 3, width_ratios=[MARGIN, PAGE[0] - 2 * MARGIN, MARGIN])
     heights = [0.7, *(height for height, _ in rows), 0.25]
@@ -57,7 +60,8 @@ def cut(text: str) -> str:
 
 
 def counted(rows: pandas.DataFrame, words: dict[str, str]) -> str:
-    """@param rows  the sweep's table; @param words  better words for some statuses"""
+    """The number of runs with each status, in words. @param rows  the sweep's table; @param words  better words for
+    some statuses"""
     counts = ", ".join(f"{count} {words.get(status, status)}" for status, count in rows.status.value_counts().items())
     return f"{rounded.counted(len(rows), 'run')}: {counts}"
 
@@ -80,7 +84,7 @@ def draw_clog(axes: Axes, clog: clogs.Clog, view: Numbers) -> None:
 
 
 def draw_way(axes: Axes, run: Trajectory) -> None:
-    """Draws the droplet's path as wide as the page."""
+    """Draws the droplet's path over the whole width of the page."""
     way.draw_on(axes, run, 12)
     axes.set_aspect("equal", adjustable="datalim")
 
@@ -92,7 +96,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
     curves = shown_curves(groups)
     survivals = [partial(report.draw_survival, groups=groups, label=label, members=members) for label, members in curves if any(group["survival"] for group in members)]
     ends = [partial(report.draw_causes, groups=groups, label=label, members=counted) for label, members in curves if (counted := report.with_runs(members))]
-    # With a single curve, P(r) and the causes are side by side.
+    # If there is a single curve, P(r) and the causes are side by side.
     below: list[Row] = [(1.35, survivals + ends)] if len(curves) == 1 else [(1.35, survivals), (1.0, ends)]
     rows: list[Row] = [(1.6, first), *((height, drawings) for height, drawings in below if drawings)]
     clogged = clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep)
@@ -107,7 +111,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
 def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> list[Row]:
     def draw_outline(axes: Axes, run: Trajectory) -> None:
         passages.draw_outline(axes, groups, run)
-        axes.xaxis.label.set_size(8)  # three drawings are side by side
+        axes.xaxis.label.set_size(8)  # Three drawings are side by side, so the letters are small.
 
     rows: list[Row] = [(1.2, [partial(passages.draw_curves, groups=groups, column=column)]) for column in passages.drawn_columns(groups)]
     with tempfile.TemporaryDirectory(prefix="clogsweep-poster-") as folder:
@@ -116,7 +120,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
 
 
 def of_laboratory(groups: Groups) -> str:
-    """A line with the model's units in the laboratory; empty without a laboratory."""
+    """A line with the model's units in the laboratory, or an empty text without a laboratory."""
     lab = groups.laboratory
     if not lab:
         return ""
@@ -125,7 +129,8 @@ def of_laboratory(groups: Groups) -> str:
 
 
 def draw(sweep: pathlib.Path, folder: pathlib.Path, *options: object) -> Figure:
-    """@param folder  of the programs; @param options  for clogfit. @throws UserError, ProgramFailed"""
+    """Draws the poster. @param folder  of the programs; @param options  for clogfit. @throws UserError,
+    ProgramFailed"""
     groups = Groups(*fits.fitted(folder / "clogfit", sweep, *options)).finished(sweep).fit_curves(sweep, folder)
     with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)
@@ -138,5 +143,5 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path, *options: object) -> Figure:
         title, words = f"{curve.heading(groups).capitalize().removesuffix(' per distance')} vs {abscissa}", {"flowing": "still going"}
         rows = of_lengths(groups.with_lengths(sweep), sweep, folder / "clogrun")
     head = f"{groups.caption()}\n{of_laboratory(groups)}{counted(stored.read_table(sweep, folder), words)}"
-    groups.tells_what_all_share = False  # the poster's head describes this
+    groups.tells_what_all_share = False  # The head of the poster describes these parameters.
     return page(title, head, rows, literal(cut(stored.source(about))))

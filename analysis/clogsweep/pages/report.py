@@ -1,4 +1,5 @@
-"""One page about a sweep: curves, table, example clogs or outlines, doubts, the origin of its numbers."""
+"""Writes one page about a sweep, with its curves, its table, examples of clogs or outlines, doubts, and the origin of
+its numbers."""
 
 from __future__ import annotations
 
@@ -34,8 +35,8 @@ def framed(content: str, caption: str, kind: str = "") -> str:
 
 
 def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """Draws P(r) of the members of one curve up to their longest distances, each with the exponential law of its
-    clogging length, if this is known."""
+    """Draws P(r) of the members of one curve, each up to its longest distance. If the clogging length of a member is
+    known, the exponential law of this length is drawn, too."""
     begin = min(0.01 * (group["clogging_length"] or survival_curve.longest_way(group)) for group in members)
     for group, colour in zip(members, style.shades(len(members))):
         if group["survival"]:
@@ -52,19 +53,19 @@ def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Grou
 
 
 def mark_steps(axes: Axes) -> None:
-    """Draws the legend of curves, each of which belongs to one group."""
+    """Draws the legend of curves of which each belongs to one group."""
     handles, _ = axes.get_legend_handles_labels()
     style.mark_legend(axes.legend(frameon=False, fontsize=8, ncols=1 + len(handles) // 8), handles)
 
 
 def occurring_causes(members: Sequence[Group]) -> list[str]:
-    """The causes that ended runs of these groups, in clogfit's words and in the order of their colours."""
+    """The causes that ended runs of these groups, with the names of clogfit and in the order of their colours."""
     return [name for name in style.CAUSE_COLOURS if any(name in group["incidence"] for group in members)]
 
 
 def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
-    """Draws the probability that a run ends by each cause within a distance r, in competition with the other causes
-    (Aalen-Johansen), for the members of one curve."""
+    """Draws, for the members of one curve, the probability that a run ends by each cause within a distance r. The
+    causes compete with each other (estimator of Aalen and Johansen)."""
     names = occurring_causes(members)
     figure, all_axes = style.subplots(1, len(names), figsize=(3.2 * len(names), 4.8), sharex=True, sharey=True, squeeze=False)
     longest = max(survival_curve.longest_way(group) for group in members)
@@ -89,12 +90,13 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
 
 
 def with_runs(members: Sequence[Group]) -> list[Group]:
-    """Excludes groups all of whose droplets met no obstacle."""
+    """Leaves out groups in which no droplet met an obstacle."""
     return [group for group in members if group["runs"]]
 
 
 def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """Draws the fractions of the runs of one curve that ended in each way. @param members  see with_runs()"""
+    """Draws for each group of one curve the fractions of its runs that ended in each way. @param members  see
+    with_runs()"""
     ranks, base = np.arange(len(members)), np.zeros(len(members))
     shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
               for name, colour in style.CAUSE_COLOURS.items()}
@@ -122,8 +124,8 @@ def length(group: Group) -> str:
 
 
 def speed(group: Group) -> str:
-    """The speed of all runs, which is distance divided by time. If only some runs went far enough to have a speed,
-    their mean speed, too."""
+    """The speed of all runs, which is distance divided by time. If only some runs went far enough to have a speed, the
+    mean speed of these runs follows."""
     runs = rounded.counted(group["relative_speed_runs"], "run")
     mean = None if group["relative_speed"] is None else rounded.with_error(group["relative_speed"], group["relative_speed_error"])
     if group.get(lengths.OF_ALL_RUNS) is None:
@@ -134,7 +136,7 @@ def speed(group: Group) -> str:
 
 
 def laboratory_columns(groups: Groups) -> dict[str, str]:
-    """Headings of a table's columns in laboratory units."""
+    """The headings of those columns of the table that are in laboratory units."""
     named = {"tension_mN_per_m": "tension [mN/m]", "clogging_length_mm": "&lambda; [mm]", "speed_mm_per_s": "v<sub>g</sub> [mm/s]", "time_to_clog_s": "time to clog [s]"}
     if not any("laboratory_scale" in group for group in groups.members):
         return {}
@@ -148,27 +150,28 @@ def in_laboratory(group: Group, name: str) -> str:
 
 
 def migration(group: Group, name: str) -> str:
-    """The lateral displacement per distance, or its share of the displacement along the rows."""
+    """The lateral displacement divided by the distance, or divided by the lateral displacement along the rows."""
     return "-" if group.get(name) is None else rounded.with_error(group[name], group[f"{name}_error"])
 
 
 def value(cell: float | str | None, digits: int = 6) -> str:
-    """A parameter's value as a table shows it."""
+    """A value as the table shows it."""
     return "-" if cell is None else printable(cell) if isinstance(cell, str) else f"{cell:.{digits}g}"
 
 
 def cell(groups: Groups, group: Group, name: str) -> str:
-    """A parameter's value in a group as a table shows it, with the file's name for user-supplied circles."""
+    """The value of a parameter in a group as the table shows it. User-supplied circles are shown by the name of their
+    file."""
     return value(groups.named(name, group[name]))
 
 
 def parameters(groups: Groups) -> list[str]:
-    """Names of the parameters that distinguish groups."""
+    """Names of the parameters that distinguish the groups."""
     return [*groups.curve_parameters(), groups.abscissa]
 
 
 def seeds_of(values: dict[str, Any], rows: pandas.DataFrame) -> str:
-    """@param values  values of a group that distinguish its rows from those of other groups"""
+    """The seeds of a group. @param values  values of the group that distinguish its rows from those of other groups"""
     of_group = rows
     for name, value in values.items():
         of_group = of_group[of_group[name] == value]
@@ -180,12 +183,12 @@ def seeds_of(values: dict[str, Any], rows: pandas.DataFrame) -> str:
 
 
 def doubts_of(group: Group, sentences: dict[str, str]) -> str:
-    """The doubts as words, each with its sentence."""
+    """The words for a group's doubts. Each word has a sentence that explains it."""
     return ", ".join(f'<abbr title="{html.escape(sentences[name])}">{name.replace("_", " ")}</abbr>' for name in style.doubts(group))
 
 
 def table_cell(text: str) -> str:
-    """A cell in HTML. In a narrow table its part in brackets moves to a line of its own."""
+    """A cell in HTML. If the table is narrow, the part in brackets moves to its own line."""
     number, space, rest = text.partition(" (")
     if not rest:
         return f"<td>{html.escape(text)}</td>"
@@ -193,9 +196,12 @@ def table_cell(text: str) -> str:
 
 
 def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequence[str]) -> str:
-    """Every number of the page; `page.js` shows them at points, and sorts them.
+    """The table with every number of the page. `page.js` shows the numbers at the points of the charts, and sorts the
+    table.
 
-    @param titles  headings in HTML; @param lines  cells of each group; @param doubts  doubts of each group, in HTML
+    @param titles  headings in HTML
+    @param lines  cells of each group
+    @param doubts  doubts of each group, in HTML
     """
     head = "".join(f'<th scope="col">{title}</th>' for title in [*titles, "doubts"])
     body = "\n".join(f'<tr data-groups="{number}">' + "".join(table_cell(cell) for cell in cells) + f'<td class="doubt">{doubt}</td></tr>'
@@ -225,7 +231,8 @@ def table_of_passages(groups: Groups, sentences: dict[str, str]) -> str:
 
 
 def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.DataFrame) -> str:
-    """@param sentences  clogfit's sentences, by the words for doubts that its groups contain"""
+    """The section about doubts. @param sentences  clogfit's sentences, by the words for doubts that its groups
+    contain"""
     words = []
     for name in dict.fromkeys(name for group in groups for name in style.doubts(group)):
         count = sum(name in style.doubts(group) for group in groups)
@@ -237,12 +244,13 @@ def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.Data
 
 
 def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
-    """Clogs to show: the typical one of every mechanism, and others, evenly from the least to the most deformed.
+    """Chooses clogs to show: a typical one of every mechanism, and others, spread evenly from the least to the most
+    deformed.
 
-    Clogs of droplets that travelled a diameter or more come first: clogs at the release depend on the void there, not
+    Clogs of droplets that travelled a diameter or more come first. Clogs at the release depend on the void there, not
     on the array.
 
-    @param clogs_of_sweep  rows as clogs.of_polygons() gives them
+    @param clogs_of_sweep  rows from clogs.of_polygons()
     """
     farthest = sorted(clogs_of_sweep, key=lambda row: -row["distance"])
     travelled = sum(row["distance"] >= 1 for row in farthest)
@@ -253,7 +261,8 @@ def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     for row in ordered:
         kinds.setdefault(row["mechanism"], []).append(row)
     typical = [kind[len(kind) // 2] for kind in kinds.values()]
-    # The most and the least deformed clogs often come from the least sound runs.
+    # The most and the least deformed clogs are left out, because they often come from the runs with the least reliable
+    # numerics.
     spread = [ordered[int(place)] for place in np.linspace(0.05, 0.95, count) * (len(ordered) - 1)]
     return list({row["task"]: row for row in typical + spread + ordered}.values())[:count]
 
@@ -270,7 +279,8 @@ def example_pictures(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pat
 
 
 def progress_of(status: dict[str, Any], rows: pandas.DataFrame) -> str:
-    """@param status  output of clogsweep status; @param rows  rows of the tasks that have begun"""
+    """The progress of the sweep in words. @param status  output of clogsweep status; @param rows  rows of the tasks
+    that have begun"""
     counts = ", ".join(f"{count} {name}" for name, count in rows.status.value_counts().items())
     return f"{status['finished']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
 
@@ -280,7 +290,7 @@ LENGTHS = ("&lambda; is the distance that a fraction 1/e of the droplets travels
 
 
 def label_of_length(groups: Groups, group: Group) -> str:
-    """The title of a point, which a browser shows without a script."""
+    """The title of a point. Browsers show it even without a script."""
     known = "" if speed(group) == "-" else f", speed {speed(group)}"
     return (f"{valued(groups, group)}: length {length(group)}{known}, {group['clogs']} of {rounded.counted(group['runs'], 'run')} clogged")
 
@@ -289,11 +299,11 @@ def valued(groups: Groups, group: Group) -> str:
     return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
 
 
-MAPPED = 4  # number of runs whose paths make the map in each panel of a device
+MAPPED = 4  # number of runs whose paths make up the map of each panel of a device
 
 
 def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
-    """Draws user-supplied circles, with releases and clogs.
+    """Draws devices of user-supplied circles, with the places of releases and clogs.
     @param count  number of paths in each panel; with 0 nothing is replayed"""
     if groups.values("obstacle_filling") != {"file"}:
         return {}
@@ -307,7 +317,8 @@ def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Pa
 
 
 def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
-    """The sections about droplets among obstacles. @param count  number of clogs to show. @return contents by title"""
+    """The sections about droplets among obstacles. @param count  number of clogs to show. @return the contents of the
+    sections by title"""
     def chart(figure: Figure, caption: str) -> str:
         is_wide = figure.get_figwidth() > 1.5 * figure.get_figheight()
         return framed(charts.draw(figure, caption), caption, "wide" if is_wide else "")
@@ -343,7 +354,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathli
 
 
 def busy_ranks(about: dict[str, str], charts: Charts) -> str:
-    """@param about  attributes of the sweep's file"""
+    """The section about busy and idle ranks. @param about  attributes of the sweep's file"""
     sessions = activity.sessions_of(about)
     if not sessions:
         return ""
@@ -361,7 +372,7 @@ RANDOM_ARRAYS = ("obstacle-gap", "obstacle-density", "obstacle-diameter-spread",
 
 
 def settings(config: str) -> str:
-    """A sweep's settings; with user-supplied circles, without the keys of random arrays."""
+    """The settings of a sweep. With user-supplied circles, the keys of random arrays are left out."""
     own_circles = stored.settings(config).get("obstacles", "none") != "none"
     return "\n".join(line for line in config.split("\n") if not (own_circles and line.partition(" = ")[0] in RANDOM_ARRAYS))
 
@@ -377,7 +388,8 @@ def laboratories_of(groups: Groups) -> list[str]:
 
 
 def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts, fitted_by: str) -> str:
-    """@param sections  contents by title; @param charts  in them; @param fitted_by  version of clogfit"""
+    """The page in HTML. @param sections  contents by title; @param charts  the charts in these sections;
+    @param fitted_by  version of clogfit"""
     def part(ending: str) -> str:
         return pathlib.Path(__file__).with_name(f"page.{ending}").read_text(encoding="utf-8")
 
@@ -392,7 +404,9 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
 
 
 def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: pathlib.Path, *options: object) -> pathlib.Path:
-    """@param examples  clogs or outlines to show; @param folder  of the programs; @param options  of clogfit. @return the output; an earlier page is replaced, nothing else.
+    """Writes the page. An earlier page is replaced, but no other file.
+    @param examples  number of clogs or outlines to show; @param folder  of the programs; @param options  of clogfit
+    @return the output
     @throws UserError, ProgramFailed"""
     outputs.refuse_unwritable(output, "html", sweep)
     told, circle_files = fits.fitted(folder / "clogfit", sweep, *options)

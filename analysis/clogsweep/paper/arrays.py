@@ -1,4 +1,4 @@
-"""Figures of droplets among obstacles."""
+"""Draws the article's figures of droplets among obstacles."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from .workshop import Workshop
 if TYPE_CHECKING:
     import pandas
 
-# The mechanisms that hold droplets, as clogfit counts them, and the mesh.
+# Columns of clogfit that show what holds droplets: the mesh, and the mechanisms.
 HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
 
 
 def numbers(groups: Sequence[Group], label: str, **more: Sequence[Any]) -> list[dict[str, Any]]:
-    """The numbers of clogfit that a figure draws, for each group."""
+    """The numbers from clogfit that a figure draws, for each group."""
     columns = ["model", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter", "obstacle_density", "near_wall_drag", "runs", "clogs",
                "clogging_length", "clogging_length_lower", "clogging_length_upper", "relative_speed", "relative_speed_error", "capillary_number", "doubts"]
     return [{"curve": label, **{name: group[name] for name in columns}, **{name: values[i] for name, values in more.items()}}
@@ -41,7 +41,7 @@ def of_each(curve: Sequence[Group], *names: str) -> dict[str, list[Any]]:
 
 
 def by(groups: Iterable[Group], name: str) -> list[tuple[Any, list[Group]]]:
-    """The groups of each curve, by the value in which the curves differ."""
+    """The groups of each curve, with the value that distinguishes the curve."""
     return [(value, [group for group in groups if group[name] == value]) for value in sorted({group[name] for group in groups})]
 
 
@@ -49,8 +49,8 @@ DRAWINGS: dict[str, Callable[..., None]] = {"length": draw_lengths, "speed": dra
 
 
 def finish(axes: Axes, shop: Workshop, config: str, drawn: Sequence[Group], abscissa: str, quantity: str, varied: Sequence[str]) -> None:
-    """Legend, labels of the axes, caption and notes. @param quantity  a key of DRAWINGS; @param varied  columns that
-    the caption leaves out"""
+    """Adds the legend, the labels of the axes, the caption and the notes. @param quantity  a key of DRAWINGS;
+    @param varied  columns that the caption leaves out"""
     if quantity == "length":
         style.logarithmic_ordinate(axes)
     style.label(axes, AXES[abscissa], AXES[quantity])
@@ -60,7 +60,7 @@ def finish(axes: Axes, shop: Workshop, config: str, drawn: Sequence[Group], absc
 
 
 def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity: str) -> Plate:
-    """One curve for each value of a parameter. @param quantity  of DRAWINGS"""
+    """Draws one curve for each value of a parameter. @param quantity  a key of DRAWINGS"""
     groups = shop.sweep(config)
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
@@ -101,8 +101,8 @@ enter("E", "mean speed against line tension for three near-wall drags", "near-wa
 # Both models against the sag
 
 def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
-    """delta_s for each group, from one sweep of droplets on walls with the line tensions or stiffnesses of all
-    groups."""
+    """The sag delta_s of each group. The sags come from one sweep of droplets on walls, with the line tension or
+    stiffness of each group."""
     is_polygon = groups[0]["model"] == "dp"
     column, key = ("line_tension", "line-tension") if is_polygon else ("wall_stiffness", "wall-stiffness")
     keys = shop.keys(config)
@@ -113,7 +113,7 @@ def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
     return [known[group[column]]["sag"] for group in groups]
 
 
-# For each curve: a sweep, the curve's label, and a function that selects its groups among those of the sweep.
+# For each curve: a sweep, the curve's label, and a function that selects the groups of this curve.
 Curve = tuple[str, str, Callable[[Sequence[Group]], list[Group]]]
 
 
@@ -151,7 +151,7 @@ def sag_picture(shop: Workshop) -> Plate:
     disk_sag, polygon_sag = disk["sag"], row["sag"]
     drawing, panels = style.subplots(1, 2, figsize=(7.2, 4.2), sharey=True)
     wall = polygon.wedges[0, :2]
-    # Gravity points along +x in the model; here it points down.
+    # In the model gravity points along +x, and in the picture it points down.
     outlines = [np.array([shape[1] - wall[1], wall[0] - shape[0]]) for shape in polygon.polygons]
     angle = np.linspace(0, 2 * math.pi, 200)
     circle = np.array([0.5 * np.cos(angle), 0.5 + 0.5 * np.sin(angle)])
@@ -177,13 +177,13 @@ def sag_picture(shop: Workshop) -> Plate:
 
 # Clogs
 
-CLOGS = "clogging-friction"  # with friction, walls hold droplets that wrap, whatever the mesh
+CLOGS = "clogging-friction"  # With friction, walls hold wrapped droplets on every mesh.
 
 
 def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pandas.Series]:
-    """A clog of the sweep, replayed with its outline. Among squeezed clogs it is the stiffest droplet that travelled at
-    least half a diameter, if there is one. Among wrapped clogs it is the one of median shape, preferably among those
-    that only hang over obstacles."""
+    """Replays one clog of the sweep with its outline. Of the squeezed clogs it takes the stiffest droplet that
+    travelled at least half a diameter, if there is one. Of the wrapped clogs it takes the one with median shape,
+    preferably among those that only hang over obstacles."""
     shop.sweep(CLOGS)
     rows = shop.rows(CLOGS)
     if "mechanism" not in rows or not rows.mechanism.any():
@@ -214,16 +214,17 @@ def clog_numbers(run: trajectory.Trajectory, row: pandas.Series, frame: int) -> 
              "distance": row.distance, "x": x, "y": y} for x, y in run.polygons[frame].T]
 
 
-VIEW = np.array([5.6, 3.2])  # width and height shown in Figs. 5 and 6, which have the same scale [sigma]; longer droplets need more
+# Width and height of the view in Figs. 5 and 6, which have the same scale [sigma]. Longer droplets need more.
+VIEW = np.array([5.6, 3.2])
 
 
 def view_of(outlines: Numbers) -> Numbers:
-    """Width and height with room for these outlines. @param outlines  frames x 2 x N"""
+    """Width and height of a view that has room for these outlines. @param outlines  frames x 2 x N"""
     return np.maximum(VIEW, np.ptp(outlines, axis=(0, 2)) + 0.4)
 
 
 def show_clog(axes: Axes, run: trajectory.Trajectory, frame: int, view: Numbers, outlines: Numbers) -> None:
-    """@param view  from view_of(); @param outlines  determine the middle of the view"""
+    """Draws a clog. @param view  from view_of(); @param outlines  the middle of the view is the middle of these"""
     surroundings.draw_droplet(axes, run, frame)
     middle = (outlines.min(axis=(0, 2)) + outlines.max(axis=(0, 2))) / 2
     surroundings.frame_limits(axes, middle - view / 2, middle + view / 2)
@@ -251,7 +252,7 @@ def two_ways(shop: Workshop) -> Plate:
     for mechanism in ("wrapped", "squeezed"):
         run, row = example(shop, mechanism)
         final = run.polygons[-1].mean(axis=1)
-        # The last diameter and a half of the path.
+        # These are the frames of the last one and a half diameters of the path.
         near = np.flatnonzero(np.hypot(*(run.polygons.mean(axis=2) - final).T) > 1.5)
         first = near[-1] + 1 if len(near) else 0
         kinds.append((run, row, first + trajectory.along_the_way(run.polygons[first:], 4)[-4:]))
@@ -272,7 +273,7 @@ def two_ways(shop: Workshop) -> Plate:
 # Single runs and P(r)
 
 def energies(shop: Workshop) -> dict[float, trajectory.Trajectory]:
-    """Paths of Fig. C1, by the gap: of a droplet that clogs, and of one that flows."""
+    """The paths of Fig. C1 by their gap. The droplet clogs in one gap and flows in the other."""
     rows = shop.runs("energy", "trajectory", {"seeds": 1, "line-tension": 0.5, "obstacle-gap": [0.3, 1.1], "clog-detection": "threshold"})
     return {row["obstacle_gap"]: way for row, way in zip(rows, shop.ways("energy", rows, 1))}
 
@@ -299,9 +300,9 @@ def kinetic_energy(shop: Workshop) -> Plate:
 
 
 def draw_band(axes: Axes, group: Group) -> None:
-    """The error of P(r), up to the longest distance."""
+    """Draws the confidence band of P(r), up to the longest distance."""
     steps = group["survival"]
-    known = [step for step in steps if step["lower"] is not None]  # the last step has no band if no run is left there
+    known = [step for step in steps if step["lower"] is not None]  # The last step has no band if no run remains there.
     end = survival_curve.longest_way(group) if known == steps else steps[-1]["distance"]
     axes.fill_between([0.0] + [step["distance"] for step in known] + [end], *(
         [1.0] + [step[bound] for step in known] + [known[-1][bound] if known else 1.0] for bound in ("lower", "upper")),
@@ -309,8 +310,8 @@ def draw_band(axes: Axes, group: Group) -> None:
 
 
 def lowest_shown(group: Group, end: float) -> float:
-    """The lower end of the ordinate. Band, curve and exponential are above it up to the longest distance, unless they
-    have reached zero."""
+    """The lower end of the ordinate. The band, the estimate and the exponential law are above it up to the longest
+    distance, unless they have reached zero."""
     lowest = [step[name] for step in group["survival"] for name in ("lower", "probability") if step[name]]
     return 0.7 * min(1.0, *lowest, math.exp(-end / group["clogging_length"]))
 
@@ -342,7 +343,7 @@ def survival(shop: Workshop) -> Plate:
 
 
 def displacements(shop: Workshop) -> dict[float, trajectory.Trajectory]:
-    """Paths of Fig. D, by the line tension."""
+    """The paths of Fig. D by their line tension."""
     rows = shop.runs("displacement", "trajectory", {"seeds": 1, "line-tension": [0.04, 0.1, 0.2, 0.5, 1.0], "obstacle-gap": 1.1, "preset": "elastic"})
     return {row["line_tension"]: way for row, way in zip(rows, shop.ways("displacement", rows, 2))}
 

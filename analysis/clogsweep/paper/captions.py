@@ -1,16 +1,16 @@
-"""The parameters that a figure's points share, for the line above it."""
+"""Describes the parameters that the points of a figure share, in the line above the figure."""
 
 from collections.abc import Collection, Sequence
 
 from ..labels import interface_of, runs_a_point, said
 from ..tools.hints import Column, Group
 
-# Parameters that a caption names when all points share one value other than 0.
+# A caption names these parameters if all points share one value other than 0.
 NAMED = ("line_tension", "obstacle_gap", "obstacle_diameter", "near_wall_drag")
 
 
 def arrays_of(groups: Sequence[Group]) -> str:
-    """The filling of the arrays, in words."""
+    """How the arrays are filled, in words."""
     if {group["obstacle_filling"] for group in groups} == {"saturated"}:
         return "saturated arrays"
     densities = sorted({group["obstacle_density"] for group in groups})
@@ -20,8 +20,10 @@ def arrays_of(groups: Sequence[Group]) -> str:
 
 
 def describe(columns: dict[str, Column], groups: Sequence[Group], without: Collection[str] = ()) -> str:
-    """Phrases separated by commas. Parameters that only polygons have are attributed to the polygons. @param columns
-    see Workshop.columns(); @param without  parameters that the figure names elsewhere"""
+    """The shared parameters as phrases separated by commas. Parameters that only polygons have are attributed to the
+    polygons.
+    @param columns  see Workshop.columns()
+    @param without  parameters that the figure names elsewhere"""
     polygons = [group for group in groups if group["model"] == "dp"]
 
     def common(name: str, members: Sequence[Group] = groups) -> bool:

@@ -1,4 +1,4 @@
-"""Figures of droplets in narrow channels and along walls."""
+"""Draws the article's figures of droplets in narrow channels and along walls."""
 
 import math
 import pathlib
@@ -16,20 +16,20 @@ from ..tools.errors import UserError
 from .plate import Plate, figure
 from .workshop import Workshop, measured
 
-SMOOTH = 512  # with so many vertices or more a passage through w = 0.4 shows no ripples
+SMOOTH = 512  # With at least this many vertices, a passage through w = 0.4 shows no ripples.
 
 
 def passages(shop: Workshop, name: str, **keys: object) -> list[np.void]:
-    """Rows of a sweep of channels. @param keys  keys of Workshop.runs(), with _ instead of -"""
+    """The rows of a sweep of channels. @param keys  keys of Workshop.runs(), with _ instead of -"""
     start, end = (-10, 3) if shop.size == "full" else (-2, 2)
     return shop.runs(name, "channel", {"obstacle-layout": "channel", "start": start, "end": end} | {key.replace("_", "-"): value for key, value in keys.items()})
 
 
 def profiles(shop: Workshop, name: str, outlines: bool = False, **keys: object) -> list[Trajectory]:
-    """Replays of these rows, with h, v and A along the path, and outlines."""
+    """Replays passages. Each replay has h, v and A along the path, and outlines if they are requested."""
     rows = passages(shop, name, **keys)
-    # A droplet at terminal speed moves by a fiftieth of a diameter between frames, and by a fifth of that between
-    # samples.
+    # Between two frames, a droplet at terminal speed moves by a fiftieth of a diameter. Between two samples the droplet
+    # moves by a fifth of this distance.
     frame = 0.02 / rows[0]["terminal_speed"]
     return shop.ways(name, rows, frame / 5, frame if outlines else None)
 
@@ -41,7 +41,8 @@ def parameters(run: Trajectory, orifice: float) -> str:
 
 
 def ending(run: Trajectory) -> str:
-    """The end of a label, for droplets that did not pass: they are shown up to their last position."""
+    """The end of a label. For a droplet that did not pass, it names the last position, up to which the droplet is
+    shown."""
     return "" if run.word("status") == "passed" else f" (stops at $h = {run.table['h'][-1]:.2f}$)"
 
 
@@ -65,12 +66,12 @@ def finish(axes: Axes, ordinate: str, reach: float = 1.6) -> None:
     axes.axvline(0, color="0.8", linewidth=0.8, zorder=0)
     if ordinate == "profile":
         axes.axhline(1, color="0.6", linewidth=0.8, linestyle=":", zorder=0)
-        axes.set_ylim(bottom=-0.03)  # room for the cross of a droplet that stops
+        axes.set_ylim(bottom=-0.03)  # leaves room for the cross of a droplet that stops
     style.grid(axes)
 
 
 def extremes(run: Trajectory, label: str) -> dict[str, Any]:
-    """The row's results of the passage."""
+    """The largest and smallest values of the passage, as the row states them."""
     return {"curve": label} | {f"{extreme}{at}": run.row[f"{extreme}{at}"] for at in ("", "_at")
                                for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed")}
 
@@ -82,7 +83,7 @@ def profile_rows(run: Trajectory, label: str) -> list[dict[str, Any]]:
 
 
 def narrow(shop: Workshop) -> Trajectory:
-    """The passage of Figs. 1 and 2."""
+    """The passage in Figs. 1 and 2."""
     return profiles(shop, "channel-0.4", outlines=True, orifice=0.4, line_tension=0.16, near_wall_drag=0.064, terminal_speed=0.08)[0]
 
 
@@ -145,12 +146,12 @@ def squeezing(shop: Workshop) -> Plate:
     return Plate(drawing, profile_rows(run, "w=0.4"))
 
 
-# Line tension, near-wall drag and terminal speed that the article calibrated, by the orifice of Fig. 3.
+# The line tension, near-wall drag and terminal speed that the article calibrated for each orifice of Fig. 3.
 CALIBRATED = {0.9: (1.7, 0.21, 0.028), 0.7: (1.08, 0.07, 0.032)}
 
 
 def passage(shop: Workshop, orifice: float) -> Trajectory:
-    """A passage of Fig. 3. @param orifice  0.9 or 0.7"""
+    """A passage in Fig. 3. @param orifice  0.9 or 0.7"""
     line_tension, drag, speed = CALIBRATED[orifice]
     return profiles(shop, f"channel-{orifice}", outlines=True, orifice=orifice, line_tension=line_tension, near_wall_drag=drag, terminal_speed=speed)[0]
 
@@ -168,7 +169,7 @@ def two_orifices(shop: Workshop) -> Plate:
             style.caption(axes, parameters(run, orifice))
             if run.word("status") != "passed":
                 axes.legend(frameon=False)
-        # Draws the most deformed outline in an empty part of the figure.
+        # An inset in an empty part of the figure shows the most deformed outline.
         inset = panels[line][0].inset_axes([0.68, 0.5, 0.3, 0.47])
         frame = run.frame_at("h", run.row["largest_shape_parameter_at"])
         surroundings.draw_droplet(inset, run, frame, run.middle)
@@ -186,7 +187,7 @@ OVERSHOOTS = {0.7: 0.02, 0.8: 0.0}  # near-wall drag for each orifice of Fig. 4
 
 
 def overshooting(shop: Workshop, orifice: float) -> dict[float, Trajectory]:
-    """Passages of Fig. 4, by line tension. @param orifice  0.7 or 0.8"""
+    """The passages in Fig. 4 by line tension. @param orifice  0.7 or 0.8"""
     line_tensions = [1.85, 1.11, 0.83]
     return dict(zip(line_tensions, profiles(shop, f"overshoot-{orifice}", orifice=orifice, line_tension=line_tensions, near_wall_drag=OVERSHOOTS[orifice],
                                             terminal_speed=0.032)))
@@ -209,7 +210,8 @@ def overshoot(shop: Workshop) -> Plate:
 
 
 def drag_of_walls(shop: Workshop) -> tuple[list[float], list[np.void], list[float], dict[str, Any]]:
-    """Droplets midway between two walls, Fig. A1. @return distances from a wall, rows, speeds [v_t], and the fit of clogfit drag"""
+    """Droplets midway between two walls, as in Fig. A1. @return distances from a wall, rows, speeds [v_t], and the fit
+    of clogfit drag"""
     distances = [0.03, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2]
     rows = passages(shop, "walls", start=-1.5, end=1.5, wedge_angle=0, orifice=[1 + 2 * distance for distance in distances],
                     line_tension=1, near_wall_drag=0.07, terminal_speed=0.03)
@@ -231,8 +233,8 @@ def near_wall_drag(shop: Workshop) -> Plate:
     alpha, strength = fit["near_wall_exponent"], fit["near_wall_drag"]
     axes.plot(d, d**alpha / strength, color=style.COLOURS[0], linewidth=1,
               label=rf"fit to these: exponent ${alpha:.2f}\pm{fit['near_wall_exponent_error'] or math.nan:.2f}$")
-    # v/(v_t - v) of a circle with the drag on each vertex: 1 over b_0/b_inf times the mean of d_i^-alpha over the
-    # vertices.
+    # v/(v_t - v) of a circle, computed from the drag on each vertex. The value is the inverse of b_0/b_inf times the
+    # mean of d_i^-alpha over the vertices.
     exponent, height = row["near_wall_exponent"], 0.5 * (1 - np.abs(np.sin(np.linspace(0, 2 * np.pi, row["vertices"], endpoint=False))))
     circle = 1 / (row["near_wall_drag"] * np.mean((d[:, None] + height) ** -exponent, axis=1))
     axes.plot(d, circle, ":", color="black", linewidth=1, label="sum over the vertices of a circle (no fit)")
@@ -247,8 +249,8 @@ def near_wall_drag(shop: Workshop) -> Plate:
 
 
 def meshes(shop: Workshop) -> dict[int, Trajectory]:
-    """Passages of Fig. B1, by the number of vertices, which is limited to a multiple of the config's number, because
-    the finest run takes most of the time."""
+    """The passages in Fig. B1 by their number of vertices. The number of vertices is at most a multiple of the number
+    in the config, because the finest run takes most of the time."""
     line_tension, most = (1.08, 4) if shop.size == "full" else (0.83, 2)
     counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= most * int(shop.keys("channel")["vertices"])]
     return dict(zip(counts, profiles(shop, "vertices", orifice=0.7, line_tension=line_tension, near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)))

@@ -1,4 +1,4 @@
-"""The density of the published arrays: the article gives one clogging length as a number, and no density."""
+"""Finds the density of the published arrays. The article states one clogging length as a number, but no density."""
 
 import dataclasses
 import math
@@ -17,16 +17,19 @@ from .captions import describe
 from .plate import Plate, figure
 from .workshop import Workshop
 
-PUBLISHED_LENGTH, PUBLISHED_ERROR = 24.0, 1.0  # [sigma], at Gamma = 1.09 and a minimum gap of 0.2 sigma
+# The length and its error [sigma], at Gamma = 1.09 and a minimum gap of 0.2 sigma.
+PUBLISHED_LENGTH, PUBLISHED_ERROR = 24.0, 1.0
 NORMAL_QUANTILE = 1.96  # two-sided 95 %
 CONFIGS = {"density-robust": "constant tension", "density-elastic": "tension grows with the perimeter", "density-friction": r"likewise, wall friction $\mu = 0.05$"}
 
 
 @dataclasses.dataclass(frozen=True)
 class DensityFit:
-    """A parabola through log lambda as a function of log density, and the density at which it has the published length.
+    """A parabola through log lambda as a function of log density, and the density at which the parabola has the
+    published length.
 
-    A length from n clogs has a relative error of 1/sqrt(n), which is the error of its logarithm.
+    A length from n clogs has a relative error of 1/sqrt(n). The logarithm of the length has the same number as its
+    absolute error.
     """
 
     coefficients: np.ndarray[Any, Any]  # highest power first
@@ -34,7 +37,7 @@ class DensityFit:
     chi_squared: float
     degrees_of_freedom: int
     density: float  # [1/sigma^2]
-    lower: float  # lower end of the 95 % interval, which includes the error of the fit and the published error
+    lower: float  # Lower end of the 95 % interval; the interval includes the error of the fit and the published error.
     upper: float
 
     def length(self, density: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
@@ -42,7 +45,8 @@ class DensityFit:
 
 
 def fit_density(densities: Sequence[float], lengths: Sequence[float], clogs: Sequence[int]) -> DensityFit:
-    """@throws ValueError  unless there are four densities or more, and the published length lies between the shortest and the longest"""
+    """Fits the parabola. @throws ValueError  if there are fewer than four densities, or if the published length is not
+    between the shortest and the longest length"""
     x, y = np.log(densities), np.log(lengths)
     if len(x) < 4 or not min(lengths) < PUBLISHED_LENGTH < max(lengths):
         raise ValueError("needs four densities or more, on both sides of the published length")
@@ -98,5 +102,6 @@ def density_of_the_published_arrays(shop: Workshop) -> Plate:
 
 
 def saturated_density(group: Group) -> float:
-    """Density of equal circles at the jamming limit of random sequential addition [1/sigma^2]: 0.547069 of the plane (Feder 1980)."""
+    """The density of equal circles at the jamming limit of random sequential addition [1/sigma^2]. The circles cover
+    0.547069 of the plane (Feder 1980)."""
     return 0.547069 / (math.pi / 4 * (group["obstacle_diameter"] + group["obstacle_gap"]) ** 2)

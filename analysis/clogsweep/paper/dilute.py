@@ -1,5 +1,5 @@
-"""Clogging lengths in dilute arrays, as in the article: mechanisms with different walls, polygons and disks vs the sag,
-and the map."""
+"""Draws clogging lengths in dilute arrays, as in the article: the mechanisms with different walls, polygons and disks
+against the sag, and the map."""
 
 import dataclasses
 import math
@@ -23,17 +23,18 @@ from .captions import describe
 from .plate import Plate, figure
 from .workshop import Workshop
 
-# The one clogging length that was published, with its error: Appendix C. The density was not published: figure
-# `density` finds it from the length.
+# The only clogging length that was published as a number, with its error (appendix C). The density of the arrays was
+# not published; figure `density` finds it from the length.
 PUBLISHED = {"line_tension": 1.09, "obstacle_gap": 0.2, "clogging_length": 24.0, "error": 1.0, "obstacle_density": 0.35}
-ENOUGH_CLOGS = 10  # with so many clogs or more clogfit tests whether P(r) is exponential
+ENOUGH_CLOGS = 10  # With at least this many clogs, clogfit tests whether P(r) is exponential.
 FINER = (0, (4, 2))
-STAR = {"color": "black", "marker": "*", "markersize": 15, "markeredgewidth": 1.4, "markerfacecolor": "none", "linestyle": "none"}  # hollow, so that it hides no point
+# The star is hollow, so that it hides no point.
+STAR = {"color": "black", "marker": "*", "markersize": 15, "markeredgewidth": 1.4, "markerfacecolor": "none", "linestyle": "none"}
 
 
 @dataclasses.dataclass(frozen=True)
 class Family:
-    """Curves of one law of walls. A sweep may contain several coefficients of friction."""
+    """The curves for one law of walls. A sweep may contain several friction coefficients; a family has one of them."""
 
     config: str
     name: str
@@ -64,7 +65,7 @@ def draw_published(axes: Axes) -> None:
 
 
 def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
-    """Draws a panel for each family, with a curve for each gap. @param finer  also draw the sweep CONFIG-mesh, which
+    """Draws a panel for each family, with a curve for each gap. @param finer  also draws the sweep CONFIG-mesh, which
     has a second mesh"""
     kinds = [(family, family.of(shop.sweep(family.config)), family.of(shop.sweep(f"{family.config}-mesh")) if finer else []) for family in chosen]
     kinds = [(family, coarse, fine) for family, coarse, fine in kinds if coarse]
@@ -79,7 +80,8 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
         for groups, options in drawn:
             for gap, curve in by(groups, "obstacle_gap"):
                 label = "_finer" if options else said(shop.columns(family.config)["obstacle_gap"], gap)
-                # A line that passes over line tensions of the other mesh would hide the peak between them.
+                # A line is interrupted where this mesh lacks line tensions of the other mesh, because a line could hide
+                # a peak there.
                 places = [tensions.index(group["line_tension"]) for group in curve]
                 for part in np.split(np.array(curve, dtype=object), np.flatnonzero(np.diff(places) > 1) + 1):
                     curves.append((list(part), gaps.index(gap), label, options))
@@ -112,7 +114,8 @@ MAPS = [Family("map-robust", "no friction, no corner pinning"), Family("map-fric
 
 def is_exponential(group: Group) -> bool | None:
     """Whether P(r) is exponential: the shape of a Weibull law is compatible with 1, and lambda is longer than the void
-    of the release. None if there are too few clogs to decide."""
+    of the release.
+    @return None if there are too few clogs to decide"""
     if group["clogs"] < ENOUGH_CLOGS or group["weibull_p_value"] is None:
         return None
     return group["weibull_p_value"] >= 0.05 and "below_spacing" not in style.doubts(group)
@@ -124,12 +127,12 @@ def known_length(group: Group) -> float:
 
 
 def density_key(group: Group) -> tuple[bool, float]:
-    """The key by which densities are sorted: saturated arrays come last, whatever their density."""
+    """The key by which densities are sorted. Saturated arrays come last, whatever their density."""
     return (True, 0.0) if group["obstacle_filling"] == "saturated" else (False, group["obstacle_density"])
 
 
 def place_of(values: Sequence[float], value: float) -> float:
-    """The position of a value among the columns or rows of a map, which are equally wide."""
+    """The position of a value in a map. All columns are equally wide, and all rows equally high."""
     return float(np.interp(math.log(value), np.log(values), np.arange(len(values))))
 
 

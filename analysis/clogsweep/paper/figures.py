@@ -1,4 +1,4 @@
-"""Figures of the article from our own runs: sweeps, clogfit, picture."""
+"""Makes the figures of the article from our own runs: runs a sweep, fits it with clogfit, and draws the picture."""
 
 import csv
 import datetime
@@ -8,7 +8,7 @@ from .. import style
 from ..reading import programs
 from ..tools import outputs
 from ..tools.texts import printable
-from . import arrays, channels, density, dilute, hanging  # noqa: F401, they fill the catalogue
+from . import arrays, channels, density, dilute, hanging  # noqa: F401, these modules fill the catalogue
 from .plate import CATALOGUE, Entry, Plate
 from .workshop import Workshop
 
@@ -25,12 +25,12 @@ def print_list() -> None:
 
 
 def output_of(name: str, shop: Workshop) -> pathlib.Path:
-    """The path without its ending."""
+    """The path of a figure without its ending."""
     return shop.folder / f"figure-{name}"
 
 
 def refuse_unwritable(name: str, shop: Workshop) -> None:
-    """Checks that write() can write its four files, before a computation of minutes."""
+    """Checks that write() can write its four files, before minutes are spent on a computation."""
     output = output_of(name, shop)
     outputs.refuse_unwritable_picture(output, *shop.profiles)
     for ending in ("csv", "txt"):

@@ -1,4 +1,4 @@
-"""Figures of droplets that hang over obstacles: whether the mesh or the wall holds them."""
+"""Draws figures of droplets that hang over obstacles, and shows whether the mesh or the wall holds them."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -17,16 +17,17 @@ from .arrays import HOLDS, by, numbers, of_each
 from .plate import Plate, figure
 from .workshop import Workshop
 
-# The post: x, y, diameter [sigma]. A droplet falls onto it from 7 sigma upstream, along a line 0.08 sigma beside its
-# centre.
+# The post: x, y and diameter [sigma]. A droplet falls onto it from 7 sigma upstream. The path of the droplet is 0.08
+# sigma beside the centre of the post.
 POST = (47.0, 5.08, 0.3)
-# Vertices closer to the post's surface than this belong to an interface over the post [sigma].
+# Vertices that are closer to the post's surface than this belong to a part of the interface over the post [sigma].
 NEAR = 0.12
 
 
 def by_mesh(shop: Workshop, config: str, kinds: Sequence[tuple[str, Sequence[Group]]], without: Sequence[str]) -> Plate:
-    """Draws a panel for each kind, with a curve for each mesh. @param kinds  for each panel, what distinguishes it in
-    words, and its groups; @param config, without  see panels.draw()"""
+    """Draws a panel for each kind, with a curve for each mesh.
+    @param kinds  for each panel, words that distinguish it, and its groups
+    @param config, without  see panels.draw()"""
     meshes = sorted({group["vertices"] for _, groups in kinds for group in groups})
     found: list[panels.Panel] = [(title, [(curve, meshes.index(vertices), f"$N_v = {vertices}$", {}) for vertices, curve in by(groups, "vertices")]) for title, groups in kinds]
     data = [row for title, groups in kinds for row in numbers(groups, title.replace("\n", ", "), **of_each(groups, "vertices", "friction", *HOLDS))]
@@ -49,7 +50,7 @@ def lengths_by_friction(shop: Workshop) -> Plate:
 
 
 def over_a_post(shop: Workshop, films: str) -> Trajectory:
-    """Replays a droplet that hangs over a post, with lobes of unequal weight on the two sides. @param films  value of
+    """Replays a droplet that hangs over a post. The lobes on the two sides have unequal weights. @param films  value of
     film-friction"""
     obstacles = shop.table("post", ["x", "y", "diameter"], [POST])
     row, = shop.runs(f"post-{films}", None, {
@@ -59,18 +60,20 @@ def over_a_post(shop: Workshop, films: str) -> Trajectory:
 
 
 def tensions(vertices: Numbers, row: np.void) -> Numbers:
-    """Tensions of the edges of a polygon with springs, which pull edges to their length at rest [g rho sigma^2].
+    """The tensions of the edges of a polygon with springs [g rho sigma^2]. A spring pulls its edge towards its length
+    at rest.
     @param vertices  2 x N_v [sigma]"""
     number = vertices.shape[1]
     lengths = np.hypot(*(np.roll(vertices, -1, axis=1) - vertices))
-    at_rest = math.sqrt(math.pi * math.tan(math.pi / number) / number)  # edge of a regular polygon of the droplet's area
+    # Length of an edge of a regular polygon with the droplet's area.
+    at_rest = math.sqrt(math.pi * math.tan(math.pi / number) / number)
     return row["line_tension"] + row["perimeter_stiffness"] * number * (lengths - at_rest)
 
 
 def interfaces(vertices: Numbers) -> Iterator[Numbers]:
-    """Indices of the parts of a contour that lie over the post. The part that touches the post comes first."""
+    """The indices of the parts of an outline that are over the post. The part that touches the post comes first."""
     apart = np.hypot(vertices[0] - POST[0], vertices[1] - POST[1])
-    begin = int(np.argmax(apart))  # begins in a lobe, so that no part is cut in two
+    begin = int(np.argmax(apart))  # The outline begins in a lobe, so that no part is cut in two.
     around = np.roll(np.arange(apart.size), -begin)
     near = around[apart[around] < POST[2] / 2 + NEAR]
     breaks = np.flatnonzero(np.diff((near - begin) % apart.size) > 1) + 1
@@ -81,8 +84,8 @@ def interfaces(vertices: Numbers) -> Iterator[Numbers]:
 def tensions_over_a_post(shop: Workshop) -> Plate:
     held, slides = over_a_post(shop, "on"), over_a_post(shop, "off")
     drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 3.8), width_ratios=[1.3, 1])
-    last = held.polygons[-1][:, ::2]  # without the middles of edges
-    # The moment at which the other droplet, which slides, passes the position where this one is held.
+    last = held.polygons[-1][:, ::2]  # Without the middles of the edges.
+    # The moment at which the other droplet, which slides, passes the position at which this droplet is held.
     passing = slides.polygons[int(np.argmin(np.abs(slides.polygons[:, 0].mean(axis=1) - held.polygons[-1][0].mean())))][:, ::2]
     edges = np.stack([last.T, np.roll(last, -1, axis=1).T], axis=1) - POST[:2]
     line = left.add_collection(LineCollection(edges, array=tensions(last, held.row) / held.row["line_tension"], cmap="viridis", linewidth=1.8))

@@ -1,4 +1,4 @@
-"""Clogging lengths against line tension in several panels, which share axes, legend and caption."""
+"""Draws clogging lengths against the line tension in several panels. The panels share axes, legend and caption."""
 
 import math
 from collections.abc import Callable, Collection, Sequence
@@ -17,13 +17,13 @@ from .workshop import Workshop
 
 # For each curve: its groups, the number of its colour, its name in the legend, and options of draw_lengths().
 Curve = tuple[Sequence[Group], int, str, dict[str, Any]]
-# For each panel: what distinguishes it, in words, and its curves.
+# For each panel: words that distinguish it, and its curves.
 Panel = tuple[str, Sequence[Curve]]
 
 
 def explain_gap(axes: Axes, tensions: Sequence[float], groups: Sequence[Group]) -> None:
-    """Marks the range of line tensions below those of this panel: they were run for other panels only. @param tensions
-    of all panels, ascending"""
+    """Marks the range of line tensions below those of this panel. Line tensions in this range were run for other panels
+    only. @param tensions  of all panels, ascending"""
     first = min(group["line_tension"] for group in groups)
     if first == tensions[0]:
         return
@@ -36,9 +36,11 @@ def explain_gap(axes: Axes, tensions: Sequence[float], groups: Sequence[Group]) 
 
 def draw(shop: Workshop, config: str, panels: Sequence[Panel], without: Collection[str], across: int = 2,
          marks: Sequence[tuple[Artist, str]] = (), on_each: Callable[[Axes], None] = lambda axes: None) -> Figure:
-    """@param config  a sweep, for its columns and the confidence; @param without  parameters that the caption leaves
-    out; @param across  number of panels side by side; @param marks  legend entries for what `on_each` draws and for
-    other marks"""
+    """Draws the panels.
+    @param config  a sweep, for its columns and its confidence
+    @param without  parameters that the caption leaves out
+    @param across  number of panels side by side
+    @param marks  legend entries for what `on_each` draws and for other marks"""
     every = [group for _, curves in panels for groups, *_ in curves for group in groups]
     tensions = sorted({group["line_tension"] for group in every})
     num_colours = 1 + max(index for _, curves in panels for _, index, *_ in curves)

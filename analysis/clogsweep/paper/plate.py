@@ -15,7 +15,7 @@ CATALOGUE: dict[str, Entry] = {}
 
 @dataclasses.dataclass
 class Plate:
-    """A drawn figure, and its numbers: one dictionary for each row of the table that is written beside the picture."""
+    """A drawn figure, and its numbers. Each dictionary is one row of the table that is written beside the picture."""
 
     figure: Figure
     data: list[dict[str, Any]]
@@ -34,7 +34,8 @@ class Entry:
 
 
 def figure(name: str, caption: str, configs: Iterable[str], cost: str) -> Callable[[Drawing], Drawing]:
-    """Adds a function to the catalogue. @param cost  time that the figure takes in its reduced size on two cores"""
+    """Adds a drawing function to the catalogue. @param cost  time that the figure takes in its reduced size on two
+    cores"""
 
     def enter(draw: Drawing) -> Drawing:
         CATALOGUE[name] = Entry(name, caption, tuple(configs), cost, draw)

@@ -1,4 +1,4 @@
-"""Runs the programs for a figure, once, and records the origin of every number."""
+"""Runs the programs for a figure. A run that exists is not repeated. The origin of every number is recorded."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ CONFIGS = programs.JOBS / "figures"
 
 
 def config_keys(path: pathlib.Path) -> dict[str, str]:
-    """Keys and values of a config file, as text."""
+    """The keys and values of a config file, as text."""
     keys = {}
     for line in path.read_text(encoding="utf-8").splitlines():
         line = line.split("#", 1)[0]
@@ -43,7 +43,7 @@ def as_text(value: object) -> str:
 
 
 def in_row(row: np.void, key: str, otherwise: str) -> str:
-    """The text of a key's value in a row; `otherwise` if the row has no number for the key."""
+    """The text of a key's value in a row. If the row has no number for the key, `otherwise` is returned."""
     if key == "perimeter-stiffness-ratio":
         return as_text(row["perimeter_stiffness"] / row["line_tension"])
     column = key.replace("-", "_")
@@ -52,7 +52,7 @@ def in_row(row: np.void, key: str, otherwise: str) -> str:
 
 @dataclasses.dataclass(frozen=True)
 class Override:
-    """KEY=VALUE for all configs, or CONFIG:KEY=VALUE for one."""
+    """A KEY=VALUE for all configs, or a CONFIG:KEY=VALUE for one config."""
 
     config: str | None
     key: str
@@ -93,21 +93,21 @@ class Workshop:
         return CONFIGS / f"{name}.{self.size}.cfg"
 
     def keys(self, name: str) -> dict[str, str]:
-        """Settings of a config and --set combined."""
+        """The settings of a config, changed by --set."""
         keys = config_keys(self.config(name))
-        # A --set for this config overrides one for all.
+        # A --set for this config overrides a --set for all configs.
         for config in (None, name):
             keys |= {override.key: override.value for override in self.overrides if override.config == config}
         return keys
 
     def _arguments(self, name: str, own_keys: dict[str, str]) -> list[str]:
-        """The arguments for a config and its changes. First comes --set, then the figure's own keys, which override
-        --set."""
+        """The arguments for a config and its changes. The keys of --set come first, and the keys that the figure itself
+        sets come second, so that they override --set."""
         in_file = config_keys(self.config(name))
         keys = self.keys(name) | own_keys
         if own_keys.get("obstacle-layout") in ("channel", "wall"):
             # In a channel or on a wall nothing is random or periodic. So a --set of a key for random or periodic arrays
-            # is meant for other sweeps.
+            # concerns other sweeps.
             keys = {key: value for key, value in keys.items() if key not in ("seeds", "box")}
         return ["--config", str(self.config(name)), *(f"{key}={value}" for key, value in keys.items() if in_file.get(key) != value)]
 
@@ -122,7 +122,7 @@ class Workshop:
         return self.folder / "sweeps" / f"{name}.h5"
 
     def _complete(self, name: str, arguments: list[str], ranks: int) -> None:
-        """Runs the missing part of a sweep, once."""
+        """Runs the part of a sweep that is missing."""
         file = self.sweep_file(name)
         if self.draw_only and not file.exists():
             raise NotThere(f"{file} is not there; leave out --draw-only, or run clogsweep {shlex.join(arguments)}")
@@ -134,25 +134,25 @@ class Workshop:
         self._note_sweep(name)
 
     def sweep(self, name: str) -> list[Group]:
-        """Runs the missing part of a config's sweep. @return clogfit's groups"""
+        """Runs the part of a config's sweep that is missing. @return clogfit's groups"""
         self._complete(name, self._arguments(name, {}), self.ranks)
         if name not in self._fits:
             self._fits[name] = json.loads(self._call("clogfit", self.sweep_file(name), "--format", "json"))
         return [group for group in self._fits[name]["groups"] if group["runs"] > 0]
 
     def runs(self, name: str, config: str | None, keys: Mapping[str, object]) -> list[np.void]:
-        """Runs the missing part of a sweep over keys that the figure sets itself.
+        """Runs the missing part of a sweep over keys that the figure itself sets.
 
-        @param config  the config for all other keys, or None for their defaults @param keys  for each key a value or a
-        list of values, e.g. {"line-tension": [0.3, 1]} @return the rows, in the order of the lists; the last list
-        varies fastest
+        @param config  the config for all other keys, or None for their defaults
+        @param keys  for each key a value or a list of values, such as {"line-tension": [0.3, 1]}
+        @return the rows, in the order of the lists; the last list varies fastest
         """
         lists = {key: [as_text(value) for value in (values if isinstance(values, list) else [values])] for key, values in keys.items()}
         words = {key: ",".join(values) for key, values in lists.items()}
         wanted = list(itertools.product(*lists.values()))
         self._complete(name, self._arguments(config, words) if config else [f"{key}={word}" for key, word in words.items()],
                        min(self.ranks, len(wanted)))
-        # The file may contain other rows, too. A key without a column has the same value in all of them.
+        # The file may contain other rows, too. If a key has no column, its value is the same in all rows.
         known = {tuple(in_row(row, key, values[0]) for key, values in lists.items()): row for row in stored.read_rows(self.sweep_file(name), self.programs)}
         if missing := [values for values in wanted if values not in known]:
             which = ", ".join(map("=".join, zip(lists, missing[0])))
@@ -164,15 +164,15 @@ class Workshop:
         return found
 
     def columns(self, name: str) -> dict[str, Column]:
-        """The parameters of a sweep that sweep() has run, by name, as clogfit's JSON describes them."""
+        """The parameters of a sweep by name, as clogfit's JSON describes them. sweep() must have run the sweep."""
         return {column["name"]: column for column in self._fits[name]["columns"]}
 
     def confidence(self, name: str) -> float:
-        """The confidence of a sweep's intervals, after sweep() has run it."""
+        """The confidence of a sweep's intervals. sweep() must have run the sweep."""
         return self._fits[name]["confidence"]
 
     def rows(self, name: str) -> pandas.DataFrame:
-        """The table of a sweep that sweep() has run."""
+        """The table of a sweep. sweep() must have run the sweep."""
         return stored.read_table(self.sweep_file(name), self.programs)
 
     def _note_sweep(self, name: str) -> None:
@@ -188,7 +188,7 @@ class Workshop:
     # Ways of single droplets
 
     def ways(self, name: str, rows: Iterable[np.void], samples: float, outlines: float | None = None) -> list[Trajectory]:
-        """Replays of a sweep's rows, see replays.follow_all(). A replay that a file already contains is not
+        """Replays rows of a sweep, see replays.follow_all(). If a file already contains a replay, the replay is not
         repeated."""
         folder = self.folder / "runs"
         if not self.draw_only:
@@ -210,7 +210,7 @@ class Workshop:
         return json.loads(self._call("clogfit", *arguments))
 
     def table(self, name: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> pathlib.Path:
-        """A CSV file that clogfit reads. @param columns  its header, e.g. ["h [sigma]", "v [v_t]"]"""
+        """Writes a CSV file for clogfit. @param columns  its header, such as ["h [sigma]", "v [v_t]"]"""
         file = self.folder / "runs" / f"{name}.csv"
         file.parent.mkdir(parents=True, exist_ok=True)
         with outputs.replaced(file) as fresh, open(fresh, "w", newline="", encoding="utf-8") as out:
@@ -218,18 +218,19 @@ class Workshop:
         return file
 
     def model_versions(self) -> dict[str, set[int]]:
-        """The model versions in the rows of every sweep used so far."""
+        """The model versions in the rows of all sweeps that were used so far."""
         return self._model_versions
 
     def take_sources(self) -> list[str]:
-        """Returns the sources of the numbers in the last figure, and clears them."""
+        """Returns the sources of the numbers in the last figure, and forgets them."""
         sources, self._sources = self._sources, []
         return sources
 
 
 def measured(path: pathlib.Path) -> pandas.DataFrame:
-    """Columns h, v, A of a measured passage in reduced units, as clogfit calibrate reads it; for display."""
-    import pandas  # slow to load, and seldom needed
+    """The columns h, v and A of a measured passage in reduced units, in the format of clogfit calibrate. The columns
+    are only displayed."""
+    import pandas  # pandas is slow to load, and seldom needed here.
 
     try:
         table = pandas.read_csv(path, comment="#", skipinitialspace=True)

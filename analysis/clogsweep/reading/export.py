@@ -1,4 +1,4 @@
-"""Rows of a sweep in files that other programs read."""
+"""Writes rows of a sweep to files that other programs read."""
 
 from __future__ import annotations
 
@@ -15,12 +15,15 @@ if TYPE_CHECKING:
 
 
 def write(table: pandas.DataFrame, path: pathlib.Path, source: str) -> None:
-    """@param table  see stored.read_table(); @param path  .csv: the name of each column is followed by its unit in
-    brackets; .h5: a dataset for each column, with the attributes `unit` and `meaning`. @param source  provenance of the
-    rows. @throws UserError"""
+    """Writes the table.
+    @param table  see stored.read_table()
+    @param path  .csv: each column has a name followed by its unit in brackets; .h5: each column is a dataset with the
+    attributes `unit` and `meaning`
+    @param source  provenance of the rows
+    @throws UserError"""
     if path.suffix not in (".csv", ".h5"):
         raise UserError(f"cannot write {path} (it can only be .csv or .h5); give another ending")
-    if path.exists():  # it may be a sweep, or a table of the user's own
+    if path.exists():  # The file may be a sweep, or a table that the user made.
         raise UserError(f"will not overwrite {path} (it exists); give another name, or remove it first")
     units, meanings = table.attrs["units"], table.attrs["meanings"]
     with outputs.replaced(path) as fresh:

@@ -10,26 +10,26 @@ from . import programs, stored
 
 
 def told(clogfit: pathlib.Path, *words: object) -> dict[str, Any]:
-    """clogfit's answer for these sweeps and options. @throws ProgramFailed  with its reason"""
+    """The answer of clogfit for these sweeps and options. @throws ProgramFailed  with clogfit's reason"""
     return json.loads(programs.run_program(clogfit, *words, "--format", "json"))
 
 
-# The quantities in which droplets of one sweep may differ if a lab file lists several.
+# The droplets of one sweep may differ in these quantities if a lab file lists several values.
 DROPLETS: dict[str, dict[str, Any]] = {
     "diameter_mm": {"key": "diameter", "symbol": r"\sigma", "unit": "mm", "meaning": "diameter of the droplet", "label": "diameter {:.4g} mm"},
     "angle_degrees": {"key": "angle", "symbol": r"\theta", "unit": "degrees", "meaning": "tilt of the plates", "label": "tilt {:.4g}°"}}
 
 
 def follows(groups: Collection[Group], name: str, others: Iterable[str]) -> bool:
-    """Whether this parameter's value follows from the others'."""
+    """Whether the value of this parameter follows from the values of the others."""
     known: dict[tuple[Any, ...], Any] = {}
     return all(known.setdefault(tuple(group[o] for o in others), group[name]) == group[name] for group in groups)
 
 
 def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
-    """Converts a fit of several droplets in a laboratory: their diameter and tilt become parameters, and lengths are in
-    mm, because in droplet diameters the same array has other lengths for each droplet. Any other fit stays unchanged.
-    "in_table" of a group contains its values as they are in the sweep's table."""
+    """Converts a fit of several droplets in a laboratory. The diameter and the tilt become parameters, and lengths are
+    converted to mm. In droplet diameters the same array would have other lengths for each droplet. "in_table" of a
+    group contains its values as they are in the sweep's table. Any other fit stays unchanged."""
     groups = fit["groups"]
     if "laboratory" in fit or "in_mm" in fit or not groups or not all(group.get("diameter_mm") for group in groups):
         return fit
@@ -52,7 +52,7 @@ def droplet_columns() -> dict[str, Column]:
 
 
 def fitted(clogfit: pathlib.Path, sweep: AnyPath, *options: object) -> tuple[dict[str, Any], dict[str, str]]:
-    """clogfit's present answer, and stored.circle_files(). @throws ProgramFailed  with its reason"""
+    """The present answer of clogfit, and stored.circle_files(). @throws ProgramFailed  with clogfit's reason"""
     fit = told(clogfit, sweep, *options)
     with stored.opened(sweep, folder=clogfit.parent) as file:
         return fit, stored.circle_files(file)

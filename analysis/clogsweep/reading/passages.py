@@ -1,4 +1,4 @@
-"""Reads passages through a channel that clogrun wrote, without the outlines of the droplet."""
+"""Reads passages through a channel that clogrun wrote. The outlines of the droplet are not read."""
 
 import multiprocessing
 import os
@@ -13,11 +13,11 @@ from ..tools.errors import Damaged, UserError
 from ..tools.hints import Records
 from . import stored
 
-READING_SECONDS = 10  # limit on the processor time of reading; a passage has a few thousand samples
+READING_SECONDS = 10  # Limit on the processor time of reading [s]. A passage has only a few thousand samples.
 
 
 def is_hdf5(path: str) -> bool:
-    """False for a missing file, and for pipes, which may never end."""
+    """Whether the path leads to an HDF5 file. Pipes are not opened, because reading from them may never end."""
     return os.path.isfile(path) and h5py.is_hdf5(path)
 
 
@@ -27,7 +27,8 @@ def read_samples(path: str) -> tuple[Records, np.void]:
             raise UserError(f"cannot read {path} (not a passage through a channel); give a file written by clogrun channel")
         stored.check_kind(path, file, stored.RUN)
         table = file["trajectory"]
-        if table.nbytes > table.id.get_storage_size():  # it is not compressed
+        # The table is never compressed, so all its bytes must be in the file.
+        if table.nbytes > table.id.get_storage_size():
             raise ValueError(f"the file cannot hold {len(table)} samples")
         return table[:], file["runs"][0]
 
@@ -38,7 +39,8 @@ def limit_reading() -> None:
 
 
 def read_in_child(path: str) -> tuple[Records, np.void]:
-    """Reads in a child process, because HDF5 may crash or never end on damaged files. @throws Damaged; UserError"""
+    """Reads the file in a child process, because HDF5 may crash or never end on damaged files. @throws Damaged;
+    UserError"""
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), limit_reading) as child:
         try:
             return child.submit(read_samples, path).result()
@@ -47,7 +49,8 @@ def read_in_child(path: str) -> tuple[Records, np.void]:
 
 
 def read(path: str) -> tuple[Records, np.void]:
-    """Samples and row. A file without a seal, which another program copied or changed, is read with a warning. @throws Damaged; UserError"""
+    """Reads samples and row. A file without a seal was copied or changed by another program; it is read with a warning.
+    @throws Damaged; UserError"""
     try:
         if stored.is_sealed(path):
             return read_samples(path)

@@ -1,4 +1,4 @@
-"""Finds and runs the built programs."""
+"""Finds and runs the C++ programs."""
 
 import argparse
 import os
@@ -12,12 +12,13 @@ from ..tools.errors import ProgramFailed, UserError
 PACKAGE = pathlib.Path(__file__).resolve().parents[1]
 
 try:
-    from .._installed import JOBS_FOLDER, PROGRAMS_FOLDER  # folders relative to this package; cmake --install writes this module
+    # Folders relative to this package. cmake --install writes the module `_installed`.
+    from .._installed import JOBS_FOLDER, PROGRAMS_FOLDER
 except ImportError:
-    if (PACKAGE / "jobs").is_dir():  # pip has installed the package as PREFIX/lib/python3.11/site-packages/clogsweep
+    if (PACKAGE / "jobs").is_dir():  # pip has installed the package as PREFIX/lib/python3.11/site-packages/clogsweep.
         JOBS = PACKAGE / "jobs"
         PROGRAMS = [PACKAGE.parents[3] / "bin"]
-    else:  # the package is in the source tree
+    else:  # The package is in the source tree.
         _SOURCE = PACKAGE.parents[1]
         JOBS = _SOURCE / "jobs"
         PROGRAMS = [_SOURCE / "build" / "release" / "bin"]
@@ -27,17 +28,17 @@ else:
 
 
 def reason(text: str) -> str:
-    """The program's own error line, without the lines that mpirun prints around it."""
+    """The error line of the program itself, without the lines that mpirun prints around it."""
     lines = [line for line in text.splitlines() if line.strip()]
     ours = [line for line in lines if line.startswith(("clogsweep", "clogrun", "clogfit"))]
     return (ours or lines[-1:] or ["no reason given"])[-1]
 
 
 def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
-    """The folder with clogsweep, clogrun and clogfit: `folder` if it is given, otherwise the first of CLOG_BIN, the
-    folder of clogsweep in the PATH, and the folder beside this package.
+    """The folder with clogsweep, clogrun and clogfit. If `folder` is given, it is this folder. Otherwise it is the
+    first that exists of CLOG_BIN, the folder of clogsweep in the PATH, and the folder beside this package.
 
-    @throws UserError  if they are not there
+    @throws UserError  if the programs are not there
     """
     called = shutil.which("clogsweep")
     chosen = os.environ.get("CLOG_BIN")
@@ -56,7 +57,7 @@ def add_option(parser: argparse.ArgumentParser) -> None:
 
 
 def run_program(program: str | os.PathLike[str], *arguments: object, ranks: int = 1) -> str:
-    """@return the program's output. @throws ProgramFailed  with its reason"""
+    """Runs a program. @return the program's output. @throws ProgramFailed  with its reason"""
     return _outputs(program, *arguments, ranks=ranks)[0]
 
 
@@ -69,7 +70,7 @@ def _outputs(program: str | os.PathLike[str], *arguments: object, ranks: int = 1
     command = [str(program), *map(str, arguments)]
     environment = dict(os.environ)
     if ranks == 1:
-        # With this variable of an allocation clogsweep would refuse to run on one rank, as it is to do here.
+        # clogsweep would refuse to run on one rank if it saw this variable of an allocation.
         environment.pop("SLURM_NTASKS", None)
     else:
         settings = shlex.quote(str(JOBS / "mpi-settings.sh"))
@@ -81,7 +82,8 @@ def _outputs(program: str | os.PathLike[str], *arguments: object, ranks: int = 1
                 out, error = process.communicate()
                 break
             except KeyboardInterrupt:
-                # The terminal also sends SIGINT to the programs: they end cleanly and report their progress.
+                # The terminal also sends SIGINT to the programs, so they end cleanly by themselves and report their
+                # progress.
                 continue
     if process.returncode != 0:
         raise ProgramFailed(reason(error or out), process.returncode)

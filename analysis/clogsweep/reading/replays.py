@@ -1,4 +1,5 @@
-"""Replays rows of a sweep with clogrun, for quantities that the rows lack: h, v and A along the path, outlines."""
+"""Replays rows of a sweep with clogrun, for quantities that the rows do not contain: outlines, and h, v and A along the
+path."""
 
 import concurrent.futures
 import pathlib
@@ -14,7 +15,7 @@ from . import stored, trajectory
 from .programs import run_program
 from .trajectory import Trajectory
 
-# Columns that may differ between a row and its replay.
+# A row and its replay may differ in these columns.
 CIRCUMSTANCES = {"task", "wall_seconds", "processor_seconds", "rank", "host", "attempt"}
 
 
@@ -24,7 +25,7 @@ def replay(clogrun: pathlib.Path, sweep: AnyPath, task: int, output: AnyPath, *o
 
 
 def is_of(known: Trajectory, row: np.void, options: list[str]) -> bool:
-    """Whether this trajectory comes from a replay of this row with these options."""
+    """Whether a trajectory comes from a replay of this row with these options."""
     return shlex.split(known.attributes["command_line"])[4:-2] == options and known.row.dtype == row.dtype and all(
         known.row[column].tobytes() == row[column].tobytes() for column in set(stored.columns_of(row)) - CIRCUMSTANCES)
 
@@ -33,7 +34,7 @@ def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, fold
     """The trajectory of a row, from a file in the folder. The row is replayed only if the file does not contain its
     trajectory yet.
 
-    @param clogrun  the program; None: never replay a row
+    @param clogrun  the program; with None no row is replayed
     """
     file = pathlib.Path(folder) / f"{sweep.stem}-{row['task']}.h5"
     known = trajectory.read(file, needs_frames=False) if file.exists() else None
@@ -49,8 +50,10 @@ def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, fold
 
 def follow_all(clogrun: pathlib.Path | None, sweep: pathlib.Path, rows: Iterable[np.void], folder: AnyPath, jobs: int, samples: float,
                outlines: float | None = None) -> list[Trajectory]:
-    """The trajectories of several rows, as follow(). @param jobs  number of simultaneous replays; @param samples  time
-    between two samples [t0]; @param outlines  time between two outlines [t0]"""
+    """The trajectories of several rows, as from follow().
+    @param jobs  number of simultaneous replays
+    @param samples  time between two samples [t0]
+    @param outlines  time between two outlines [t0]"""
     options = ["--sample-interval", f"{samples:.3g}", *(["--polygon-interval", f"{outlines:.3g}"] if outlines else [])]
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         return list(pool.map(lambda row: follow(clogrun, sweep, row, folder, options), rows))

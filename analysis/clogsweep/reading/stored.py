@@ -1,4 +1,5 @@
-"""Files of clogsweep and clogrun, opened only if nothing in them is damaged (docs/explanation/survival.md)."""
+"""Reads files of clogsweep and clogrun. A file is opened only if nothing in it is damaged
+(docs/explanation/survival.md)."""
 
 from __future__ import annotations
 
@@ -27,13 +28,13 @@ SEAL = re.compile(rb"\nclogsweep seal 1: crc32 ([0-9a-f]{8}) of ([0-9]{20}) byte
 SEAL_SIZE = 64
 READABLE_VERSIONS = ("9", "10")
 SWEEP, RUN = "sweep", "run"
-KINDS = {"clogsweep sweep": SWEEP, "clogsweep trajectory": RUN}  # by the attribute `kind`
+KINDS = {"clogsweep sweep": SWEEP, "clogsweep trajectory": RUN}  # kind of a file by its attribute `kind`
 WRITERS: dict[str | None, str] = {
     SWEEP: "the output of clogsweep", RUN: "the output of clogrun with --polygon-interval", None: "a file of clogsweep or clogrun"}
 
 
 def is_sealed(path: AnyPath) -> bool:
-    """True if the file's seal matches, False if it has none. @throws Damaged  if the seal does not match"""
+    """Whether the file has a seal. @throws Damaged  if the seal does not match the content"""
     with open(path, "rb") as file:
         content = file.read()
     seal = SEAL.fullmatch(content[-SEAL_SIZE:])
@@ -45,7 +46,8 @@ def is_sealed(path: AnyPath) -> bool:
 
 
 def text(value: object) -> str:
-    """A word of a table, or lines of an attribute, made printable: a foreign file may contain any bytes."""
+    """A word of a table, or lines of an attribute, with escapes for unprintable bytes, because a file from elsewhere
+    may contain any bytes."""
     return printable(value.decode(errors="surrogateescape") if isinstance(value, bytes) else value, "\n\t")
 
 
@@ -55,7 +57,7 @@ def unreadable(path: AnyPath, reason: object, kind: str | None = None) -> UserEr
 
 
 def check_kind(path: AnyPath, file: h5py.File, kind: str | None) -> None:
-    """@throws UserError"""
+    """Refuses a file of the wrong kind. @throws UserError"""
     found = KINDS.get(text(file.attrs.get("kind", "")))
     if found is None:
         raise unreadable(path, "an HDF5 file, but not one of clogsweep or clogrun", kind)
@@ -70,15 +72,15 @@ def check_kind(path: AnyPath, file: h5py.File, kind: str | None) -> None:
 
 
 def kind_of(path: AnyPath, folder: AnyPath | None = None) -> str:
-    """SWEEP or RUN. @throws as opened()"""
+    """The kind of a file, SWEEP or RUN. @throws as opened()"""
     with opened(path, folder=folder) as file:
         return KINDS[text(file.attrs["kind"])]
 
 
 @functools.lru_cache
 def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
-    """Has clogsweep check a sweep without a seal, which another program copied or changed, and prints the warnings. The
-    check is repeated only if the file has changed. @throws Damaged; UserError"""
+    """Lets clogsweep check a sweep without a seal, and prints the warnings. Such a sweep was copied or changed by
+    another program. The check is repeated only if the file has changed since. @throws Damaged; UserError"""
     try:
         clogsweep = programs.programs_in(folder) / "clogsweep"
     except UserError as error:
@@ -105,10 +107,13 @@ def why_not_open(path: AnyPath, error: OSError) -> str:
 
 @contextlib.contextmanager
 def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None) -> Iterator[h5py.File]:
-    """The file for h5py, read only. @param kind  SWEEP or RUN, if only that is acceptable; @param folder  of the
-    programs. @throws Damaged; UserError if it cannot be read"""
+    """Opens a file with h5py, read only.
+    @param kind  SWEEP or RUN, if only this kind is acceptable
+    @param folder  of the programs
+    @throws Damaged; UserError  if the file cannot be read"""
     if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
-        raise unreadable(path, "not a regular file: a pipe, device or socket", kind)  # reading it may never end
+        # Reading such a file may never end.
+        raise unreadable(path, "not a regular file: a pipe, device or socket", kind)
     try:
         is_whole = is_sealed(path)
         if h5py.is_hdf5(path) and not is_whole:
@@ -130,7 +135,8 @@ def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None
 
 
 def attributes(file: h5py.File) -> dict[str, str]:
-    """An open file's attributes, its provenance, as text. A long one is stored in parts, `config`, `config.2` and so on."""
+    """The attributes of an open file as text. Attributes state the provenance of the file. A long attribute is stored
+    in parts with the names `config`, `config.2` and so on."""
     parts = {name: text(value) for name, value in file.attrs.items()}
     for name in list(parts):
         if name not in parts:
@@ -143,39 +149,40 @@ def attributes(file: h5py.File) -> dict[str, str]:
 
 
 def writer(attributes: dict[str, str]) -> str:
-    """Version and commit of the program that wrote a file, in words. Files from before version 0.2.0 have only the
-    commit's hash, and a salvaged file may have neither."""
+    """The version and commit of the program that wrote a file, in words. Files from before version 0.2.0 have only the
+    hash of the commit. A salvaged file may have neither."""
     commit = attributes.get("git_describe") or attributes.get("git_hash") or "unknown"
     return f"{attributes.get('version', 'of unknown version')}, git {commit}"
 
 
 def source(attributes: dict[str, str]) -> str:
-    """Provenance of a file's rows, to be shown with a picture of these. @param attributes  of the file"""
+    """The provenance of a file's rows, to be shown with a picture of these rows. @param attributes  of the file"""
     began = f", begun {attributes['start_time']}" if "start_time" in attributes else ""
     return f"clogsweep {writer(attributes)}{began}\n{attributes.get('command_line', '')}".strip()
 
 
 def settings(config: str) -> dict[str, str]:
-    """Keys and values of a stored config. It has all keys; defaults that follow from other keys are words such as
-    `auto`."""
+    """The keys and values of a stored config. A stored config has all keys. A default that follows from other keys is a
+    word such as `auto`."""
     pairs = [line.partition(" = ") for line in config.split("\n")]
     of_points = {key for name, _, keys in pairs if name == "point-keys" for key in keys.split()}
     return {key: unescaped(value) for key, equals, value in pairs if equals and key not in of_points}
 
 
 def unescaped(value: str) -> str:
-    r"""A value of a config as it was given: \x and two hexadecimal digits stand for a control character, #, or a backslash."""
+    r"""A value of a config as the user gave it. In the stored text, \x and two hexadecimal digits stand for a control
+    character, #, or a backslash."""
     return re.sub(r"\\x([0-9a-fA-F]{2})", lambda found: chr(int(found[1], 16)), value)
 
 
 def circle_files(file: h5py.File) -> dict[str, str]:
-    """Names of the files of user-supplied circles, by the checksum that rows store."""
+    """The names of the files of user-supplied circles, by the checksums in the rows."""
     return {sum_: pathlib.Path(text(circles.attrs["file"])).name for sum_, circles in file.get("obstacles", {}).items() if "file" in circles.attrs}
 
 
 def circles(file: h5py.File) -> dict[str, Numbers]:
-    """User-supplied circles by their checksums: x, y, radius; radius 0 means half of the row's obstacle_diameter
-    [sigma]."""
+    """User-supplied circles by their checksums: x, y and radius [sigma]. A radius of 0 means half of the row's
+    obstacle_diameter."""
     return {sum_: np.column_stack([circles[name] for name in ("x", "y", "radius")]) for sum_, circles in file.get("obstacles", {}).items()}
 
 
@@ -185,27 +192,28 @@ def columns_of(rows: Records | np.void) -> tuple[str, ...]:
 
 
 def read_rows(path: AnyPath, folder: AnyPath | None = None) -> Records:
-    """The table of runs, one record per run. @throws as opened()"""
+    """Reads the table of runs, with one record per run. @throws as opened()"""
     with opened(path, folder=folder) as file:
         return file["runs"][:]
 
 
 def unit(meaning: str) -> str:
-    """A column's unit, which stands in brackets in its description; empty for counts, ratios and words."""
+    """The unit of a column, which the column's description has in brackets. Counts, ratios and words have an empty
+    unit."""
     found = re.search(r"\[(.*?)\]", meaning)
     return found[1] if found else ""
 
 
 def read_table(path: AnyPath, folder: AnyPath | None = None) -> pandas.DataFrame:
-    """The table of runs for pandas, with text as strings. Its `attrs` contain the `units` and `meanings` of the
-    columns, by name."""
+    """Reads the table of runs for pandas, with text as strings. The table's `attrs` contain `units` and `meanings`,
+    dictionaries by column name."""
     with opened(path, folder=folder) as file:
         return table_of(file)
 
 
 def table_of(file: h5py.File) -> pandas.DataFrame:
-    """The table of runs of an open file, for pandas."""
-    import pandas  # slow to load, and not always needed
+    """The table of runs in an open file, for pandas."""
+    import pandas  # pandas is slow to load, and not always needed.
 
     rows = file["runs"][:]
     meanings = {name: text(file["runs"].attrs.get(name, "")) for name in rows.dtype.names}

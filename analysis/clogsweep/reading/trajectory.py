@@ -16,8 +16,8 @@ POINTS_OF_DISK = 128
 
 @dataclasses.dataclass
 class Trajectory:
-    """A trajectory file. Arrays have the shapes given in docs/reference/files.md. Without --polygon-interval there are
-    no frames, obstacles and wedges. The polygons are refined, see outlines()."""
+    """The content of a trajectory file. docs/reference/files.md gives the shapes of the arrays. Without
+    --polygon-interval the file has no frames, obstacles and wedges. The polygons are refined, see outlines()."""
 
     path: pathlib.Path
     table: Records
@@ -32,19 +32,20 @@ class Trajectory:
         return stored.text(self.row[column])
 
     def frame_at(self, column: str, value: float) -> int:
-        """Index of the first frame in which the value of a column is nearest to a given value."""
+        """The index of the first frame in which a column is nearest to a given value."""
         at_frames = np.interp(self.times, self.table["time"], self.table[column])
         return int(np.argmin(np.abs(at_frames - value)))
 
     @property
     def middle(self) -> Numbers:
-        """The point h = 0 on a channel's axis, in the coordinates of the polygons; for a wall, a point on it."""
+        """The point h = 0 on a channel's axis, in the coordinates of the polygons. For a wall, this is a point on the
+        wall."""
         return self.wedges[:, :2].mean(axis=0)
 
 
 def refined(polygons: Numbers, row: np.void) -> Numbers:
-    """Polygons with the middles of their edges, where walls also touch them. Polygons of runs with wall-contact=vertex
-    stay unchanged.
+    """Refined polygons: the middles of the edges, where walls also touch, become additional points. Polygons of runs
+    with wall-contact=vertex stay unchanged.
 
     @param polygons  (..., 2, N_v) [sigma]
     @return (..., 2, 2 N_v)
@@ -53,15 +54,17 @@ def refined(polygons: Numbers, row: np.void) -> Numbers:
 
 
 def with_middles(polygons: Numbers) -> Numbers:
-    """Polygons with a point added between every two vertices, by the four-point rule (docs/explanation/model.md).
-    Repeated calls give a smooth curve. @param polygons  (..., 2, N)"""
+    """Adds a point between every two vertices by the four-point rule (docs/explanation/model.md). Repeated calls give a
+    smooth curve.
+    @param polygons  (..., 2, N)
+    @return (..., 2, 2 N)"""
     before, after = np.roll(polygons, 1, axis=-1), np.roll(polygons, -1, axis=-1)
     middles = (9 * (polygons + after) - before - np.roll(polygons, -2, axis=-1)) / 16
     return np.stack([polygons, middles], axis=-1).reshape(*polygons.shape[:-1], -1)
 
 
 def outlines(polygons: Numbers, row: np.void) -> Numbers:
-    """The outline that touches walls: refined polygons, or the circle of a soft disk, of which only the centre is
+    """The outline that touches walls: refined polygons, or the circle of a soft disk. Only the centre of a soft disk is
     stored."""
     if row["model"] != b"sp" or polygons.size == 0:
         return refined(polygons, row)
@@ -70,7 +73,7 @@ def outlines(polygons: Numbers, row: np.void) -> Numbers:
 
 
 def read(path: AnyPath, needs_frames: bool = True) -> Trajectory:
-    """@throws UserError  if it is not a trajectory (with frames)"""
+    """Reads a trajectory file. @throws UserError  if the file is no trajectory, or lacks frames that are needed"""
     with stored.opened(path, stored.RUN) as file:
         frames = [file[name][:] if name in file else np.empty(shape)
                   for name, shape in [("polygons", (0, 2, 0)), ("polygon_times", (0,)),
@@ -84,13 +87,13 @@ def read(path: AnyPath, needs_frames: bool = True) -> Trajectory:
 
 
 def require_frames(trajectory: Trajectory) -> None:
-    """@throws UserError  if there are no outlines"""
+    """Refuses a trajectory without outlines. @throws UserError"""
     if len(trajectory.times) == 0:
         raise stored.unreadable(trajectory.path, "holds no polygons", stored.RUN)
 
 
 def wedge_outline(wedge: Numbers, reach: float = 50.0) -> Numbers:
-    """Points around a wedge with a rounded tip, cut off far away. @param wedge  a row of /wedges"""
+    """Points around a wedge with a rounded tip. The wedge is cut off far away. @param wedge  a row of /wedges"""
     x, y, axis_x, axis_y, half_angle, radius = wedge
     centre = np.array([x, y]) + radius * np.array([axis_x, axis_y])
     axis = math.atan2(axis_y, axis_x)
@@ -108,7 +111,7 @@ def wedge_outline(wedge: Numbers, reach: float = 50.0) -> Numbers:
 
 
 def described(trajectory: Trajectory) -> str:
-    """Parameters of the run, without results."""
+    """The parameters of the run in words."""
     row = trajectory.row
     words = [rf"$\Gamma = {row['line_tension']:.4g}$" if trajectory.word("model") == "dp" else rf"$E_w = {row['wall_stiffness']:.4g}$"]
     if np.isfinite(row["obstacle_gap"]):
@@ -125,13 +128,13 @@ def end_of(trajectory: Trajectory) -> str:
 
 
 def verdict(trajectory: Trajectory) -> str:
-    """How the run ended, with its distance, for a picture."""
+    """How the run ended, with the distance, as text for a picture."""
     return rf"{literal(end_of(trajectory))} after $r = {trajectory.row['distance']:.2f}\,\sigma$"
 
 
 def centroids(polygons: Numbers) -> Numbers:
     """The centroid of each enclosed area. @param polygons  frames x 2 x N. @return frames x 2"""
-    reference = polygons[:, :, :1]  # near the polygon, so that no digits are lost far from the origin
+    reference = polygons[:, :, :1]  # A reference near the polygon, so that no digits are lost far from the origin.
     x, y = np.moveaxis(polygons - reference, 1, 0)
     next_x, next_y = np.roll(x, -1, axis=-1), np.roll(y, -1, axis=-1)
     cross = x * next_y - next_x * y
@@ -140,7 +143,8 @@ def centroids(polygons: Numbers) -> Numbers:
 
 
 def along_the_way(polygons: Numbers, number: int) -> npt.NDArray[np.intp]:
-    """Frames evenly spaced along the path, not in time: a clogged droplet rests for most of its run."""
+    """Chooses frames that are evenly spaced along the path. Frames evenly spaced in time would mostly show the same
+    outline, because a clogged droplet rests for most of its run."""
     centres = polygons.mean(axis=2)
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(centres, axis=0).T))])
     chosen = np.searchsorted(way, np.linspace(0, way[-1], number)).clip(max=len(polygons) - 1)
@@ -148,7 +152,7 @@ def along_the_way(polygons: Numbers, number: int) -> npt.NDArray[np.intp]:
 
 
 def interface_speeds(trajectory: Trajectory) -> Numbers:
-    """Speed of every point of the interface in every frame, by differences between frames [sqrt(sigma g)]."""
+    """The speed of every point of the interface in every frame, from differences between frames [sqrt(sigma g)]."""
     if len(trajectory.times) < 2:
         return np.zeros((len(trajectory.times), trajectory.polygons.shape[2]))
     velocity = np.gradient(trajectory.polygons, trajectory.times, axis=0)

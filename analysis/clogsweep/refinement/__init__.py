@@ -1,1 +1,1 @@
-"""Rounds of a sweep: the existing rows determine which values and seeds run next."""
+"""Plans the rounds of a sweep: the existing rows determine which values and seeds run next."""

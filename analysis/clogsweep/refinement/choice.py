@@ -1,4 +1,4 @@
-"""Values that a search may try, and the choice of values with the most information for the work of their runs."""
+"""Lists the values that a search may try, and chooses those whose runs give the most information for their work."""
 
 import math
 from collections.abc import Sequence
@@ -9,13 +9,16 @@ import pandas
 from ..curves.model import Curve
 from ..tools.hints import Numbers
 
-SERIES = (192, 96, 48, 24, 12, 6)  # preferred numbers per decade (IEC 60063); the coarser series are parts of the finer
-NEARNESS = 1e-3  # square of a distance divided by the range: points that are nearer to each other count alike
+# Preferred numbers per decade (IEC 60063). Each coarser series is a part of the finer ones.
+SERIES = (192, 96, 48, 24, 12, 6)
+# Square of a distance divided by the range. Points that are nearer to each other than this count as equally near.
+NEARNESS = 1e-3
 
 
 def preferred_values(given: Sequence[float], most: int) -> list[float]:
-    """The given values, and preferred numbers of three figures between the outermost of them: at most `most` values, or
-    one more than given. With preferred numbers the files of two people have values in common."""
+    """The given values, and preferred numbers of three digits between the outermost given values. The list has at most
+    `most` values, or one more than were given. Because of the preferred numbers, the files of two people have values in
+    common."""
     values = sorted(given)
     for per_decade in SERIES:
         first, last = (round_(per_decade * math.log10(end)) for round_, end in ((math.floor, given[0]), (math.ceil, given[-1])))
@@ -27,7 +30,8 @@ def preferred_values(given: Sequence[float], most: int) -> list[float]:
 
 
 def spread(values: Sequence[float], count: int) -> list[float]:
-    """`count` of the values, spread evenly on a logarithmic scale, including the outermost; fewer if some coincide."""
+    """Chooses `count` of the values, evenly spread on a logarithmic scale, including the outermost values. The list is
+    shorter if some chosen values coincide."""
     logs = np.log(values)
     nearest = [int(np.argmin(abs(logs - place))) for place in np.linspace(logs[0], logs[-1], count)]
     return [values[i] for i in dict.fromkeys(nearest)]
@@ -35,10 +39,11 @@ def spread(values: Sequence[float], count: int) -> list[float]:
 
 def expected_runs(sums: pandas.DataFrame, known: Numbers, places: Numbers, log_length: Numbers,
                   max_time: float) -> tuple[Numbers, Numbers]:
-    """Expected clogs and work of one run at each place. Speed and work per time are interpolated from known points.
+    """The expected number of clogs and the expected work of one run at each place. Speed, and work per time, are
+    interpolated from the known points.
 
-    @param sums  sums of distance, time and work over the runs at the `known` places; @param log_length  log lambda of
-    the fitted curve at `places`
+    @param sums  sums of distance, time and work over the runs at the `known` places
+    @param log_length  log lambda of the fitted curve at `places`
     """
     extent = np.ptp(places, axis=0)
     apart = (((places[:, None] - known) / np.where(extent > 0, extent, 1)) ** 2).sum(axis=2)
@@ -52,12 +57,13 @@ def expected_runs(sums: pandas.DataFrame, known: Numbers, places: Numbers, log_l
 
 def choose_blocks(curve: Curve, clogs: Numbers, work: Numbers, weights: Numbers, most_blocks: Numbers,
                   work_of_round: float, most_work: float) -> Numbers:
-    """Number of blocks of seeds for each place. Repeatedly adds the block that reduces the weighted variance most for
-    its work, until the work of the round is used up.
+    """The number of blocks of seeds for each place. The block that reduces the weighted variance most for its work is
+    added, again and again, until the work of the round is used up.
 
-    Each added block reduces the variances as if its expected clogs had been observed (a rank-one update); the means do
+    Each added block reduces the variances as if its expected clogs had been observed (a rank-one update). The means do
     not change.
-    @param clogs, work  expected values for one block at each place; @param most_work  upper bound on the round's work
+    @param clogs, work  expected values for one block at each place
+    @param most_work  upper bound on the work of the round
     """
     covariance = curve.covariance.copy()
     blocks = np.zeros(len(most_blocks), dtype=int)

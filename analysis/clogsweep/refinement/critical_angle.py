@@ -1,4 +1,5 @@
-"""The critical angle of a lattice: up to this angle droplets follow the rows, beyond it droplets leave the rows."""
+"""Searches for the critical angle of a lattice. Up to this angle droplets follow the rows, and beyond it they leave the
+rows."""
 
 import functools
 import itertools
@@ -13,16 +14,19 @@ from .driver import HOUR, UNFINISHED, Line, number_text
 from .membership import Membership, Values
 
 KEY = "lattice-angle"
-FOLLOWING = ("lattice_angle", "length", "box")  # the angle, and what follows from it
-SMALLEST_BOX = 5.0  # [sigma]; a box also has at least two spacings
+FOLLOWING = ("lattice_angle", "length", "box")  # The angle, and parameters that follow from it.
+SMALLEST_BOX = 5.0  # Smallest side of a box [sigma]. A box also has at least two spacings.
 ROUNDING = 1e-9
-DECIMALS = 6  # decimals of an angle: different lattices differ by far more than the last one
-MOST_ROWS_OFF = 1.0  # a droplet follows the rows if it comes no farther off its row than this many row spacings
-FEWEST_ROWS = 2.0  # a run can show that droplets follow the rows only if a straight path of its length would cross so many of them
+DECIMALS = 6  # Decimals to which an angle is rounded. Angles of different lattices differ by far more.
+MOST_ROWS_OFF = 1.0  # A droplet follows the rows if it comes no farther off its row than this many row spacings.
+# A run can show that droplets follow the rows only if a straight path of its length would cross at least this many
+# rows.
+FEWEST_ROWS = 2.0
 
 
 def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
-    """Whether droplets leave the rows, and whether they follow them, by angle in increasing order."""
+    """For each angle, whether some droplets leave the rows, and whether droplets follow the rows. The angles
+    increase."""
     angle = np.radians(runs["lattice_angle"])
     of_pitch = np.select([runs["obstacle_filling"] == "triangular", runs["obstacle_filling"] == "rhombic"], [math.sqrt(3) / 2, np.cos(angle)], 1)
     spacing = (runs["obstacle_gap"] + runs["obstacle_diameter"]) * of_pitch  # spacing of the rows
@@ -36,16 +40,18 @@ def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
 
 
 def bracket(angles: pandas.DataFrame) -> tuple[float, float]:
-    """The bracket of the critical angle. Its upper end is the smallest angle at which some droplets leave the rows; its
-    lower end is the largest smaller angle at which droplets follow the rows. An end without such an angle is NaN."""
+    """The bracket of the critical angle. The upper end of the bracket is the smallest angle at which some droplets
+    leave the rows. The lower end is the largest angle below the upper end at which droplets follow the rows. An end is
+    NaN if there is no such angle."""
     upper = angles.index[angles["leaves"]].min()
     below = angles if math.isnan(upper) else angles[angles.index < upper]
     return below.index[below["follows"]].max(), upper
 
 
 def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFrame:
-    """For every set of parameters: those that vary, the ends of the bracket, `lower` and `upper`, and the number of
-    `runs`. @param parameters  names of columns; a column that follows from those before it is left out.
+    """For every set of parameters: the parameters that vary, the ends of the bracket, `lower` and `upper`, and the
+    number of `runs`.
+    @param parameters  names of columns; a column is left out if its values follow from the columns before it
     @throws UserError"""
     lattices = rows[rows["lattice_angle"].notna()]
     if lattices.empty:
@@ -63,8 +69,8 @@ def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFr
 
 
 def nearest_lattice(spacing: float, angle: float, box: float, kind: str = "square") -> float | None:
-    """Angle of the lattice nearest to `angle` whose periods are at most `box`. Such lattices have tan(angle) = q/p,
-    triangular ones sqrt(3) q/p, with whole numbers p and q."""
+    """The angle nearest to `angle` for which the lattice has periods of at most `box`. Such angles have tan(angle) =
+    q/p, or sqrt(3) q/p for triangular lattices, with whole numbers p and q."""
     unit = math.sqrt(3) if kind == "triangular" else 1
     p = np.arange(1, int(box * (1 + ROUNDING) / spacing * (2 if kind == "triangular" else 1)) + 1)
     q = np.floor(p * math.tan(math.radians(angle)) / unit).astype(int)
@@ -83,14 +89,14 @@ def nearest_lattice(spacing: float, angle: float, box: float, kind: str = "squar
 
 
 class AngleSearch:
-    """Rounds of up to three angles, between the last angle at which droplets follow the rows and the first at which
-    they leave them."""
+    """Plans rounds of up to three angles. The angles are between the largest angle at which droplets follow the rows
+    and the smallest angle at which droplets leave the rows."""
 
     keys: Sequence[str] = (KEY,)
 
     def __init__(self, given: Sequence[float], config: dict[str, str], num_seeds: int, width: float, budget: float) -> None:
         """@param given  angles, increasing; @param config  settings by key
-        @param width  width of the bracket at which the search ends; 0 if only the budget ends it"""
+        @param width  width of the bracket at which the search ends; 0 if only the budget ends the search"""
         self.end = ""
         spacing = float(config["pitch"]) or float(config["obstacle-gap"]) + float(config["obstacle-diameter"])
         self._width, self._budget, self._box, self._num_seeds = width, budget, float(config["box"]), num_seeds
@@ -108,14 +114,14 @@ class AngleSearch:
         return sorted(rounded - {round(angle, DECIMALS) for angle in tried})
 
     def _look(self, rows: pandas.DataFrame, members: Membership) -> tuple[pandas.DataFrame, float]:
-        # The box is a period of the lattice, which follows from the angle. It does not affect the droplet, so it may
-        # differ between runs.
+        # The box is a period of the lattice, so it follows from the angle. The box has no effect on the droplet, so it
+        # may differ between runs.
         runs = members.of_curve(rows, lambda name: name not in FOLLOWING)
         runs = runs[~runs["status"].isin(UNFINISHED)]
         return tried_angles(runs), float(runs["processor_seconds"].sum()) / HOUR
 
     def next_round(self, rows: pandas.DataFrame, members: Membership) -> list[Line]:
-        """The points of the next round; none at the end of the search, whose reason is then `end`."""
+        """The points of the next round. The list is empty if the search has ended; `end` is then the reason."""
         angles, hours = self._look(rows, members)
         lower, upper = bracket(angles)
         found: list[float] = []
@@ -133,7 +139,7 @@ class AngleSearch:
         return [((angle,), None) for angle in found]
 
     def known(self, rows: pandas.DataFrame, members: Membership) -> str:
-        """The result so far, in one line."""
+        """States the result so far in one line."""
         angles, _ = self._look(rows, members)
         lower, upper = bracket(angles)
         if math.isnan(lower) and math.isnan(upper):
@@ -151,7 +157,7 @@ class AngleSearch:
                                        unknown and f"runs were too short to say at {unknown} (max-time, clogs or failures)"]))
 
     def costs(self, hours_per_run: float) -> list[str]:
-        """Cost of the rounds, for --dry-run. @param hours_per_run  of the first round; NaN: unknown"""
+        """States the cost of the rounds, for --dry-run. @param hours_per_run  of the first round, or NaN if unknown"""
         words = ["this is the first round; each of the others has up to three angles where droplets begin to leave the rows"]
         if math.isfinite(self._budget):
             words.append(f"all rounds: about {self._budget:.2g} core-hours at most (--budget)")
@@ -165,8 +171,8 @@ class AngleSearch:
 
 
 def require_angles(text: str, given: Sequence[float], kind: str) -> None:
-    """@throws UserError  unless these are increasing angles between 0 and 45 degrees, or 30 degrees for triangular
-    lattices"""
+    """Refuses a wrong list of angles. @throws UserError  unless these are increasing angles between 0 and 45 degrees,
+    or up to 30 degrees for triangular lattices"""
     most, why = 30 if kind == "triangular" else 45, ""
     if len(given) < 2 or not all(np.isfinite(given)):
         why = "refine lattice-angle needs its bounds"

@@ -1,4 +1,4 @@
-"""A search that puts values and seeds where the fitted curve of lambda needs them."""
+"""Chooses the values and seeds whose runs improve the fitted curve of lambda most."""
 
 import itertools
 import math
@@ -18,33 +18,33 @@ from .driver import HOUR, UNFINISHED, Line, number_text
 from .goals import Goal
 from .membership import Membership, Values
 
-MOST_VALUES = {1: 100, 2: 13}  # largest number of values of each key, by the number of keys
+MOST_VALUES = {1: 100, 2: 13}  # Largest number of values of each key, by the number of keys.
 FIRST_VALUES = {1: 7, 2: 4}
 MOST_COMBINATIONS = 500
-SHARE_OF_ROUND = 0.5  # work of a round, divided by the work of all earlier rounds
+SHARE_OF_ROUND = 0.5  # Work of a round, divided by the work of all earlier rounds.
 
 
 class Options(NamedTuple):
     goal: Goal
-    budget: float  # core-hours of all runs; may be infinite
-    most_seeds: int  # largest number of seeds of one value
+    budget: float  # Core-hours of all runs, possibly infinite.
+    most_seeds: int  # Largest number of seeds of one value.
     same_seeds: bool
 
 
 class Known(NamedTuple):
-    """The state of the search at one moment."""
+    """What the search knows at one moment."""
 
-    runs: pandas.DataFrame  # sums over the runs of each value, including failed runs
-    curve: Curve | None  # the curve at the candidates; None if no run has covered any distance
+    runs: pandas.DataFrame  # Sums over the runs of each value, including failed runs.
+    curve: Curve | None  # The curve at the candidates, or None if no run has covered any distance.
 
 
 def combinations(lists: Sequence[Sequence[float]]) -> list[Values]:
-    """All combinations of the keys' values; the first key varies fastest."""
+    """All combinations of the keys' values. The value of the first key varies fastest."""
     return [tuple(reversed(values)) for values in itertools.product(*reversed(lists))]
 
 
 class CurveSearch:
-    """Rounds for a curve over one or two keys."""
+    """Plans rounds for a curve over one or two keys."""
 
     def __init__(self, keys: Sequence[str], lists: Sequence[Sequence[float]], seeds: Sequence[int], max_time: float,
                  options: Options) -> None:
@@ -68,7 +68,7 @@ class CurveSearch:
         return [(values, (self._first_seed + i * step, self._block)) for i, values in enumerate(self._first)]
 
     def next_round(self, rows: pandas.DataFrame, members: Membership) -> list[Line]:
-        """The points of the next round; none at the end of the search, whose reason is then `end`."""
+        """The points of the next round. The list is empty if the search has ended; `end` is then the reason."""
         known, options, block = self._look(rows, members), self._options, self._block
         if known.curve is None:
             self.end = "no run got anywhere"
@@ -112,7 +112,7 @@ class CurveSearch:
         return Known(sums, curve)
 
     def known(self, rows: pandas.DataFrame, members: Membership) -> str:
-        """The result so far, in one line."""
+        """States the result so far in one line."""
         known = self._look(rows, members)
         words = [self.end] if self.end else []
         if known.curve is None:
@@ -135,7 +135,7 @@ class CurveSearch:
         return "; ".join([*words, f"failed: {', '.join(failures)}"] if failures else words)
 
     def costs(self, hours_per_run: float) -> list[str]:
-        """Cost of the rounds, for --dry-run. @param hours_per_run  of the first round; NaN: unknown"""
+        """States the cost of the rounds, for --dry-run. @param hours_per_run  of the first round, or NaN if unknown"""
         words = ["this is the first round; each of the others is to cost half of all before it"]
         if math.isfinite(self._options.budget):
             words.append(f"all rounds: {self._options.budget:.2g} core-hours at most (--budget)")
@@ -143,8 +143,8 @@ class CurveSearch:
         if goal.kind in ("peak", "crossing"):
             words.append(f"how much {goal} takes is known when its place is, after the first round")
         if goal.kind == "curve":
-            # An error e of log lambda takes 1/e^2 clogs at each independent place of the curve. A straight line has two
-            # such places; the roughest curve has one at each value.
+            # To reach an error e of log lambda, each independent place of the curve needs 1/e^2 clogs. A straight line
+            # has two independent places. The roughest curve has one at each value.
             error = math.asinh(goal.precision) / features.normal_deviate(goals.CONFIDENCE)
             smooth, rough = 2 / error**2, len(self._first) / error**2
             words.append(f"{goal} takes about {smooth:.0f} clogs of a curve as smooth as a straight line, {rough:.0f} of one "
@@ -154,13 +154,13 @@ class CurveSearch:
 
 
 def _informing(runs: pandas.DataFrame) -> tuple[pandas.DataFrame, Numbers]:
-    """The values with runs in which droplets have moved, and their places on the curve."""
+    """The values at which some droplet has moved, and their places on the curve."""
     runs = runs[(runs["distance"] > 0) & (runs["time"] > 0)]
     return runs, np.log(np.array(list(runs.index)))
 
 
 def require_bounds(key: str, text: str, values: Sequence[float]) -> None:
-    """@throws UserError  unless these are at least two increasing, positive values"""
+    """Refuses a wrong list of values. @throws UserError  unless there are at least two increasing, positive values"""
     why = ""
     if any(math.isnan(value) for value in values):
         why = "refine needs numbers"

@@ -1,4 +1,5 @@
-"""Runs clogsweep round by round. A round's points are on disk before it starts, so that a kill does not change them."""
+"""Runs clogsweep round by round. The points of a round are written to the disk before the round starts, so that it
+continues with the same points after a kill."""
 
 import os
 import pathlib
@@ -18,12 +19,13 @@ from .membership import Membership, Values
 
 HOUR = 3600.0
 UNFINISHED = ("running", "interrupted")
-FAILED, USER_FAULT, INCOMPLETE = 1, 2, 75  # exit codes of clogsweep
-Line = tuple[Values, tuple[int, int] | None]  # values, and the first seed with the number of seeds; None: the seeds of the config
+FAILED, USER_FAULT, INCOMPLETE = 1, 2, 75  # Exit codes of clogsweep.
+# Values of the keys, and the first seed with the number of seeds. None means the seeds of the config.
+Line = tuple[Values, tuple[int, int] | None]
 
 
 class Search(Protocol):
-    """A search determines the rounds: CurveSearch or AngleSearch."""
+    """A search plans the rounds. The two kinds of searches are CurveSearch and AngleSearch."""
 
     keys: Sequence[str]
     candidates: list[Values]
@@ -38,12 +40,12 @@ class Search(Protocol):
 
 
 def number_text(value: float) -> str:
-    """The shortest text for this number."""
+    """The shortest text that gives exactly this number."""
     return repr(float(value)).removesuffix(".0")
 
 
 def points_text(keys: Sequence[str], lines: Sequence[Line]) -> str:
-    """A file for clogsweep --points."""
+    """The text of a file for clogsweep --points."""
     with_seeds = any(seeds for _, seeds in lines)
     out = [",".join([*keys, "seeds"] if with_seeds else keys)]
     for values, seeds in lines:
@@ -61,8 +63,10 @@ def store(path: pathlib.Path, text: str) -> None:
 
 
 class Launcher:
-    """Starts clogsweep by a launcher, such as mpirun -np 64. Forwards a stop signal as SIGUSR1, because mpirun and srun
-    pass this on to the ranks and wait for them. Forwards a second stop signal unchanged, unless it is a warning."""
+    """Starts clogsweep by a launcher, such as mpirun -np 64.
+
+    A stop signal is forwarded as SIGUSR1, because mpirun and srun pass this signal on to the ranks and wait for them. A
+    second stop signal is forwarded unchanged, unless it is a warning of a batch system."""
 
     def __init__(self, words: Sequence[object]) -> None:
         self._words = list(map(str, words))
@@ -81,17 +85,18 @@ class Launcher:
         return self._is_warned
 
     def run(self, *arguments: object) -> int:
-        """Runs the launcher with the streams of this process. @return its exit code, or 75 if it may have been
-        stopped"""
+        """Runs the launcher with the streams of this process. @return the launcher's exit code, or 75 if the launcher
+        may have been stopped"""
         if self.is_warned():
             return INCOMPLETE
-        # The launcher has its own session. So Ctrl-C in a terminal reaches it only once, through this process.
+        # The launcher has its own session. So the launcher receives Ctrl-C from a terminal only once, through this
+        # process.
         self._process = subprocess.Popen([*self._words, *map(str, arguments)], start_new_session=True)
-        if self.is_warned():  # the warning came while it started
+        if self.is_warned():  # The warning came while the launcher started.
             self._process.send_signal(signal.SIGUSR1)
         code = self._process.wait()
         self._process = None
-        # After a warning a launcher may die of the signal, or end with a code of its own, even 0.
+        # After a warning the launcher may be killed by the signal, or may end with its own exit code, even 0.
         if self.is_warned() and code not in (FAILED, USER_FAULT):
             return INCOMPLETE
         return 128 - code if code < 0 else code
@@ -99,9 +104,12 @@ class Launcher:
 
 def refine(search: Search, members: Membership, launcher: Launcher, options: Sequence[object], points: pathlib.Path,
            output: pathlib.Path, max_hours: float) -> int:
-    """Runs rounds until the search ends. The points of all rounds are in one file; those of a round are added before it
-    starts. So after an interruption the unfinished round is completed before the next one is planned. @param options
-    of clogsweep. @return one of its exit codes"""
+    """Runs rounds until the search ends.
+
+    One file contains the points of all rounds. The points of a round are added to it before the round starts. So after
+    an interruption the unfinished round is completed before the next round is planned.
+    @param options  of clogsweep
+    @return an exit code of clogsweep"""
     end = time.monotonic() + max_hours * HOUR
     if not (points.exists() and output.exists()):
         store(points, points_text(search.keys, search.first_round()))

@@ -1,4 +1,4 @@
-"""Goals of a search: the quantity and its precision, and the precision of a fitted curve."""
+"""The goals of a search: a quantity and its precision. Also computes the precision of a fitted curve."""
 
 import math
 from typing import NamedTuple
@@ -10,17 +10,19 @@ from ..curves.model import Curve
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
-CONFIDENCE = 0.95  # confidence of all intervals
-EVEN_SHARE = 0.1  # this fraction of the weight is spread over all places, so that none is forgotten
+CONFIDENCE = 0.95  # Confidence of all intervals.
+EVEN_SHARE = 0.1  # This fraction of the weight is spread evenly over all places, so that each place gets some runs.
 TRY = "try curve=20%, peak=10%, crossing=10:5% or, for a lattice, critical-angle=0.5"
 
 
 class Goal(NamedTuple):
-    """`kind` is curve, peak, crossing or critical-angle, or "" if only a budget ends the search."""
+    """The goal. `kind` is curve, peak, crossing or critical-angle, or "" if only a budget ends the search."""
 
     kind: str
-    precision: float = 0.0  # relative precision of lambda, or of the key at a peak or crossing; of critical-angle, the width of the bracket [degrees]
-    length: float = 0.0  # lambda to be crossed [sigma]
+    # Relative precision of lambda, or of the key at a peak or crossing. For critical-angle it is the width of the
+    # bracket [degrees].
+    precision: float = 0.0
+    length: float = 0.0  # Value of lambda for a crossing [sigma].
 
     def __str__(self) -> str:
         if self.kind == "critical-angle":
@@ -30,7 +32,7 @@ class Goal(NamedTuple):
 
 
 def number(word: str) -> float:
-    """A number, or NaN."""
+    """The word as a number, or NaN."""
     try:
         return float(word)
     except ValueError:
@@ -38,7 +40,7 @@ def number(word: str) -> float:
 
 
 def parse_goal(text: str) -> Goal:
-    """The goal of --until. @throws UserError"""
+    """Reads the goal of --until. @throws UserError"""
     kind, _, rest = text.partition("=")
     if kind not in ("curve", "peak", "crossing", "critical-angle"):
         raise UserError(f"invalid --until={text} (is not one of curve, peak, crossing, critical-angle) {TRY}")
@@ -60,7 +62,7 @@ def parse_goal(text: str) -> Goal:
 
 
 def parse_budget(text: str) -> float:
-    """Core-hours of --budget. @throws UserError"""
+    """Reads the core-hours of --budget. @throws UserError"""
     hours = number(text.removesuffix("h"))
     if not 0 < hours < math.inf:
         raise UserError(f"invalid --budget={text} (must be a number of core-hours above zero) try 10h")
@@ -68,14 +70,14 @@ def parse_budget(text: str) -> float:
 
 
 def half_width(lower: float, upper: float) -> float:
-    """Half the width of a quantity's interval, relative to its value. @param lower, upper  ends of the logarithm's
-    interval"""
-    return math.sinh(min(upper - lower, 200.0) / 2)  # no overflow where a crossing's interval is infinite
+    """Half the width of a quantity's interval, divided by the quantity. @param lower, upper  ends of the interval of
+    its logarithm"""
+    return math.sinh(min(upper - lower, 200.0) / 2)  # prevents an overflow if the interval of a crossing is infinite
 
 
 def known_precision(curve: Curve, places: Numbers, goal: Goal) -> float:
-    """The precision reached for the goal's quantity; infinite if this is unknown. For a curve it is the root mean
-    square of half its band."""
+    """The precision that is reached for the quantity of the goal, or infinity if it is unknown. For a curve it is the
+    root mean square of half the band's width."""
     if goal.kind == "curve":
         return math.sinh(features.normal_deviate(CONFIDENCE) * math.sqrt(float(np.mean(curve.deviation**2))))
     if goal.kind == "peak":
@@ -88,7 +90,7 @@ def known_precision(curve: Curve, places: Numbers, goal: Goal) -> float:
 
 
 def weights(curve: Curve, goal: Goal) -> Numbers:
-    """How much each place of the curve matters for the goal."""
+    """The weight of each place of the curve for the goal."""
     even = np.full(curve.mean.size, 1 / curve.mean.size)
     special = even
     if goal.kind == "peak":

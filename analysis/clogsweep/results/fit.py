@@ -1,4 +1,4 @@
-"""The fit of a sweep: a table, curves of lengths and speeds."""
+"""The fit of a sweep, with a table and with curves of lengths and speeds."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ HDF5_BEGINNING = b"\x89HDF\r\n\x1a\n"
 
 
 class Fit:
-    """Clogging lengths and mean speeds, a group for each set of parameters. Nothing is fitted here.
+    """The results of clogfit: clogging lengths and mean speeds, with a group for each set of parameters.
 
-    `groups` is a table with a row for each group, and clogfit's columns: the clogging length and its interval in
-    droplet diameters, numbers of clogs by mechanism, doubts, all parameters. `units` names the unit of each. Groups of
-    fewer than three runs have no mean speed.
+    `groups` is a table with a row for each group. The columns are those of clogfit: the clogging length and its
+    interval in droplet diameters, numbers of clogs by mechanism, doubts, and all parameters. `units` has the unit of
+    each column. Groups of fewer than three runs have no mean speed.
     """
 
     def __init__(self, told: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
-        """@param told  the JSON of clogfit; @param circle_files  see stored.circle_files(). @throws KeyError, TypeError
-        if `told` is not clogfit's"""
+        """@param told  the JSON output of clogfit; @param circle_files  see stored.circle_files(). @throws KeyError,
+        TypeError  if `told` does not come from clogfit"""
         self.told = told
         self.confidence: float = told["confidence"]
         self.units: dict[str, str] = told["units"]
@@ -42,7 +42,7 @@ class Fit:
 
     @property
     def source(self) -> str:
-        """The provenance and number of the rows, and the program that fitted them. Files of older programs have no
+        """The provenance of the rows, their number, and the program that fitted them. Files of older programs state no
         provenance."""
         sweep = self.told.get("sweep", {})
         lines = [stored.source(sweep) if sweep else "", sweep.get("config", "").strip(), f"{self._counted()}, fitted by clogfit {stored.writer(self.told)}"]
@@ -54,7 +54,7 @@ class Fit:
 
     @property
     def groups(self) -> pandas.DataFrame:
-        """The results of each group that are single numbers or words. P(r) and incidences are in survival() and
+        """Those results of each group that are single numbers or words. P(r) and incidences are in survival() and
         `told`."""
         import pandas
 
@@ -62,13 +62,15 @@ class Fit:
         return pandas.DataFrame(flat)
 
     def survival(self, group: int) -> pandas.DataFrame:
-        """P(r) of a group, by its index in `groups`: the probability of travelling farther than r without a clog.
+        """P(r) of a group: the probability that a droplet travels farther than r without a clog. The argument is the
+        index of the group in `groups`.
 
-        The first row is for r = 0, with P = 1. One row follows for each `distance` r at which droplets clogged [sigma],
-        and one for the longest distance if runs went beyond the last clog. `at_risk` runs came so far, and `clogs` of
-        them clogged there. `probability` is P just beyond r, with its `standard_error` (Greenwood) and the ends of its
-        interval, `lower` and `upper`, which are NaN where P is 0, and where no droplet clogged. @throws UserError  if
-        there is no such group or no P(r)"""
+        The first row is for r = 0, with P = 1. One row follows for each `distance` r at which droplets clogged [sigma].
+        If runs went beyond the last clog, the last row is for the longest distance. `at_risk` is the number of runs
+        that reached r, and `clogs` the number of them that clogged there. `probability` is P just beyond r, with its
+        `standard_error` (Greenwood) and the ends of its interval, `lower` and `upper`. The error and both ends are NaN
+        where P is 0, and where no droplet clogged.
+        @throws UserError  if there is no such group or no P(r)"""
         import pandas
 
         checked.whole("group", group, 0)
@@ -85,9 +87,9 @@ class Fit:
         return pandas.DataFrame(steps)
 
     def curve(self) -> Picture:
-        """Draws the clogging lengths against the parameter that the sweep varies; for lattices the lateral displacement
-        per distance. @throws UserError  if there are none"""
-        from .. import style  # slow to load, like all modules that draw
+        """Draws the clogging lengths against the parameter that the sweep varies. For lattices it draws the lateral
+        displacement divided by the distance. @throws UserError  if there are none"""
+        from .. import style  # This module is slow to load, like all modules that draw.
         from ..drawing import curve
 
         return style.Picture(style.figure_of(curve.draw_on, self.known.with_lengths()), self.source)
@@ -105,7 +107,8 @@ class Fit:
         """A part of `groups`: the parameters that vary, lengths and speeds (or the results in a channel or on a wall),
         and doubts."""
         known, columns = self.groups, list(self.known.columns)
-        chosen = {self.known.abscissa, *self.known.curve_parameters()}  # automatic values follow from these, so they are left out
+        # Automatic values follow from these parameters, so they are left out.
+        chosen = {self.known.abscissa, *self.known.curve_parameters()}
         varies = [name for name in columns if name in chosen and known[name].nunique(dropna=False) > 1]
         told = [name for name in (PASSAGE if self.known.are_passages else LENGTHS) if name in known and not known[name].isna().all()]
         return known[[*varies, *(name for name in told if name not in varies)]]
@@ -118,7 +121,8 @@ class Fit:
 
 
 def read(path: pathlib.Path, folder: pathlib.Path | None, *options: object) -> Fit:
-    """@param path  of a sweep, or of clogfit's JSON; @param folder  of the programs; @param options  of clogfit, for a sweep. @throws UserError, ProgramFailed"""
+    """Reads the fit of a sweep. @param path  of a sweep, or of clogfit's JSON; @param folder  of the programs;
+    @param options  of clogfit, for a sweep. @throws UserError, ProgramFailed"""
     try:
         content = path.read_bytes()
     except FileNotFoundError as error:

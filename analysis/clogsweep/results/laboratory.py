@@ -1,4 +1,4 @@
-"""Converts between a laboratory's quantities and the model's numbers."""
+"""Converts between the quantities of a laboratory and the numbers of the model."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ OneOrMore = float | Sequence[float] | None
 
 def units(lab: str | os.PathLike[str] | Mapping[str, str], *, length: OneOrMore = None, time: OneOrMore = None, line_tension: OneOrMore = None,
           terminal_speed: OneOrMore = None, wall_stiffness: OneOrMore = None, folder: str | os.PathLike[str] | None = None) -> dict[str, Any]:
-    """The answer of `clogfit units` as numbers; a list of them for a file of several droplets.
+    """The answer of `clogfit units`, with numbers. For a file of several droplets it is a list of answers.
 
-    @param lab  a file, or its lines, such as {"diameter": "3.5 mm", "angle": "28 deg", "tension": "9.6 mN/m", "speed": "7 mm/s"}
-    @param length, time, line_tension, terminal_speed, wall_stiffness  quantities of the model to convert: "given" of
-    the answer has a number for each, or a list if there are several
+    @param lab  a file, or its lines, such as {"diameter": "3.5 mm", "angle": "28 deg", "tension": "9.6 mN/m", "speed":
+    "7 mm/s"}
+    @param length, time, line_tension, terminal_speed, wall_stiffness  quantities of the model to convert; "given" of
+    the answer has a number for each, or a list of numbers for a list
     @param folder  of the programs
     @throws UserError  for entries that `lab` cannot have; ProgramFailed
     """

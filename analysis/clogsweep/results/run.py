@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Film:
-    """A film in the file `path`. It plays in a notebook."""
+    """A film in the file `path`. In a notebook the object plays the film."""
 
     def __init__(self, path: pathlib.Path) -> None:
         self.path = path
@@ -35,9 +35,10 @@ class Film:
 
 
 class Run:
-    """A file of ``clogrun --output`` with ``--polygon-interval``: the path of a droplet and its outlines.
+    """A file that clogrun wrote with ``--output`` and ``--polygon-interval``. The file contains the path of a droplet
+    and its outlines.
 
-    - `samples`: table of the path; time [t0], distance [sigma], speed [sqrt(sigma g)], energies, shape parameter
+    - `samples`: table of the path with time [t0], distance [sigma], speed [sqrt(sigma g)], energies and shape parameter
     - `polygons`: refined outlines, frames x 2 x points [sigma], at the `times` (frames) [t0]
     - `obstacles`: circles x 3 (x, y, diameter) [sigma]; `wedges`: walls, in the form that docs/reference/files.md
       describes
@@ -45,7 +46,7 @@ class Run:
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        """@throws UserError  if the file is not a run or is damaged"""
+        """@throws UserError  if the file is no run, or is damaged"""
         self.path = pathlib.Path(path)
         self.trajectory = trajectory.read(self.path, needs_frames=False)
         self.samples = pandas.DataFrame(self.trajectory.table)
@@ -57,8 +58,9 @@ class Run:
         self.attributes: dict[str, str] = self.trajectory.attributes
 
     def picture(self, outlines: int = 12) -> Picture:
-        """Draws moments of the run, at most `outlines`, in one picture. @throws UserError  if there are no outlines"""
-        from ..drawing import way  # slow to load, like all modules that draw
+        """Draws several moments of the run in one picture. @param outlines  largest number of moments. @throws
+        UserError  if there are no outlines"""
+        from ..drawing import way  # This module is slow to load, like all modules that draw.
         from ..style import Picture
 
         checked.whole("outlines", outlines, 1)
@@ -66,13 +68,16 @@ class Run:
         return Picture(way.draw(self.trajectory, outlines), stored.source(self.attributes))
 
     def film(self, output: str | os.PathLike[str], *, colour: str = "speed", rate: int = 20, most_frames: int = 600, size: str | None = None) -> Film:
-        """Writes a film; an existing one is never replaced.
+        """Writes a film. A file that exists is never replaced.
 
-        @param output  name of the film: .mp4 (needs ffmpeg) or .gif; without an ending, the one that can be made
-        @param colour  "speed" of the interface, or "mechanism": the last frame shows how the droplet clogged
-        @param rate  frames per second; @param most_frames  largest number of frames; a longer run skips some
+        @param output  name of the film, ending in .mp4 (needs ffmpeg) or .gif; without an ending, the one that can be
+        made is added
+        @param colour  "speed": the outline is coloured by the speed of the interface; "mechanism": the last frame shows
+        how the droplet clogged
+        @param rate  frames per second
+        @param most_frames  largest number of frames; frames of a longer run are skipped
         @param size  size of the frames, "540p", "1080p" or "2160p"; by default 1080p, and 540p for a .gif
-        @throws UserError  if it cannot be made
+        @throws UserError  if the film cannot be made
         """
         from ..drawing import film
 
@@ -86,7 +91,7 @@ class Run:
         return Film(film.write_film(moving, path, rate))
 
     def export_vtk(self, output: str | os.PathLike[str]) -> pathlib.Path:
-        """Writes files for ParaView. @return the one to be opened, OUTPUT.pvd. @throws UserError"""
+        """Writes files for ParaView. @return the file to open in ParaView, OUTPUT.pvd. @throws UserError"""
         from ..drawing import vtk
 
         trajectory.require_frames(self.trajectory)
@@ -96,7 +101,7 @@ class Run:
         return self.picture().png() if len(self.times) > 0 else None
 
     def fit(self) -> NoReturn:
-        """Only sweeps have a fit. @throws UserError"""
+        """Refuses, because only sweeps have a fit. @throws UserError"""
         raise UserError("a run has no fit; give a sweep")
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""A sweep: its table of runs, its fits, its clogs."""
+"""A sweep, with its table of runs, its fits and its clogs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Status(dict[str, Any]):
-    """Progress of a sweep. Shows itself as a table in a notebook."""
+    """The progress of a sweep. In a notebook the object shows itself as a table."""
 
     def _repr_html_(self) -> str:
         import pandas
@@ -35,20 +35,21 @@ class Status(dict[str, Any]):
 class Sweep:
     """A file of ``clogsweep --output``, complete or in progress.
 
-    - `rows`: table with a row for each run, as it was when the file was opened; `rows.attrs` holds `units` and
+    - `rows`: table with a row for each run, as it was when the file was opened; `rows.attrs` contains `units` and
       `meanings` of the columns
     - `attributes`: version, commit, config, command line
 
-    All other methods run the programs on the present file.
+    All other methods run the programs on the file as it is now.
     """
 
     def __init__(self, path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> None:
-        """@param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module.
-        @throws UserError  if the file is not a sweep or is damaged"""
+        """@param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module
+        @throws UserError  if the file is no sweep, or is damaged"""
         self.path = pathlib.Path(path)
         self._programs = programs
         self._name = ""
-        self._folder: tempfile.TemporaryDirectory[str] | None = None  # holds a file that is removed with this object
+        # Contains a file that is removed together with this object.
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
         with stored.opened(self.path, stored.SWEEP, programs) as file:
             self._records = file["runs"][:]
             self.rows = stored.table_of(file)
@@ -62,10 +63,10 @@ class Sweep:
         """Clogging lengths and mean speeds, from clogfit.
 
         @param dwell  a droplet that has not moved for this time counts as clogged [t0]
-        @param from_distance  distances are counted from here on [sigma]
+        @param from_distance  distances are counted from this distance on [sigma]
         @param confidence  confidence level of the intervals, between 0 and 1
-        @param row_angle  tilt of the rows of user-supplied circles, for the share displaced along them [degrees]
-        @param lab  file that describes the laboratory, for its units, too
+        @param row_angle  tilt of the rows of user-supplied circles [degrees], for the displacement along these rows
+        @param lab  file that describes the laboratory; lengths and speeds are then also given in its units
         @throws ProgramFailed  with the reason of clogfit
         """
         given = {"--dwell": dwell, "--from-distance": from_distance, "--confidence": confidence, "--row-angle": row_angle}
@@ -76,10 +77,10 @@ class Sweep:
         return fit
 
     def fitted_curves(self, *keys: str, crossing: Sequence[float] = ()) -> dict[str, Any]:
-        """Smooth curves through the clogging lengths, with bands, peaks and crossings, from `clogfit curve --format
-        json`.
+        """Smooth curves that are fitted to the clogging lengths, with bands, peaks and crossings. The curves have the
+        form of the output of `clogfit curve --format json`.
 
-        @param keys  one or two keys over which the curves go; may be left out if only one key varies
+        @param keys  one or two keys that the curves depend on; may be left out if only one key varies
         @param crossing  lengths that a curve may cross, in droplet diameters
         @throws UserError  with the reason why there is no curve
         """
@@ -88,17 +89,19 @@ class Sweep:
         return answer.of_sweep(self._program("clogfit"), [self.path], keys, crossing=crossing)[0]
 
     def status(self) -> dict[str, Any]:
-        """The sweep's progress, as clogsweep status reports it."""
+        """The progress of the sweep, as clogsweep status reports it."""
         return Status(json.loads(programs.run_program(self._program("clogsweep"), "status", self.path, "--format", "json")))
 
     def clogs(self, *, mechanism: str | None = None, tasks: Collection[int] | None = None, most: int = 6, jobs: int = 2) -> Clogs:
-        """Clogged polygons, replayed until they rest.
+        """Clogged polygons, which are replayed until they rest.
 
-        @param mechanism  only "wrapped", "squeezed", "hybrid" or "other"; @param tasks  only these
-        @param most  largest number of clogs, the first ones; @param jobs  number of simultaneous replays
+        @param mechanism  only "wrapped", "squeezed", "hybrid" or "other"
+        @param tasks  only these tasks
+        @param most  largest number of clogs; the first ones are taken
+        @param jobs  number of simultaneous replays
         @throws UserError  if there are none
         """
-        from ..drawing import clogs  # slow to load, like all modules that draw
+        from ..drawing import clogs  # This module is slow to load, like all modules that draw.
 
         checked.whole("most", most, 1)
         checked.whole("jobs", jobs, 1)
@@ -106,13 +109,13 @@ class Sweep:
         return clogs.run_all(self._program("clogrun"), self.path, rows, jobs)
 
     def device(self, *, ways: int = 3, map: int = 6, jobs: int = 2) -> Picture:
-        """User-supplied circles, with the places where droplets were released, passed and clogged, and their paths: a
-        panel for each of up to six parameter sets.
+        """Draws user-supplied circles with the places where droplets were released, passed and clogged, and the paths
+        of droplets. Each of up to six parameter sets has a panel.
 
-        @param ways  number of runs of each panel whose paths are drawn as lines; @param map  number of runs behind the
-        map of each panel; all of them are replayed
+        @param ways  number of runs of each panel whose paths are drawn as lines
+        @param map  number of runs in the map of each panel; all of them are replayed
         @param jobs  number of simultaneous replays
-        @throws UserError  if the sweep has no user-supplied circles, or those of several devices
+        @throws UserError  if the sweep has no user-supplied circles, or circles of several devices
         """
         from ..drawing import device
         from ..style import Picture
@@ -126,7 +129,8 @@ class Sweep:
         return Picture(device.draw(*parts, groups.laboratory.get("length_mm")), stored.source(self.attributes))
 
     def replay(self, task: int, output: str | os.PathLike[str] | None = None, *, interval: float = 1.0) -> Run:
-        """Replays a run, with outlines. @param output  file to keep it in; @param interval  between outlines [t0]. @throws UserError"""
+        """Replays a run, with outlines. @param output  file in which the run is kept; @param interval  time between
+        outlines [t0]. @throws UserError"""
         if task not in self._records["task"]:
             raise UserError(f"{self.path} holds no task {task}; it has {len(self._records)} rows")
         options = ["--sample-interval", repr(float(interval)), "--polygon-interval", repr(float(interval))]
@@ -137,9 +141,10 @@ class Sweep:
             return self.replay(task, pathlib.Path(folder) / f"{self.path.stem}-{task}.h5", interval=interval)
 
     def report(self, output: str | os.PathLike[str], examples: int = 4, *, lab: str | os.PathLike[str] | None = None) -> pathlib.Path:
-        """Writes a page of HTML about the sweep. It replaces an earlier page, nothing else. @param examples  number of
-        clogs to show
-        @param lab  file that describes the laboratory, for its units, too. @return its file.
+        """Writes an HTML page about the sweep. The page may replace an earlier page, but no other file.
+        @param examples  number of clogs to show
+        @param lab  file that describes the laboratory; results are then also given in its units
+        @return the file of the page
         @throws UserError"""
         from ..pages import report
 
@@ -148,9 +153,9 @@ class Sweep:
                             *(["--lab", lab] if lab is not None else []))
 
     def poster(self, *, lab: str | os.PathLike[str] | None = None) -> Picture:
-        """One printable A3 page of the sweep: its curves and some of its droplets.
+        """Draws one printable A3 page of the sweep, with its curves and some of its droplets.
 
-        @param lab  file that describes the laboratory, whose units are added
+        @param lab  file that describes the laboratory; results are then also given in its units
         @throws UserError
         """
         from ..pages import poster
@@ -159,14 +164,15 @@ class Sweep:
         return Picture(poster.draw(self.path, programs.programs_in(self._programs), *(["--lab", lab] if lab is not None else [])), stored.source(self.attributes))
 
     def export(self, output: str | os.PathLike[str]) -> pathlib.Path:
-        """Writes `rows` for other programs, with the columns' units: .csv, or .h5 with a dataset for each column.
-        @return the file. @throws UserError  if it exists"""
+        """Writes `rows` for other programs, with the units of the columns. A .csv has one table, and a .h5 has a
+        dataset for each column.
+        @return the file. @throws UserError  if the file exists"""
         path = pathlib.Path(output)
         export.write(self.rows, path, stored.source(self.attributes))
         return path
 
     def __repr__(self) -> str:
-        """Names all files, if the sweep has several."""
+        """Names the file, or all files if there are several."""
         counts = ", ".join(f"{number} {status}" for status, number in self.rows.status.value_counts().items())
         return f"<sweep {printable(self._name or self.path)}: {len(self.rows)} runs ({counts})>"
 
@@ -175,8 +181,8 @@ class Sweep:
 
 
 def merged(paths: Sequence[str | os.PathLike[str]], folder: str | os.PathLike[str] | None = None) -> Sweep:
-    """Several files as one sweep, in a temporary file. @param folder  of the programs. @throws UserError  if they
-    contradict each other, or are not sweeps"""
+    """Joins several files to one sweep, in a temporary file. @param folder  of the programs. @throws UserError  if the
+    files contradict each other, or are no sweeps"""
     if len(paths) < 2:
         raise UserError("a list needs at least two files; give the name of a single file without a list")
     place = tempfile.TemporaryDirectory(prefix="clogsweep-merged-")

@@ -1,4 +1,5 @@
-"""Style of all figures: colours, axes, markers, text beside a picture. Also shows and saves pictures."""
+"""The style of all figures: colours, axes, markers, and text beside a picture. This module also shows and saves
+pictures."""
 
 from __future__ import annotations
 
@@ -32,7 +33,7 @@ from ..tools.texts import printable
 from . import journal
 from .journal import NOTES, fitting as fitting, in_lines as in_lines
 
-# Okabe and Ito's palette, safe for colour-blind readers, with a different marker for every curve.
+# The palette of Okabe and Ito, which is safe for colour-blind readers. Every curve has a different marker.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
 MECHANISM_COLOURS = {"wrapped": COLOURS[0], "squeezed": COLOURS[1], "hybrid": COLOURS[2], "other": COLOURS[3]}
@@ -40,10 +41,10 @@ CAUSE_COLOURS = {**MECHANISM_COLOURS, "broken": COLOURS[4]}
 PASSED_COLOUR = "0.62"
 MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
 VIRIDIS = matplotlib.colormaps["viridis"]
-PASSAGES = matplotlib.colormaps["YlOrBr"]  # small fractions are light, so lines and markers stay visible on them
+PASSAGES = matplotlib.colormaps["YlOrBr"]  # Small fractions are light, so that lines and markers remain visible.
 OBSTACLE = "0.72"
 NOTE_SIZE = 8
-CURVE = "curve "  # the beginning of the name (`gid`) of a curve's artists; its label follows
+CURVE = "curve "  # The name (`gid`) of a curve's artists begins with this word. The curve's label follows.
 DROPLET = "#D55E00"
 # An arrow that rises from a foot. The foot is at the lower bound, so the arrow fills the upper half of a marker's
 # square.
@@ -51,21 +52,21 @@ LOWER_BOUND = Path([(-0.25, 0), (0.25, 0), (0, 0), (0, 1), (-0.25, 0.6), (0, 1),
 
 
 def new_figure(**options: Any) -> Figure:
-    """Creates a figure without `pyplot`. Figures of `pyplot` stay in memory and belong to a backend, which a notebook
-    has already chosen."""
+    """Creates a figure without `pyplot`. Figures of `pyplot` stay in memory, and they belong to a backend, which a
+    notebook has already chosen."""
     made = Figure(**options)
     FigureCanvasAgg(made)
     return made
 
 
 def subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], **options: Any) -> tuple[Figure, Any]:
-    """A figure with an automatic layout, and its axes, as from `pyplot.subplots`."""
+    """A figure with an automatic layout, and its axes. The arguments are those of `pyplot.subplots`."""
     made = new_figure(figsize=figsize, layout="constrained")
     return made, made.subplots(rows, columns, **options)
 
 
 def figure_of(draw: Callable[..., None], *what: Any) -> Figure:
-    """A figure with one drawing. @param draw  is called with the axes and the further arguments"""
+    """A figure with one drawing. @param draw  is called with the axes and with `what`"""
     figure, axes = subplots(figsize=(6.4, 4.8))
     with without_warnings():
         draw(axes, *what)
@@ -73,21 +74,23 @@ def figure_of(draw: Callable[..., None], *what: Any) -> Figure:
 
 
 def curve_style(index: int) -> dict[str, Any]:
-    """A different style for each curve. When all colours and markers are used, they are repeated with dashed lines,
-    then with a dot between dashes, two dots and so on."""
+    """A different style for each curve. When all colours and markers are used, they are repeated with dashed lines.
+    After that, lines have one dot between dashes, then two dots, and so on."""
     round_, which = divmod(index, len(COLOURS))
     line = (0, (6, 2) + (1, 2) * (round_ - 1)) if round_ > 0 else "-"
     return {"color": COLOURS[which], "marker": MARKERS[which], "linestyle": line}
 
 
 def shades(number: int) -> Sequence[Any]:
-    """Colours of curves in the order of a parameter. If there are few curves, neighbours have different hues."""
+    """The colours of curves in the order of a parameter. If there are few curves, neighbouring curves have different
+    hues."""
     return COLOURS[:number] if number <= len(COLOURS) else VIRIDIS(np.linspace(0, 0.95, number))
 
 
 @contextlib.contextmanager
 def curve(axes: Axes, label: str) -> Iterator[None]:
-    """Gives everything that the block draws the name of a curve, for Picture.curves."""
+    """Gives the name of a curve to everything that is drawn in this block. Picture.curves() finds these artists by the
+    name."""
     before = set(axes.get_children())
     yield
     for artist in axes.get_children():
@@ -96,15 +99,15 @@ def curve(axes: Axes, label: str) -> Iterator[None]:
 
 
 def mark(kind: str, groups: Collection[Group]) -> str | None:
-    """The name (`gid`) of artists that represent groups of a report. None elsewhere, because only report.write()
-    numbers groups.
+    """The name (`gid`) of artists that represent groups of a report. The name is None outside reports, because only
+    report.write() numbers groups.
     @param kind  point, curve or legend"""
     numbers = [str(group["number"]) for group in groups if "number" in group]
     return f"{kind}-{','.join(numbers)}" if numbers else None
 
 
 def mark_legend(legend: Legend, handles: Sequence[Any]) -> None:
-    """Gives the legend entry of each marked artist the name of the same groups."""
+    """Marks legend entries: the entry of a marked artist gets the name of the same groups."""
     for handle, text in zip(handles, legend.get_texts()):
         name = (handle.lines[0] if hasattr(handle, "lines") else handle).get_gid()
         if name:
@@ -116,26 +119,27 @@ def doubts(group: Group) -> list[str]:
 
 
 def main_mechanism(group: Group) -> str:
-    """The mechanism that holds most of a group's clogs."""
+    """The most frequent mechanism of a group's clogs."""
     return max(MECHANISM_MARKERS, key=lambda name: group[name])
 
 
 def mechanism_entries(groups: Collection[Group], other: str = "other clogs") -> list[tuple[Artist, str]]:
-    """Legend entries of the markers that draw_lengths() gave these groups. @param other  the name for clogs of no mechanism"""
+    """Legend entries for the markers that draw_lengths() gave these groups. @param other  the name for clogs of no
+    mechanism"""
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
     return [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else other)
             for name, marker in MECHANISM_MARKERS.items() if name in names]
 
 
 def legend_off_curves(axes: Axes, entries: Sequence[tuple[Artist, str]], title: str) -> Legend:
-    """Finds a place for the legend where nothing is drawn; if there is none, the ordinate gets longer."""
-    # matplotlib avoids lines only, so lines stand for error bars and bands.
+    """Finds a place for the legend where nothing is drawn. If there is none, the ordinate is extended."""
+    # matplotlib only avoids lines, so error bars and bands are represented by lines.
     rising: Any = np.geomspace if axes.get_yscale() == "log" else np.linspace
     bars = [bar for drawn in axes.containers if isinstance(drawn, ErrorbarContainer) for part in drawn.lines[2] for bar in part.get_segments() if len(bar)]
     points = [(x, y) for (x, low), (_, high) in bars if low < high for y in [*rising(low, high, 9), math.nan]]
     points += [point for band in axes.collections if isinstance(band, PolyCollection) for path in band.get_paths() for point in path.vertices]
     axes.plot(*np.reshape(points, (-1, 2)).T, linestyle="none", label="_bars")
-    axes.figure.figure.draw_without_rendering()  # lays out
+    axes.figure.figure.draw_without_rendering()  # computes the layout
     paths = [line.get_transform().transform_path(line.get_path()) for line in axes.lines if len(line.get_xdata())]
 
     def put(place: str) -> tuple[Legend, Bbox]:
@@ -160,8 +164,8 @@ def width_of(legend: Legend) -> float:
 
 
 def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs", title: str = "") -> None:
-    """Legend of named curves and of mechanism_entries(). A long legend is placed beside the axes, and the figure is
-    widened for it only once."""
+    """Draws a legend of named curves and of mechanism_entries(). A long legend is placed beside the axes. The figure is
+    widened for it, but only once."""
     entries = journal.legend_entries(axes)
     for mark, name in mechanism_entries(groups, other):
         entries.append((axes.add_line(mark), name))
@@ -172,7 +176,7 @@ def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs
         made = axes.legend(*zip(*entries), title=title, frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
                            loc="upper left", bbox_to_anchor=(1, 1))
         figure = axes.figure
-        if isinstance(figure, Figure):  # a part of a figure has a fixed width
+        if isinstance(figure, Figure):  # The width of a part of a figure is fixed.
             figure.set_figwidth(figure.get_figwidth() + width_of(made) - width_before)
     elif entries:
         made = legend_off_curves(axes, entries, title)
@@ -186,8 +190,9 @@ def logarithmic_margin(values: Collection[float]) -> float:
 
 
 def side_by_side(index: int, num_curves: int, values: Collection[float]) -> float:
-    """Factor by which the points of a curve are shifted on logarithmic abscissae, so that the bars of curves can be
-    distinguished. The shift is a part of the axis; it is smaller if neighbouring values or the frame are near."""
+    """The factor by which the points of a curve are shifted on logarithmic abscissae, so that the bars of different
+    curves can be distinguished. The shift is a fraction of the axis. The shift is smaller if neighbouring values or the
+    frame are near."""
     ordered = sorted(set(values))
     outermost = max(num_curves - 1, 1) / 2
     nearest = min((b / a for a, b in zip(ordered, ordered[1:])), default=2.0)
@@ -196,8 +201,8 @@ def side_by_side(index: int, num_curves: int, values: Collection[float]) -> floa
 
 
 def far_apart(values: Collection[float], span: float) -> list[float]:
-    """The values whose labels have room side by side on a logarithmic axis. @param span  last value of the axis divided
-    by the first"""
+    """Chooses the values whose labels have room side by side on a logarithmic axis. @param span  last value of the axis
+    divided by the first"""
     kept: list[float] = []
     for value in sorted(set(values)):
         if not kept or math.log(value / kept[-1]) >= 0.08 * math.log(span):
@@ -206,8 +211,8 @@ def far_apart(values: Collection[float], span: float) -> list[float]:
 
 
 def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
-    """Labels a logarithmic abscissa with plain numbers: with the values themselves if they are few or within a decade.
-    A label without room is one line lower."""
+    """Labels a logarithmic abscissa with plain numbers. If the values are few or within a decade, the values themselves
+    are the labels. A label for which there is no room is one line lower."""
     axes.set_xscale("log")
     axis = axes.xaxis
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))
@@ -222,15 +227,15 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
         low, high = (min(values), max(values)) if values else axes.get_xlim()
         plain_logarithmic(axis, high / low)
     if values:
-        # Ticks would determine the range of an axis and leave no margin, so artists at the last tick would lie on the
-        # frame.
+        # Ticks would determine the range of the axis and leave no margin, so that artists at the last tick would be on
+        # the frame.
         margin = logarithmic_margin(values)
         axes.set_xlim(min(values) / margin, max(values) * margin)
 
 
 def logarithmic_ordinate(axes: Axes) -> None:
-    """Labels a logarithmic ordinate of fewer than two decades with plain numbers, because powers of ten would be too
-    few: at 1, 2 and 5, or at every tick if it has less than a factor of five."""
+    """Labels a logarithmic ordinate with plain numbers if it has fewer than two decades, because there would be too few
+    powers of ten. Labels are at 1, 2 and 5, or at every tick if the ordinate has less than a factor of five."""
     axes.set_yscale("log")
     axis = axes.yaxis
     usual = axis.get_major_formatter()
@@ -247,8 +252,8 @@ def logarithmic_ordinate(axes: Axes) -> None:
 
 
 def plain_logarithmic(axis: Axis, span: float = 1.0) -> None:
-    """Plain numbers at 1, 2 and 5 of each decade, or only at its beginning. @param span  last number divided by the
-    first, if this may be large"""
+    """Puts plain numbers at 1, 2 and 5 of each decade, or only at the beginning of each decade if there are many
+    decades. @param span  last number divided by the first"""
     axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0) if span < 2000 else (1.0,)))
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
@@ -267,8 +272,8 @@ def label(axes: Axes, along: str, up: str) -> None:
 
 
 def caption(axes: Axes, text: str) -> None:
-    """Writes a caption above the axes, and breaks lines that are wider than the axes."""
-    widest = 1.1 * axes.get_window_extent().width  # the layout makes axes wider than they are now
+    """Writes a caption above the axes. Lines that are wider than the axes are broken."""
+    widest = 1.1 * axes.get_window_extent().width  # The layout will make the axes wider than they are now.
     axes.set_title(in_lines(text, fitting(axes.figure, 8, widest)), fontsize=8, color="0.25")
 
 
@@ -284,35 +289,35 @@ def finish(axes: Axes, up: str, shared: str, lines: Sequence[str], groups: Colle
 
 
 def notes(axes: Axes, lines: Sequence[str]) -> None:
-    """Writes notes on the meaning of marks below the label of the abscissa."""
+    """Writes notes that explain the marks below the label of the abscissa."""
     axes.annotate("\n".join(lines), (0.5, 0), xycoords=axes.xaxis.label, xytext=(0, -4), textcoords="offset points", ha="center", va="top",
                   fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
 
 
 def notes_of_panels(figure: Figure, lines: Sequence[str]) -> None:
-    """Writes notes on the meaning of marks once for all panels, below them, and breaks lines that are wider than the
-    figure."""
+    """Writes notes that explain the marks below all panels. Lines that are wider than the figure are broken."""
     fits = fitting(figure, NOTE_SIZE, 0.97 * figure.bbox.width)
     figure.supxlabel("\n".join(in_lines(line, fits, " ") for line in lines), fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
 
 
 def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None, dpi: float = 160) -> None:
-    """Writes OUTPUT.png and OUTPUT.pdf. @param output  path without ending; @param dpi  of the .png"""
-    # Not with_suffix(): a name may hold a dot.
+    """Writes OUTPUT.png and OUTPUT.pdf. @param output  path without ending; @param dpi  resolution of the .png [dots
+    per inch]"""
+    # with_suffix() is not used, because it would cut a name that contains a dot.
     metadata = {key: printable(value, "\n") for key, value in (metadata or {}).items()}
     with outputs.replaced(f"{output}.png") as fresh:
         figure.savefig(fresh, dpi=dpi, metadata=metadata)
-    # The layout stays as it is in the .png.
+    # Keeps the layout of the .png.
     figure.set_layout_engine("none")
     subject = {"Title": metadata.get("Title"), "Subject": metadata.get("Description")}
-    # Journals refuse fonts of type 3, matplotlib's default.
+    # Journals refuse fonts of type 3, which are matplotlib's default.
     with outputs.replaced(f"{output}.pdf") as fresh, matplotlib.rc_context({"pdf.fonttype": 42}):
         figure.savefig(fresh, metadata={key: value for key, value in subject.items() if value})
 
 
 @contextlib.contextmanager
 def without_warnings() -> Iterator[None]:
-    """Hides matplotlib's warnings about the layout of our figures, which users cannot fix."""
+    """Hides matplotlib's warnings about the layout of our figures, because users cannot act on them."""
     logger = logging.getLogger("matplotlib")
     level = logger.level
     with warnings.catch_warnings():
@@ -325,9 +330,9 @@ def without_warnings() -> Iterator[None]:
 
 
 class Picture:
-    """A picture, which shows itself in a notebook. `figure` belongs to matplotlib and may be changed. `source` is the
-    origin of the numbers; it is saved as Description of the .png and Subject of the .pdf. `caption` is the text that
-    for_journal() removes from the picture."""
+    """A picture. In a notebook the object shows itself. `figure` belongs to matplotlib and may be changed. `source`
+    states the origin of the numbers. The origin is saved as Description of the .png and as Subject of the .pdf.
+    `caption` is the text that for_journal() removes from the picture."""
 
     def __init__(self, figure: Figure, source: str = "") -> None:
         self.figure = figure
@@ -345,9 +350,9 @@ class Picture:
         return found
 
     def for_journal(self, width_cm: float = 8.6, height_cm: float | None = None, *, font_size: float = 8) -> Picture:
-        """Lays the picture out for a column of a journal: text of one size, the legend above the axes, no labels that
-        overlap. Call this last, after changes of the figure. Conditions and notes are moved from the picture to
-        `caption`.
+        """Lays the picture out for a column of a journal. All text has the same size, the legend is above the axes, and
+        labels do not overlap. Conditions and notes are moved from the picture to `caption`. Make all other changes of
+        the figure before this call.
 
         @param width_cm  of the picture
         @param height_cm  height of the picture; by default it suits the legend
@@ -367,7 +372,8 @@ class Picture:
         return out.getvalue()
 
     def save(self, output: str | os.PathLike[str]) -> pathlib.Path:
-        """Writes OUTPUT.png and OUTPUT.pdf. @return the first. @throws UserError  if something else exists there"""
+        """Writes OUTPUT.png and OUTPUT.pdf. @return the path of the .png. @throws UserError  if a file of another kind
+        has one of these names"""
         path = pathlib.Path(output)
         if path.suffix in (".png", ".pdf"):
             path = path.with_suffix("")

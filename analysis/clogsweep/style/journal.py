@@ -1,4 +1,5 @@
-"""A figure at the width of a journal's column: text of one size, the legend above the axes, no labels that overlap."""
+"""Lays a figure out for the width of a journal's column. All text has the same size, the legend is above the axes, and
+labels do not overlap."""
 
 import re
 from collections.abc import Callable
@@ -13,12 +14,12 @@ from matplotlib.transforms import Bbox
 
 from ..tools.errors import UserError
 
-NOTES = "notes"  # the name (`gid`) of notes on the meaning of marks
+NOTES = "notes"  # The name (`gid`) of the notes that explain the marks.
 INCH = 2.54  # [cm]
 
 
 def in_lines(text: str, fits: Callable[[str], bool], between: str = ", ") -> str:
-    """The text in lines that fit. It is broken only between phrases, never within a formula."""
+    """Breaks the text into lines that fit. A line is broken only between phrases, never within a formula."""
     lines = []
     for line in re.sub(r"\$.*?\$", lambda formula: formula[0].replace(" ", "\0"), text.strip()).split("\n"):
         first, *others = line.split(between)
@@ -33,7 +34,7 @@ def in_lines(text: str, fits: Callable[[str], bool], between: str = ", ") -> str
 
 
 def fitting(figure: FigureBase, size: float, pixels: float) -> Callable[[str], bool]:
-    """A function that tells whether a line of text in letters of `size` points fits into this width."""
+    """Returns a function that tells whether a line of text in letters of `size` points fits into this width."""
     def fits(line: str) -> bool:
         text = figure.text(0, 0, line, fontsize=size)
         width = text.get_window_extent(figure.canvas.get_renderer()).width
@@ -44,13 +45,13 @@ def fitting(figure: FigureBase, size: float, pixels: float) -> Callable[[str], b
 
 
 def legend_entries(axes: Axes) -> list[tuple[Artist, str]]:
-    """Artists with a label. Artists without data come last, because they only explain a mark."""
+    """The labelled artists. Artists without data come last, because they only explain a mark."""
     entries = [(artist, label) for artist, label in zip(*axes.get_legend_handles_labels()) if label]
     return sorted(entries, key=lambda entry: isinstance(entry[0], Line2D) and not len(entry[0].get_xdata()))
 
 
 def draw_legend(axes: Axes, size: float) -> float:
-    """A legend at the top of the figure, in as many columns as fit. @return its height [pixels]"""
+    """Draws a legend at the top of the figure, with as many columns as fit. @return its height [pixels]"""
     figure = axes.figure
     fits = fitting(figure, size, figure.bbox.width - 4 * size / 72 * figure.dpi)  # the width beside a handle
     artists, labels = zip(*((artist, in_lines(label, fits)) for artist, label in legend_entries(axes)))
@@ -68,7 +69,7 @@ def draw_legend(axes: Axes, size: float) -> float:
 
 
 def hide_overlapping(axis: Axis) -> None:
-    """Hides labels of ticks that overlap others, first labels of minor ticks."""
+    """Hides tick labels that overlap others. Labels of minor ticks are hidden first."""
     kept: list[Bbox] = []
     low, high = sorted(axis.get_view_interval())
     for label in [*axis.get_majorticklabels(), *axis.get_minorticklabels()]:
@@ -79,8 +80,10 @@ def hide_overlapping(axis: Axis) -> None:
 
 
 def lay_out(figure: Figure, width: float, height: float | None, size: float) -> str:
-    """@param width, height  [cm]; @param size  size of letters [pt]. @return the text of caption and notes, which are
-    removed from the figure. @throws UserError"""
+    """Lays the figure out. The caption and the notes are removed from it.
+    @param width, height  [cm]; @param size  size of letters [pt]
+    @return the text of the caption and the notes
+    @throws UserError"""
     if len(figure.axes) != 1:
         raise UserError(f"cannot lay out a picture of {len(figure.axes)} panels for a column; draw one panel")
     axes, = figure.axes

@@ -1,4 +1,4 @@
-"""Checks arguments of the module, with the same messages as the commands."""
+"""Checks arguments of Python functions. The messages are those of the commands."""
 
 import operator
 from collections.abc import Collection
@@ -8,7 +8,7 @@ from .errors import UserError
 
 
 def whole(name: str, value: Any, least: int) -> None:
-    """@throws UserError  unless the value is a whole number, not smaller than `least`"""
+    """Checks a number. @throws UserError  unless the value is a whole number that is not smaller than `least`"""
     try:
         is_right = operator.index(value) >= least
     except TypeError:
@@ -18,6 +18,6 @@ def whole(name: str, value: Any, least: int) -> None:
 
 
 def one_of(name: str, value: object, choices: Collection[object]) -> None:
-    """@throws UserError  unless it is one of them"""
+    """Checks a choice. @throws UserError  unless the value is one of the choices"""
     if value not in choices:
         raise UserError(f"invalid {name}: {value} (must be {' or '.join(map(str, choices))})")

@@ -1,4 +1,4 @@
-"""Errors that are not bugs of this package."""
+"""Errors that do not come from bugs of this package."""
 
 import sys
 
@@ -9,15 +9,16 @@ def lacking(error: ImportError) -> str:
 
 
 class UserError(Exception):
-    """An error that the user can fix, in one line: what, why, remedy. Commands end with exit code 2."""
+    """An error that the user can fix. The message has one line, with what failed, why, and what to do. Commands end
+    with exit code 2."""
 
 
 class NotThere(UserError):
-    """--draw-only was given, but the result has not been computed yet, or belongs to another run."""
+    """With --draw-only, a result is needed that has not been computed yet or that belongs to another run."""
 
 
 class ProgramFailed(Exception):
-    """A program of ours printed its error in one line, and ended with this exit code."""
+    """One of the C++ programs printed an error in one line, and ended with this exit code."""
 
     def __init__(self, message: str, exit_code: int) -> None:
         super().__init__(message)
@@ -25,4 +26,4 @@ class ProgramFailed(Exception):
 
 
 class Damaged(UserError):
-    """A file whose content has changed since it was written. The message names the file."""
+    """The content of a file has changed since it was written. The message names the file."""

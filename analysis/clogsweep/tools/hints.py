@@ -1,4 +1,4 @@
-"""Names for frequent types in signatures."""
+"""Names of types that occur often in signatures."""
 
 import os
 from collections.abc import Sequence
@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-# Public functions write this type out, for help(), and so do modules that must load without `numpy`.
+# Public functions do not use this name, so that help() shows the type itself. Modules that must load without `numpy` do
+# not use it either.
 AnyPath = str | os.PathLike[str]
 
-Column = dict[str, Any]  # a parameter as clogsweep describes it: its name, symbol, unit, default
-Group = dict[str, Any]  # a group of clogfit's JSON: parameters that its runs have in common, and their results
+Column = dict[str, Any]  # A parameter as clogsweep describes it, with its name, symbol, unit and default.
+Group = dict[str, Any]  # A group in clogfit's JSON, with the common parameters of its runs and their results.
 Numbers = npt.NDArray[np.float64]
 Point = Sequence[float] | Numbers  # x and y
-Records = npt.NDArray[np.void]  # rows of a table, whose columns have names
+Records = npt.NDArray[np.void]  # Rows of a table, whose columns have names.

@@ -1,4 +1,4 @@
-"""Output files: checks where one may be written and what it may replace, and writes only complete files."""
+"""Decides where an output file may be written and what it may replace. Only complete files appear."""
 
 import contextlib
 import os
@@ -9,15 +9,16 @@ from collections.abc import Iterator
 
 from .errors import UserError
 
-# First bytes of the files that commands make.
+# The first bytes of the files that commands make.
 BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-", "vtk": b"<?xml", "csv": b"# circles of ", "text": b""}
 
 
 def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> None:
-    """Checks that a file can be written, before a computation of minutes. It may replace an earlier file of the same
-    kind, nothing else.
+    """Checks that a file can be written, before minutes are spent on a computation. The file may replace an earlier
+    file of the same kind, but no other file.
 
-    @param kind  of BEGINNINGS; @param inputs  files that the command reads
+    @param kind  a key of BEGINNINGS
+    @param inputs  files that the command reads
     """
     if not path.parent.is_dir():
         raise UserError(f"cannot write {path} (no folder {path.parent}); make it first")
@@ -36,7 +37,7 @@ def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> N
 
 
 def is_of_kind(path: pathlib.Path, kind: str) -> bool:
-    """Whether the file begins like files of this kind, or is empty."""
+    """Whether the file begins as files of this kind do, or is empty."""
     with open(path, "rb") as file:
         beginning = file.read(len(BEGINNINGS[kind]))
     return not beginning or beginning == BEGINNINGS[kind]
@@ -44,10 +45,10 @@ def is_of_kind(path: pathlib.Path, kind: str) -> bool:
 
 @contextlib.contextmanager
 def replaced(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
-    """A temporary path to write to. When the block ends, this file replaces `path`. If the block fails, an earlier file
+    """A temporary path for a file. When the block ends, this file replaces `path`. If the block fails, an earlier file
     is kept.
-    @throws UserError  if it cannot be written"""
-    target = pathlib.Path(path).resolve()  # if `path` is a link, it stays and leads to the new file
+    @throws UserError  if the file cannot be written"""
+    target = pathlib.Path(path).resolve()  # If `path` is a link, the link remains and points to the new file.
     try:
         with tempfile.TemporaryDirectory(prefix=".clogsweep-", dir=target.parent) as folder:
             fresh = pathlib.Path(folder) / target.name
@@ -59,19 +60,19 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
         raise UserError(f"cannot write {path} ({error.strerror or error}); look at the folder and its disk, or give another --output") from error
 
 
-# Endings of pictures and films. Anything else after a dot may be a part of the name, as in gap-0.3.
+# Endings of pictures and films. Other text after a dot may be a part of the name, as in gap-0.3.
 ENDINGS = (".png", ".pdf", ".mp4", ".gif", ".jpg", ".jpeg", ".svg", ".eps", ".ps", ".tif", ".tiff", ".bmp", ".webp",
            ".avi", ".mov", ".mkv", ".webm", ".mpg", ".mpeg", ".apng")
 
 
 def refuse_ending(output: pathlib.Path, *made: str) -> None:
-    """@param made  the available endings. @throws UserError  if the name has another one"""
+    """Refuses a name with the ending of another format. @param made  the available endings. @throws UserError"""
     if output.suffix.lower() in ENDINGS and output.suffix not in made:
         raise UserError(f"cannot write {output} (it can only be {' or '.join(made)}); give another ending, or none")
 
 
 def refuse_unwritable_picture(output: str | os.PathLike[str], *inputs: pathlib.Path) -> None:
-    """Refuses a path where one of the two files of style.save() cannot be written. @param output  path without ending"""
+    """Refuses a path if one of the two files of style.save() cannot be written. @param output  path without ending"""
     refuse_ending(pathlib.Path(output), ".png", ".pdf")
     for kind in ("png", "pdf"):
         refuse_unwritable(pathlib.Path(f"{output}.{kind}"), kind, *inputs)

@@ -1,5 +1,5 @@
-"""Progress of a script, on the standard error: on a terminal one line that is renewed, elsewhere a new line now and
-then."""
+"""Shows the progress of a script on the standard error. On a terminal this is one line that is renewed. Elsewhere a new
+line appears now and then."""
 
 import sys
 import time
@@ -10,7 +10,8 @@ Item = TypeVar("Item")
 
 
 def readable_duration(seconds: float) -> str:
-    """A duration as clogsweep shows it, with seconds below ten minutes, because whole minutes would jump."""
+    """A duration as clogsweep shows it. Below ten minutes it has seconds, because whole minutes would change too
+    seldom."""
     if seconds < 119.5:
         return f"{seconds:.0f} s"
     whole = round(seconds)
@@ -23,7 +24,7 @@ class StatusLine:
         self.begin = self.last = time.monotonic()
 
     def renew(self, text: Callable[[float], str]) -> None:
-        """Shows a text if the last one is old enough. @param text  makes the text from the seconds since the
+        """Shows a new text if the last one is old enough. @param text  makes the text from the seconds since the
         beginning"""
         now = time.monotonic()
         if now - self.last >= (0.2 if self.on_terminal else 10):

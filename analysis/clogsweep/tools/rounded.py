@@ -1,5 +1,5 @@
-"""Numbers as text: counts with their noun, other numbers with as many figures as their uncertainty allows, but at least
-three."""
+"""Writes numbers as text. A count is followed by its noun. Other numbers have as many figures as their uncertainty
+allows, but at least three."""
 
 import math
 from typing import TypeGuard
@@ -13,12 +13,12 @@ def is_number(value: float | None) -> TypeGuard[float]:
 
 
 def exponent(value: float) -> int:
-    """The power of ten of the first figure."""
+    """The power of ten of the first significant digit."""
     return math.floor(math.log10(abs(value))) if value else 0
 
 
 def plain(value: float | None, figures: int = LEAST_FIGURES) -> str:
-    """@param value  None, and values that are not finite, become a dash"""
+    """The number as text. @param value  None, and values that are not finite, become a dash"""
     if not is_number(value):
         return "-"
     rounded = float(f"{value:.{figures - 1}e}")
@@ -33,8 +33,8 @@ def counted(number: int, noun: str) -> str:
 
 
 def with_interval(value: float, lower: float, upper: float) -> str:
-    """Text such as 223 (102 to 585): the narrower side of the interval has two figures, but each number has at least
-    three."""
+    """Text such as 223 (102 to 585). The narrower side of the interval has two significant digits, but each number has
+    at least three."""
     side = min(value - lower, upper - value)
     figures = exponent(value) - exponent(side) + 2 if side > 0 else LEAST_FIGURES
     figures = min(max(figures, LEAST_FIGURES), MOST_FIGURES)
@@ -42,7 +42,7 @@ def with_interval(value: float, lower: float, upper: float) -> str:
 
 
 def with_error(value: float | None, error: float | None) -> str:
-    """Text such as 0.379 ± 0.012: the error has two figures, the value at most eight."""
+    """Text such as 0.379 ± 0.012. The error has two significant digits, and the value has at most eight."""
     if not is_number(value) or not is_number(error) or error <= 0:
         return plain(value)
     decimals = max(0, 1 - exponent(float(f"{error:.1e}")))

@@ -6,6 +6,6 @@ WARNINGS = (signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU)  # warnings of batch
 
 
 def stop_signals() -> list[signal.Signals]:
-    """The signals that stop clogsweep. SIGHUP is missing under nohup, which makes programs ignore it."""
+    """The signals that stop clogsweep. SIGHUP is left out under nohup, because nohup makes programs ignore it."""
     ends = [signal.SIGINT, signal.SIGTERM]
     return [*WARNINGS, *ends] if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN else [*WARNINGS, *ends, signal.SIGHUP]

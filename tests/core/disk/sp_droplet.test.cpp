@@ -24,7 +24,7 @@ DropletState disk_at(double x, double y) {
 }
 
 TEST(SpDroplet, RestsOnAnObstacleAtTheAnalyticSag) {
-  // k = 4 E_w/sigma^2 carries M g = pi/4 at an overlap of pi/(16 E_w).
+  // With k = 4 E_w/sigma^2, the contact balances the weight M g = pi/4 at an overlap of pi/(16 E_w).
   for (const double stiffness : {0.5, 3.0, 30.0}) {
     const ObstacleArray obstacle(20, {{2, 0, 0.15}});
     SpDroplet droplet(free_disk(stiffness), obstacle, disk_at(1.35, 0));
@@ -36,8 +36,8 @@ TEST(SpDroplet, RestsOnAnObstacleAtTheAnalyticSag) {
 }
 
 TEST(SpDroplet, FollowsTheDampedOscillatorToSecondOrder) {
-  // Head-on contact is linear: M x'' = M g - b x' - k x, with the disk at rest at x = 0 in the beginning.
-  // Here it is under-damped.
+  // Head-on contact is linear: M x'' = M g - b x' - k x. The disk starts at rest at x = 0. The motion is
+  // under-damped here.
   const double stiffness = 30;
   const double k = 4 * stiffness;
   const double mass = units::droplet_mass;
@@ -63,7 +63,7 @@ TEST(SpDroplet, FollowsTheDampedOscillatorToSecondOrder) {
 }
 
 TEST(SpDroplet, MeetsAnObstacleAtAnyAllowedStepAndSpeed) {
-  // A head-on collision at speed 1 ends at the same place of rest for every time step.
+  // A head-on collision at speed 1 ends at the same place of rest with every time step.
   for (const double dt : {0.01, 0.05, 0.2}) {
     const ObstacleArray obstacle(20, {{8, 0, 0.15}});
     RunParameters run = free_disk(1, dt);

@@ -12,8 +12,8 @@
 namespace clog {
 namespace {
 
-/// Counts the crossings of every pair of edges: solves p + s u = q + t v for s and t, which is not the tested
-/// formula.
+/// Counts the crossings of every pair of edges by solving p + s u = q + t v for s and t. The tested function
+/// uses another formula.
 int crossings_of_every_pair(const Eigen::ArrayXd& position) {
   const int n = static_cast<int>(position.size() / 2);
   const auto point = [&](int i) { return Eigen::Array2d(position[i % n], position[n + i % n]); };
@@ -39,7 +39,7 @@ TEST(Polygon, ARegularOneHasTheAreaAndEdgesAskedFor) {
     const PolygonShape shape = polygon_shape(regular_polygon(n, units::rest_area));
     EXPECT_NEAR(shape.area, units::rest_area, 1e-12);
     EXPECT_NEAR(shape.perimeter, n * units::regular_edge_length(n), 1e-11);
-    // A of a regular polygon: (n/pi) tan(pi/n).
+    // The shape parameter A of a regular polygon is (n/pi) tan(pi/n).
     EXPECT_NEAR(shape.shape_parameter(), n / std::numbers::pi * std::tan(std::numbers::pi / n), 1e-12);
   }
 }
@@ -70,7 +70,8 @@ TEST(Polygon, TheCentroidsVelocityIsItsRateOfChange) {
 }
 
 TEST(Refined, HasTheVerticesAndTheMiddlesOfCubics) {
-  // y = x^3 - x on vertices whose x are a unit apart: the cubic through four of them is the curve itself.
+  // The vertices are on the curve y = x^3 - x, and their x are a unit apart. The cubic through four of them
+  // is the curve itself.
   Eigen::ArrayXd position(2 * 16);
   for (int i = 0; i < 16; ++i) {
     position[i] = i;
@@ -130,7 +131,7 @@ TEST(SelfCrossings, AreOneInAFigureOfEight) {
       position[n + i] = std::sin(2 * angle);
     }
     EXPECT_EQ(num_self_crossings(position), 1) << n << " vertices";
-    // The same contour with x and y exchanged, so that the edges are sorted along y.
+    // The same contour with x and y exchanged. So the edges are sorted along y.
     Eigen::ArrayXd turned(2 * n);
     turned << position.tail(n), 2 * position.head(n);
     EXPECT_EQ(num_self_crossings(turned), 1) << n << " vertices, turned";
@@ -138,7 +139,7 @@ TEST(SelfCrossings, AreOneInAFigureOfEight) {
 }
 
 TEST(SelfCrossings, CountWhereAFilmIsPulledThroughItself) {
-  // A flat box whose lower side bulges out through its upper side and back in.
+  // A flat box whose lower side bulges out through the upper side and back in.
   Eigen::ArrayXd position(12);
   position << 0, 1, 2, 3, 3, 0, 0, 0, 2, 0, 1, 1;
   EXPECT_EQ(num_self_crossings(position), 2);

@@ -63,8 +63,8 @@ DropletRun falls_onto(RunParameters run, std::vector<Obstacle> obstacles, double
 const std::vector<Obstacle> narrow_gap{{10, 9.6, 0.15}, {10, 10.4, 0.15}};
 const std::vector<Obstacle> single{{10, 10, 0.15}};
 
-/// The centroid of the area. The mean of the vertices would also move if only the interface slid around the
-/// droplet.
+/// The centroid of the area. The mean of the vertices would not do, because it also moves if only the
+/// interface slides around the droplet.
 Eigen::Array2d centre(const DropletState& state) {
   return state.size() > 1 ? area_centroid(state.position) : state.centre();
 }
@@ -154,14 +154,15 @@ TEST_P(Certified, ADropletOnAFlatWallCouldDriftAside) {
 }
 
 TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
-  // Two springs k (r - d) at an angle to the flow balance the weight: 2 k (r - d) (10 - x)/d = M g.
+  // Two springs at an angle to the flow balance the weight. Each spring has the force k (r - d), so 2 k (r -
+  // d) (10 - x)/d = M g.
   const RunParameters run = resolve(soft_disk());
   const double k = 4 * 5;
   const auto pull = [&](double x) {
     const double d = std::hypot(10 - x, 0.4);
     return pi / 4 - 2 * k * (0.65 - d) * (10 - x) / d;
   };
-  double low = 9.5, high = 9.7;  // from both places the force pushes the disk towards the balance
+  double low = 9.5, high = 9.7;  // from both of these places the force pushes the disk towards the balance
   ASSERT_GT(pull(low), 0);
   ASSERT_LT(pull(high), 0);
   while (high - low > 1e-14) (pull((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
@@ -173,8 +174,8 @@ TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
   EXPECT_NEAR(found->position[1], 10, 1e-8);
 }
 
-/// Points tied by springs to their places and to their neighbours. Each coordinate also has an upper bound, a
-/// contact that is much stiffer than the springs. All quantities are in units of a point's weight.
+/// Points that springs tie to their places and to their neighbours. Each coordinate also has an upper bound,
+/// which is a contact much stiffer than the springs. All quantities are in units of a point's weight.
 class PointsWithContacts {
  public:
   static constexpr Eigen::Index num_points = 16;
@@ -194,8 +195,8 @@ class PointsWithContacts {
     }
   }
 
-  /// Solves for the position with a given set of contacts, until this set equals the set of contacts that
-  /// touch.
+  /// Assumes which contacts touch, and solves for the position. Repeats this until exactly the assumed
+  /// contacts touch.
   Eigen::VectorXd rest() const {
     Eigen::VectorXd position = Eigen::VectorXd::Zero(size);
     for (int attempt = 0; attempt < 100; ++attempt) {
@@ -245,8 +246,8 @@ TEST(Equilibrium, IsFoundThoughContactsOpenAndCloseOnTheWay) {
 }
 
 TEST(Equilibrium, IsFoundAtTheFirstSearchEvenIfItsFirstStepsLeadAstray) {
-  // Half of these searches go astray at first. They return to their start, and find the place of rest with
-  // halved steps.
+  // Half of these searches go astray at first. Such a search returns to its start, and finds the place of
+  // rest with halved steps.
   int num_early = 0;
   for (const std::uint32_t seed : {3u, 7u, 11u, 14u, 16u}) {
     RunParameters run;
@@ -270,7 +271,8 @@ TEST(Equilibrium, IsFoundAtTheFirstSearchEvenIfItsFirstStepsLeadAstray) {
 }
 
 TEST(Equilibrium, TooFarAwayIsRefused) {
-  // The droplet is so soft that it touches both obstacles wherever it is moved here, so its energy is convex.
+  // The droplet is so soft that it touches both obstacles at every place to which it is moved here. So its
+  // energy is convex.
   const RunParameters run = resolve(soft_disk(2));
   const ObstacleArray obstacles(20, narrow_gap);
   Eigen::ArrayXd position(2);
@@ -289,13 +291,13 @@ TEST(Equilibrium, TooFarAwayIsRefused) {
 TEST(Equilibrium, OnTopOfAnObstacleIsRefused) {
   const RunParameters run = resolve(soft_disk());
   Eigen::ArrayXd position(2);
-  position << 10 - 0.65 + pi / (16 * 5), 10;  // here the forces balance
+  position << 10 - 0.65 + pi / (16 * 5), 10;  // the forces balance here
   EXPECT_FALSE(
       model_of(run).equilibrium(run, ObstacleArray(20, single), test::state_of(position)).has_value());
 }
 
-/// A run through an orifice with round tips. Droplets pass it up to a line tension of about 1.26; the tests
-/// use line tensions close to this limit.
+/// A run through an orifice with round tips. Droplets with line tensions up to about 1.26 pass this orifice.
+/// The tests use line tensions close to this limit.
 DropletRun through_orifice(double line_tension, ClogDetection detection) {
   RunParameters run = robust(line_tension);
   run.clog_detection = detection;

@@ -24,11 +24,11 @@ RunParameters in_small_box(double line_tension, double gap) {
   run.dp.line_tension = line_tension;
   run.obstacles.gap = gap;
   run.obstacles.box = 12;
-  run.obstacles.density = {};  // saturated, so that the droplet touches obstacles
+  run.obstacles.density = {};  // saturated arrays, in which the droplet touches obstacles
   return run;
 }
 
-/// Largest force on a vertex, without weight, divided by the vertex's weight.
+/// The largest force on a vertex, without the weight, divided by the weight of the vertex.
 double largest_force(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {
   test::ReferenceForces forces(run, obstacles);
   forces.set_weight(0);
@@ -56,9 +56,9 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
 }
 
 TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
-  // Springs along the interface have no energy, so the minimiser may follow a cycle for ever. It does so with
-  // the springs with which the droplet grows in three of these cases, and with the springs of the run in one.
-  // One case also needs weaker springs.
+  // Springs along the interface have no energy, so the minimiser may follow a cycle without end. In three of
+  // these cases it does so with the springs with which the droplet grows, and in one case with the springs of
+  // the run. One case also needs weaker springs.
   for (const auto& [vertices, line_tension, seed] :
        {std::tuple{64, 0.1, 141u}, {64, 0.05, 113u}, {64, 0.05, 141u}, {32, 0.1, 76u}, {32, 0.05, 303u}}) {
     SCOPED_TRACE(std::to_string(vertices) + " vertices, seed " + std::to_string(seed));
@@ -73,7 +73,7 @@ TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
 }
 
 TEST(Release, ComesToRestBetweenObstaclesThatNearlyTouch) {
-  for (const std::uint32_t seed : {5u, 19u}) {  // damped motion alone would take forever here
+  for (const std::uint32_t seed : {5u, 19u}) {  // damped motion alone would not come to an end here
     RunParameters run = in_small_box(1, 0.05);
     run.obstacles.box = 30;
     run = resolve(run);
@@ -127,8 +127,8 @@ TEST(Release, LeavesASoftDiskWithoutForce) {
 }
 
 TEST(Release, TheLiteralPlacementEnclosesObstacles) {
-  // The literal placement relaxes a full-sized polygon at the centre of the box. Obstacles inside the polygon
-  // do not push its interface, so they stay inside.
+  // The literal placement relaxes a full-sized polygon at the centre of the box. An obstacle inside the
+  // polygon does not push the interface, so it stays inside.
   int num_runs_with_obstacles_inside = 0;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     const RunParameters run = test::bare_parameters(64);

@@ -20,7 +20,7 @@ namespace {
 
 class EveryParameter : public testing::TestWithParam<Parameter> {};
 
-/// A run to which the parameter applies.
+/// The parameters of a run to which this parameter applies.
 RunParameters run_with(const Parameter& parameter) {
   RunParameters run;
   for (const auto& [layout, word] : Words<ObstacleLayout>::all)
@@ -65,8 +65,8 @@ TEST_P(EveryParameter, GivesBackWhatIsSet) {
   if (parameter.kind == ValueKind::file) other = OwnCircles({{1, 2, 3}}).check_sum();
   if (parameter.kind == ValueKind::text) other = LaboratoryText("angle = 1 deg").check_sum();
   if (parameter.kind == ValueKind::word)
-    // The search begins with the last word, because the first word of an automatic parameter is `auto`, which
-    // get() never returns.
+    // The search begins with the last word. The first word of an automatic parameter is `auto`, which get()
+    // never returns.
     other = *std::find_if(parameter.words.rbegin(), parameter.words.rend(),
                           [&](const auto& word) { return ParameterValue(word) != value; });
   ASSERT_NE(other, value);

@@ -23,8 +23,8 @@ struct Scene {
   ClogGeometry geometry() const { return clog_geometry(position, {obstacles, walls}, range); }
 };
 
-/// An obstacle that touches a disc of diameter 1 around the origin. The angle is the obstacle's direction
-/// from the origin [degrees].
+/// An obstacle that touches a disc of diameter 1 around the origin. @param angle  direction of the obstacle
+/// from the origin [degrees]
 Obstacle against_the_disc(double angle) {
   const double distance = 0.5 + radius + 0.5 * range;
   const double t = angle * std::numbers::pi / 180;
@@ -37,7 +37,7 @@ Scene disc_on(const std::vector<double>& angles) {
   return scene;
 }
 
-/// Corners joined by edges of about 0.01.
+/// A closed contour through these corners, with edges of length 0.01 or nearly so.
 Eigen::ArrayXd with_short_edges(const std::vector<Eigen::Array2d>& corners) {
   std::vector<Eigen::Array2d> points;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -54,8 +54,8 @@ Eigen::ArrayXd with_short_edges(const std::vector<Eigen::Array2d>& corners) {
 constexpr double inner = radius + 0.5 * range;
 constexpr double outer = 0.45;
 
-/// A droplet that hangs over an obstacle at the origin: a half ring upstream of it, and a lobe of the given
-/// length on either side.
+/// A droplet that hangs over an obstacle at the origin. The droplet consists of a half ring upstream of the
+/// obstacle, and of a lobe on each side. The arguments are the lengths of the lobes.
 Scene horseshoe(double right_lobe, double left_lobe) {
   std::vector<Eigen::Array2d> corners;
   const auto add_half_circle = [&](double r, double from, double to) {
@@ -73,7 +73,7 @@ Scene horseshoe(double right_lobe, double left_lobe) {
   return {with_short_edges(corners), {{0, 0, radius}}};
 }
 
-/// The same droplet, each of whose lobes rests on two small obstacles.
+/// The same droplet, with each lobe resting on two small obstacles.
 Scene horseshoe_with_lobes_in_gaps() {
   Scene scene = horseshoe(0.4, 0.4);
   constexpr double small = 0.05, overlap = 1.2 * range;
@@ -96,7 +96,7 @@ TEST(ClogGeometry, ADiscOnTwoObstaclesIsSqueezed) {
 }
 
 TEST(ClogGeometry, ADiscWedgedAgainstAnObstacleBesideItIsSqueezed) {
-  // The second obstacle is beside the disc and pushes it across the flow, or a little downstream.
+  // The second obstacle is beside the disc, and pushes the disc across the flow or a little downstream.
   for (const double beside : {-90.0, -100.0}) {
     const ClogGeometry geometry = disc_on({beside, 17}).geometry();
     expect_counts(geometry, 0, 1, 2);
@@ -116,15 +116,15 @@ TEST(ClogGeometry, ADropletOnOneObstacleIsHeldByNeither) {
 
 TEST(ClogGeometry, ThereIsNoGapWithinAPost) {
   expect_counts(disc_on({-20, 20}).geometry(), 0, 1, 2);
-  // With circles between the two obstacles, all of them form one post, which is one contact.
+  // Circles between the two obstacles join all of them into one post. A post is one contact.
   const ClogGeometry geometry = disc_on({-20, 20, -10, 10, 0}).geometry();
   expect_counts(geometry, 0, 0, 1);
   EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
-  // Along the contour, the droplet touches another obstacle between two contacts with the post.
+  // Along the contour, the contact with the other obstacle is between two contacts with the post.
   expect_counts(disc_on({-20, -10, 0, 10, 20, 100}).geometry(), 0, 1, 2);
 }
 
-/// A wall along the flow, on one side of the droplet, which overlaps the wall by half the range.
+/// A wall along the flow, on one side of the droplet. The droplet overlaps the wall by half the range.
 Wedge side_wall(double side) { return {.tip = {0, side * (0.5 + 0.5 * range)}, .axis = {0, side}}; }
 
 TEST(ClogGeometry, ADiscBetweenAnObstacleAndASideWallIsSqueezed) {
@@ -161,13 +161,13 @@ TEST(ClogGeometry, WallsAloneHoldNothing) {
   expect_counts(geometry, 0, 0, 2);
   EXPECT_TRUE(std::isnan(geometry.wrapped_support));
   EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
-  // An obstacle upstream of the disc supports nothing either.
+  // An obstacle upstream of the disc does not support it either.
   scene = disc_on({140});
   scene.walls = {side_wall(-1)};
   EXPECT_EQ(scene.geometry().mechanism(), ClogMechanism::none);
 }
 
-/// The disc touches both surfaces of a narrow channel: two wedges at 45 degrees.
+/// The disc touches both surfaces of a narrow channel, which are two wedges at 45 degrees.
 TEST(ClogGeometry, ADiscBetweenTheTipsOfTwoWedgesIsSqueezed) {
   Scene scene = disc_on({});
   const double r = 0.1, distance = 0.5 + r + 0.5 * range, across = 0.4;
@@ -186,7 +186,7 @@ TEST(ClogGeometry, ADropletHangsOverAWholePost) {
   for (const double lobe : {0.18, 0.22}) {
     Scene scene = horseshoe(lobe, lobe);
     expect_counts(scene.geometry(), 1, 0, 1);
-    scene.obstacles.push_back({0.1, 0, 0.1});  // its downstream end is at 0.2
+    scene.obstacles.push_back({0.1, 0, 0.1});  // the downstream end of this obstacle is at 0.2
     expect_counts(scene.geometry(), lobe > 0.2 ? 1 : 0, 0, 1);
   }
 }
@@ -239,12 +239,13 @@ TEST(ClogGeometry, AHorseshoeWhoseLobesStandInGapsIsHybrid) {
 /// the flow.
 TEST(ClogGeometry, WeighsSupportByTheForceAgainstTheFlow) {
   Scene scene = horseshoe(0.4, 0.4);
-  scene.obstacles.push_back({0.4 + radius, 0.3, radius});  // under one lobe; the overlap is the whole range
+  // Under one lobe, with an overlap of the whole range.
+  scene.obstacles.push_back({0.4 + radius, 0.3, radius});
   const double before = horseshoe(0.4, 0.4).geometry().wrapped_support;
   EXPECT_EQ(before, 1);
   // The half ring has the overlap range/2 along a width of 2 inner. The flat end of the lobe is at the
-  // distance `radius` from the obstacle's centre. Its overlap is range - s^2/(2 radius) at a distance s from
-  // the middle, so its integral is 4/3 sqrt(2 radius range) range.
+  // distance `radius` from the obstacle's centre. At a distance s from the middle its overlap is range -
+  // s^2/(2 radius). The integral of this is 4/3 sqrt(2 radius range) range.
   const double ring = range / 2 * 2 * inner;
   const double flat = 4.0 / 3 * std::sqrt(2 * radius * range) * range;
   EXPECT_NEAR(scene.geometry().wrapped_support, ring / (ring + flat), 0.04);
@@ -253,10 +254,10 @@ TEST(ClogGeometry, WeighsSupportByTheForceAgainstTheFlow) {
 TEST(ClogGeometry, IsTheSameWhereverTheDropletIs) {
   const Scene scene = horseshoe_with_lobes_in_gaps();
   const ClogGeometry expected = scene.geometry();
-  DpParameters as_it_is;  // uses the polygon's own edges
+  DpParameters as_it_is;  // uses the edges of the polygon itself
   as_it_is.wall_contact = WallContact::vertex;
   as_it_is.contact_range = range;
-  // The places include both borders of the box.
+  // Two of these places are at borders of the box.
   for (const Eigen::Array2d& place :
        {Eigen::Array2d(10, 10), Eigen::Array2d(19.9, 10), Eigen::Array2d(0.05, 19.95)}) {
     std::vector<Obstacle> moved = scene.obstacles;

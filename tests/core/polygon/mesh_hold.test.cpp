@@ -1,4 +1,5 @@
-/// Tests how much the corners of a polygon can hold of a droplet whose two lobes hang over one obstacle.
+/// Tests how much of a droplet's weight the corners of a polygon can hold if the two lobes of the droplet
+/// hang over one obstacle.
 
 #include <gtest/gtest.h>
 
@@ -42,8 +43,8 @@ RunParameters elastic(double line_tension, int vertices) {
 
 ObstacleArray one_obstacle() { return {box, {{middle, middle, obstacle_radius}}}; }
 
-/// A circle straight upstream of the obstacle, turned so that a vertex (phase 0) or the middle of an edge
-/// (1/2) faces the obstacle.
+/// A circle straight upstream of the obstacle. A vertex (phase 0) or the middle of an edge (phase 1/2) faces
+/// the obstacle.
 DropletState above_the_obstacle(const RunParameters& run, double phase, double aside = 0) {
   const int n = *run.dp.vertices;
   const Eigen::ArrayXd circle = regular_polygon(n, units::rest_area);
@@ -56,8 +57,8 @@ DropletState above_the_obstacle(const RunParameters& run, double phase, double a
   return state;
 }
 
-/// Replaces a state by the mean of the state and its mirror image, in which vertices `i` and `first - i` are
-/// exchanged.
+/// Replaces a state by the mean of this state and its mirror image. In the mirror image vertices `i` and
+/// `first - i` are exchanged.
 void make_symmetric(DropletState& state, int first) {
   const auto n = static_cast<int>(state.size());
   const Eigen::ArrayXd before = state.position;
@@ -68,8 +69,7 @@ void make_symmetric(DropletState& state, int first) {
   }
 }
 
-/// A droplet at rest under the constraint that its lobes are equal; without the constraint it would slide
-/// off.
+/// A droplet at rest whose lobes are forced to be equal. Without this constraint the droplet would slide off.
 struct Hanging {
   double energy = 0;
   ClogGeometry geometry;
@@ -140,7 +140,7 @@ TEST_P(MeshHold, IsBoundedByItsColumnAndFallsAsTheSquareOfTheEdge) {
   EXPECT_LT(bound_before, 0.01) << "of 512 vertices";
 }
 
-/// A droplet at rest here would be held by its mesh, because nothing else can hold two lobes over one
+/// If the droplet came to rest here, its mesh would hold it, because nothing else can hold two lobes over one
 /// obstacle.
 TEST_P(MeshHold, LetsADropletSlideOffAsItHasTo) {
   const RunParameters run = GetParam().parameters(GetParam().line_tension, 256);
@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(OfPresets, MeshHold,
                          testing::Values(Case{"robust", robust_hanging, 0.24}, Case{"elastic", elastic, 0.1}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// A tighter bend and a longer edge can hold more weight.
+/// A tighter bend can hold more weight, and so can a longer edge.
 TEST(MeshHoldOfAPlan, FollowsFromTheSmallestObstacle) {
   RunParameters run;
   run.dp.line_tension = 0.05;

@@ -21,7 +21,7 @@ Eigen::ArrayXd polygon_of(const std::vector<Eigen::Array2d>& points) {
   return position;
 }
 
-/// Points at equal steps of an angle from 0 to a full turn.
+/// Points at equal steps of an angle that goes from 0 to a full turn.
 template <class Point>
 Eigen::ArrayXd closed_curve(int num_vertices, Point point) {
   std::vector<Eigen::Array2d> points;
@@ -51,7 +51,7 @@ void add_arc(std::vector<Eigen::Array2d>& points, const Eigen::Array2d& centre, 
   }
 }
 
-/// Circles on the x axis joined by a bridge with straight sides.
+/// Two circles on the x axis, joined by a bridge with straight sides.
 Eigen::ArrayXd bridged_circles(double left_radius, double right_radius, double width, int pieces,
                                double distance = 2) {
   const double left = std::asin(width / 2 / left_radius), right = std::asin(width / 2 / right_radius);
@@ -78,7 +78,7 @@ TEST(ThinnestNeck, IsTheBridgeBetweenTwoCircles) {
             << pieces << " pieces, turned by " << angle;
 }
 
-/// A convex shape has no neck, however thin it is and however few vertices it has.
+/// A convex shape has no neck, even if it is thin or has few vertices.
 TEST(ThinnestNeck, IsNotThereInCirclesAndEllipses) {
   for (const int num_vertices : {32, 128, 129, 512, 2048})
     for (const double across : {0.5, 0.1, 0.01, 0.001})
@@ -87,21 +87,21 @@ TEST(ThinnestNeck, IsNotThereInCirclesAndEllipses) {
             << num_vertices << " vertices, " << across;
 }
 
-/// Half of a stadium of width w whose straight part is L long has the area w L/2 + pi w^2/8.
+/// Half of a stadium has the area w L/2 + pi w^2/8, if w is its width and L the length of its straight part.
 TEST(ThinnestNeck, IsTheWidthOfAStadiumIfItsHalvesAreLobes) {
   const double width = 0.1, enough = 2 * (pi - pi / 8) * width;
   EXPECT_NEAR(thinnest_neck(stadium(1.01 * enough, width, 64)), width, 1e-12);
   EXPECT_EQ(thinnest_neck(stadium(0.99 * enough, width, 64)), INFINITY);
 }
 
-/// The diameter of the smaller circle is 1.8 or 2.2 times the width of the bridge, which is very short.
+/// The bridge is very short. The diameter of the smaller circle is 1.8 or 2.2 times the width of the bridge.
 TEST(ThinnestNeck, JoinsPartsThatAreTwiceAsWide) {
   const double width = 0.2;
   EXPECT_EQ(thinnest_neck(bridged_circles(0.6, 0.9 * width, width, 64, 0.75)), INFINITY);
   EXPECT_NEAR(thinnest_neck(bridged_circles(0.6, 1.1 * width, width, 64, 0.79)), width, 1e-12);
 }
 
-/// The area of the smaller circle is 0.019 or 0.021 times the area of both circles.
+/// The area of the smaller circle is 0.019 or 0.021 times the area of both circles together.
 TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
   const double width = 0.01;
   for (const double share : {0.019, 0.021}) {
@@ -112,14 +112,14 @@ TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
 }
 
 /// On the contour of this oval, the distances from two points at +-a have the product b^2. For a < b <
-/// sqrt(2) a it is 2 sqrt(b^2 - a^2) wide in the middle. There an edge of length l is a chord, whose distance
-/// from the contour is l^2/8 times the contour's curvature.
+/// sqrt(2) a the oval is 2 sqrt(b^2 - a^2) wide in the middle. An edge of length l is a chord there. The
+/// distance of the chord from the contour is l^2/8 times the curvature of the contour.
 TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {
   const double a = 0.5;
   for (const double b : {0.5004, 0.502, 0.51}) {
     const double exact = 2 * std::sqrt(b * b - a * a);
     double last_error = INFINITY;
-    for (const int num_vertices : {130, 258, 514, 1026}) {  // no vertex in the middle
+    for (const int num_vertices : {130, 258, 514, 1026}) {  // these numbers leave no vertex in the middle
       const double neck = thinnest_neck(closed_curve(num_vertices, [=](double t) {
         const double s = std::sin(2 * t);
         const double r =
@@ -148,13 +148,13 @@ TEST(ThinnestNeck, IsLookedForBelowABoundOnly) {
   EXPECT_EQ(thinnest_neck(shape, 0.0999), INFINITY);
 }
 
-/// A film over an obstacle, which is thickest at its ends, and two lobes with water between them. The water
-/// is no neck, however close the lobes are.
+/// A film over an obstacle, and two lobes with water between them. The film is thickest at its ends. The
+/// water is no neck, even if the lobes are close together.
 TEST(ThinnestNeck, IsTheFilmAboveAnObstacleAndNotTheGapBetweenLobes) {
   const double inner = 0.15, film = 0.04, lobe = 0.3, gap = 0.01;
   std::vector<Eigen::Array2d> points;
-  // Upstream is to the left. The back of the film has another centre than its front, so that the film is
-  // thinnest in the middle.
+  // Upstream is to the left. The two sides of the film have different centres, so that the film is thinnest
+  // in the middle.
   add_arc(points, {0.05, 0}, inner + film + 0.05, pi / 2, 3 * pi / 2, 40);
   points.emplace_back(lobe, -(inner + film + 0.05));
   points.emplace_back(lobe, -gap / 2);
@@ -167,7 +167,8 @@ TEST(ThinnestNeck, IsTheFilmAboveAnObstacleAndNotTheGapBetweenLobes) {
 }
 
 TEST(ThinnestNeck, HasOneLineOfSight) {
-  // Two parallel bars joined at one end: the far sides face each other over both bars and the water between.
+  // Two parallel bars that are joined at one end. The far sides of the bars face each other over both bars
+  // and the water between the bars.
   const Eigen::ArrayXd bars =
       polygon_of({{0, 0}, {2, 0}, {2, 0.3}, {0.5, 0.3}, {0.5, 0.35}, {2, 0.35}, {2, 0.65}, {0, 0.65}});
   EXPECT_NEAR(thinnest_neck(bars), 0.3, 1e-12);

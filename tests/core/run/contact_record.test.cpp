@@ -14,8 +14,7 @@
 namespace clog {
 namespace {
 
-/// A round droplet that the test moves along the flow among given circles. It is released at x = 2 and y =
-/// `across`.
+/// A round droplet that the test moves along the flow, among given circles, from x = 2 and y = `across`.
 class Passage {
  public:
   explicit Passage(std::vector<Obstacle> circles, double across = 5, double range = 0)
@@ -33,7 +32,7 @@ class Passage {
     const Eigen::Array2d release = frame.global({0, 0}) - start_;
     record_.add(state_, obstacles_, release, x);
   }
-  /// Moves the droplet in steps as short as the path of a droplet between two checks of a run.
+  /// Moves the droplet in steps as long as its path between two checks of a run.
   void move_by_steps_to(double x) {
     constexpr double step = 0.002;
     while (x_ + step < x) move_to(x_ + step);
@@ -57,7 +56,7 @@ TEST(ContactRecord, CountsCirclesThatTheOutlineReaches) {
   EXPECT_TRUE(std::isnan(passage.found().first_distance));
   passage.move_by_steps_to(7);
   EXPECT_EQ(passage.found().number, 1) << "the second is 0.05 away from the lane";
-  // Droplet and circle touch when their centres are 0.6 apart; across the flow they are 0.55 apart.
+  // Droplet and circle touch when their centres are 0.6 apart. Across the flow their centres are 0.55 apart.
   EXPECT_NEAR(passage.found().first_distance, 3 - std::sqrt(0.36 - 0.55 * 0.55), 0.004);
 }
 
@@ -80,7 +79,7 @@ TEST(ContactRecord, CountsAnObstacleOncePerPeriodAndMeeting) {
   EXPECT_EQ(shaken.found().number, 2);
 }
 
-/// Overlapping circles along the flow, beside the droplet's lane.
+/// Overlapping circles in a row along the flow, beside the droplet's path.
 std::vector<Obstacle> row(double from, double to) {
   std::vector<Obstacle> circles;
   for (double x = from; x < to; x += 0.05) circles.push_back({x, 5.55, 0.1});
@@ -88,7 +87,7 @@ std::vector<Obstacle> row(double from, double to) {
 }
 
 TEST(ContactRecord, CountsAPostOfManyCirclesOnce) {
-  // The row of circles is longer than the range around the droplet in which circles are searched.
+  // The row is longer than the range around the droplet in which circles are searched.
   Passage along_a_row(row(4, 8));
   along_a_row.move_by_steps_to(8);
   EXPECT_EQ(along_a_row.found().number, 1);
@@ -108,7 +107,7 @@ TEST(ContactRecord, BeginsAtTheRangeOfTheContact) {
 }
 
 TEST(ContactRecord, SeesATouchBetweenTwoVertices) {
-  // A circle overlaps the middle of an edge, but by too little to reach the edge's ends.
+  // A circle overlaps the middle of an edge, but so little that it does not reach the ends of the edge.
   const double edge = units::regular_edge_length(128);
   const double apothem = edge / 2 / std::tan(std::numbers::pi / 128);
   const Obstacle circle{2 + apothem + 0.001 - 1e-6, 5, 0.001};

@@ -70,7 +70,7 @@ TEST(DropletRun, IsTheSameHoweverItIsSliced) {
   expect_identical(at_once, result_of(small_run(), 7));
 }
 
-/// A run that is short enough for a test and long enough for three snapshots.
+/// The parameters of a run that is short enough for a test and long enough for three snapshots.
 RunParameters long_run(Model model) {
   RunParameters run;
   run.obstacles.box = 20;
@@ -89,8 +89,7 @@ DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> 
                             snapshot);
 }
 
-/// A soft droplet among obstacles that have neither friction nor contact angles, so nothing holds the
-/// droplet.
+/// A soft droplet among obstacles with neither friction nor contact angles. So nothing holds the droplet.
 RunParameters soft_among_walls() {
   RunParameters run;
   run.obstacles.box = 20;
@@ -112,7 +111,7 @@ RunParameters with_friction(RunParameters run, double coefficient, FilmFriction 
   return run;
 }
 
-/// Resumes from a snapshot in which walls hold the droplet, and compares the results.
+/// Resumes from a snapshot in which walls hold the droplet. Compares the results.
 void expect_to_go_on(const RunParameters& run, const std::function<bool(const DropletState&)>& is_held) {
   DropletRun whole(run);
   std::vector<std::byte> snapshot;
@@ -184,9 +183,9 @@ TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
   EXPECT_THROW(resume_in_array(run, bytes), Error);
 }
 
-/// Tries snapshots with a correct checksum and wrong content: each number in turn is replaced by several
-/// unlikely values. Either resume() refuses such a snapshot, or the run continues to its end without a crash
-/// or an endless loop.
+/// Tries snapshots with a correct checksum and wrong content, in which several unlikely values replace each
+/// number in turn. resume() may refuse such a snapshot. Otherwise the run must continue to its end, without a
+/// crash or an endless loop.
 TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
   RunParameters run = with_friction(soft_among_walls(), 0.02, FilmFriction::off);
   run.dp.vertices = 32;
@@ -219,10 +218,10 @@ TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
       std::memcpy(&bytes[at], before, word);
     }
   const auto numbers_of_shape = static_cast<int>(4 * 32);
-  EXPECT_GT(refused, 3 * numbers_of_shape);  // for each number: infinity, NaN and -1e300
+  EXPECT_GT(refused, 3 * numbers_of_shape);  // each number is replaced by infinity, NaN and -1e300
 }
 
-/// The time for which a droplet rested before its clog does not depend on how the clog is detected.
+/// The times for which a droplet rested before its clog do not depend on how the clog is detected.
 TEST(DropletRun, ItsDwellsDoNotDependOnHowClogsAreFound) {
   RunParameters run = small_run(2);
   run.max_time = 5000;
@@ -280,8 +279,8 @@ TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   EXPECT_EQ(run.result().hold.mechanism, ClogMechanism::squeezed);
   EXPECT_GE(run.result().hold.geometry.num_arcs, 2);
 
-  // Further integration must not free the droplet. To test this, the run is repeated with a threshold for
-  // clogs that the droplet cannot reach, so the run does not end at the clog.
+  // Further integration must not free the droplet. To test this, the run is repeated with a threshold that
+  // the droplet cannot reach. So the run does not end at the clog.
   RunParameters on = parameters;
   on.clog_energy = 1e-300;
   on.max_time = 2 * run.result().time + 100;
@@ -303,7 +302,7 @@ TEST(DropletRun, KeepsItsContactsShallowAndItsAreaOnTheWay) {
 }
 
 TEST(DropletRun, ADivergedRunIsAResult) {
-  // These parameters have not been checked: the step is too long for the contacts of this soft disk.
+  // These parameters were not checked: the step is too long for the contacts of this soft disk.
   RunParameters parameters = small_run();
   parameters.model = Model::sp;
   parameters.wall_stiffness = 1e9;
@@ -314,7 +313,7 @@ TEST(DropletRun, ADivergedRunIsAResult) {
 }
 
 TEST(DropletRun, ABurstPolygonIsAResultToo) {
-  // These parameters have not been checked: the step would have to be split into too many parts.
+  // These parameters were not checked: the step would have to be split into too many parts.
   RunParameters parameters = small_run();
   parameters.drag.terminal_speed = 100;
   parameters.time_step = 5;
@@ -323,7 +322,7 @@ TEST(DropletRun, ABurstPolygonIsAResultToo) {
 }
 
 TEST(DropletRun, FailsWhenTheInterfaceCrossesItself) {
-  // Far below the tested line tensions the interface grows and crosses itself, while area and speed stay
+  // Far below the tested line tensions the interface grows and crosses itself, although area and speed stay
   // normal.
   RunParameters parameters = small_run(0.001);
   parameters.max_time = 1000;
@@ -332,7 +331,7 @@ TEST(DropletRun, FailsWhenTheInterfaceCrossesItself) {
   EXPECT_NE(result.message.find("crossed itself"), std::string::npos) << result.message;
   EXPECT_LT(result.time, 1000);
 
-  // The published equations have no self-contact and permit crossings.
+  // The published equations have no self-contact, so they permit crossings.
   parameters.dp.self_contact = SelfContact::off;
   EXPECT_EQ(result_of(parameters, 1000).status, RunStatus::flowing);
 }
@@ -374,7 +373,8 @@ TEST(DropletRun, FollowsASoftDiskToo) {
   EXPECT_EQ(result.hold.mechanism, ClogMechanism::squeezed);
 }
 
-/// A droplet starts 3 sigma upstream of a circle of diameter 0.3, whose centre is `offset` beside its path.
+/// A droplet that starts 3 sigma upstream of a circle of diameter 0.3. The circle's centre is `offset` beside
+/// the path of the droplet.
 RunParameters falls_onto_a_circle(double line_tension, double offset, int vertices = 128) {
   RunParameters run;
   run.dp.line_tension = line_tension;
@@ -387,8 +387,8 @@ RunParameters falls_onto_a_circle(double line_tension, double offset, int vertic
   return resolve(run);
 }
 
-/// When the liquid hangs on both sides of a thin film over the obstacle, four interfaces of tension Gamma
-/// have to carry all of its weight, which they cannot below Gamma = pi/16. A stiffer droplet also lies on the
+/// The liquid hangs on both sides of a thin film over the obstacle. So four interfaces of tension Gamma have
+/// to carry its whole weight, and below Gamma = pi/16 they cannot. A stiffer droplet also rests on the
 /// obstacle itself.
 TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
   for (const int vertices : {64, 128, 256}) {
@@ -404,7 +404,7 @@ TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
 }
 
 /// A droplet that would break up in a head-on collision slips off to one side in an off-centre collision.
-/// Only a softer droplet breaks up there.
+/// Only a softer droplet breaks up in such a collision.
 TEST(BreakUp, OffCentreADropletHasToBeSofterToBreak) {
   for (const double side : {-1.0, 1.0}) {
     const RunResult passed = result_of(falls_onto_a_circle(0.15, 0.1 * side), 100);
@@ -416,7 +416,7 @@ TEST(BreakUp, OffCentreADropletHasToBeSofterToBreak) {
   }
 }
 
-/// Looking for necks changes only the end of a run.
+/// The search for necks changes only the end of a run.
 TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
   RunParameters run = falls_onto_a_circle(0.05, 0.1);
   const RunResult broken = result_of(run, 100);
@@ -429,9 +429,9 @@ TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
   EXPECT_EQ(same.kinetic_energy_ratio, broken.kinetic_energy_ratio);
 }
 
-/// The run starts from a droplet that hangs over an obstacle. Its neck still gets thinner, and its place of
-/// rest is known. If the neck is too thin at rest, the rest does not count as a clog, and the droplet breaks
-/// as soon as its neck gets too thin.
+/// The run starts from a droplet that hangs over an obstacle. The neck of the droplet still gets thinner, and
+/// its place of rest is known. If the neck is too thin at rest, the rest does not count as a clog. The
+/// droplet then breaks up as soon as its neck is too thin.
 TEST(BreakUp, ComesBeforeACertifiedClog) {
   RunParameters run;
   run.dp.perimeter_spring = PerimeterSpring::rest;
@@ -455,7 +455,7 @@ TEST(BreakUp, ComesBeforeACertifiedClog) {
   ASSERT_LT(at_rest, now);
   run.max_time = 1000;
   const auto obstacles = std::make_shared<const ObstacleArray>(sample_obstacles(run.obstacles, run.seed));
-  for (const double share : {-0.5, 0.5}) {  // limits below and above the width of the neck at rest
+  for (const double share : {-0.5, 0.5}) {  // The limit is below or above the width of the neck at rest.
     run.dp.break_up_neck = at_rest + share * (now - at_rest);
     DropletRun on(run, obstacles, state);
     while (!on.advance(1000)) continue;

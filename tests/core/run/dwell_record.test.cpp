@@ -11,10 +11,10 @@ namespace clog {
 namespace {
 
 constexpr double dwell_length = 0.05;
-constexpr double speed = 0.5;  // with this speed, dwells of more than 1 t0 are recorded
+constexpr double speed = 0.5;  // at this speed, dwells of more than 1 t0 are recorded
 
-/// A part of a droplet's course: the droplet rests at a place for a time. The run has one check per unit of
-/// time.
+/// A part of a droplet's course, in which the droplet rests at a place for a time. The run has one check per
+/// unit of time.
 struct Stand {
   double place;
   int time;
@@ -76,7 +76,7 @@ TEST(DwellRecord, CountsTheDwellUnderWayUnlessItIsAClogs) {
 TEST(DwellRecord, SeesADropletThatCreepsAsStandingUntilItHasCrept) {
   DwellRecord record(dwell_length, speed);
   for (int time = 1; time <= 1000; ++time) record.add(time, time / 1024.0);
-  // The droplet moves by more than 0.05 in a time of 52, again and again.
+  // The droplet needs a time of 52 to move by more than 0.05, and does this again and again.
   EXPECT_EQ(lengths(record.found(1000, false)), std::vector<double>{52});
   EXPECT_EQ(record.found(1000, false).last_distance, 19 * 52 / 1024.0);
 }
@@ -105,7 +105,7 @@ TEST(DwellRecord, AFreeDropletHasNone) {
   EXPECT_EQ(record.found(100, false).known_from, DwellRecord::shortest * dwell_length / speed);
 }
 
-/// For any course and any time, the record gives the same answer as a list of all dwells.
+/// For any course and any time, the record must give the same answer as a list of all dwells.
 TEST(DwellRecord, AgreesWithAListOfAllDwells) {
   std::mt19937 random(7);
   std::geometric_distribution<int> draw(0.02);
@@ -116,7 +116,7 @@ TEST(DwellRecord, AgreesWithAListOfAllDwells) {
     for (int i = 0; i < 300; ++i) {
       const double place = 0.1 * i;
       for (int stay = draw(random); stay >= 0; --stay) record.add(++time, place);
-      const double end = time + 1;  // the stay ends at the next check, except for the last one
+      const double end = time + 1;  // the stay ends at the next check, unless it is the last one
       all.push_back({.length = end - begin, .distance = place, .begin = begin});
       begin = end;
     }
@@ -148,7 +148,7 @@ TEST(DwellRecord, GoesOnFromItsBytes) {
     for (int time = 26; time <= 60; ++time) record->add(time, time < 60 ? 2 : 3);
   const Dwells expected = whole.found(60, false), found = restored.found(60, false);
   EXPECT_EQ(lengths(found), lengths(expected));
-  EXPECT_EQ(found.longest[0].length, 39);  // it began before the bytes were written
+  EXPECT_EQ(found.longest[0].length, 39);  // this dwell began before the bytes were written
   EXPECT_EQ(found.last_begin, expected.last_begin);
 }
 

@@ -182,8 +182,9 @@ TEST(Resolve, FillsInTheStiffestStableContact) {
 }
 
 TEST(Resolve, FillsInTheLargestStepThatHolds) {
-  // Every automatic step passes resolve()'s own checks of stability and is as large as possible: for stiff
-  // and soft droplets, many and few vertices, strong and weak drag, given and automatic contact.
+  // Every automatic step must pass the checks of stability in resolve() and be as large as possible. The
+  // cases are stiff and soft droplets, many and few vertices, strong and weak drag, and given and automatic
+  // contact.
   for (const int vertices : {16, 64, 256, 1024})
     for (const double line_tension : {0.0, 0.01, 0.3, 10.0})
       for (const double terminal_speed : {0.003, 0.03, 1.0}) {
@@ -195,7 +196,7 @@ TEST(Resolve, FillsInTheLargestStepThatHolds) {
         const RunParameters resolved = resolve(run);
         EXPECT_EQ(resolve(resolved).time_step, resolved.time_step);
         EXPECT_LE(*resolved.time_step, 0.2 * terminal_speed);
-        // The step is the smallest of its bounds, with two digits.
+        // The step is the smallest of its bounds, rounded to two significant digits.
         const double vertex_mass = units::droplet_mass / vertices;
         const double contact = std::sqrt(
             0.01 * vertex_mass / expected_pressure(resolved, scene_of(resolved).sharpest_bend(resolved)));
@@ -226,15 +227,15 @@ TEST(Resolve, TakesShorterStepsWithStrongerDragOrElasticInterface) {
 }
 
 TEST(Resolve, TakesStepsAsLongAsTheRootOfTheInertia) {
-  // Contact, area and springs keep their stiffness. If drag limits the step, the step grows faster with
-  // inertia.
+  // Contact, area and springs keep their stiffness. If drag limited the step instead, the step would grow
+  // faster than the root of the inertia.
   RunParameters run;
   run.dp.line_tension = 0.3;
   run.drag.terminal_speed = 0.1;
   const RunParameters usual = resolve(run);
   run.dp.inertia = 4;
   const RunParameters heavy = resolve(run);
-  EXPECT_NEAR(*heavy.time_step / *usual.time_step, 2, 0.1);  // the step is rounded to two digits
+  EXPECT_NEAR(*heavy.time_step / *usual.time_step, 2, 0.1);  // the step is rounded to two significant digits
   EXPECT_NEAR(*heavy.wall_stiffness / *usual.wall_stiffness, 1, 0.1);
   EXPECT_EQ(heavy.dp.area_stiffness, usual.dp.area_stiffness);
   EXPECT_EQ(heavy.dp.perimeter_stiffness, usual.dp.perimeter_stiffness);

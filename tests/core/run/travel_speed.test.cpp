@@ -10,7 +10,7 @@
 namespace clog {
 namespace {
 
-/// Values with mean zero and variance one (AR(1)); `correlation` is the correlation of neighbours.
+/// Values with mean zero and variance one (AR(1)). @param correlation  of neighbouring values
 std::vector<double> correlated_noise(std::size_t size, double correlation, unsigned seed) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
@@ -23,7 +23,8 @@ std::vector<double> correlated_noise(std::size_t size, double correlation, unsig
   return values;
 }
 
-/// Error of the mean of n = `size` such values: its square is 1/n (1 + 2 sum_k (1 - k/n) c^k).
+/// The error of the mean of n = `size` such values. The square of the error is 1/n (1 + 2 sum_k (1 - k/n)
+/// c^k).
 double exact_error(std::size_t size, double correlation) {
   const double n = static_cast<double>(size);
   double sum = 1;
@@ -53,9 +54,9 @@ TEST(TransientLength, FindsWhereAStepEnds) {
   }
 }
 
-/// A speed with the mean 1 - exp(-t/tau) and noise s is best cut where bias and scatter balance. There the
-/// squared deviation exp(-2 t/tau) equals about the variance s^2/5 of a batch's mean: t = tau log(sqrt(5)/s).
-/// Chance shifts the cut by a few batches, usually to later times.
+/// Consider a speed with the mean 1 - exp(-t/tau) and the noise s. The best cut is where bias and scatter
+/// balance. There the squared deviation exp(-2 t/tau) is about equal to the variance s^2/5 of a batch's mean,
+/// so t = tau log(sqrt(5)/s). Chance shifts the cut by a few batches, usually to later times.
 TEST(TransientLength, FindsWhereADecayDropsBelowTheNoise) {
   constexpr double tau = 40, noise = 0.05;
   const double expected = tau * std::log(std::sqrt(5.0) / noise);
@@ -103,8 +104,8 @@ TEST(BlockedError, OfWhiteNoiseIsTheErrorOfTheMean) {
   EXPECT_NEAR(sum / 200 * std::sqrt(1000), 1, 0.02);
 }
 
-/// Compares the means of many estimates with the truth. Without blocking they would be 0.58 and 0.23 times
-/// the truth.
+/// Compares the mean of many estimates with the true error. Without blocking the estimates would be 0.58 and
+/// 0.23 times the true error.
 TEST(BlockedError, OfCorrelatedValuesCountsTheCorrelation) {
   for (const auto& [correlation, tolerance] : {std::pair{0.5, 0.05}, {0.9, 0.1}}) {
     double sum = 0;
@@ -120,7 +121,7 @@ TEST(BlockedError, OfCorrelatedValuesCountsTheCorrelation) {
   }
 }
 
-/// How often the true mean lies within 1.96 errors.
+/// The fraction of cases in which the true mean is within 1.96 errors.
 double coverage(double correlation) {
   int covered = 0, known = 0;
   for (unsigned seed = 1; seed <= 2000; ++seed) {
@@ -144,7 +145,8 @@ TEST(BlockedError, CoversTheTruthNearlyAsOftenAsItSays) {
 TEST(BlockedError, IsNotKnownWhenTheCorrelationOutlastsTheValues) {
   EXPECT_TRUE(std::isnan(blocked_error(correlated_noise(200, 0.999, 1))));
   EXPECT_TRUE(std::isnan(blocked_error(std::vector<double>{1})));
-  EXPECT_TRUE(std::isnan(blocked_error(std::vector<double>(199, 0.1))));  // too few to tell
+  // There are too few values for an estimate.
+  EXPECT_TRUE(std::isnan(blocked_error(std::vector<double>(199, 0.1))));
   EXPECT_EQ(blocked_error(std::vector<double>(200, 0.1)), 0);
 }
 

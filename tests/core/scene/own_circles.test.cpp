@@ -28,8 +28,8 @@ RunParameters among(std::vector<Obstacle> circles) {
 }
 
 TEST(OwnCircles, AreKnownByAStandardCheckSum) {
-  // The three numbers have the 24 bytes "123456789" and 15 zeros. Their CRC-64/XZ was computed bit by bit
-  // with Python.
+  // The three numbers have 24 bytes: "123456789" and 15 zeros. The CRC-64/XZ of these bytes was computed bit
+  // by bit with Python.
   Obstacle text;
   const char bytes[sizeof text] = "123456789";
   std::memcpy(&text, bytes, sizeof text);
@@ -84,12 +84,13 @@ TEST(OwnCircles, InARowAreOnePostThatMayGrowOutOfAWall) {
   const RunParameters run = resolve(between_walls(row));
   EXPECT_NEAR(run.obstacles.gap, std::hypot(3, 3 - 1.95) - 0.5, 1e-12);
   EXPECT_DOUBLE_EQ(run.obstacles.density.per_area.value(), 2 / 235.0) << "two posts";
-  for (Obstacle& circle : row) circle.y += 0.155;  // the gap between the first circle and the wall is 0.005
+  // The gap between the first circle and the wall becomes 0.005.
+  for (Obstacle& circle : row) circle.y += 0.155;
   test::expect_refused(between_walls(row), "at the wall");
 }
 
 TEST(OwnCircles, AreShiftedSoThatTheDropletStartsAnywhere) {
-  // If n places are uniform, the mean of cos(2 pi x/L) is 0 within its standard error of 1/sqrt(2 n).
+  // If n places are uniform, the mean of cos(2 pi x/L) is 0 within its standard error, which is 1/sqrt(2 n).
   RunParameters run = resolve(among({{5, 5, 0.3}}));
   const ObstacleArray fixed = scene_of(run).walls(run);
   EXPECT_EQ(fixed.obstacles()[0].x, 5);
@@ -118,7 +119,7 @@ TEST(OwnCircles, MayBeAnyLengthAndFindEachOtherOverItsBorder) {
 }
 
 TEST(OwnCircles, StandBetweenWallsWithoutImagesAcross) {
-  // In a periodic array these circles would overlap across the border.
+  // In a periodic array these circles would overlap across the border of the box.
   const RunParameters run = resolve(between_walls({{12, 0.1, 0.3}, {12, 9.9, 0.3}}));
   const ObstacleArray device = scene_of(run).walls(run);
   ASSERT_EQ(device.wedges().size(), 2u);
@@ -178,7 +179,7 @@ TEST(OwnCircles, AreRefusedInAPeriodInWhichTheDropletMeetsItsImage) {
   EXPECT_EQ(test::refusal_of(run), "");
 }
 
-/// A channel hardly wider than the droplet, with a bump of radius 0.4 on one wall.
+/// A channel that is hardly wider than the droplet. One wall has a bump of radius 0.4.
 RunParameters narrow_channel(double width, double line_tension) {
   RunParameters run = between_walls({{8, 0, 0.4}});
   run.obstacles.box = width;
@@ -196,19 +197,19 @@ RunResult end_of(const RunParameters& run) {
 }
 
 TEST(OwnCircles, BlockOrPassADropletInANarrowChannelByItsStiffness) {
-  // A circle of diameter 1 fits into the free width of 1.45 - 0.4. Into 1.05 - 0.4 only a soft droplet fits.
+  // A circle of diameter 1 fits into a free width of 1.45 - 0.4. Only a soft droplet fits into 1.05 - 0.4.
   EXPECT_EQ(end_of(narrow_channel(1.45, 3)).status, RunStatus::passed);
   EXPECT_EQ(end_of(narrow_channel(1.05, 0.1)).status, RunStatus::passed);
   const RunResult stiff = end_of(narrow_channel(1.05, 3));
   EXPECT_EQ(stiff.status, RunStatus::clogged);
-  // The droplet rests on bump and wall: a circle of radius 1/2 on the upper wall touches the circle of radius
-  // 0.4 at (8, 0).
+  // The droplet rests on the bump and the wall. A circle of radius 1/2 on the upper wall then touches the
+  // circle of radius 0.4 at (8, 0).
   const double height = 1.05 - 0.5, reach = 0.5 + 0.4;
   EXPECT_NEAR(stiff.release[0] + stiff.distance, 8 - std::sqrt(reach * reach - height * height), 0.1);
 }
 
 TEST(OwnCircles, LetADropletPassBetweenWallsWhichHoldIt) {
-  // The gap between circle and wall is narrower than the droplet.
+  // The gap between the circle and the wall is narrower than the droplet.
   RunParameters run = between_walls({{8, 1.75, 0.8}});
   run.dp.line_tension = 0.3;
   run.obstacles.box = 5;

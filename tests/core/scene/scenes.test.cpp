@@ -36,9 +36,10 @@ DropletRun at_rest_on_a_wall(const RunParameters& run) {
   return droplet;
 }
 
-/// A two-dimensional drop on a wall, from the Young-Laplace equation Gamma dphi/ds = Gamma kappa_0 + z,
-/// integrated by Runge-Kutta. Here z is the depth below the apex and phi the slope's angle, which goes from 0
-/// at the apex to the contact angle at the wall. On a wall that is not wetted the contact angle is pi.
+/// A two-dimensional drop on a wall. The shape follows from the Young-Laplace equation Gamma dphi/ds = Gamma
+/// kappa_0 + z, which a Runge-Kutta method integrates. Here z is the depth below the apex, and phi is the
+/// angle of the slope. The angle is 0 at the apex and the contact angle at the wall. On a wall that is not
+/// wetted the contact angle is pi.
 struct SessileDrop {
   double height = 0, area = 0, half_width = 0, depth_of_centroid = 0;
 };
@@ -90,15 +91,15 @@ TEST_P(OnAWall, ADropletHasTheShapeOfYoungAndLaplace) {
   EXPECT_NEAR((y.maxCoeff() - y.minCoeff()) / 2, exact.half_width, 0.003);
   const double centroid = area_centroid(position)[0];
   EXPECT_NEAR(centroid - x.minCoeff(), exact.depth_of_centroid, 0.003);
-  // The sag is the distance by which the centroid has sunk. In a circle it was half a diameter above the
-  // wall.
+  // The sag is the distance by which the centroid has sunk. The centroid of a circle is half a diameter above
+  // the wall.
   const double sag = run.displacement_of(area_centroid(position))[0];
   EXPECT_NEAR(sag, 0.5 - (exact.height - exact.depth_of_centroid), 0.003);
 }
 
 TEST(OnAWall, TheProfileIsThatOfYoungAndLaplaceFromTopToBottom) {
-  // The curvature of the interface grows with depth as z/Gamma, so slope angle and depth are related by Gamma
-  // (1 - cos phi) = Gamma kappa_0 z + z^2/2.
+  // The curvature of the interface grows with depth as z/Gamma. So the slope's angle and the depth fulfil
+  // Gamma (1 - cos phi) = Gamma kappa_0 z + z^2/2.
   const double line_tension = 0.1;
   const DropletRun run = at_rest_on_a_wall(parameters(line_tension, 512));
   const Eigen::ArrayXd& position = run.droplet().state().position;
@@ -120,7 +121,7 @@ TEST(OnAWall, TheProfileIsThatOfYoungAndLaplaceFromTopToBottom) {
 }
 
 TEST(OnAWall, ASoftDiskSagsAsItsSpringSays) {
-  // M g = (4 E_w/sigma^2) sag: sag = pi/(16 E_w).
+  // The weight M g equals (4 E_w/sigma^2) times the sag, so the sag is pi/(16 E_w).
   for (const double stiffness : {0.5, 1.0, 10.0}) {
     RunParameters run = parameters(1);
     run.model = Model::sp;
@@ -131,7 +132,7 @@ TEST(OnAWall, ASoftDiskSagsAsItsSpringSays) {
 }
 
 TEST(OnAWall, SagHasItsStiffAndItsSoftLimit) {
-  // A puddle is 2 sqrt(Gamma) thick; a stiff droplet does not sag.
+  // The thickness of a puddle is 2 sqrt(Gamma). A stiff droplet does not sag.
   const DropletRun soft = at_rest_on_a_wall(parameters(0.005));
   const auto x = soft.droplet().state().x();
   EXPECT_NEAR((x.maxCoeff() - x.minCoeff()) / (2 * std::sqrt(0.005)), 1, 0.05);
@@ -139,7 +140,7 @@ TEST(OnAWall, SagHasItsStiffAndItsSoftLimit) {
   EXPECT_LT(stiff.displacement_of(area_centroid(stiff.droplet().state().position))[0], 0.015);
 }
 
-/// The longest edge divided by the shortest.
+/// The length of the longest edge divided by that of the shortest.
 double edge_ratio(const DropletState& state) {
   double longest = 0, shortest = 1e9;
   for (Eigen::Index i = 0, j = state.size() - 1; i < state.size(); j = i++) {
@@ -166,7 +167,7 @@ TEST(OnAWall, VerticesStayEvenlySpreadWhereThoseOfTheLiteralModelSlideDown) {
   EXPECT_GT(ratio_after(run), 5);
 }
 
-/// Height and half width of a droplet on a wetted wall.
+/// The height and half the width of a droplet on a wetted wall.
 std::pair<double, double> size_on_a_wetted_wall(RunParameters run, double wall_tension) {
   run.dp.wall_tension = wall_tension;
   run.time_step = 1e-3;
@@ -180,7 +181,8 @@ std::pair<double, double> size_on_a_wetted_wall(RunParameters run, double wall_t
 }
 
 TEST(OnAWall, AWettedWallIsMetAtYoungsAngle) {
-  // cos theta = -wall-tension. The tension changes within three vertex diameters of the wall, 0.07 here.
+  // The contact angle follows cos theta = -wall-tension. The tension changes within three vertex diameters of
+  // the wall, which are 0.07 here.
   for (const double line_tension : {5.0, 0.3})
     for (const double wall_tension : {0.7, 0.5, 0.3, 0.15}) {
       const SessileDrop exact = sessile_drop_of_rest_area(line_tension, std::acos(-wall_tension));
@@ -200,11 +202,11 @@ TEST(OnAWall, TheShapeOnAWettedWallHangsNeitherOnTheSpringsNorOnTheVertices) {
   EXPECT_NEAR(size_on_a_wetted_wall(run, 0.3).first / height, 1, 0.01);
 }
 
-/// A droplet made of two equal caps of circles, which touch the rounded tips of an orifice from both sides,
-/// and of the arcs of the tips between them. Each quarter is computed alone: let h be the distance of a tip's
-/// centre from the axis, and c the distance of a cap's centre from the orifice. Then the radius of the cap is
-/// R = sqrt(c^2 + h^2) - tip_radius, and the quarter consists of the cap's sector and the triangle of the
-/// three centres, without the sector of the tip.
+/// The shape parameter of a droplet in an orifice with rounded tips. The droplet is made of two equal caps of
+/// circles, which touch the tips from both sides, and of the arcs of the tips between the caps. Each quarter
+/// is computed alone. Let h be the distance of a tip's centre from the axis, and c the distance of a cap's
+/// centre from the orifice. Then the radius of the cap is R = sqrt(c^2 + h^2) - tip_radius. The quarter
+/// consists of the cap's sector and the triangle of the three centres, without the tip's sector.
 double shape_of_two_caps(double orifice, double tip_radius) {
   const double h = orifice / 2 + tip_radius;
   const auto shape = [&](double c) {
@@ -263,12 +265,12 @@ TEST(InAChannel, TheLiteralContactLetsTheTipSinkIn) {
   EXPECT_LT(largest_shape_parameter(run, 0.7), shape_of_two_caps(narrowed, tip_radius) - 0.005);
 }
 
-/// The largest Gamma at which the weight can push a droplet of two caps through a chord: (M g)/max dP/dh,
-/// where P is the perimeter and h the distance of the centroid from the chord. The maximum is over all pairs
-/// of caps with the droplet's area that flanks of 45 degrees admit.
+/// The largest Gamma at which the weight can push a droplet of two caps through a chord. This Gamma is (M
+/// g)/max dP/dh, where P is the perimeter and h is the distance of the centroid from the chord. The maximum
+/// is taken over all pairs of caps that have the droplet's area and fit between flanks of 45 degrees.
 double largest_line_tension_that_passes(double chord) {
   struct Cap {
-    double area, length, moment;  // moment: area times the centroid's distance from the chord
+    double area, length, moment;  // moment is the area times the centroid's distance from the chord
   };
   const auto cap = [chord](double theta) {
     const double radius = chord / (2 * std::sin(theta));
@@ -309,13 +311,13 @@ TEST(InAChannel, ADropletPassesUpToTheLineTensionThatStaticsAllows) {
 }
 
 TEST(InAChannel, ParallelWallsSlowACircleByTheMeanDragOfItsVertices) {
-  // A circle midway between the walls has the drag zeta = b_inf (1 + b_0/b_inf mean of d_i^-alpha), where d_i
+  // A circle midway between the walls has the drag zeta = b_inf (1 + b_0/b_inf mean of d_i^-alpha). Here d_i
   // is the distance of vertex i from the nearer wall.
   RunParameters run = parameters(1, 128);
   run.drag.near_wall = 0.07;
   run.drag.terminal_speed = 0.03;
-  // Springs to the rest length hold the vertices, so that they do not slide along the interface away from the
-  // walls.
+  // Springs to the rest length hold the vertices. Otherwise the vertices would slide along the interface away
+  // from the walls.
   run.dp.perimeter_spring = PerimeterSpring::rest;
   run.dp.gravity = Gravity::vertex;
   run.dp.perimeter_stiffness = 1;
@@ -346,7 +348,7 @@ TEST(InAChannel, RefusesWhatCannotBe) {
 TEST(FreeDroplet, IsInEquilibrium) {
   const RunParameters run = resolve(parameters(10));
   const double area = polygon_shape(model_of(run).free_shape(run)).area;
-  // K_a (a_0 - a) = Gamma/R.
+  // The pressure K_a (a_0 - a) equals Gamma/R.
   EXPECT_NEAR(*run.dp.area_stiffness * (units::rest_area - area), 10 / std::sqrt(area / pi), 1e-2);
 }
 

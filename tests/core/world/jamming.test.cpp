@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(Geometries, LargestDensity,
                                          Geometry{0.2, 0.3, 0.5, 60, 3}));
 
 TEST(LargestDensity, LiesEightToTenStandardDeviationsBelowTheMean) {
-  // In such small boxes fluctuations matter. 400 seeds give their standard deviation to 4 %.
+  // Fluctuations matter in such small boxes. The error of their standard deviation is 4 % for 400 seeds.
   for (const Geometry& geometry : {Geometry{0.2, 0.3, 0, 10, 400}, Geometry{0.2, 0.3, 0.3, 10, 400},
                                    Geometry{0.2, 0.3, 0.9, 10, 400}, Geometry{0.5, 2.5, 0.79, 30, 400}}) {
     double sum = 0, squares = 0;
@@ -76,8 +76,8 @@ TEST(LargestDensity, LiesEightToTenStandardDeviationsBelowTheMean) {
   }
 }
 
-/// Compares the density that resolve() computes for a share of the saturated density with counts of obstacles
-/// in saturated arrays.
+/// Compares two numbers: the density that resolve() computes for a share of the saturated density, and the
+/// same share of the number of obstacles in saturated arrays.
 TEST(ShareOfSaturated, IsThatOfTheMeanOfSaturatedArrays) {
   for (const Geometry& geometry :
        {Geometry{0.2, 0.3, 0, 40, 20}, Geometry{0.5, 0.3, 0, 60, 20}, Geometry{0.2, 0.3, 0.5, 40, 20}}) {

@@ -18,7 +18,8 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-/// Soft disks, nearly rigid, among obstacles with room to pass: spacing 1.5 sigma, obstacles of 0.3 sigma.
+/// A soft disk that is nearly rigid, among obstacles with room to pass. The spacing is 1.5 sigma, and the
+/// obstacles have a diameter of 0.3 sigma.
 RunParameters lattice_disk(double angle, std::uint32_t seed = 1, LatticeKind kind = LatticeKind::square) {
   RunParameters run;
   run.model = Model::sp;
@@ -34,7 +35,7 @@ RunParameters lattice_disk(double angle, std::uint32_t seed = 1, LatticeKind kin
   return resolve(run);
 }
 
-/// A lattice of pitch 2 whose periods are at most `box`.
+/// A lattice of pitch 2 with periods of at most `box`.
 ObstacleParameters small_lattice(LatticeKind kind, double angle, double box) {
   RunParameters run;
   run.obstacles.layout = ObstacleLayout::lattice;
@@ -45,7 +46,7 @@ ObstacleParameters small_lattice(LatticeKind kind, double angle, double box) {
   return resolve(run).obstacles;
 }
 
-/// Distances of the posts within 3 sigma of each post, images included, in increasing order.
+/// For each post, the distances of the posts within 3 sigma in increasing order. Periodic images count, too.
 std::vector<std::vector<double>> distances_in(const ObstacleArray& array) {
   std::vector<std::vector<double>> all;
   for (const Obstacle& obstacle : array.obstacles()) {
@@ -90,8 +91,9 @@ TEST(Lattice, HasFourNeighboursAtTheExactGapAcrossItsBox) {
 
 TEST(Lattice, HasTheCellOfCrystallography) {
   // At tan = 1/3 a period of the square lattice has ten cells. The triangular lattice has 2, 2 and 14 posts
-  // at 30, 0 and 19.1 degrees (tan = sqrt(3)/5, the cell sqrt(7) by sqrt(21) known from graphene). The
-  // rhombic lattice with a shift of a third has three columns. Multiples of small cells fill the box.
+  // at 30, 0 and 19.1 degrees. (At 19.1 degrees tan = sqrt(3)/5, and the cell is the sqrt(7) by sqrt(21) cell
+  // known from graphene.) The rhombic lattice with a shift of a third has three columns. Multiples of small
+  // cells fill the box.
   struct Cell {
     LatticeKind kind;
     double tangent, largest_box, length, box;
@@ -135,7 +137,7 @@ TEST(Lattice, HasItsNearestNeighboursAtThePitchAcrossItsPeriod) {
 }
 
 TEST(Lattice, IsTheNearestThatIsPeriodicOfEveryKind) {
-  // The reference searches all vectors of lattices along and across the flow for the angle nearest to the
+  // The reference is a search of all lattice vectors along and across the flow for the angle nearest to the
   // given one.
   for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
     for (const double angle : {0.0, 4.0, -20.0, 27.7}) {
@@ -177,9 +179,9 @@ TEST(Lattice, IsTheNearestThatIsPeriodic) {
 }
 
 TEST(Lattice, LeavesTheReleaseToTheSeed) {
-  // The start is uniform in the part of a unit cell where the droplet touches nothing. So in the frame of the
-  // lattice, both halves of each coordinate are equally likely. The tolerance for 400 seeds is five standard
-  // deviations of a fair coin.
+  // The start is uniform in that part of a unit cell in which the droplet touches nothing. So in the frame of
+  // the lattice, both halves of each coordinate are equally likely. The tolerance for 400 seeds is five
+  // standard deviations of a fair coin.
   const double taken = (0.15 + 0.55) / 1.5;
   int num_ahead = 0;
   int num_above = 0;
@@ -219,10 +221,10 @@ TEST(Lattice, StartsAFreeDropletAtTheCentreOfTheBox) {
 }
 
 // A rigid disk that slowly sinks past an obstacle leaves it at a lateral distance b = (sigma + sigma_ob)/2,
-// on the side to which it was pushed. In a row with the tilt t and the spacing a, the disk meets the next
-// obstacle if a sin t < b, and then follows the row (Frechette and Drazer, J. Fluid Mech. 627, 379 (2009)).
-// The square lattice has rows with the tilt t and the spacing a, and rows with the tilt t - 45 degrees and
-// the spacing sqrt(2) a.
+// on the side to which it was pushed. Consider a row with the tilt t and the spacing a. If a sin t < b, the
+// disk meets the next obstacle of the row, and so it follows the row (Frechette and Drazer, J. Fluid Mech.
+// 627, 379 (2009)). The square lattice has rows with the tilt t and the spacing a, and rows with the tilt t -
+// 45 degrees and the spacing sqrt(2) a.
 TEST(Lattice, LeadsADiskAlongItsRows) {
   for (const double angle : {-20.0, -8.0, 8.0, 20.0})
     EXPECT_NEAR(slope(lattice_result(DropletRun(lattice_disk(angle)))), std::tan(angle * degree), 0.02)
@@ -232,8 +234,8 @@ TEST(Lattice, LeadsADiskAlongItsRows) {
         << angle;
 }
 
-// The rows of the triangular lattice are sqrt(3)/2 a apart; b = 0.65 needs a sin t < b. The rows of the
-// rhombic lattice have obstacles a/cos t apart.
+// Droplets follow a row if a sin t < b = 0.65. The rows of the triangular lattice are sqrt(3)/2 a apart. In
+// the rows of the rhombic lattice the obstacles are a/cos t apart.
 TEST(Lattice, LeadsADiskAlongTheRowsOfEveryKind) {
   for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
     for (const double angle : {-12.0, 8.0})
@@ -287,7 +289,7 @@ TEST(Lattice, LeadsToTheOtherSideInAMirror) {
   EXPECT_NEAR(mirror.lateral, -result.lateral, 1e-6);
   EXPECT_NEAR(mirror.distance, result.distance, 1e-6);
 
-  // The mirror image of a lattice is the lattice with the opposite tilt, up to a shift.
+  // The mirror image of a lattice is the lattice with the opposite tilt, except for a shift.
   const ObstacleArray opposite = lattice_obstacles(lattice_disk(-13).obstacles, run.seed);
   ASSERT_EQ(opposite.obstacles().size(), mirrored.size());
   EXPECT_EQ(opposite.period().box, array.period().box);

@@ -43,8 +43,8 @@ TEST(SampleObstacles, KeepsTheGapPeriodicImagesIncluded) {
 }
 
 TEST(SampleObstacles, SaturatesAtTheJammingLimitOfRandomSequentialAddition) {
-  // At the jamming limit, discs of diameter gap + sigma_ob cover 0.547069 of the plane. Finite boxes scatter
-  // by less than 0.001 here.
+  // At the jamming limit, discs of diameter gap + sigma_ob cover 0.547069 of the plane. In finite boxes this
+  // scatters by less than 0.001 here.
   double coverage = 0;
   for (const std::uint32_t seed : {1u, 2u, 3u, 4u}) {
     const ObstacleArray array =
@@ -54,7 +54,7 @@ TEST(SampleObstacles, SaturatesAtTheJammingLimitOfRandomSequentialAddition) {
   EXPECT_NEAR(coverage, 0.547069, 0.001);
 }
 
-/// Expects no room for another obstacle. The sum of diameter and gap is 0.7.
+/// Expects that there is no room for another obstacle. The sum of diameter and gap is 0.7.
 void expect_no_room(const ObstacleArray& array) {
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> along(0, array.period().along()), across(0, array.period().across());
@@ -70,7 +70,7 @@ TEST(SampleObstacles, LeavesNoRoomForOneMoreWhenSaturated) {
   expect_no_room(sample_obstacles({.gap = 0.4, .diameter = 0.3, .density = {}, .box = 30}, 4));
 }
 
-/// @param boxes  number of boxes in a row along the flow, each of 10 sigma
+/// @param boxes  number of boxes in a row along the flow, each 10 sigma long
 ObstacleParameters long_array(int boxes, ObstacleDensity density = {}) {
   return {.gap = 0.4, .diameter = 0.3, .density = density, .box = 10, .boxes = boxes};
 }
@@ -81,8 +81,8 @@ TEST(SampleObstacles, FillsALongArrayAsASquareOne) {
   EXPECT_EQ(array.period().across(), 10);
   EXPECT_GE(brute_force_gap(array), 0.4);
   EXPECT_DOUBLE_EQ(array.smallest_gap(), brute_force_gap(array));
-  // The expected number follows from Feder's coverage. The number scatters by 0.2 times the square root of
-  // the area divided by the spacing, which is 18 here.
+  // The expected number follows from Feder's coverage. The number scatters by 18 here, which is 0.2 times the
+  // square root of the area divided by the spacing.
   const double expected = 0.547069 * 4000 / (std::numbers::pi / 4 * 0.49);
   EXPECT_NEAR(static_cast<double>(array.obstacles().size()), expected, 5 * 18);
   expect_no_room(array);
@@ -106,8 +106,8 @@ TEST(SampleObstacles, ReachesAGivenDensityExactly) {
 }
 
 TEST(SampleObstacles, TheSmallestGapDoesNotFixTheDensity) {
-  // The published rule is that all gaps are wider than w_ob. It allows both arrays, although one of them is
-  // ten times as dense as the other.
+  // The published rule is that all gaps are wider than w_ob. This rule allows both arrays, although one of
+  // them is ten times as dense as the other.
   const ObstacleParameters sparse{.gap = 0.2, .diameter = 0.3, .density = 0.25, .box = 40};
   const ObstacleParameters saturated{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 40};
   const ObstacleArray few = sample_obstacles(sparse, 1), many = sample_obstacles(saturated, 1);
@@ -117,9 +117,9 @@ TEST(SampleObstacles, TheSmallestGapDoesNotFixTheDensity) {
 }
 
 TEST(SampleObstacles, PlacesADilutedArrayUniformly) {
-  // The counts in the four quarters of a box give a chi-squared with 3 degrees of freedom. Its sum over 20
-  // seeds stays below 99.6, the 99.9 % quantile for 60 degrees of freedom. (Repulsion only makes counts more
-  // even.)
+  // The counts in the four quarters of a box give a chi-squared with 3 degrees of freedom. The sum over 20
+  // seeds must stay below 99.6, which is the 99.9 % quantile for 60 degrees of freedom. Repulsion between
+  // obstacles can only make the counts more even.
   double chi2 = 0;
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const ObstacleArray array =
@@ -131,7 +131,7 @@ TEST(SampleObstacles, PlacesADilutedArrayUniformly) {
   EXPECT_LT(chi2, 99.6);
 }
 
-/// FNV hash of all bits; it also depends on the order of the obstacles.
+/// An FNV hash of all bits, which also depends on the order of the obstacles.
 std::uint64_t digest(const ObstacleArray& array) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const Obstacle& obstacle : array.obstacles())
@@ -142,7 +142,7 @@ std::uint64_t digest(const ObstacleArray& array) {
 
 TEST(SampleObstacles, GivesDiscsOfOneSizeThatNeverChange) {
   // These digests were recorded with the sampler that adds discs square by square. Replace them only together
-  // with a change that alters the course of runs.
+  // with a change that also alters the course of runs.
   EXPECT_EQ(digest(sample_obstacles({.gap = 0.4, .density = {}, .box = 30}, 4)), 0xea87e7a8c4585524u);
   EXPECT_EQ(digest(sample_obstacles({.gap = 0.2, .density = 0.35, .box = 50}, 1)), 0x10fc226cc1015f64u);
   EXPECT_EQ(digest(sample_obstacles({.gap = 1.1, .density = {}, .box = 17.3}, 11)), 0x9241ec7695805bf0u);
@@ -182,8 +182,8 @@ TEST(SampleObstacles, LeavesNoRoomForEvenTheSmallestOfAMixture) {
 }
 
 TEST(SampleObstacles, DrawsTheDiametersOfADilutedMixtureUniformly) {
-  // Ten bins with 4000 diameters in all give a chi-squared with 9 degrees of freedom, which stays below its
-  // 99.9 % quantile.
+  // The counts of 4000 diameters in ten bins give a chi-squared with 9 degrees of freedom. The chi-squared
+  // must stay below its 99.9 % quantile.
   double counts[10] = {};
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     const ObstacleArray array = sample_obstacles(mixture(0.5, 50, 0.16), seed);
@@ -195,8 +195,8 @@ TEST(SampleObstacles, DrawsTheDiametersOfADilutedMixtureUniformly) {
   EXPECT_LT(chi2, 27.9);
 }
 
-/// Random sequential addition by its definition, disc by disc, with random numbers of the standard library.
-/// Returns the first `count` discs that stay.
+/// Random sequential addition by its definition: disc by disc, with random numbers of the standard library.
+/// @return the first `count` discs that stay
 ObstacleArray one_by_one(const ObstacleParameters& parameters, std::size_t count, std::uint32_t seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> place(0, parameters.box);
@@ -221,7 +221,8 @@ double mean_diameter(const ObstacleArray& array) {
   return sum / static_cast<double>(array.obstacles().size());
 }
 
-/// Number of pairs with a gap of at most `widest` between their surfaces, divided by the number of obstacles.
+/// The number of pairs with a gap of at most `widest` between their surfaces, divided by the number of
+/// obstacles.
 double close_pairs(const ObstacleArray& array, double widest) {
   int num_pairs = 0;
   const auto& all = array.obstacles();
@@ -235,7 +236,8 @@ double close_pairs(const ObstacleArray& array, double widest) {
 }
 
 TEST(SampleObstacles, PacksLikeDiscsThatArriveOneByOne) {
-  // Compares the numbers of neighbours near the smallest distance, close to saturation (2.79 per sigma^2).
+  // Compares the numbers of neighbours at nearly the smallest distance. The arrays are close to saturation
+  // (2.79 per sigma^2).
   const ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = 2.25, .box = 6};
   constexpr int num_arrays = 250;
   double difference = 0;
@@ -253,7 +255,7 @@ TEST(SampleObstacles, PacksLikeDiscsThatArriveOneByOne) {
 }
 
 TEST(SampleObstacles, MixesLikeDiscsThatArriveOneByOne) {
-  // Close to saturation (4.1 per sigma^2 for this mixture), most large discs find no room.
+  // Close to saturation (4.1 per sigma^2 for this mixture), there is no room for most of the large discs.
   const ObstacleParameters parameters = mixture(0.5, 6, 3.2);
   constexpr int num_arrays = 100;
   double difference = 0;
@@ -309,7 +311,8 @@ TEST_P(Gathering, FindsWhatBruteForceFinds) {
   const ObstacleArray array =
       sample_obstacles({.gap = 0.4, .diameter = 0.3, .density = {}, .box = 12.5, .boxes = GetParam()}, 2);
   const Period& period = array.period();
-  // The window crosses the end of the period along the flow, and the beginning of the period across the flow.
+  // The window extends across the end of the period along the flow, and across the beginning of the period
+  // across the flow.
   const ObstacleArray::Window window{period.along() - 1.5, 0.5, -0.6, 2.7, -1.1, 0.9, 0.4};
   std::vector<Obstacle> found;
   array.gather(window, found);
@@ -334,8 +337,8 @@ TEST(ObstacleArray, SeesOverlapsOfMixedSizes) {
 }
 
 TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
-  // A row of circles across the border of the period, a circle that only overlaps the row's end, and two
-  // copies of the same circle.
+  // A row of circles across the border of the period, a circle that overlaps only the end of the row, and two
+  // copies of one circle.
   const ObstacleArray array(
       10, {{9.8, 5, 0.3}, {0, 5, 0.3}, {0.2, 5, 0.3}, {0.6, 5, 0.3}, {5, 5, 0.3}, {5, 5, 0.3}});
   const std::vector<std::uint32_t> posts = array.posts();
@@ -351,7 +354,7 @@ TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
   EXPECT_NEAR(array.smallest_gap(), -0.6, 1e-12) << "of the two copies";
   EXPECT_NEAR(ObstacleArray(10, {{1, 5, 0.3}, {1.2, 5, 0.3}, {1, 5, 0.3}}).smallest_gap(), -0.6, 1e-12)
       << "of two copies in one post";
-  // Gaps within a post do not count. But a long post has a gap to its own image.
+  // Gaps within a post do not count. A long post, however, has a gap to its own image.
   EXPECT_NEAR(ObstacleArray(10, {{1, 5, 0.3}, {1.2, 5, 0.3}, {1.4, 5, 0.3}, {1.65, 5, 0.3}, {4, 5, 0.3}})
                   .smallest_gap(),
               1.75, 1e-12);
@@ -359,14 +362,14 @@ TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
 }
 
 TEST(ObstacleArray, FindsPostsAmongAFewCircles) {
-  // The third circle only overlaps the second. The fourth circle joins the first two; the last one is its
-  // copy.
+  // The third circle overlaps only the second. The fourth circle joins the first two, and the last one is a
+  // copy of the fourth.
   const std::vector<Obstacle> circles{
       {1, 1, 0.2}, {1.3, 1, 0.2}, {1.55, 1, 0.2}, {1.15, 1, 0.2}, {1.15, 1, 0.2}};
   EXPECT_EQ(posts_among(circles), (std::vector<int>{0, 0, 1, 0, 0}));
   EXPECT_EQ(posts_among(std::vector<Obstacle>{{1, 1, 0.2}, {1, 1, 0.2}}), (std::vector<int>{0, 1}))
       << "a copy";
-  // A small circle whose centre is in a large one belongs to it.
+  // A small circle belongs to a large circle if its centre is inside the large circle.
   EXPECT_EQ(posts_among(std::vector<Obstacle>{{1, 1, 0.1}, {1.4, 1, 0.5}}), (std::vector<int>{0, 0}));
   EXPECT_TRUE(posts_among({}).empty());
 }

@@ -1,5 +1,5 @@
-/// Fuzz target that reads a config, in the form that is stored with a sweep and sent to its ranks, and plans
-/// the sweep.
+/// Fuzz target that reads a config and plans the sweep. The config has the form that is stored with a sweep
+/// and sent to its ranks.
 
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"

@@ -17,7 +17,7 @@ inline std::string text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// Input may be refused with an Error; any other failure is a finding.
+/// The input may be refused with an Error. Any other failure is a finding.
 template <typename Read>
 void may_be_refused(Read read) {
   try {
@@ -27,7 +27,7 @@ void may_be_refused(Read read) {
   }
 }
 
-/// Ends the process unless the condition holds. It must hold for every accepted input.
+/// Ends the process unless the condition holds. The condition must hold for every accepted input.
 inline void require(bool holds) {
   if (!holds) std::abort();
 }

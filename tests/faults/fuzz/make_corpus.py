@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes new seeds for the fuzz targets that read binary files. Run it when a format changes.
+"""Makes new seeds for the fuzz targets that read binary files. Run this script when a format changes.
 
     tests/faults/fuzz/make_corpus.py build/release/bin
 """

@@ -16,7 +16,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   may_be_refused([&] {
     const std::vector<std::string> values = sweep::expand_list(text_of(data + 1, size - 1), kind, words);
     for (const std::string& value : {values.front(), values.back()})
-      require(sweep::expand_list(value, kind, words) == std::vector{value});  // a single value stays as it is
+      // a single value must be unchanged.
+      require(sweep::expand_list(value, kind, words) == std::vector{value});
   });
   return 0;
 }

@@ -1,4 +1,4 @@
-/// Tests friction of walls that acts through closed films of oil (docs/explanation/model.md).
+/// Tests friction that walls exert through closed films of oil (docs/explanation/model.md).
 
 #include "clog/core/polygon/contact/film_touches.hpp"
 
@@ -25,8 +25,8 @@ namespace {
 using namespace test;
 using std::numbers::pi;
 
-/// A contour of arcs around the origin, each with its own radius, in alternating directions. The last arc
-/// leads back to the first one, far outside.
+/// A contour that consists of arcs around the origin. Each arc has its own radius, and the directions
+/// alternate. The end of the last arc is joined to the first arc far outside.
 class Stack {
  public:
   static constexpr double disc = 0.5, range = 0.02, stiffness = 4e4;
@@ -72,7 +72,7 @@ class Stack {
 };
 
 TEST(FilmTouches, OfAStackBearTogetherWhatTheWallBears) {
-  // The normal force on each of the three interfaces balances this interface's own tension.
+  // The normal force on each of the three interfaces balances the tension of this interface.
   constexpr double first = 8e-3, second = 1e-3, third = 5e-4;
   const double by_wall = Stack::stiffness * first * Stack::on_arc;
   const std::vector<double> alone = Stack({first}).held();
@@ -81,7 +81,7 @@ TEST(FilmTouches, OfAStackBearTogetherWhatTheWallBears) {
   EXPECT_NEAR(held[0] + held[1] + held[2], by_wall, 0.05 * by_wall);
   EXPECT_GT(held[2], 0);
   EXPECT_NEAR(held[3], 0, 1e-12);
-  // Every vertex is pushed by its own contact and by the contacts of other vertices with its edges.
+  // A vertex is pushed by its own contact, and by the contacts of other vertices with its edges.
   const double unit = held[2] / third;
   EXPECT_NEAR(held[1], unit * (second - third), 0.05 * by_wall);
 }
@@ -101,8 +101,9 @@ TEST(FilmTouches, EndWhereTheWallDoesNotPushAnyInterface) {
   EXPECT_EQ(held[0] + held[1], 0);
 }
 
-/// Two ropes over half of a disc, the upper one on the lower one, with straight ends that hang along +x. They
-/// represent the two interfaces of a droplet that hangs over a post; forces at the ends replace the lobes.
+/// Two ropes over half of a disc, one on top of the other. The straight ends of the ropes hang along +x. The
+/// ropes represent the two parts of the interface of a droplet that hangs over a post. Forces at the ends
+/// replace the lobes.
 class Band {
  public:
   static constexpr double radius = 0.5, film = 0.02;
@@ -110,7 +111,8 @@ class Band {
     double friction = 0;
     FilmFriction films = FilmFriction::on;
   };
-  /// @param on_disc  number of edges on half of the circumference  @param weight  of each rope, per length
+  /// @param on_disc  number of edges on half of the circumference  @param weight  weight of each rope,
+  /// divided by its length
   Band(Law law, int on_disc, double weight)
       : law_(law),
         weight_(weight),
@@ -141,7 +143,7 @@ class Band {
     bool lower, upper;
     bool operator==(const Slides&) const = default;
   };
-  /// Which ropes slide towards their second ends.
+  /// Finds which ropes slide towards their second ends.
   Slides slides(const Pulls& pulls) {
     constexpr int loading = 6000, waiting = 16000;
     double lower = 0, upper = 0;
@@ -165,12 +167,13 @@ class Band {
   KnownAnchors known_;
   DropletState state_;
 
-  // The contour is the lower rope and then the upper one, from its second end to its first.
+  // The contour follows the lower rope from its first end to its second, and then the upper rope from its
+  // second end to its first.
   bool is_lower(int i) const { return i < each_; }
   int along(int i) const { return is_lower(i) ? i : n_ - 1 - i; }
   double radius_of(int i) const { return is_lower(i) ? radius : radius + film; }
-  // The upper rope has one edge more. So its corners lie between those of the lower rope at changing
-  // positions, and the ropes do not interlock.
+  // The upper rope has one edge more than the lower rope. So along the disc the corners of the upper rope are
+  // at changing positions between those of the lower rope, and the ropes do not interlock.
   int edges_of(int i) const { return is_lower(i) ? on_disc_ : on_disc_ + 1; }
   double edge_of(int i) const { return pi * radius_of(i) / edges_of(i); }
 
@@ -223,8 +226,8 @@ class Band {
 };
 
 TEST(BandOverADisc, WithoutWeightSlidesAtExpMuTheta) {
-  // The normal force on each rope comes from the rope's own tension. So dT/dtheta = mu T and T_2 = exp(mu
-  // theta) T_1, independent of the other rope: friction holds each rope as if it were alone.
+  // The normal force on each rope comes from the tension of this rope. So dT/dtheta = mu T, and T_2 = exp(mu
+  // theta) T_1 whatever the other rope does. Friction holds each rope as if it were alone.
   constexpr double mu = 0.3;
   const double exact = std::exp(mu * pi);
   const double less = 0.97 * exact, more = 1.03 * exact;
@@ -239,15 +242,15 @@ TEST(BandOverADisc, WithoutWeightSlidesAtExpMuTheta) {
 }
 
 TEST(BandOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
-  // A heavy rope slides at L_2 = exp(mu pi) L_1 + 2 mu R (1 + exp(mu pi))/(1 + mu^2). So does each of the two
-  // ropes, with its own radius.
+  // A single heavy rope slides at L_2 = exp(mu pi) L_1 + 2 mu R (1 + exp(mu pi))/(1 + mu^2). Each of the two
+  // ropes does the same, with its own radius.
   constexpr double mu = 0.5, weight = 2;
   constexpr int edges = 32;
   const double grip = std::exp(mu * pi);
   const auto slides = [&](double share) {
     Band band({mu}, edges, weight);
     const auto pulls = [&](double radius) {
-      // The overhang, measured from the side of the disc.
+      // This is the overhang measured from the side of the disc.
       const double own = band.hanging() * radius / Band::radius + pi * radius / edges / 2;
       const double exact = grip * own + 2 * mu * radius * (1 + grip) / (1 + mu * mu);
       return std::pair(0.0, weight * (share * exact - own));
@@ -261,9 +264,10 @@ TEST(BandOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
 }
 
 TEST(BandOverADisc, IsHeldByCornersAloneIfNothingHoldsItsUpperRope) {
-  // The two ropes together bear the weights of two lobes, one of which is heavier. Without friction through
-  // the film the upper rope yields at once, however the lower rope is held: only its corners hold it, by a
-  // force that falls with the square of the edge length.
+  // The two ropes together bear the weights of two lobes, and one lobe is heavier than the other. Without
+  // friction through the film the upper rope yields at once, however strongly the lower rope is held. Only
+  // the corners of the lower rope then hold the upper rope. The force of the corners falls with the square of
+  // the edge length.
   const auto upper_slides = [](Band::Law law, int edges, double imbalance) {
     return Band(law, edges, 0).slides({1, 1 + imbalance, 1, 1 + imbalance}).upper;
   };

@@ -66,7 +66,7 @@ TEST(SelfContacts, ListsEveryVertexAndEdgeThatTouchWhileTheShapeMoves) {
   EXPECT_GT(num_touching, 100);
 }
 
-/// Two strands that nearly touch, whose vertices are shaken along and across the strands.
+/// Two strands that nearly touch. The vertices are shaken along the strands and across them.
 Eigen::ArrayXd flattened(int n, double thickness, double shaking, unsigned seed) {
   Eigen::ArrayXd position = regular_polygon(n, units::rest_area);
   position.tail(n) *= thickness;
@@ -74,9 +74,9 @@ Eigen::ArrayXd flattened(int n, double thickness, double shaking, unsigned seed)
 }
 
 TEST(SelfContacts, AreThoseOfAllVerticesAndEdgesWithEveryInstructionSet) {
-  // The numbers of vertices include: fewer than two groups, groups that are not full, contours on which pairs
-  // along the contour and pairs across it coincide, and fine contours with many excluded vertices. On
-  // stretched contours the length of the contour decides which vertices are excluded.
+  // The numbers of vertices cover several cases: fewer than two groups, groups that are not full, contours
+  // whose pairs across are also pairs along the contour, and fine contours with many excluded vertices. On a
+  // stretched contour the length of the contour decides which vertices are excluded.
   for (const std::string& set : instruction_sets())
     for (const int n : {16, 17, 24, 25, 30, 31, 32, 33, 64, 101, 256, 700})
       for (const double stretch : {0.7, 1.0, 2.5}) {
@@ -116,8 +116,8 @@ int neighbours_of_first(double stretch) {
 }
 
 TEST(SelfContacts, LeavesOutThreeRangesOfTheContour) {
-  // Three ranges are 1.5 edges at rest. However compressed a contour is, it excludes the next vertex but not
-  // the one after it; a stretched contour excludes none.
+  // Three ranges are 1.5 edges at rest. A compressed contour excludes the next vertex, but never the one
+  // after it. A stretched contour excludes none.
   EXPECT_EQ(neighbours_of_first(1), 1);
   EXPECT_EQ(neighbours_of_first(0.2), 1);
   EXPECT_EQ(neighbours_of_first(1.4), 1);
@@ -130,7 +130,8 @@ TEST(SelfContacts, ItemsAreThePairs) {
     for (const int first : {0, n / 4 + 1}) {
       const double rest_edge = units::regular_edge_length(n);
       SelfContacts contacts(rest_edge, rest_edge);
-      // One half is compressed lengthwise, so that a strand also touches itself along its own direction.
+      // One half of the contour is compressed lengthwise, so that a strand also touches itself along its own
+      // direction.
       Eigen::ArrayXd position = test::dumbbell(n, 0.03);
       position.tail(n) *= (position.head(n) > 0).select(Eigen::ArrayXd::Constant(n, 0.05), 1.0);
       const Eigen::ArrayXd narrow = (position.head(n) > 0).select(0.2 * position.head(n), position.head(n));

@@ -87,10 +87,11 @@ TEST(WallTouches, PushesAddUpToTheContactsForce) {
   EXPECT_GT(wetted, 2 * units::regular_edge_length(64));
 }
 
-/// How well the sum of the energy of a held droplet and the dissipated energy is conserved.
+/// Describes how well the sum of two energies is conserved: the energy of a held droplet, and the dissipated
+/// energy.
 struct Balance {
-  double worst = 0;  ///< largest difference between the sum and its first value
-  double rise = 0;   ///< largest rise of the energy, without the dissipated energy, between two times
+  double worst = 0;  ///< Largest difference between the sum and its first value.
+  double rise = 0;   ///< Largest rise of the droplet's energy alone between two times.
   double anchors = 0, dissipated = 0;
 };
 Balance balance(RunParameters run, const ObstacleArray& wall, const Eigen::ArrayXd& initial,
@@ -132,7 +133,7 @@ TEST(WallAnchors, OfFrictionBalanceTheEnergyToSecondOrder) {
   expect_balance(rough(0.3, 0), ObstacleArray(20, {{0.775, 0.2, 0.15}}), 0.5);
 }
 
-/// Two lobes side by side, joined by a neck so thin that it touches itself.
+/// Two lobes side by side. The neck between them is so thin that it touches itself.
 Eigen::ArrayXd lobes_side_by_side(double neck) {
   const Eigen::ArrayXd along = dumbbell(64, neck);
   Eigen::ArrayXd across(along.size());
@@ -166,12 +167,13 @@ TEST(WallAnchors, OfFrictionThroughAFilmBalanceTheEnergyToSecondOrder) {
   run.dp.film_friction = FilmFriction::on;
   const double film = 0.9 * run.dp.self_contact_range;
   expect_balance(run, ObstacleArray(20, {{0.15 + *run.dp.contact_range + film / 2, 0.1, 0.15}}), 0.5,
-                 lobes_side_by_side(film), 1e-5);  // a larger tolerance: the film's contact is stiffer
+                 // The tolerance is larger because the contact of the film is stiffer.
+                 lobes_side_by_side(film), 1e-5);
 }
 
 TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
-  // On an incline no end of a wetted arc is torn off its anchor. This would happen within a single step, so
-  // its error would hide the second order.
+  // On an incline no end of a wetted arc is torn off its anchor. Such an event takes place within a single
+  // step, so its error would hide the second order.
   RunParameters run = bare_parameters();
   run.dp.perimeter_spring = PerimeterSpring::along;
   run.dp.perimeter_stiffness = 0.3;
@@ -184,16 +186,16 @@ TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
   expect_balance(run, ObstacleArray(20, {}, {incline}), 0.2);
 }
 
-/// A rope over half of a disc, with straight ends that hang along +x: vertices joined by stiff springs. The
-/// disc pushes the vertices off and holds them by friction. Forces pull at both ends until the rope rests or
-/// slides.
+/// A rope over half of a disc, made of vertices that stiff springs join. The straight ends of the rope hang
+/// along +x. The disc pushes the vertices off, and holds them by friction. Forces pull at both ends until the
+/// rope rests or slides.
 class Rope {
  public:
   static constexpr double radius = 0.5;
   struct Law {
     double friction = 0, yield_traction = 0;
   };
-  /// @param on_disc   edges on half of the circumference
+  /// @param on_disc   number of edges on the disc
   /// @param first, second  lengths of the ends [sigma]
   Rope(Law law, int on_disc, double weight, double first, double second)
       : weight_(weight),
@@ -217,7 +219,7 @@ class Rope {
     double before = 0;
     for (int step = 0; step < loading + waiting; ++step) {
       const double share = std::min(1.0, static_cast<double>(step) / loading);
-      // Both pulls grow in proportion, so that the rope does not slide before they are complete.
+      // Both pulls grow in proportion, so that the rope does not slide before the pulls are complete.
       move(share * first_pull, share * second_pull, share * weight_);
       if (step == loading + waiting / 2) before = state_.position[n_ - 1];
     }
@@ -232,7 +234,7 @@ class Rope {
   KnownAnchors known_;
   DropletState state_;
 
-  /// One step of length 1, with a mass that makes it stable and a drag that hardly lets the rope swing.
+  /// Makes a step of length 1. The mass makes the step stable, and the drag hardly lets the rope swing.
   void move(double first_pull, double second_pull, double weight) {
     constexpr double mass = 8 * spring_;
     const double kept = 1 - 2 * pi * 0.35 / n_;
@@ -253,7 +255,7 @@ class Rope {
       if (r >= radius) continue;
       const double push = contact_ * (radius - r);
       force[i] += push * x[i] / r, force[n_ + i] += push * y[i] / r;
-      // An edge lies on the disc if its two ends do.
+      // An edge is on the disc if both of its ends are on the disc.
       double wetted = 0;
       if (!touches.empty() && touches.back().vertex == i - 1) {
         touches.back().wetted += edge_ / 2;
@@ -271,7 +273,7 @@ class Rope {
   }
 };
 
-/// The pull at the second end at which the rope begins to slide, to 0.2 %.
+/// The pull at the second end at which the rope begins to slide, with a precision of 0.2 %.
 double threshold(const std::function<bool(double)>& slides, double low, double high) {
   while (high - low > 0.002 * high) {
     const double middle = (low + high) / 2;
@@ -280,7 +282,7 @@ double threshold(const std::function<bool(double)>& slides, double low, double h
   return (low + high) / 2;
 }
 
-/// Compares the errors with 16 and 32 edges on the disc.
+/// Expects that the error is small with 32 edges on the disc, and smaller than with 16 edges.
 void expect_convergence(const std::function<double(int)>& error) {
   const double coarse = error(16), fine = error(32);
   std::printf("error of the threshold: %+.4f with 16, %+.4f with 32 edges on half a turn\n", coarse, fine);
@@ -289,7 +291,7 @@ void expect_convergence(const std::function<double(int)>& error) {
 }
 
 TEST(RopeOverADisc, WithoutWeightSlidesAtExpMuTheta) {
-  // The capstan equation for a rope without weight: T_2 = exp(mu theta) T_1.
+  // For a rope without weight the capstan equation holds: T_2 = exp(mu theta) T_1.
   const double mu = 0.5;
   const double exact = std::exp(mu * pi);
   expect_convergence([&](int edges) {
@@ -301,16 +303,17 @@ TEST(RopeOverADisc, WithoutWeightSlidesAtExpMuTheta) {
 }
 
 TEST(RopeOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
-  // The solution of dT/dphi = mu (T + w R sin phi) + w R cos phi over half a turn is L_2 = exp(mu pi) L_1 + 2
-  // mu R (1 + exp(mu pi))/(1 + mu^2). Forces at the ends replace the weight of missing lengths.
+  // The tension follows dT/dphi = mu (T + w R sin phi) + w R cos phi over half a turn. The solution is L_2 =
+  // exp(mu pi) L_1 + 2 mu R (1 + exp(mu pi))/(1 + mu^2). The ends of the rope are longer or shorter than
+  // these overhangs. Forces at the ends make up for the difference in weight.
   const double mu = 0.5, weight = 2;
   const double grip = std::exp(mu * pi);
   const double hanging = 0.3 * 0.5 * pi;
   const double exact =
-      grip * hanging + 2 * mu * Rope::radius * (1 + grip) / (1 + mu * mu);  // the longer overhang
+      grip * hanging + 2 * mu * Rope::radius * (1 + grip) / (1 + mu * mu);  // length of the longer overhang
   expect_convergence([&](int edges) {
     const double edge = pi * Rope::radius / edges;
-    const double length = (std::round(hanging / edge) + 0.5) * edge;  // the disc begins at a vertex
+    const double length = (std::round(hanging / edge) + 0.5) * edge;  // the disc then begins at a vertex
     const auto slides = [&](double overhang) {
       return Rope({.friction = mu}, edges, weight, hanging, hanging)
           .slides(weight * (hanging - length), weight * (overhang - length));
@@ -331,7 +334,7 @@ TEST(RopeOverADisc, ThatOnlySticksSlidesAtPiRTau) {
   });
 }
 
-/// An elastic droplet that sinks on a small disc, a little beside the disc's middle.
+/// An elastic droplet that sinks on a small disc, a little beside the middle of the disc.
 DropletRun falls_on_disc(double friction, ClogDetection detection, double clog_energy) {
   RunParameters run;
   run.dp.vertices = 128;
@@ -359,9 +362,9 @@ RunResult ended(DropletRun run) {
 }
 
 TEST(WallFriction, HoldsADropletThatHangsOverADisc) {
-  // Without friction the droplet slips off. With friction, clog-detection=certified and threshold find the
-  // same place of rest. The certified detection is faster, because its search for an equilibrium starts as
-  // soon as the walls hardly yield any more.
+  // Without friction the droplet slips off. With friction, both kinds of clog-detection find the same place
+  // of rest. The certified detection is faster, because it starts its search for an equilibrium as soon as
+  // the walls hardly yield any more.
   constexpr double quiet = 1e-15;
   EXPECT_EQ(ended(falls_on_disc(0, ClogDetection::certified, quiet)).status, RunStatus::passed);
   const RunResult certified = ended(falls_on_disc(0.1, ClogDetection::certified, quiet));

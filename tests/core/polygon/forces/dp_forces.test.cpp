@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-/// Only the named term acts.
+/// Parameters with which only the term that is switched on acts.
 RunParameters only(void (*switch_on)(RunParameters&), int vertices = 64) {
   RunParameters run = bare_parameters(vertices);
   run.dp.line_tension = 0;
@@ -24,8 +24,8 @@ RunParameters only(void (*switch_on)(RunParameters&), int vertices = 64) {
   return run;
 }
 
-/// The central difference of an energy of order one with the step h = 1e-6 has a rounding error of about
-/// 1e-9. The truncation error h^2 U''' is smaller.
+/// The tests take the central difference of an energy of order one with the step h = 1e-6. The difference has
+/// a rounding error of about 1e-9, and a smaller truncation error, h^2 U'''.
 constexpr double difference_tolerance = 2e-7;
 
 double free_force_error(const RunParameters& run, double weight = 0) {
@@ -79,14 +79,15 @@ TEST(DpForces, WeightOnTheAreaSumsToTheWholeWeight) {
 }
 
 TEST(DpForces, WallContactIsTheGradientOfItsEnergy) {
-  // The periodic image of the second obstacle, at x = -0.6, touches the droplet.
+  // The second obstacle has a periodic image at x = -0.6, which touches the droplet.
   const ObstacleArray wall(20, {{0.65, 0.05, 0.15}, {19.4, 0.1, 0.15}});
   ReferenceForces forces(only([](RunParameters&) {}), wall);
   forces.set_weight(0);
   const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
   forces.update_contacts(state, {});
   ASSERT_GT(forces.energy(state).wall, 0);
-  EXPECT_LT(force_error(forces, state), 1e-5);  // rounding, times the contact's stiffness of 1000
+  // The rounding error, multiplied by the contact's stiffness of 1000.
+  EXPECT_LT(force_error(forces, state), 1e-5);
 }
 
 TEST(DpForces, SelfContactIsTheGradientOfItsEnergy) {
@@ -124,7 +125,7 @@ TEST(DpForces, InternalForcesExertNoNetForceAndNoTorque) {
 }
 
 TEST(DpForces, SpringsAlongTheInterfaceDoNotPushTheDroplet) {
-  // Each vertex is pulled without a reaction on its neighbours; the liquid takes the reaction.
+  // Each vertex is pulled without a reaction on its neighbours. The reaction acts on the liquid.
   const ObstacleArray nothing = no_obstacles();
   RunParameters run;
   run.dp.vertices = 64;
@@ -132,7 +133,7 @@ TEST(DpForces, SpringsAlongTheInterfaceDoNotPushTheDroplet) {
   ReferenceForces forces(resolve(run), nothing);
   DropletState state = state_of(regular_polygon(64, 0.8));
   for (int i = 0; i < 64; ++i) {
-    // Vertices crowd on one side of an ellipse.
+    // The vertices are closer together on one side of the ellipse.
     const double angle = 2 * std::numbers::pi * i / 64;
     state.position[i] = 0.6 * std::cos(angle + 0.5 * std::sin(angle));
     state.position[64 + i] = 0.4 * std::sin(angle + 0.5 * std::sin(angle));
@@ -148,7 +149,8 @@ TEST(DpForces, AMirroredDropletFeelsMirroredForces) {
   const ObstacleArray wall(20, {{0.2, 0.3, 0.15}});
   const ObstacleArray mirrored_wall(20, {{0.2, -0.3, 0.15}});
   const Eigen::ArrayXd position = shaken(dumbbell(n, 0.006), 1e-4);
-  Eigen::ArrayXd mirrored(2 * n);  // y -> -y, and the order turned to stay counter-clockwise
+  // y is reversed, and so is the order of the vertices, to keep it counter-clockwise.
+  Eigen::ArrayXd mirrored(2 * n);
   mirrored.head(n) = position.head(n).reverse();
   mirrored.tail(n) = -position.tail(n).reverse();
   const auto force_on = [](const ObstacleArray& obstacles, const Eigen::ArrayXd& p) {
@@ -167,7 +169,7 @@ TEST(DpForces, AMirroredDropletFeelsMirroredForces) {
 }
 
 TEST(DpForces, LaplacePressureOfACircleIsLineTensionOverRadius) {
-  // Tension and pressure balance on a regular polygon of circumradius R when p = gamma/(R cos(pi/n)).
+  // On a regular polygon of circumradius R, tension and pressure balance if p = gamma/(R cos(pi/n)).
   RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 2, r.dp.area_stiffness = 1e4; });
   const ObstacleArray nothing = no_obstacles();
   ReferenceForces forces(run, nothing);
@@ -183,12 +185,12 @@ TEST(DpForces, LaplacePressureOfACircleIsLineTensionOverRadius) {
 }
 
 class ContactLists : public testing::TestWithParam<double> {};
-// The speeds range from that of a sinking droplet to one at which a droplet crosses the usual skin, the
-// margin of the contact lists, between two updates.
+// The smallest speed is that of a sinking droplet. At the largest speed, a droplet moves by more than the
+// usual skin between two updates. The skin is the margin of the contact lists.
 INSTANTIATE_TEST_SUITE_P(Speeds, ContactLists, testing::Values(0.05, 0.8, 5.0));
 
 TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
-  // Compares with every obstacle and image of the array, for a droplet that drifts through it.
+  // Compares the forces with those of all obstacles and their images. The droplet drifts through the array.
   ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 12.5};
   const ObstacleArray array = sample_obstacles(parameters, 5);
   RunParameters run = only([](RunParameters& r) { r.drag.near_wall = 0.1; });
@@ -202,8 +204,8 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
   const double cutoff = run.drag.near_wall_cutoff;
   const double stiffness = contact_stiffness(*run.wall_stiffness, 2 * range);
   for (int step = 0; step < 2000; ++step) {
-    // Lists are updated every other step only; in the steps between, the forces are right only because of the
-    // skin.
+    // Lists are updated only in every other step. In the steps between, the forces are right only because of
+    // the skin.
     if (step % 2 == 0) {
       if (state.recentre().any()) forces.forget_contacts();
       forces.update_contacts(state, state.possible_travel(0.2));
@@ -224,7 +226,7 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
           };
           const Eigen::Array2d begin = vertex(i), end = vertex(next);
           nearest[i] = std::min(nearest[i], (begin - centre).matrix().norm() - obstacle.radius);
-          // Each half of the refined edge pushes by itself; the middle passes its push on to four vertices.
+          // Each half of the refined edge pushes separately. The middle passes its push on to four vertices.
           const int before = (i + 63) % 64, after = (i + 2) % 64;
           const Eigen::Array2d middle =
               (9 * (vertex(i) + vertex(next)) - vertex(before) - vertex(after)) / 16;
@@ -298,8 +300,8 @@ TEST(DpForces, WettedWallsPullWithTheGradientOfTheirEnergy) {
 
 TEST(DpForces, WettedWallsNeitherPullAlongTheInterfaceNorAlongTheWall) {
   // A wetted wall changes the tension along the interface. The springs along the interface do not balance
-  // this change. The edges of the polygon carry a part of it, and the liquid takes the rest, so nothing
-  // pushes the droplet as a whole along a flat wall.
+  // this change. The edges of the polygon carry a part of it, and the liquid takes the rest. So no force acts
+  // on the droplet as a whole along a flat wall.
   const ObstacleArray wall(20, {}, {{.tip = {0.37, 0}, .axis = {1, 0}, .half_angle = std::numbers::pi / 2}});
   RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 1.3; });
   run.dp.perimeter_spring = PerimeterSpring::along;
@@ -335,7 +337,7 @@ TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {
   const DropletState uneven = state_of(shaken(regular_polygon(64, 0.8), 0.01));
   forces.evaluate(uneven, force);
   EXPECT_GT(force.abs().maxCoeff(), 0.01);
-  // Every vertex alone moves along the chord of its neighbours.
+  // The force on each vertex is along the chord of its neighbours.
   for (int i = 0; i < 64; ++i) {
     const int before = (i + 63) % 64, after = (i + 1) % 64;
     const double chord_x = uneven.x()[after] - uneven.x()[before];
@@ -345,8 +347,8 @@ TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {
 }
 
 TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
-  // So far downstream, coordinates that are not shifted, as in the published method, would lose five to six
-  // of the 16 digits of an edge.
+  // So far downstream, coordinates that are not shifted would lose five to six of the 16 digits of an edge.
+  // The published method does not shift coordinates.
   const ObstacleArray array = sample_obstacles({.gap = 0.2, .diameter = 0.3, .density = {}, .box = 25}, 3);
   ReferenceForces near(bare_parameters(256), array);
   ReferenceForces far(bare_parameters(256), array);
@@ -362,7 +364,7 @@ TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
   EXPECT_NEAR(downstream.frame.global({0, 0})[0], 6003, 1e-9);
   EXPECT_LE((force - force_downstream).abs().maxCoeff(), 1e-12 * force.abs().maxCoeff());
 
-  // The same droplet, in coordinates that are not shifted.
+  // The same droplet in coordinates that are not shifted.
   const ObstacleArray nothing = no_obstacles(8000);
   ReferenceForces here(bare_parameters(256), nothing), there(bare_parameters(256), nothing);
   DropletState literal = state_of(state.position, 8000);
@@ -385,8 +387,8 @@ TEST(DpForces, AnObstacleBetweenTwoVerticesIsPushedOffByTheirEdge) {
   }
   const RunParameters run = only([](RunParameters&) {}, 16);
   const double range = units::regular_edge_length(16) / 2;
-  // The obstacle is below the middle of edge 1, which goes from (-0.5, -1) to (0, -1); the edge is 0.1 inside
-  // the contact range of its surface.
+  // The obstacle is below the middle of edge 1, which goes from (-0.5, -1) to (0, -1). The edge is 0.1 inside
+  // the contact range of the obstacle's surface.
   const ObstacleArray obstacle(20, {{19.75, 20 - 1 - 0.05 - range + 0.1, 0.05}});
   ReferenceForces forces(run, obstacle);
   forces.set_weight(0);

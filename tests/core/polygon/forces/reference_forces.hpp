@@ -12,8 +12,8 @@
 
 namespace clog::test {
 
-/// The force of DpForces by plain loops, with which the vectorised step is compared.
-/// Edge i joins vertices i and i + 1; the last one closes the contour.
+/// Computes the force of DpForces by plain loops. Tests compare the vectorised step with it. Edge i joins
+/// vertices i and i + 1, and the last edge closes the contour.
 class ReferenceForces : public DpForces {
  public:
   ReferenceForces(const RunParameters& run, const ObstacleArray& obstacles)
@@ -23,7 +23,8 @@ class ReferenceForces : public DpForces {
         wetting_(n_),
         centroid_gradient_(Eigen::ArrayXd::Zero(Eigen::Index{4} * n_)) {}
 
-  /// force = -grad U, all x then all y [g rho sigma^2]. update_contacts() must have been called.
+  /// The force -grad U, with all x first and then all y [g rho sigma^2]. update_contacts() must have been
+  /// called.
   void evaluate(const DropletState& state, Eigen::ArrayXd& force) {
     position_ = state.position;
     force = interface_force();
@@ -34,8 +35,8 @@ class ReferenceForces : public DpForces {
       net_spreading += wetting_.net_spreading;
     }
     if (run_.dp.gravity == Gravity::area) {
-      // The forces of tension and pressure add up to zero. The springs along the interface have no reaction
-      // on their neighbours, so they push off the liquid: the droplet as a whole feels no force from them.
+      // The forces of tension and pressure add up to zero. The springs along the interface push off the
+      // liquid instead of their neighbours. So the droplet as a whole feels no force from them.
       find_centroid_gradient();
       for (int i = 0; i < n_; ++i)
         add(force, i,
@@ -48,10 +49,11 @@ class ReferenceForces : public DpForces {
   }
 
   /// Distance of each vertex from the nearest obstacle at the last evaluate(), but at least the cutoff of the
-  /// near-wall drag [sigma]; empty without near-wall drag.
+  /// near-wall drag [sigma]. The array is empty without near-wall drag.
   const Eigen::ArrayXd& wall_distance() const { return wall_distance_; }
-  /// d(X, Y)/d(x_i, y_i) at the last evaluate(), where X and Y are the coordinates of the area's centroid:
-  /// dX/dx, dX/dy, dY/dx and dY/dy, each of length N_v. Zero with the weight on the vertices.
+  /// Derivatives d(X, Y)/d(x_i, y_i) at the last evaluate(). X and Y are the coordinates of the area's
+  /// centroid. The array contains dX/dx, dX/dy, dY/dx and dY/dy, each of length N_v. The array is zero if the
+  /// weight acts on the vertices.
   const Eigen::ArrayXd& centroid_gradient() const { return centroid_gradient_; }
 
  private:
@@ -64,7 +66,7 @@ class ReferenceForces : public DpForces {
   Eigen::Array2d vertex(int i) const { return {position_[wrapped(i)], position_[n_ + wrapped(i)]}; }
   Eigen::Array2d edge(int i) const { return vertex(i + 1) - vertex(i); }
   double length(int i) const { return edge(i).matrix().norm(); }
-  /// Middle of the refined edge, by the four-point rule.
+  /// The middle of the refined edge by the four-point rule.
   Eigen::Array2d middle(int i) const {
     return refined_near * (vertex(i) + vertex(i + 1)) + refined_far * (vertex(i - 1) + vertex(i + 2));
   }
@@ -76,17 +78,17 @@ class ReferenceForces : public DpForces {
     return {centroid_gradient_[2 * axis * n_ + i], centroid_gradient_[(2 * axis + 1) * n_ + i]};
   }
 
-  /// Tension, springs, pressure, and weight on the vertices.
+  /// The forces of tension, springs, pressure, and of the weight on the vertices.
   Eigen::ArrayXd interface_force() const {
     const PolygonShape shape = polygon_shape(position_);
     const InterfaceTerms terms = interface(shape.area, shape.perimeter);
-    // (gamma + k_l N_v (l - l_ref))/l times the edge.
+    // The vector of the edge, multiplied by (gamma + k_l N_v (l - l_ref))/l.
     const auto pull = [&](int i) -> Eigen::Array2d {
       return (terms.line_tension + terms.spring * (length(i) - terms.spring_length)) / length(i) * edge(i);
     };
     Eigen::ArrayXd force = Eigen::ArrayXd::Zero(Eigen::Index{2} * n_);
     for (int i = 0; i < n_; ++i) {
-      // The area's gradient is half the chord between the neighbours, turned outwards. Springs along the
+      // The gradient of the area is half the chord between the neighbours, turned outwards. Springs along the
       // interface pull along this chord, so that they do no work on the area.
       const Eigen::Array2d chord = vertex(i + 1) - vertex(i - 1);
       const double cosine = std::max(0.0, (edge(i) * edge(i - 1)).sum()) / (length(i) * length(i - 1));
@@ -99,8 +101,8 @@ class ReferenceForces : public DpForces {
     return force;
   }
 
-  /// d(a X) is the surface integral of (x - X) times the outward displacement. Each edge's x - X changes
-  /// linearly along it; a vertex takes the part (2 q_i + q_j)/6 of the edge's outward normal.
+  /// d(a X) is the integral of (x - X) times the outward displacement over the surface. Along each edge, x -
+  /// X changes linearly. So a vertex takes the part (2 q_i + q_j)/6 of the outward normal of the edge.
   void find_centroid_gradient() {
     const double area = polygon_shape(position_).area;
     const Eigen::Array2d centre = area_centroid(position_);
@@ -115,7 +117,7 @@ class ReferenceForces : public DpForces {
       }
   }
 
-  /// Calls visit(item, i) for every circle and the edges or vertices that list it.
+  /// Calls visit(item, i) for every circle, and for each edge or vertex i that lists this circle.
   template <class Visit>
   void for_each_listed(const WallContacts& contacts, Visit visit) const {
     for (const WallContacts::Item& item : contacts.items())
@@ -133,7 +135,7 @@ class ReferenceForces : public DpForces {
         push_half_edge(force, i, false, centre, item.reach);
       }
     });
-    // Edges need not be tested against wedges: they meet a wedge's tip first, which is a circle.
+    // Edges need no test against wedges, because they meet the tip of a wedge first, and the tip is a circle.
     for (const Wedge& wedge : wedges()) {
       const kernel::WedgePlace place = kernel::place_in(state.frame, wedge);
       for (int i = 0; i < n_; ++i) {
@@ -143,13 +145,13 @@ class ReferenceForces : public DpForces {
       }
     }
   }
-  /// k_c (reach - d) along `away`, whose length is d.
+  /// The push k_c (reach - d) along `away`. The length of `away` is d.
   Eigen::Array2d push(const Eigen::Array2d& away, double reach) const {
-    const double d = away.matrix().norm() + 1e-300;  // avoids NaN for a point exactly at the centre
+    const double d = away.matrix().norm() + 1e-300;  // avoids NaN for a point that is exactly at the centre
     return contact_stiffness() * std::max(0.0, reach - d) / d * away;
   }
-  /// The nearest point divides the push between the half's two ends. The force on a middle acts on the four
-  /// vertices that determine it.
+  /// The nearest point divides the push between the two ends of the half edge. A force on a middle acts on
+  /// the four vertices that determine the middle.
   void push_half_edge(Eigen::ArrayXd& force, int i, bool is_first, const Eigen::Array2d& centre,
                       double reach) const {
     const Eigen::Array2d begin = is_first ? vertex(i) : middle(i), end = is_first ? middle(i) : vertex(i + 1);
@@ -189,7 +191,7 @@ class ReferenceForces : public DpForces {
   }
 };
 
-/// Largest difference between the force and the central difference of the energy.
+/// The largest difference between the force and the central difference of the energy.
 inline double force_error(ReferenceForces& forces, DropletState state) {
   constexpr double h = 1e-6;
   forces.update_contacts(state, {});

@@ -11,8 +11,8 @@ namespace {
 
 using namespace test;
 
-/// Largest omega^2 of small motions about a shape, by power iteration on the Hessian (from finite
-/// differences) divided by the mass.
+/// The largest omega^2 of small motions about a shape. The value comes from power iteration on the Hessian
+/// divided by the mass. Finite differences give the Hessian.
 double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
                        const ObstacleArray& obstacles = no_obstacles()) {
   const int n = *run.dp.vertices;
@@ -37,7 +37,8 @@ double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
 }
 
 TEST(StiffModes, BoundTheStiffestModeOfTheDroplet) {
-  // A circle, and two lobes with a waist; vertices are evenly spread, because springs keep them so.
+  // The shapes are a circle, and two lobes with a waist. The vertices are evenly spread, because springs keep
+  // them so.
   for (const Eigen::ArrayXd& position : {regular_polygon(128, units::rest_area), dumbbell(128, 0.2)})
     for (const double line_tension : {0.05, 1.0, 10.0}) {
       RunParameters run = bare_parameters(128);
@@ -64,10 +65,10 @@ TEST(StiffModes, BoundTwoFilmsThatTouch) {
   EXPECT_GT(stiffest, 0.5 * modes.self_contact) << "the film touches itself";
 }
 
-/// A droplet that hangs over a circle around the origin as a horseshoe of thickness 0.4. Vertices are evenly
-/// spread; those on its inner side are at the distance `inner` from the origin.
+/// A droplet that hangs over a circle around the origin. The droplet is a horseshoe of thickness 0.4. The
+/// vertices are evenly spread. The vertices on the inner side are at the distance `inner` from the origin.
 Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
-  constexpr double open = 2, thick = 0.4;  // half the angle [rad]; [sigma]
+  constexpr double open = 2, thick = 0.4;  // half the opening angle [rad]; thickness [sigma]
   const double outer = inner + thick;
   const double lengths[] = {2 * open * outer, thick, 2 * open * inner, thick};
   const double whole = lengths[0] + lengths[1] + lengths[2] + lengths[3];
@@ -92,10 +93,10 @@ Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
 }
 
 TEST(StiffModes, LeaveRoomForAContactThatTurnsWithItsEdges) {
-  // On a round obstacle, half edges dig deeper into the obstacle when they turn, the more so the deeper they
-  // already are. This makes the stiffest mode stiffer than the bound for a flat contact. The excess must be
-  // smaller than the margin that the bounds of all modes together leave below 4, the limit of stability. The
-  // overlap is the one that the automatic step allows.
+  // On a round obstacle, a half edge digs deeper into the obstacle when it turns. This effect grows with the
+  // overlap, and makes the stiffest mode stiffer than the bound for a flat contact. The excess must be
+  // smaller than a certain margin: the bounds of all modes together stay by this margin below 4, the limit of
+  // stability. The overlap is the one that the automatic step allows.
   const double radius = 0.15;
   for (const int n : {64, 128, 256, 512}) {
     RunParameters run = bare_parameters(n);
@@ -129,7 +130,7 @@ TEST(StableSteps, AreAsManyAsTheModesNeed) {
   EXPECT_EQ(num(1, largest), 1);
   EXPECT_EQ(num(1, 1.01 * largest), 2);
   EXPECT_EQ(num(1, 5.5 * largest), 6);
-  // The number of sub-steps is the smallest that is stable.
+  // This number of sub-steps is the smallest that is stable.
   EXPECT_EQ(num(8, largest), 8);
   EXPECT_EQ(num(8, 1.01 * largest), 9);
   EXPECT_EQ(num(8, 1.99 * largest), 16);

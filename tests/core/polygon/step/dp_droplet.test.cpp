@@ -23,7 +23,7 @@ TEST(DpDroplet, ReachesTheTerminalSpeed) {
 }
 
 TEST(DpDroplet, ApproachesTheTerminalSpeedExponentiallyWithSecondOrderError) {
-  // Free fall with drag: v = V (1 - exp(-g t/V)).
+  // In free fall with drag v = V (1 - exp(-g t/V)).
   const ObstacleArray nothing = no_obstacles();
   const auto error_at = [&](double dt) {
     RunParameters run = bare_parameters();
@@ -39,7 +39,7 @@ TEST(DpDroplet, ApproachesTheTerminalSpeedExponentiallyWithSecondOrderError) {
 }
 
 TEST(DpDroplet, WithMoreInertiaApproachesTheSameTerminalSpeedLater) {
-  // v = V (1 - exp(-g t/(S V))).
+  // With the inertia S, v = V (1 - exp(-g t/(S V))).
   const ObstacleArray nothing = no_obstacles();
   for (const double inertia : {0.25, 1.0, 4.0}) {
     RunParameters run = bare_parameters();
@@ -101,11 +101,12 @@ TEST(DpDroplet, IsOfSecondOrderInTheTimeStepWithAreaDrag) {
 }
 
 TEST(DpDroplet, WithAreaDragFallsRoundAtTheTerminalSpeed) {
-  // Weight and drag act on the same area, so no force pulls along the interface: the droplet stays a circle.
+  // Weight and drag act on the same area. So no force pulls along the interface, and the droplet remains a
+  // circle.
   RunParameters run = robust_polygon(64);
   const ObstacleArray nothing = no_obstacles();
   DpDroplet droplet(run, nothing, state_of(regular_polygon(64, units::rest_area)));
-  droplet.advance(20000);  // the spread of the vertices evens out at a rate of 0.5/t0
+  droplet.advance(20000);  // uneven vertices spread evenly at a rate of 0.5/t0
   const auto centroid = [&] {
     return droplet.state().frame.global(area_centroid(droplet.state().position))[0];
   };
@@ -120,7 +121,7 @@ TEST(DpDroplet, FallsAtTheTerminalSpeedHoweverItsVerticesAreSpread) {
   const ObstacleArray nothing = no_obstacles(200);
   RunParameters run;
   run.dp.vertices = 64;
-  run.dp.line_tension = 10;  // keeps it round
+  run.dp.line_tension = 10;  // keeps the droplet round
   run = resolve(run);
   for (const double crowding : {-0.3, 0.3}) {
     DropletState state = state_of(regular_polygon(64, units::rest_area), 200);
@@ -130,7 +131,7 @@ TEST(DpDroplet, FallsAtTheTerminalSpeedHoweverItsVerticesAreSpread) {
       state.position[64 + i] = 0.5 * std::sin(angle + crowding * std::sin(angle));
     }
     DpDroplet droplet(run, nothing, state);
-    droplet.advance(500);  // the vertices would need ten times as long to spread evenly
+    droplet.advance(500);  // the vertices would need ten times this time to spread evenly
     EXPECT_NEAR(droplet.centre_velocity()[0] / run.drag.terminal_speed, 1, 0.01) << crowding;
   }
 }
@@ -154,8 +155,8 @@ TEST(DpDroplet, RelativeDragDampsChangesOfShapeOnly) {
 }
 
 TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
-  // E_k + U + the work against the drag is conserved through a collision with an obstacle, for every kind of
-  // drag, on dry and on wetted walls.
+  // The sum of E_k, U and the work against the drag must be conserved through a collision with an obstacle,
+  // for every kind of drag, on dry and on wetted walls.
   const ObstacleArray wall(20, {{0.775, 0.05, 0.15}});
   for (const Gravity gravity : {Gravity::vertex, Gravity::area})
     for (const auto& [near_wall, wall_tension, inertia] :
@@ -180,7 +181,7 @@ TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
         const double begin = energy();
         double worst = 0;
         double contact = 0;
-        const int times = inertia > 1 ? 20 : 10;  // larger inertia delays the collision
+        const int times = inertia > 1 ? 20 : 10;  // a larger inertia delays the collision
         for (int i = 0; i < times; ++i) {
           droplet.advance(static_cast<int>(std::lround(0.08 / dt)));
           worst = std::max(worst, std::abs(energy() - begin));
@@ -190,8 +191,8 @@ TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
         EXPECT_GT(droplet.work().dissipated, 0.01);
         return worst;
       };
-      // The error is compared over four halvings of the step, because it also depends on the step in which a
-      // contact begins, which disturbs a single halving.
+      // The error also depends on the step in which a contact begins, and this disturbs a single halving of
+      // the step. So the error is compared over four halvings.
       const double coarse = imbalance(8e-4);
       const double fine = imbalance(5e-5);
       EXPECT_LT(fine, 4e-6);
@@ -225,8 +226,8 @@ TEST(DpDroplet, ConservesEnergyWithoutDragToSecondOrder) {
 
 TEST(DpDroplet, SwingsAtTheFrequencyOfACapillaryMode) {
   // Let a circle with the line density mu = M/P have a small wave r = R + e cos 2 phi that keeps the area.
-  // The wave costs the energy (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R) and moves the mass pi mu
-  // R, so omega^2 = 3 gamma/(mu R^2).
+  // The energy of the wave is (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R). The wave moves the mass
+  // pi mu R, so omega^2 = 3 gamma/(mu R^2).
   RunParameters run = bare_parameters(128);
   run.drag.terminal_speed = no_drag;
   run.dp.perimeter_stiffness = 0;
@@ -288,7 +289,7 @@ TEST(DpDroplet, FeelsBitIdenticalForcesAnyNumberOfBoxesDownstream) {
 }
 
 TEST(DpDroplet, SplitsTheStepWhenStretchedTooFarForItWithoutDrag) {
-  // The perimeter is 6 times the circle's, so the area mode has omega dt = 2.1 at this step.
+  // The perimeter is 6 times that of a circle. So the area mode has omega dt = 2.1 at this step.
   RunParameters run = bare_parameters(256);
   run.drag.terminal_speed = no_drag;
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));
@@ -303,7 +304,7 @@ TEST(DpDroplet, SplitsTheStepWhenStretchedTooFarForItWithoutDrag) {
 }
 
 TEST(DpDroplet, HasAnImplicitPressureWhenStretchedTooFarForTheStep) {
-  // The same film with drag. The step need not be split, unless the drag does not act on changes of shape, or
+  // The same film with drag. The step must be split only if the drag does not act on changes of shape, or
   // differs between vertices.
   RunParameters run = bare_parameters(256);
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));
@@ -323,7 +324,7 @@ TEST(DpDroplet, HasAnImplicitPressureWhenStretchedTooFarForTheStep) {
 }
 
 TEST(DpDroplet, BlowsUpWhenStretchedAndNotSplit) {
-  // The same film and step, with the published scheme.
+  // The same film and the same step with the published scheme.
   RunParameters run = bare_parameters(256);
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));
   const ObstacleArray nothing = no_obstacles();
@@ -343,10 +344,11 @@ TEST(DpDroplet, BlowsUpWhenStretchedAndNotSplit) {
 }
 
 TEST(DpDroplet, IsSlowedByAWallAsTheDragLawSays) {
-  // Far above an obstacle the slowdown follows from the mean of (sigma/d)^(4/3) over the vertices.
+  // Far above an obstacle, the mean of (sigma/d)^(4/3) over the vertices determines how much the droplet is
+  // slowed down.
   RunParameters run = bare_parameters();
   run.drag.near_wall = 0.5;
-  run.dp.line_tension = 10;  // keeps it round
+  run.dp.line_tension = 10;  // keeps the droplet round
   run.time_step = 1e-3;
   const ObstacleArray wall(20, {{0, 3, 0.15}});
   DpDroplet droplet(run, wall, state_of(regular_polygon(64, units::rest_area)));

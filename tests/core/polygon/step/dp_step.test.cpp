@@ -21,7 +21,7 @@ namespace {
 
 using namespace test;
 
-/// Distance of the nearest vertex from a wedge.
+/// The distance of the nearest vertex from a wedge.
 double distance_from(const Wedge& wedge, const DropletState& state) {
   double nearest = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < state.size(); ++i)
@@ -30,7 +30,7 @@ double distance_from(const Wedge& wedge, const DropletState& state) {
   return nearest;
 }
 
-/// Compares the anchors, whose order does not matter.
+/// Compares the anchors in any order.
 void expect_same_anchors(const DropletState& state, const DropletState& expected) {
   ASSERT_EQ(state.anchors.size(), expected.anchors.size());
   for (const WallAnchor& one : expected.anchors) {
@@ -63,13 +63,13 @@ class Step : public testing::TestWithParam<StepCase> {
     run.dp.vertices = vertices;
     run.dp.line_tension = 0.3;
     run.time_step = 1e-3;
-    // The films and edges that the tests make suit the published ranges of contacts.
+    // The published ranges of contacts suit the films and edges of these tests.
     run.dp.contact_range = units::regular_edge_length(vertices) / 2;
     run.dp.self_contact_range = units::regular_edge_length(vertices);
     GetParam().change(run);
     return resolve(run);
   }
-  /// The dumbbell scaled to about a droplet's area.
+  /// The dumbbell, scaled to about the area of a droplet.
   static Eigen::ArrayXd full_size_dumbbell(int vertices, double film) {
     const double thin = units::regular_edge_length(vertices);
     const double size = std::sqrt(units::rest_area / polygon_shape(dumbbell(vertices, thin)).area);
@@ -91,8 +91,9 @@ class Step : public testing::TestWithParam<StepCase> {
 };
 
 TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
-  // A droplet with uneven vertices and a neck so thin that it touches itself. One obstacle is on the neck and
-  // one at an end of the droplet; one wedge is on the neck and one at the other end.
+  // A droplet with unevenly spread vertices and a neck that is so thin that it touches itself. One obstacle
+  // and one wedge are at the neck. The other obstacle is at one end of the droplet, and the other wedge at
+  // the other end.
   for (const int vertices : {64, 101, 256}) {
     const RunParameters run = parameters(vertices);
     const double diameter = units::regular_edge_length(vertices);
@@ -100,7 +101,7 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
     DropletState initial = state_of(shaken(full_size_dumbbell(vertices, film), 0.002 * film));
     initial.velocity = shaken(Eigen::ArrayXd::Zero(initial.position.size()), 0.03, 7);
     const double end = initial.x().maxCoeff();
-    // One wedge touches a vertex with its flank, the other with its tip.
+    // One wedge touches a vertex with its flank, and the other with its tip.
     const double touching = 0.45 * diameter;
     Eigen::Index left, below;
     initial.x().minCoeff(&left);
@@ -146,11 +147,11 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
 }
 
 TEST_P(Step, JoinsStepsOfDifferentLengths) {
-  // Two steps share one half kick, whether they are equally long or not.
+  // Two consecutive steps share one half kick, whether their lengths are equal or not.
   for (const int vertices : {64, 101}) {
     const auto [run, initial, walls] = touching_droplet(vertices);
     constexpr double long_step = 1e-3, short_step = 0.3e-3;
-    // Each entry makes one step, because the rates of near-wall drag are renewed between entries.
+    // Each entry makes one step, because the rates of the near-wall drag are renewed between entries.
     std::vector<Steps> all;
     for (int k = 0; k < 9; ++k) all.push_back({1, k % 3 == 1 ? short_step : long_step});
     for (const std::string& set : instruction_sets()) {
@@ -171,7 +172,7 @@ TEST_P(Step, JoinsStepsOfDifferentLengths) {
 TEST_P(Step, IsThatOfTheReadableFormWithAnImplicitPressure) {
   for (const int vertices : {64, 101}) {
     auto [run, initial, walls] = touching_droplet(vertices);
-    run.drag.near_wall = 0;  // with near-wall drag the pressure is never implicit
+    run.drag.near_wall = 0;  // with near-wall drag the pressure would never be implicit
     constexpr int num_steps = 3;
     for (const std::string& set : instruction_sets()) {
       use_instruction_set(set);
@@ -192,7 +193,7 @@ TEST_P(Step, IsThatOfTheReadableFormWithAnImplicitPressure) {
 }
 
 TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
-  // A neck closes within 32 steps and opens again, with various first vertices and last edges.
+  // A neck closes within 32 steps and opens again. The contours have various first vertices and last edges.
   for (const int vertices : {64, 97, 101, 256}) {
     const RunParameters run = parameters(vertices);
     const double diameter = units::regular_edge_length(vertices);
@@ -221,8 +222,8 @@ TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
 }
 
 TEST_P(Step, MeetsCirclesThatShareEdges) {
-  // The circles around the droplet are so close together that most edges touch two of them, also where the
-  // contour begins and ends, and with few vertices.
+  // The circles around the droplet are so close together that most edges touch two of them. The edges where
+  // the contour begins and ends are among these edges. Some contours have few vertices.
   std::size_t num_compared = 0;
   for (const int vertices : {16, 30, 64, 101}) {
     RunParameters run = parameters(64);
@@ -260,7 +261,7 @@ TEST_P(Step, MeetsCirclesThatShareEdges) {
   EXPECT_GE(num_compared, 2 * instruction_sets().size());
 }
 
-/// A circle that touches the upper side of a droplet's neck at about `x`.
+/// A circle that touches the upper side of a droplet's neck near `x`.
 Obstacle on_neck(const DropletState& state, double x, double radius, double distance) {
   double y = 0;
   for (Eigen::Index i = 0; i < state.size(); ++i) {
@@ -272,8 +273,8 @@ Obstacle on_neck(const DropletState& state, double x, double radius, double dist
 }
 
 TEST_P(Step, HoldsAThinNeckThroughItsFilm) {
-  // The neck touches itself and one circle, or two circles whose distance is within the reach of friction
-  // through the film. The contour begins in a lobe or in the neck.
+  // The neck touches itself, and one or two circles. The distance between two circles is within the reach of
+  // friction through the film. The contour begins in a lobe or in the neck.
   int num_held = 0;
   for (const int vertices : {64, 101, 256}) {
     const RunParameters run = parameters(vertices);
@@ -358,8 +359,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return tested.param.name; });
 
 TEST(InstructionSet, DecidesTheForcesOfReleasesToo) {
-  // With another instruction set numbers are added in another order and rounded less often, so some bits
-  // differ.
+  // Another instruction set adds numbers in another order and rounds less often, so some bits differ.
   RunParameters run;
   run.dp.vertices = 256;
   run.dp.line_tension = 0.3;

@@ -1,5 +1,5 @@
-/// Compares steps with an implicit pressure with exact solutions, and with short steps whose pressure is
-/// explicit. dp_step.test.cpp compares each step with the documentation.
+/// Compares steps with an implicit pressure with two references: exact solutions, and short steps with an
+/// explicit pressure. dp_step.test.cpp compares each step with the documentation.
 
 #include <gtest/gtest.h>
 
@@ -15,16 +15,16 @@ namespace {
 using namespace test;
 
 TEST(ImplicitPressure, LetsACircleBreatheAtTheFrequencyOfNewmarksMethod) {
-  // If all vertices are at the distance R + u from the centre, M u'' = -K_a A' (A - A_0) with A' = 2 A/R. Let
-  // omega^2 = K_a A'^2/M. Then implicit steps from rest give u_n = u_0 cos(n phi) with 2 (1 - cos phi) =
-  // (omega dt)^2/(1 + (omega dt)^2). Explicit steps are unstable from omega dt = 2 on.
+  // Let all vertices be at the distance R + u from the centre. Then M u'' = -K_a A' (A - A_0) with A' = 2
+  // A/R. Let omega^2 = K_a A'^2/M. Then implicit steps from rest give u_n = u_0 cos(n phi) with 2 (1 - cos
+  // phi) = (omega dt)^2/(1 + (omega dt)^2). Explicit steps are unstable if omega dt is 2 or more.
   constexpr int vertices = 64;
   const ObstacleArray nothing = no_obstacles();
   RunParameters run = bare_parameters(vertices);
   run.drag.terminal_speed = no_drag;
   run.dp.line_tension = 1e-9;
   run.dp.perimeter_stiffness = 0;
-  run.dp.area_stiffness = 1e8;  // the motion ends before gravity has changed the shape
+  run.dp.area_stiffness = 1e8;  // the motion then ends before gravity has changed the shape
   const Eigen::ArrayXd circle = regular_polygon(vertices, units::rest_area);
   const double radius = circle[0];
   const double omega =
@@ -47,7 +47,8 @@ TEST(ImplicitPressure, LetsACircleBreatheAtTheFrequencyOfNewmarksMethod) {
     }
 }
 
-/// A film that falls and contracts. Its area mode is so stiff that steps of 0.002 need an implicit pressure.
+/// The parameters of a film that falls and contracts. The area mode of the film is so stiff that steps of
+/// 0.002 need an implicit pressure.
 RunParameters film_parameters(Gravity gravity) {
   RunParameters run = bare_parameters(128);
   run.dp.line_tension = 0.1;

@@ -9,8 +9,8 @@
 
 namespace clog::test {
 
-/// The step as the documentation describes it, one line per formula, with the plain forces of
-/// ReferenceForces.
+/// Makes the step as the documentation describes it, with one line per formula. The forces are the plain ones
+/// of ReferenceForces.
 class ReadableDroplet {
  public:
   ReadableDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial,
@@ -33,8 +33,8 @@ class ReadableDroplet {
     state_.velocity += h_over_m * force_ + h * drag(state_.velocity) + h * pressed(state_.velocity);
     state_.position += *run_.time_step * state_.velocity;
     find_forces();
-    // The drag of the second half kick depends on the velocity at the end of the kick, which is found by
-    // iteration.
+    // The drag of the second half kick depends on the velocity at the end of the kick. An iteration finds
+    // this velocity.
     const Eigen::ArrayXd kicked = state_.velocity + h_over_m * force_;
     // Under-relaxation keeps the iteration stable next to a wall.
     for (int i = 0; i < 300; ++i)
@@ -50,11 +50,11 @@ class ReadableDroplet {
   WallTouches touches_;
   DropletState state_;
   Eigen::ArrayXd force_;
-  Eigen::ArrayXd rate_;  // rate of the drag on each vertex
-  double fastest_ = 0;   // speed of the fastest vertex when the contacts were last updated
+  Eigen::ArrayXd rate_;  // Rate of the drag on each vertex.
+  double fastest_ = 0;   // Speed of the fastest vertex when the contacts were last updated.
   int num_evaluations_ = 0, num_kept_ = 0;
 
-  /// Finds the forces after the walls that hold the droplet have yielded.
+  /// Lets the walls that hold the droplet yield, and then finds the forces.
   void find_forces() {
     if (forces_.has_anchors())
       forces_.let_walls_yield(state_, touches_, forces_.walls().items(), Purpose::motion);
@@ -62,8 +62,8 @@ class ReadableDroplet {
     if (num_evaluations_ % most_steps_per_survey == 0)
       fastest_ =
           std::sqrt((state_.velocity.head(n_).square() + state_.velocity.tail(n_).square()).maxCoeff());
-    // The rates of the drag are computed at the beginning and at the end of the first step. Later they are
-    // kept for some steps.
+    // The rates of the drag are computed at the beginning and at the end of the first step. After that each
+    // rate is kept for some steps.
     if (num_evaluations_ > 1 && num_kept_ > 0) {
       --num_kept_;
     } else {
@@ -80,7 +80,7 @@ class ReadableDroplet {
     if (run_.drag.near_wall > 0)
       rate_ += far * run_.drag.near_wall * forces_.wall_distance().pow(-run_.drag.near_wall_exponent);
   }
-  /// Deceleration by drag of vertices with these velocities.
+  /// The deceleration by drag of vertices with these velocities.
   Eigen::ArrayXd drag(const Eigen::ArrayXd& v) {
     const double far = units::gravity / run_.drag.terminal_speed;
     const bool on_area = run_.dp.gravity == Gravity::area;
@@ -100,11 +100,11 @@ class ReadableDroplet {
     result << -far * n_ * (area_x * g(0) + area_y * g(2)), -far * n_ * (area_x * g(1) + area_y * g(3));
     return result;
   }
-  /// Acceleration by an implicit pressure: -K_a dt^2 times the area's acceleration, which the forces, the
-  /// area's drag and the added pressure itself cause.
+  /// The acceleration by an implicit pressure. The pressure is -K_a dt^2 times the acceleration of the area.
+  /// This acceleration comes from the forces, the drag on the area, and the added pressure itself.
   Eigen::ArrayXd pressed(const Eigen::ArrayXd& v) {
     if (pressure_ == Pressure::present) return Eigen::ArrayXd::Zero(force_.size());
-    Eigen::ArrayXd gradient(force_.size());  // of the area
+    Eigen::ArrayXd gradient(force_.size());  // gradient of the area
     for (int i = 0; i < n_; ++i) {
       const int next = (i + 1) % n_, before = (i + n_ - 1) % n_;
       gradient[i] = (state_.y()[next] - state_.y()[before]) / 2;

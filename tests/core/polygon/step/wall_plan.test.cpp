@@ -19,8 +19,8 @@ namespace {
 using namespace test;
 
 TEST(WallPlan, PushesAsPlainLoopsDoWhicheverEdgesCirclesShare) {
-  // Circles around a droplet. Their expected forces are differences between plain loops with and without the
-  // circles.
+  // There are circles around a droplet. Plain loops compute the force with and without the circles. The
+  // difference is the expected force.
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> part(0, 1);
   for (const int n : {16, 24, 30, 101, 256}) {

@@ -43,14 +43,14 @@ TEST(ContactLine, ForceIsTheGradientOfTheEnergyWhileTheAnchorsRest) {
   forces.update_contacts(state, {.absolute = 0.01, .relative = 0.01});
   WallTouches touches(run, walls);
   forces.let_walls_yield(state, touches, forces.walls().items(), Purpose::motion);
-  ASSERT_EQ(state.anchors.size(), 4);  // two arcs
+  ASSERT_EQ(state.anchors.size(), 4);  // there are two arcs
   state.position = shaken(state.position, 0.001);
   EXPECT_GT(forces.energy(state).anchors, 5e-6);
   EXPECT_LT(force_error(forces, state), 1e-6);
 }
 
 TEST(ContactLine, AnEndsGradientIsBounded) {
-  // The bound on the step follows from stability and holds for any wetted wall.
+  // The bound on the step follows from stability, and holds for any wetted wall.
   const ObstacleArray walls(20, {{0.63, 0.05, 0.15}});
   for (unsigned seed = 1; seed <= 200; ++seed) {
     RunParameters run = bare_parameters();
@@ -69,7 +69,7 @@ TEST(ContactLine, AnEndsGradientIsBounded) {
   }
 }
 
-/// A drop that is let down on walls beside its place of release.
+/// A drop that is moved from its place of release onto walls.
 DropletRun drop_on(RunParameters run, const std::vector<Obstacle>& circles, const std::vector<Wedge>& wedges,
                    double max_time) {
   run.drag.terminal_speed = 0.1;
@@ -96,7 +96,7 @@ RunParameters sticky(const Angles& angles, int vertices, double line_tension = 1
 
 class OnAnIncline : public testing::TestWithParam<Angles> {
  protected:
-  /// A drop on a wall whose slope makes the weight along the wall `share` times the weight that Furmidge's
+  /// A drop on an inclined wall. The drop's weight along the wall is `share` times the weight that Furmidge's
   /// equation allows.
   static DropletRun drop(double share, int vertices) {
     const Angles angles = GetParam();
@@ -106,7 +106,7 @@ class OnAnIncline : public testing::TestWithParam<Angles> {
     const Wedge wall{.tip = Eigen::Array2d(10, 10) + 0.5 * into, .axis = into};
     return drop_on(sticky(angles, vertices), {}, {wall}, 60);
   }
-  /// Distance down the wall.
+  /// The distance down the wall.
   static double way(const DropletRun& run) {
     return run.displacement()[0] * std::sin(slope_) + run.displacement()[1] * std::cos(slope_);
   }
@@ -117,8 +117,8 @@ class OnAnIncline : public testing::TestWithParam<Angles> {
 INSTANTIATE_TEST_SUITE_P(Angles, OnAnIncline, testing::Values(Angles{1, 120, 180}, Angles{0.5, 100, 140}));
 
 TEST_P(OnAnIncline, ADropSticksBelowWhatFurmidgeAllowsAndSlidesAbove) {
-  // a sin(slope) = Gamma (cos receding - cos advancing); if a drop slides, the drag balances the rest of its
-  // weight.
+  // Furmidge's equation is a sin(slope) = Gamma (cos receding - cos advancing). If a drop slides, the drag
+  // balances the rest of its weight.
   const double allowed = cosine(GetParam().receding) - cosine(GetParam().advancing);
   for (const int vertices : {64, 128}) {
     DropletRun held = drop(0.98, vertices);
@@ -145,12 +145,12 @@ struct Disc {
   const char* name;
   double radius, line_tension;
   Angles angles;
-  double tolerance[2];  ///< tolerance of the torque, with 64 and 128 vertices
+  double tolerance[2];  ///< tolerance of the torque with 64 and with 128 vertices
 };
 
 class OnADisc : public testing::TestWithParam<Disc> {
  protected:
-  static constexpr double aside = 0.1;  // where the drop is let down, beside the disc's centre
+  static constexpr double aside = 0.1;  // offset from the disc's centre at which the drop starts
 
   static DropletRun drop(int vertices) {
     const Disc& disc = GetParam();
@@ -163,8 +163,8 @@ INSTANTIATE_TEST_SUITE_P(Sizes, OnADisc,
                                          Disc{"small", 0.5, 1, {0.5, 30, 150}, {0.03, 0.01}}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// Only the forces on the drop's two ends along the wall turn the drop around the disc's centre: M g y = R
-/// (f_0 - f_1), where y is the offset of the drop's centroid from the disc's centre. So two lobes of
+/// Only the forces along the wall on the two ends of the drop turn it around the disc's centre. So M g y = R
+/// (f_0 - f_1), where y is the offset of the drop's centroid from the disc's centre. In this way two lobes of
 /// different weight are held over a disc.
 TEST_P(OnADisc, CarriesTheTorqueOfADropsWeight) {
   const Disc& disc = GetParam();
@@ -193,8 +193,8 @@ TEST_P(OnADisc, CarriesTheTorqueOfADropsWeight) {
 }
 
 TEST(ContactLine, LetsADropGoWhoseWeightTurnsItMoreThanTheEndsBear) {
-  // The ends bear the weight up to an offset of y = R Gamma h/(M g) = 0.15 from the disc's centre, where h =
-  // cos receding - cos advancing.
+  // The ends can bear the weight up to an offset of y = R Gamma h/(M g) = 0.15 from the disc's centre, with h
+  // = cos receding - cos advancing.
   DropletRun lost = drop_on(sticky({1, 150, 180}, 64, 0.3), {{13.5, 9.9, 3}}, {}, 150);
   while (!lost.advance(100)) {
   }
