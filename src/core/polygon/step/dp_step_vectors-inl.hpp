@@ -89,7 +89,9 @@ HWY_INLINE V shifted_forward([[maybe_unused]] V here, V next) {
 #elif HWY_TARGET == HWY_SCALAR
   return next;
 #else
+  static_assert(lanes == 2, "the shift stays within a block of 16 bytes");
   return hn::CombineShiftRightBytes<8>(D(), next, here);
+
 #endif
 }
 

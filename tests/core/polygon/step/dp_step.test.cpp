@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+
 #include <string>
 #include <utility>
 #include <vector>
@@ -144,6 +146,12 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
       EXPECT_LT(velocity_error(droplet.state(), readable), 3e-12) << set << ", " << vertices;
     }
   }
+}
+
+TEST(InstructionSets, HaveDifferentNames) {
+  // Otherwise use_instruction_set() cannot select each of them.
+  const std::vector<std::string> names = instruction_sets();
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
 }
 
 TEST_P(Step, JoinsStepsOfDifferentLengths) {
