@@ -91,7 +91,6 @@ HWY_INLINE V shifted_forward([[maybe_unused]] V here, V next) {
 #else
   static_assert(lanes == 2, "the shift stays within a block of 16 bytes");
   return hn::CombineShiftRightBytes<8>(D(), next, here);
-
 #endif
 }
 
