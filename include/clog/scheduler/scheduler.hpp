@@ -33,8 +33,8 @@ struct SweepEvents {
   /// Called for a task that `failed` when the rank may be at fault (see RankTrust): the attempt does not
   /// count, and the task is tried once more whatever tries_again() returned.
   std::function<void(std::int64_t task)> failure_withdrawn = [](std::int64_t) {};
-  /// Called when a rank gets no more tasks. The row is that of the last task that failed on this rank, with
-  /// rank and host.
+  /// Called when a rank is set aside: it is at fault for its failures (see RankTrust) and gets no more tasks.
+  /// The row is that of the last task that failed on this rank, with rank and host.
   std::function<void(const sweep::RunRow& failed)> set_aside = [](const sweep::RunRow&) {};
   /// Called about every 0.1 s, but less often while rank 0 samples an array or releases a droplet, which
   /// takes a second in large boxes.

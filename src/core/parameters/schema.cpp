@@ -23,7 +23,7 @@ constexpr ParameterScope arrays = {
       return run.obstacles.layout != ObstacleLayout::channel && run.obstacles.layout != ObstacleLayout::wall;
     }};
 constexpr ParameterScope own_circles = {
-    "file", "there are no user-supplied circles", "add obstacles=FILE.csv, or leave it out",
+    "file", "there are no user-supplied circles", "add obstacles=FILE.csv, or leave this key out",
     [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::file; }};
 constexpr ParameterScope lengths = {
     "file", own_circles.reason, own_circles.remedy, [](const RunParameters& run) {
@@ -31,7 +31,7 @@ constexpr ParameterScope lengths = {
                                         run.obstacles.lattice != LatticeKind::square);
     }};
 constexpr ParameterScope channels = {
-    "channel", "there is no channel", "add obstacle-layout=channel, or leave it out",
+    "channel", "there is no channel", "add obstacle-layout=channel, or leave this key out",
     [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::channel; }};
 constexpr ParameterScope lattices = {
     "lattice", "a random array has no rows", "add obstacle-layout=lattice",

@@ -155,7 +155,7 @@ void check_ways(const ObstacleParameters& obstacles) {
          {std::pair("entrance", obstacles.entrance), std::pair("entrance-from", obstacles.entrance_from),
           std::pair("entrance-to", obstacles.entrance_to)})
       require(value == 0, key, value,
-              "the droplet is not released on a line) add release=entrance, or leave it out");
+              "the droplet is not released on a line) add release=entrance, or leave this key out");
   require(obstacles.entrance < length, "entrance", obstacles.entrance,
           [&] { return fmt::format("lies outside the device) use 0 to less than {:.6g}", length); });
   const double to = obstacles.entrance_to > 0 ? obstacles.entrance_to : box;

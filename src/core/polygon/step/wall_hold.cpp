@@ -61,7 +61,8 @@ void WallHold::add_groups(kernel::HoldingCircle& circle) {
     const int last = window.first + static_cast<int>(std::bit_width(window.edges)) - 1;
     circle.wraps |= (window.first == 0 && (window.edges & 1) != 0) || last + 2 >= num_vertices_;
   }
-  // Forces on vertices beyond one end of the contour act on the vertices at the other end.
+  // The arrays of the step repeat the contour beyond both of their ends. Forces on repeated vertices are
+  // added to the same vertices at the other end, so the groups at both ends are pushed, too.
   if (circle.wraps)
     is_pushed_.front() = is_pushed_[1] = is_pushed_[static_cast<std::size_t>(num_groups_)] =
         is_pushed_.back() = 1;

@@ -81,7 +81,9 @@ TEST(FilmTouches, OfAStackBearTogetherWhatTheWallBears) {
   EXPECT_NEAR(held[0] + held[1] + held[2], by_wall, 0.05 * by_wall);
   EXPECT_GT(held[2], 0);
   EXPECT_NEAR(held[3], 0, 1e-12);
-  // A vertex is pushed by its own contact, and by the contacts of other vertices with its edges.
+  // A vertex is pushed by its own contact and by the contacts of other vertices with its edges, so the force
+  // per overlap is not `stiffness`. The last arc shows this force, because only one neighbour pushes it. The
+  // middle arc is pushed outwards by the first arc and inwards by the last.
   const double unit = held[2] / third;
   EXPECT_NEAR(held[1], unit * (second - third), 0.05 * by_wall);
 }
