@@ -289,14 +289,20 @@ class Sizes(ProgramTest):
 
     def test_critical_angles_are_named_by_the_droplets(self):
         self.sweep("obstacle-layout=lattice", "pitch=2.4mm", "obstacle-diameter=0.8mm", "lattice-angle=15,25", "line-tension=1,3", "vertices=64", "max-time=1", "seeds=1", angle="20 deg")
-        done = subprocess.run([sys.executable, "-m", "clogsweep", "critical-angle", "s.h5", "--format", "csv"], cwd=self.folder, capture_output=True, text=True,
-                              env={"PYTHONPATH": str(ROOT / "analysis"), "PATH": str(BIN)})
+        command = [sys.executable, "-m", "clogsweep", "critical-angle", "s.h5"]
+        around = {"cwd": self.folder, "capture_output": True, "text": True, "env": {"PYTHONPATH": str(ROOT / "analysis"), "PATH": str(BIN)}}
+        done = subprocess.run([*command, "--format", "csv"], **around)
         self.assertEqual(done.stdout, "diameter_mm,line_tension,lower,upper,runs\n0.8,1,,,2\n0.8,3,,,2\n1.6,1,,,2\n1.6,3,,,2\n", done.stderr)
+        empty = subprocess.run(command, **around)
+        self.assertEqual((empty.returncode, empty.stderr), (2, "python3 -m clogsweep critical-angle: cannot draw critical angles (the paths within max-time=1 are too short: "
+                                                               "straight on, they would cross fewer than two rows) try a larger max-time or lattice-angle\n"))
         columns = json.loads(self.succeed("clogsweep", "--schema").stdout)["columns"]
         found = pandas.DataFrame({"diameter_mm": [0.8, 0.8, 1.6, 1.6], "line_tension": [1, 3, 1, 3], "lower": 20.0, "upper": 21.0, "runs": 2})
+        found.loc[3, ["lower", "upper"]] = np.nan
         figure = style.figure_of(critical_angles.draw_on, found, fits.droplet_columns() | {column["name"]: column for column in columns})
         self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()], ["diameter 0.8 mm", "diameter 1.6 mm"])
         self.assertTrue(figure.axes[0].get_xlabel().startswith(r"line tension $\Gamma"))
+        self.assertTrue(figure.axes[0].texts[0].get_text().endswith("\n1 of 4 points: the paths are too short"))
 
     def test_a_report_shows_each_droplet(self):
         self.write("posts.csv", POSTS)

@@ -45,7 +45,7 @@ def body() -> int:
                                            [command_line.add_width, add_format])
     schema = json.loads(programs.run_program(programs.programs_in(arguments.programs) / "clogsweep", "--schema"))
     columns = fits.droplet_columns() | {column["name"]: column for column in schema["columns"]}
-    source = ""
+    source = spans = ""
     if arguments.sweep.suffix == ".csv":
         table = read_angles(arguments.sweep, columns)
     else:
@@ -61,8 +61,11 @@ def body() -> int:
                 rows[name] = rows["laboratory"].map({group["laboratory"]: group[name] for group in groups})
             parameters = [*fits.DROPLETS, *parameters]
         table = critical_angle.table_of(rows, parameters)
+        spans = " within max-time=" + " to ".join(f"{span:.4g}" for span in sorted({rows["max_time"].min(), rows["max_time"].max()}))
     if arguments.format == "csv":
         print(table.to_csv(index=False, float_format="%.6g"), end="")
         return 0
+    if table[["lower", "upper"]].isna().all(axis=None):
+        raise UserError(f"cannot draw critical angles (the paths{spans} are too short: straight on, they would cross fewer than two rows) try a larger max-time or lattice-angle")
     figure = style.figure_of(critical_angles.draw_on, table, columns)
     return command_line.save(style.Picture(figure, source), arguments)

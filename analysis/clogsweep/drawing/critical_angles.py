@@ -38,7 +38,8 @@ def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> 
             axes.errorbar(places, middle, yerr=half, label=label or None, capsize=2, **look)
             for bound, marker in (("lower", "^"), ("upper", "v")):  # draws brackets of which only one end is known
                 axes.plot(places[middle.isna()], points[bound][middle.isna()], marker, color=look["color"], fillstyle="none")
+    unknown = int(table[["lower", "upper"]].isna().all(axis=1).sum())
     style.logarithmic_abscissa(axes, table[abscissa].tolist())
     axes.set_xlabel(axis_label(columns[abscissa]))
     note = "droplets follow the rows at the lower end of a bar and leave them at the upper end" + ("; a triangle is a bound" if table[["lower", "upper"]].isna().any(axis=None) else "")
-    style.finish(axes, "critical angle [degrees]", "", [note])
+    style.finish(axes, "critical angle [degrees]", "", [note] + [f"{unknown} of {len(table)} points: the paths are too short"] * (unknown > 0))
