@@ -195,7 +195,7 @@ class WhichPoints(unittest.TestCase):
     def test_lists_of_lengths_are_those_of_the_programs(self):
         self.assertEqual(table.lengths("10,100"), [10, 100])
         np.testing.assert_allclose(table.lengths("log(1,100,3), 5, lin(1,2,2)"), [1, 10, 100, 5, 1, 2])
-        for words in ("-1", "10sigma", "0", "nan"):
+        for words in ("-1", "10sigma", "0", "nan", "log(0,1,2)"):
             with self.subTest(words), self.assertRaises(ValueError):
                 table.lengths(words)
 

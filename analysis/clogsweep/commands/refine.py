@@ -30,11 +30,11 @@ from ..reading import programs, stored
 from ..refinement import critical_angle, curve_search, driver, goals
 from ..refinement.membership import Membership, Values, tasks_of
 from ..tools.errors import ProgramFailed, UserError
+from ..tools.lists import number, numbers
 from . import command_line
 
 PASSED_ON = ("lab", "attempts", "isolate", "report-seconds", "master-computes", "instruction-set")
 BLOCKS_OF_A_VALUE = 50  # largest number of blocks of seeds of one value, unless --most-seeds is given
-SPACED = re.compile(r"(lin|log)\(([^,()]+),([^,()]+),\s*(\d+)\s*\)")
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
@@ -58,21 +58,6 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
         parser.add_argument(f"--{name}", action="store_true", help="as for clogsweep")
     programs.add_option(parser)
     return parser.parse_intermixed_args(words)
-
-
-def numbers(text: str) -> list[float]:
-    """A list of numbers as clogsweep reads it: `0.2,0.3`, `1..50`, `lin(a,b,n)`, `log(a,b,n)`. Other texts are NaN."""
-    values: list[float] = []
-    for word in map(str.strip, re.split(r",(?![^()]*\))", text)):
-        if spaced := SPACED.fullmatch(word):
-            first, last, count = float(spaced[2]), float(spaced[3]), int(spaced[4])
-            between = np.linspace(first, last, count) if spaced[1] == "lin" else np.geomspace(first, last, count)
-            values += [float(f"{value:.12g}") for value in between]
-        elif whole := re.fullmatch(r"(\d+)\.\.(\d+)", word):
-            values += map(float, range(int(whole[1]), int(whole[2]) + 1))
-        else:
-            values.append(goals.number(word))
-    return values
 
 
 def require_keys(keys: Sequence[str], config: dict[str, str], schema: dict[str, list[dict[str, str]]]) -> None:
@@ -119,7 +104,7 @@ def search_of(arguments: argparse.Namespace, keys: list[str], config: dict[str, 
     if not len(seeds) <= most <= 100000:
         raise UserError(f"invalid --most-seeds={most} (must be {len(seeds)}, the number of `seeds`, to 100000)")
     options = curve_search.Options(goal, budget, most, arguments.same_seeds)
-    return curve_search.CurveSearch(keys, lists, list(map(int, seeds)), goals.number(config["max-time"]), options)
+    return curve_search.CurveSearch(keys, lists, list(map(int, seeds)), number(config["max-time"]), options)
 
 
 def printed_tasks(*command: object) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from ..tools import rounded
+from ..tools.lists import numbers
 from .answer import ALL, CAUSES
 from .points import told
 
@@ -113,17 +114,7 @@ def peaks(answer: dict[str, Any]) -> str:
 
 def lengths(words: str) -> list[float]:
     """Reads a list such as `10,100` or `log(1,100,3)`. @throws ValueError  unless all are positive numbers"""
-    numbers: list[float] = []
-    for word in words.replace(" ", "").replace("),", ");").replace(",log(", ";log(").replace(",lin(", ";lin(").split(";"):
-        scale, is_range = word[:4], word.endswith(")")
-        if is_range and scale in ("lin(", "log("):
-            first, last, number = word[4:-1].split(",")
-            shares = [i / max(int(number) - 1, 1) for i in range(int(number))]
-            ends = (math.log(float(first)), math.log(float(last))) if scale == "log(" else (float(first), float(last))
-            between = [(1 - share) * ends[0] + share * ends[1] for share in shares]
-            numbers += map(math.exp, between) if scale == "log(" else between
-        else:
-            numbers += map(float, word.split(","))
-    if not all(0 < number < math.inf for number in numbers):
-        raise ValueError("lengths must be positive")
-    return numbers
+    found = numbers(words)
+    if not all(0 < length < math.inf for length in found):
+        raise ValueError("must be positive numbers")
+    return found

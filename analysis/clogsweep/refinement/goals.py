@@ -9,6 +9,7 @@ from ..curves import features
 from ..curves.model import Curve
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
+from ..tools.lists import number
 
 CONFIDENCE = 0.95  # Confidence of all intervals.
 EVEN_SHARE = 0.1  # This fraction of the weight is spread evenly over all places, so that each place gets some runs.
@@ -29,14 +30,6 @@ class Goal(NamedTuple):
             return f"critical-angle={self.precision:g}"
         length = f"{self.length:g}:" if self.kind == "crossing" else ""
         return f"{self.kind}={length}{100 * self.precision:g}%"
-
-
-def number(word: str) -> float:
-    """The word as a number, or NaN."""
-    try:
-        return float(word)
-    except ValueError:
-        return math.nan
 
 
 def parse_goal(text: str) -> Goal:
