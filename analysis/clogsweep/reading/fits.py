@@ -5,6 +5,7 @@ import pathlib
 from collections.abc import Collection, Iterable
 from typing import Any
 
+from ..tools import lists
 from ..tools.hints import AnyPath, Column, Group
 from . import programs, stored
 
@@ -28,17 +29,21 @@ def follows(groups: Collection[Group], name: str, others: Iterable[str]) -> bool
 
 def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
     """Converts a fit of several droplets in a laboratory. The diameter and the tilt become parameters, and lengths are
-    converted to mm. In droplet diameters the same array would have other lengths for each droplet. "in_table" of a
-    group contains its values as they are in the sweep's table. Any other fit stays unchanged."""
+    converted to mm. In droplet diameters the same array would have other lengths for each droplet. Lattices
+    have the angle that was asked for, because the possible angles differ between the droplets. "in_table" of a group
+    contains its values as they are in the sweep's table. Any other fit stays unchanged."""
     groups = fit["groups"]
     if "laboratory" in fit or "in_mm" in fit or not groups or not all(group.get("diameter_mm") for group in groups):
         return fit
+    asked = [angle for text in stored.values(fit.get("sweep", {}).get("config", ""), "lattice-angle") for angle in lists.numbers(text)]
     powers = {column["name"]: {"sigma": 1, "1/sigma^2": -2}.get(column["unit"], 0) for column in fit["columns"]}
 
     def scaled(group: Group) -> Group:
         lengths = {name: float(f"{group[name] * group['diameter_mm'] ** power:.10g}") for name, power in powers.items()
                    if power and isinstance(group[name], int | float)}
-        return group | {"in_table": group} | lengths
+        angle = group["lattice_angle"]
+        nominal = {} if angle is None or not asked else {"lattice_angle": min(asked, key=lambda one: abs(one - angle))}
+        return group | {"in_table": group} | lengths | nominal
 
     groups = [scaled(group) for group in groups]
     columns = [column | ({"unit": column["unit"].replace("sigma", "mm")} if powers[column["name"]] else {}) |

@@ -169,6 +169,13 @@ def settings(config: str) -> dict[str, str]:
     return {key: unescaped(value) for key, equals, value in pairs if equals and key not in of_points}
 
 
+def values(config: str, key: str) -> list[str]:
+    """All values that a stored config gives to a key. The parameter sets of a sweep may be single points."""
+    pairs = [line.split(" = ", 1) for line in config.split("\n") if " = " in line]
+    keys = dict(pairs).get("point-keys", "").split()
+    return [value for name, value in pairs if name == key] + [value.split()[keys.index(key)] for name, value in pairs if name == "point" and key in keys]
+
+
 def unescaped(value: str) -> str:
     r"""A value of a config as the user gave it. In the stored text, \x and two hexadecimal digits stand for a control
     character, #, or a backslash."""
