@@ -219,7 +219,9 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
     if values and (len(set(values)) <= 10 or max(values) < 10 * min(values)):
         span = max(values) / min(values)
         axis.set_ticks(upper := far_apart(values, span), minor=False)
-        axis.set_ticks(lower := sorted(set(values) - set(upper)), minor=True)
+        # Beside a single value, round numbers show the scale.
+        lower = sorted(set(values) - set(upper)) if span > 1 else list(matplotlib.ticker.MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(0.8 * upper[0], 1.25 * upper[0]))
+        axis.set_ticks(lower, minor=True)
         labelled = far_apart(lower, span)
         axis.set_minor_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}" if value in labelled else ""))
         axis.set_tick_params(which="minor", pad=4 + 1.2 * matplotlib.font_manager.FontProperties(size=matplotlib.rcParams["xtick.labelsize"]).get_size_in_points())
