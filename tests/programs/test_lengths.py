@@ -7,6 +7,7 @@ import sys
 import types
 import unittest
 
+import numpy as np
 import scipy.stats
 
 import support
@@ -156,6 +157,15 @@ class Beside(ProgramTest):
         self.assertEqual((entries[0], len(entries)), ("own.csv", len(set(entries))))
         with self.assertRaisesRegex(UserError, "--lab"):
             measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None).known, None)
+
+    def test_the_legend_names_the_bands_of_measured_lengths_with_the_confidence_of_the_sweep(self):
+        self.write("own.csv", "distance [sigma],clogged,wall\n3,1,glass\n5,1,glass\n9,1,steel\n")
+        groups = fit.read(self.folder / "sweep.h5", None, "--confidence", 0.5).known
+        own = measured.lengths_of(self.folder / "own.csv", groups, None)
+        # Two clogs at 3 and 5: twice their sum divided by lambda is chi-squared with four degrees of freedom.
+        np.testing.assert_allclose([own[0]["clogging_length_lower"], own[0]["clogging_length_upper"]], 16 / scipy.stats.chi2.ppf([0.75, 0.25], 4))
+        figure = style.figure_of(lambda axes, these: measured.draw_on(axes, own, these, "own.csv"), groups)
+        self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()], ["own.csv", "own.csv, 50 % interval"])
 
     def test_a_long_legend_widens_the_picture_once(self):
         figure, axes = style.subplots(figsize=(6.4, 4.8))

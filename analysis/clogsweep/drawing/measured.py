@@ -20,7 +20,7 @@ def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None,
     """The groups that clogfit lengths finds in a table of distances. Lengths are in the unit of the picture.
     @param groups  of the sweep, whose laboratory gives the diameter
     @throws UserError  if the table is in mm and no diameter is known"""
-    told = json.loads(programs.run_program(programs.programs_in(folder) / "clogfit", "lengths", table, "--format", "json", *options))
+    told = json.loads(programs.run_program(programs.programs_in(folder) / "clogfit", "lengths", table, "--format", "json", "--confidence", groups.confidence, *options))
     members: list[dict[str, Any]] = told["groups"]
     if told["unit"] == ("mm" if groups.are_in_mm else "sigma"):
         return members if told["unit"] == "sigma" else [group | {name: group[f"{name}_mm"] for name in LENGTHS} for group in members]
@@ -43,8 +43,8 @@ def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: s
             if length is None:
                 axes.axhline(lower, color=COLOUR, linestyle=":", label=f"{label} (lower bound)")
                 continue
-            axes.axhspan(lower, upper, color=COLOUR, alpha=0.15, linewidth=0, zorder=0)
             axes.axhline(length, color=COLOUR, linestyle="--", linewidth=1, label=name)
+            axes.axhspan(lower, upper, color=COLOUR, alpha=0.15, linewidth=0, zorder=0, label=f"{name}, {100 * groups.confidence:g} % interval")
         elif length is None:
             axes.plot(place, lower, marker=style.LOWER_BOUND, color=COLOUR, linestyle="none", markersize=25, label=name, zorder=ABOVE)
         else:
