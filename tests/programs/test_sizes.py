@@ -275,8 +275,9 @@ class Sizes(ProgramTest):
                 dashed = [line.get_ydata()[0] for line in axes.lines if line.get_linestyle() == "--"]
                 np.testing.assert_allclose(dashed, tangents)
                 legend = axes.get_legend()
-                self.assertEqual([] if legend is None else [text.get_text()[-3:] for text in legend.get_texts()], [" 0$", "15$"] if name == "both" else [])
+                self.assertEqual([] if legend is None else [text.get_text() for text in legend.get_texts()], ["lattice angle 0°", "lattice angle 15°"] if name == "both" else [])
                 texts = [text.get_text() for text in figure.findobj(Text)]
+                self.assertEqual(any("lattice angle 15°" in text for text in texts), bool(tangents))
                 self.assertIn("Lateral displacement vs diameter", texts)
                 self.assertEqual(any("dashed: along the rows" in text for text in texts), bool(tangents))
 

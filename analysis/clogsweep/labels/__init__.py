@@ -82,6 +82,8 @@ def said(column: Column, value: float | str | None) -> str:
         return str(column["label"].format(value))
     if isinstance(value, str):
         return f"{column['name'].replace('_', ' ')} {literal(value)}"
+    if column["name"] == "lattice_angle" and value is not None:
+        return f"lattice angle {value:.4g}°"  # The symbol may also be that of the tilt of plates.
     return f"${symbol(column)} = {number(value)}$"
 
 

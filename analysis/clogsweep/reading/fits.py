@@ -41,8 +41,7 @@ def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
     def scaled(group: Group) -> Group:
         lengths = {name: float(f"{group[name] * group['diameter_mm'] ** power:.10g}") for name, power in powers.items()
                    if power and isinstance(group[name], int | float)}
-        angle = group["lattice_angle"]
-        nominal = {} if angle is None or not asked else {"lattice_angle": min(asked, key=lambda one: abs(one - angle))}
+        nominal = {"lattice_angle": min(asked, key=lambda one: abs(one - group["lattice_angle"]))} if asked and group.get("lattice_angle") is not None else {}
         return group | {"in_table": group} | lengths | nominal
 
     groups = [scaled(group) for group in groups]
