@@ -196,21 +196,19 @@ std::string law_of_speed(const Laboratory& lab) {
       lab.measured->exponent);
 }
 
-Laboratory parse_laboratory(const std::string& text, const std::string& source) {
+Laboratory parse_laboratory(const std::string& text, const std::string& source, const std::string& remedy) {
   std::vector<Laboratory> all = parse_laboratories(text, source);
   if (all.size() == 1) return std::move(all.front());
   throw Error(
-      fmt::format("{} describes {} droplets, but only one has a place here; give one diameter and "
-                  "one angle",
-                  source, all.size()));
+      fmt::format("{} describes {} droplets, but only one has a place here; {}", source, all.size(), remedy));
 }
 
 std::vector<Laboratory> read_laboratories(const std::string& path) {
   return parse_laboratories(console::read_text(path), path);
 }
 
-Laboratory read_laboratory(const std::string& path) {
-  return parse_laboratory(console::read_text(path), path);
+Laboratory read_laboratory(const std::string& path, const std::string& remedy) {
+  return parse_laboratory(console::read_text(path), path, remedy);
 }
 
 }  // namespace clog::laboratory

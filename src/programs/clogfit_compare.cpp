@@ -11,7 +11,9 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/python_command.hpp"
 #include "clog/console/exit_codes.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clog/results/comparison.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/merger.hpp"
@@ -44,6 +46,15 @@ std::vector<results::Side> sides(const cli::CommandLine& line, const std::vector
   return results::sides_of_files(paths);
 }
 
+/// Says which columns of a measured table choose no groups of another table.
+void say_unmatched(const results::DistanceTable& table, const results::DistanceTable& other) {
+  const std::vector<std::string> columns = results::unmatched_labels(table, other);
+  if (results::is_distance_table(table.source) && !columns.empty())
+    console::say(fmt::format(
+        "clogfit compare: {}: columns without a match in {}: {} (groups are compared whatever their values)",
+        table.source, other.source, joined(columns)));
+}
+
 /// Compares files, at least one of which is a table of measured distances.
 results::Comparisons compare_measured(const cli::CommandLine& line, const std::vector<std::string>& paths,
                                       double confidence) {
@@ -52,18 +63,26 @@ results::Comparisons compare_measured(const cli::CommandLine& line, const std::v
       throw Error(
           fmt::format("no place for --{} (measured distances have no seeds to pair); leave it out", option));
   if (paths.size() < 2) throw Error("nothing to compare this table with; give a sweep or another table");
-  std::vector<results::DistanceTable> tables;
-  std::vector<sweep::RunRow> rows;
-  for (const std::string& path : paths) {
-    if (results::is_distance_table(path)) {
-      tables.push_back(results::read_distances(path));
-      continue;
+  std::vector<results::DistanceTable> tables(paths.size());
+  std::vector<std::string> asked;
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    if (results::is_distance_table(paths[i])) {
+      tables[i] = results::read_distances(paths[i]);
+      asked.insert(asked.end(), tables[i].labels.begin(), tables[i].labels.end());
     }
-    const results::Side side = results::sides_of_files({path}).front();
-    tables.push_back(results::distances_of(side, scales_of_rows(line, side.rows)));
-    rows.insert(rows.end(), side.rows.begin(), side.rows.end());
+  std::vector<sweep::RunRow> rows;
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    if (!results::is_distance_table(paths[i])) {
+      const results::Side side = results::sides_of_files({paths[i]}).front();
+      tables[i] = results::distances_of(side, scales_of_rows(line, side.rows), asked);
+      rows.insert(rows.end(), side.rows.begin(), side.rows.end());
+    }
+  results::Comparisons found = results::compare_distances(tables, confidence, sigma_in_mm(line, rows));
+  for (std::size_t i = 1; i < tables.size(); ++i) {
+    say_unmatched(tables[0], tables[i]);
+    say_unmatched(tables[i], tables[0]);
   }
-  return results::compare_distances(tables, confidence, sigma_in_mm(line, rows));
+  return found;
 }
 
 /// Draws the comparison in Python. Does not return.

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <iostream>
 #include <string>
 #include <vector>
@@ -5,6 +7,8 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
+#include "clog/console/streams.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clog/results/merger.hpp"
 #include "clog/results/salvage.hpp"
 #include "clog/store/run_table.hpp"
@@ -54,6 +58,11 @@ int clogsweep_merge(int argc, const char* const* argv) {
   const results::MergedSweep merged = results::merge(paths, origin_of_table(line));
   results::write(merged.table, merged.snapshots, output);
   print_merged(output, paths, merged);
+  if (const auto& keys = merged.differing_numerics; !keys.empty())
+    console::say(
+        fmt::format("clogsweep merge: no parameter set is in two of the files, because they differ in {}; "
+                    "clogfit does not join their runs",
+                    joined(keys)));
   return console::exit_success;
 }
 

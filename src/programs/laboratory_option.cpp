@@ -23,6 +23,13 @@
 namespace clog::programs {
 namespace {
 
+/// The laboratory of --lab, for the results of this row.
+laboratory::Laboratory laboratory_for(const cli::CommandLine& line, const sweep::RunRow* row) {
+  return laboratory::read_laboratory(line.get("lab"), row && row->parameters.laboratory
+                                                          ? "omit --lab: the sweep stores its laboratories"
+                                                          : laboratory::give_one_droplet);
+}
+
 results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
   constexpr double milli = 1e-3;
   const laboratory::Scales scales = laboratory::scales_of(lab);
@@ -237,7 +244,7 @@ results::Scales scales_of_rows(const cli::CommandLine& line, const std::vector<s
 }
 
 std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows) {
-  if (line.has("lab")) return scale_of(laboratory::read_laboratory(line.get("lab"))).length;
+  if (line.has("lab")) return scale_of(laboratory_for(line, rows.empty() ? nullptr : &rows.front())).length;
   if (rows.empty() || !rows.front().parameters.laboratory) return std::nullopt;
   const LaboratoryText& first = *rows.front().parameters.laboratory;
   const bool is_shared = std::ranges::all_of(rows, [&](const sweep::RunRow& row) {
@@ -249,7 +256,7 @@ std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vecto
 
 void set_scales(const cli::CommandLine& line, std::vector<results::Group>& groups) {
   std::optional<laboratory::Laboratory> of_all;
-  if (line.has("lab")) of_all = laboratory::read_laboratory(line.get("lab"));
+  if (line.has("lab")) of_all = laboratory_for(line, &groups.front().first_row);
   bool replaces = false;
   for (results::Group& group : groups) {
     const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory;

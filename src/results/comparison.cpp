@@ -15,6 +15,7 @@
 #include "clog/console/rounded.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/results/selection.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/results/usual_parameters.hpp"
 #include "clog/sweep/columns.hpp"
@@ -171,9 +172,7 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
     std::vector<std::string> names;
     for (const sweep::Column* one : columns) names.push_back(one->name);
     const std::string meant = sweep::did_you_mean(column, names);
-    throw Error(fmt::format(
-        "invalid --by={} (no parameter of a run){}", name,
-        meant.empty() ? "; clogsweep --schema lists them" : fmt::format("; did you mean {}?", meant)));
+    throw Error(fmt::format("invalid --by={} (no parameter of a run){}", name, hint_at_column(name, meant)));
   }
   std::map<Value, std::vector<RunRow>> rows;
   for (const RunRow& row : file.rows) rows[sweep::column(column).get(row)].push_back(row);

@@ -12,6 +12,7 @@
 #include "clog/console/csv.hpp"
 #include "clog/console/decimal_commas.hpp"
 #include "clog/console/printable.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
@@ -25,12 +26,23 @@ namespace {
 constexpr const char* example = "its first line names columns, such as 'distance [mm],clogged,wall'";
 constexpr double metres_per_mm = 1e-3;
 
+/// The name of a label as a column of a sweep.
+std::string column_name(std::string label) {
+  std::ranges::replace(label, '-', '_');
+  return label;
+}
+
+bool has_label(const std::vector<std::string>& labels, const std::string& name) {
+  return std::ranges::find(labels, column_name(name), column_name) != labels.end();
+}
+
 /// Places of the columns, and other contents of the first line.
 struct Head {
   int distance = -1, clogged = -1;
   double factor = 1;  ///< factor from the column's unit to the table's unit
   std::size_t num_columns = 0;
   std::vector<std::size_t> labels;
+  std::vector<double> label_factors;  ///< factors from the labels' units to mm or degrees
 };
 
 void set_once(int& place, std::size_t column, const char* name) {
@@ -49,6 +61,13 @@ void take_distance(Head& head, std::size_t column, const std::string& unit, Dist
   if (metres) head.factor = *metres / metres_per_mm;
 }
 
+/// The factor to the unit of a laboratory's column, mm or degrees; nullopt for any other column.
+std::optional<double> laboratory_factor(const std::string& name, const std::string& unit) {
+  if (name == "angle" && std::set<std::string>{"", "deg", "degree", "degrees", "°"}.contains(unit)) return 1;
+  const std::optional<double> metres = console::metres_of(unit.empty() ? "mm" : unit);
+  return name == "diameter" && metres ? std::optional(*metres / metres_per_mm) : std::nullopt;
+}
+
 Head head_of(std::vector<std::string> cells, DistanceTable& table) {
   while (!cells.empty() && cells.back().empty()) cells.pop_back();
   Head head;
@@ -62,8 +81,12 @@ Head head_of(std::vector<std::string> cells, DistanceTable& table) {
     } else if (console::in_lower_case(cells[i]) == "clogged") {
       set_once(head.clogged, i, "clogged");
     } else if (!cells[i].empty()) {  // pandas writes its index without a name
+      const std::optional<double> factor = laboratory_factor(name, unit);
       head.labels.push_back(i);
-      table.labels.push_back(console::printable(cells[i]));
+      head.label_factors.push_back(factor.value_or(1));
+      table.labels.push_back(factor ? name : console::printable(cells[i]));
+      if (std::ranges::count(table.labels, table.labels.back()) > 1)
+        throw Error(fmt::format("there are two columns named {}; leave one", table.labels.back()));
     }
   }
   if (head.distance < 0 || head.clogged < 0)
@@ -94,10 +117,12 @@ class Cells {
     }
     throw Error(fmt::format("distance is '{}'; write a number of 0 or more", excerpt(cell)));
   }
-  /// A number, or the words of a label.
-  Value label(const std::string& cell) const {
+  /// A number times the factor, or the words of a label.
+  static Value label(const std::string& cell, double factor) {
+    std::string number = cell;
+    if (!console::may_have_thousands(cell)) std::ranges::replace(number, ',', '.');
     try {
-      return sweep::to_number(cell);
+      return factor == 1 ? sweep::to_number(number) : short_number(factor * sweep::to_number(number));
     } catch (const Error&) {
       return cell.empty() ? Value() : Value(console::printable(cell));
     }
@@ -108,10 +133,18 @@ class Cells {
   console::DecimalCommas commas_;
 };
 
-/// The name of a label as a column of a sweep.
-std::string column_name(std::string label) {
-  std::ranges::replace(label, '-', '_');
-  return label;
+std::optional<double> number_in(const Value& value) {
+  if (const auto* count = std::get_if<std::int64_t>(&value)) return static_cast<double>(*count);
+  const auto* number = std::get_if<double>(&value);
+  return number ? std::optional(*number) : std::nullopt;
+}
+
+/// Whether two labels are the same. A person may have rounded a number to three digits.
+bool are_alike(const Value& one, const Value& other) {
+  constexpr double rounding = 0.005;
+  const std::optional<double> number = number_in(one), number_there = number_in(other);
+  return number && number_there ? std::abs(*number - *number_there) <= rounding * std::abs(*number_there)
+                                : one == other;
 }
 
 /// How the groups of two tables match.
@@ -121,13 +154,8 @@ struct Match {
   std::vector<std::size_t> only_there;
 
   bool have_common_labels(const DistanceGroup& here, const DistanceGroup& there) const {
-    const auto number =
-        [](const Value& value) {  // a text table does not distinguish integers from other numbers
-          const auto* count = std::get_if<std::int64_t>(&value);
-          return count ? Value(static_cast<double>(*count)) : value;
-        };
     return std::ranges::all_of(common, [&](const auto& pair) {
-      return number(here.labels[pair.first]) == number(there.labels[pair.second]);
+      return are_alike(here.labels[pair.first], there.labels[pair.second]);
     });
   }
 };
@@ -152,7 +180,30 @@ DistanceTable grouped(DistanceTable table,
   return table;
 }
 
+/// Says which columns make each droplet a group of its own, such as a column that numbers the droplets.
+void hint_at_lone_droplets(const DistanceTable& table) {
+  constexpr std::size_t fewest_groups = 3;
+  if (table.groups.size() < fewest_groups) return;
+  for (const DistanceGroup& group : table.groups)
+    if (group.runs.size() > 1) return;
+  std::vector<std::string> unique;
+  for (std::size_t i = 0; i < table.labels.size(); ++i) {
+    std::set<Value> values;
+    for (const DistanceGroup& group : table.groups) values.insert(group.labels[i]);
+    if (values.size() == table.groups.size()) unique.push_back(table.labels[i]);
+  }
+  console::say(fmt::format(
+      "clogfit: {}: each droplet is a group of its own; delete columns such as {} to join droplets",
+      table.source, joined(unique.empty() ? table.labels : unique)));
+}
+
 }  // namespace
+
+std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other) {
+  std::vector<std::string> unmatched = table.labels;
+  std::erase_if(unmatched, [&](const std::string& label) { return has_label(other.labels, label); });
+  return unmatched;
+}
 
 bool is_distance_table(const std::string& path) {
   static const std::set<std::string> endings = {".csv", ".tsv", ".txt", ".dat"};
@@ -176,26 +227,30 @@ DistanceTable read_distances(const std::string& path) {
                               sweep::counted(std::ssize(texts), "cell"), head->num_columns));
     std::vector<Value> labels;
     labels.reserve(head->labels.size());
-    for (const std::size_t label : head->labels) labels.push_back(cells.label(texts[label]));
+    for (std::size_t i = 0; i < head->labels.size(); ++i)
+      labels.push_back(Cells::label(texts[head->labels[i]], head->label_factors[i]));
     const double distance = cells.distance(texts[static_cast<std::size_t>(head->distance)], line.separator);
     runs[std::move(labels)].push_back(
         {head->factor * distance, is_clogged(texts[static_cast<std::size_t>(head->clogged)])});
   });
   cells.check(path);
   if (runs.empty()) throw Error(fmt::format("{} holds no distances; {}", path, example));
-  return grouped(std::move(table), std::move(runs));
+  table = grouped(std::move(table), std::move(runs));
+  hint_at_lone_droplets(table);
+  return table;
 }
 
-DistanceTable distances_of(const Side& side, const Scales& scales) {
+DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked) {
   require_lengths(side);
-  const bool is_in_mm = scales.size() > 1;
+  const bool is_in_mm =
+      scales.size() > 1 || (!scales.empty() && (has_label(asked, "diameter") || has_label(asked, "angle")));
   DistanceTable table{.source = side.name, .unit = is_in_mm ? "mm" : "sigma", .labels = {}, .groups = {}};
   std::vector<const sweep::RunRow*> rows;
   for (const sweep::RunRow& row : side.rows)
     if (row.status != RunStatus::failed && sweep::fault_of(row).empty()) rows.push_back(&row);
   std::vector<const sweep::Column*> varying;
   for (const sweep::Column* column : group_columns())
-    if (std::ranges::any_of(rows, [&](const sweep::RunRow* row) {
+    if (has_label(asked, column->name) || std::ranges::any_of(rows, [&](const sweep::RunRow* row) {
           return separating_value(*column, *row) != separating_value(*column, *rows.front());
         })) {
       varying.push_back(column);
@@ -223,11 +278,14 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
                               std::optional<double> sigma_mm) {
   const DistanceTable& there = tables.front();
   for (const DistanceTable& table : tables)
-    if (table.unit != there.unit && !sigma_mm)
-      throw Error(
-          fmt::format("cannot compare {} with {} (one is in mm, the other in droplet diameters); give the "
-                      "droplet's diameter by --lab lab.cfg",
-                      table.source, there.source));
+    if (table.unit != there.unit && !sigma_mm) {
+      const bool is_sweep_in_mm = !is_distance_table((table.unit == "mm" ? table : there).source);
+      throw Error(fmt::format(
+          "cannot compare {} with {} (one is in mm, the other in droplet diameters); {}", table.source,
+          there.source,
+          is_sweep_in_mm ? "the sweep has several droplets: give distances in mm, and a column diameter"
+                         : "give the droplet's diameter by --lab lab.cfg"));
+    }
   Comparisons comparisons;
   comparisons.unit = sigma_mm ? "sigma" : there.unit;
   comparisons.sigma_mm = sigma_mm;
@@ -258,11 +316,14 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
         comparisons.all.push_back(std::move(comparison));
       }
   }
-  if (comparisons.all.empty())
+  if (comparisons.all.empty()) {
+    std::vector<std::string> common = there.labels;
+    std::erase_if(common, [&](const std::string& label) { return !has_label(tables[1].labels, label); });
     throw Error(
-        fmt::format("cannot compare {} with {} (no group of one has the labels of a group of the "
-                    "other); both need the same values of the columns that both have",
-                    tables[1].source, there.source));
+        fmt::format("cannot compare {} with {} (no group of one has the labels of a group of the other); "
+                    "both need the same values of {}",
+                    tables[1].source, there.source, joined(common)));
+  }
   return comparisons;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -18,6 +19,7 @@
 #include "clog/results/run_list.hpp"
 #include "clog/results/salvage.hpp"
 #include "clog/results/stored_sweep.hpp"
+#include "clog/results/usual_parameters.hpp"
 #include "clog/sweep/row_check.hpp"
 
 namespace clog::results {
@@ -110,6 +112,32 @@ class Rows {
     return false;
   }
 };
+
+/// Numerical keys, such as vertices, in which parameter sets of two files differ that are otherwise the same;
+/// empty if two files have a parameter set in common.
+std::set<std::string> differing_numerics(const std::vector<Part>& parts) {
+  const auto is_numerical = [](const sweep::Column& column) {
+    return column.parameter && column.parameter->role == ParameterRole::numerics;
+  };
+  std::map<std::vector<Value>, const Part*> sets;
+  std::map<std::vector<Value>, std::pair<const Part*, const RunRow*>> alike;  // same but for numerical keys
+  std::set<std::string> names;
+  for (const Part& part : parts)
+    for (const RunRow& row : part.table.rows) {
+      const auto [set, is_new] = sets.try_emplace(parameter_values(row), &part);
+      if (set->second != &part) return {};
+      if (!is_new) continue;
+      std::vector<Value> others;
+      for (const sweep::Column* column : group_columns())
+        if (!is_numerical(*column)) others.push_back(separating_value(*column, row));
+      const auto [known, first] = alike.try_emplace(std::move(others), &part, &row).first->second;
+      if (known == &part) continue;
+      for (const sweep::Column* column : group_columns())
+        if (is_numerical(*column) && separating_value(*column, row) != separating_value(*column, *first))
+          names.insert(column->name);
+    }
+  return names;
+}
 
 /// Adds those circles of a file that are missing.
 void add_circles(const store::SweepFile& file, std::vector<store::CircleFile>& all) {
@@ -218,6 +246,7 @@ MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance
   parts.reserve(paths.size());
   for (const std::string& path : paths) parts.push_back(whole_part(path));
   MergedSweep merged = join(parts);
+  merged.differing_numerics = differing_numerics(parts);
   RunList runs;
   for (const Part& part : parts) add_runs(part, runs);
   if (runs.empty()) throw Error("there is nothing to merge: the files have no runs");

@@ -29,12 +29,18 @@ const sweep::Column& find_column(const std::string& name, const std::string& con
   std::string meant = name;
   std::ranges::replace(meant, '-', '_');
   if (std::ranges::find(names, meant) == names.end()) meant = sweep::did_you_mean(meant, names);
-  throw Error(fmt::format(
-      "invalid condition '{}' (the table has no column '{}'){}", condition, name,
-      meant.empty() ? "; clogsweep --schema lists them" : fmt::format("; did you mean {}?", meant)));
+  throw Error(fmt::format("invalid condition '{}' (the table has no column '{}'){}", condition, name,
+                          hint_at_column(name, meant)));
 }
 
 }  // namespace
+
+std::string hint_at_column(const std::string& name, const std::string& meant) {
+  if (name == "diameter" || name == "angle")
+    return "; clogfit lists the lengths in mm of each droplet, and with --format csv its laboratory, which "
+           "clogsweep select takes";
+  return meant.empty() ? "; clogsweep --schema lists them" : fmt::format("; did you mean {}?", meant);
+}
 
 Condition::Condition(const std::string& text) : text_(text) {
   constexpr std::pair<const char*, Relation> relations[] = {

@@ -23,8 +23,21 @@ namespace {
 
 constexpr std::int64_t largest_sweep = 100'000'000;
 
+/// Why a check refused one value of this key's list: the decimal that may have been meant, or another list.
+std::string hint_at_list(const Settings& branch, const Key& key, const std::string& message) {
+  for (const Key& other : keys())
+    if (other.name != key.name && message.find(other.name + "=") != std::string::npos &&
+        branch.values(other.name).size() > 1)
+      return "; each value of a list meets all of the other; to pair values, see clogsweep --points";
+  constexpr std::size_t most_digits = 2;  // before a comma that may be a decimal one
+  const std::string& list = branch.text(key.name);
+  const std::string meant = with_decimal_point(list);
+  return meant.find('.') <= most_digits ? fmt::format("; {} are two values: did you mean {}?", list, meant)
+                                        : "";
+}
+
 /// Calls check() for one branch of the settings, and returns its result. If the check refuses one value of a
-/// list like 0,3, the message asks whether 0.3 was meant.
+/// list, the message says what may have been meant.
 /// @param where  beginning of the message
 template <class Check>
 auto checked(const Settings& branch, const std::string& where, const Check& check) try {
@@ -32,9 +45,8 @@ auto checked(const Settings& branch, const std::string& where, const Check& chec
 } catch (const Error& error) {
   std::string message = error.what();
   for (const Key& key : keys())
-    if (const std::string meant = with_decimal_point(branch.text(key.name));
-        !meant.empty() && message.starts_with("invalid " + key.name + "="))
-      message += fmt::format("; {} are two values: did you mean {}?", branch.text(key.name), meant);
+    if (message.starts_with("invalid " + key.name + "=") && branch.values(key.name).size() > 1)
+      message += hint_at_list(branch, key, message);
   throw Error(where + message);
 }
 

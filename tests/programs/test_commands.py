@@ -88,6 +88,12 @@ class Meant(ProgramTest):
         self.refuse("clogrun", "channel", "--orifice", "0,7", "--output", "r.h5", words=["did you mean 0.7?"])
         self.assertIn("line-tension = 1,3\n", self.succeed("clogsweep", "line-tension=1,3", "--print-config").stdout)
 
+    def test_lists_whose_values_contradict_each_other_are_pointed_to_points(self):
+        exchange = "invalid receding-angle=180 (larger than advancing-angle=155) exchange them"
+        for advancing, end in [("155,180", "; each value of a list meets all of the other; to pair values, see clogsweep --points\n"), ("155", "\n")]:
+            done = self.run_program("clogsweep", "receding-angle=140,180", f"advancing-angle={advancing}", "--output", "s.h5")
+            self.assertEqual((done.returncode, done.stderr), (2, f"clogsweep: {exchange}{end}"))
+
     def test_a_list_that_could_be_a_decimal_is_run_with_a_line_about_it(self):
         told = "line-tension=0,5 is a list of 0 and 5; decimals have a point, 0.5\n"
         sweep = [*SMALL, "line-tension=0,5", "max-time=1", "seeds=1", "--output", "s.h5"]

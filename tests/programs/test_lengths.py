@@ -1,3 +1,4 @@
+import contextlib
 import csv
 import io
 import json
@@ -136,6 +137,25 @@ class Beside(ProgramTest):
         quantile = scipy.stats.f.ppf(0.975, 4, 4)
         self.assertAlmostEqual(one["ratio_lower"], one["ratio"] / quantile, places=6)
         self.assertAlmostEqual(one["ratio_upper"], one["ratio"] * quantile, places=6)
+
+    def test_columns_that_match_nothing_are_named(self):
+        self.write("own.csv", "distance [sigma],clogged,wall,line-tension,vertices\n3,1,glass,1,64\n4,1,glass,3,64\n5,1,steel,1,64\n5,1,steel,1,64\n")
+        done = self.succeed("clogfit", "compare", "own.csv", "sweep.h5")
+        self.assertEqual(done.stderr, "clogfit compare: own.csv: columns without a match in sweep.h5: wall (groups are compared whatever their values)\n")
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None).known, None)
+        self.assertTrue(said.getvalue().endswith("own.csv: columns without a match in the sweep: wall\n"), said.getvalue())
+        # A number may be rounded. A key with one value in the sweep matches this value only.
+        self.write("own.csv", "distance [sigma],clogged,line-tension\n3,1,1.004\n")
+        self.assertEqual([one["line_tension"] for one in self.compare("own.csv", "sweep.h5")], [1])
+        self.write("own.csv", "distance [sigma],clogged,vertices\n3,1,96\n")
+        self.refuse("clogfit", "compare", "own.csv", "sweep.h5", words=["no group"])
+
+    def test_a_column_of_numbers_of_droplets_gets_a_hint(self):
+        for rows, hint in [("1,glass,3,1\n2,glass,4,1\n3,steel,5,0\n", "clogfit: own.csv: each droplet is a group of its own; delete columns such as no to join droplets\n"),
+                           ("1,glass,3,1\n1,glass,4,1\n3,steel,5,0\n4,steel,6,1\n", "")]:
+            self.write("own.csv", "no,wall,distance [mm],clogged\n" + rows)
+            self.assertEqual(self.succeed("clogfit", "lengths", "own.csv").stderr, hint)
 
     def test_what_cannot_be_compared_is_refused(self):
         self.write("own.csv", "distance [mm],clogged\n3,1\n")

@@ -192,6 +192,13 @@ class Merged(PointsTest):
         self.assertIn("24 rows of 3 files, 8 runs in more than one of them (1 with results that differ by instruction set", said)
         self.assertEqual(self.rows("all.h5")["instruction_set"].nunique(), 1)
 
+    def test_a_merge_names_numerical_keys_that_keep_parameter_sets_apart(self):
+        for name, tension, vertices, seed in [("a", 1, 64, 1), ("b", 1, 80, 1), ("c", 3, 80, 1), ("d", 1, 64, 3)]:
+            self.succeed("clogsweep", *SMALL[1:], "max-time=1", f"line-tension={tension}", f"vertices={vertices}", f"seeds={seed}", "--output", f"{name}.h5")
+        for other, said in [("b", "clogsweep merge: no parameter set is in two of the files, because they differ in vertices; clogfit does not join their runs\n"),
+                            ("c", ""), ("d", "")]:
+            self.assertEqual(self.succeed("clogsweep", "merge", "a.h5", f"{other}.h5", "--output", f"a{other}.h5").stderr, said)
+
     def test_a_stopped_sweep_goes_on_in_the_merged_file(self):
         long = [*SMALL, "max-time=3000", "obstacle-gap=0.6", "line-tension=0.5", "--report-seconds=0.05"]
         self.succeed("clogsweep", *long, "seeds=1..3", "--output", "whole.h5")

@@ -151,6 +151,9 @@ class Sizes(ProgramTest):
             with self.subTest(key):
                 self.refuse("clogsweep", "--quiet", "--lab", lab, key, *ARRAY[:3], "--output", "x.h5", words=[f"invalid {key}"])
 
+    def test_the_list_of_tasks_has_no_round_off(self):
+        self.assertRegex(self.sweep(*ARRAY, "--dry-run", diameter="0.8 mm, 1.3 mm", angle="20 deg").stdout, r"\n1 [^\n]* 0\.307692 0\.184615 ")
+
     def test_mistakes_in_lists_get_one_line(self):
         for changed, words in [({"speed": "1 mm/s, 2 mm/s"}, ["2 values of speed for 4 sets"]), ({"tension": "1 mN/m, 2 mN/m"}, ["tension=1 mN/m, 2 mN/m", "one value"]),
                                ({"diameter": "0.8, 1.6 mm"}, ["'0.8' has no unit"]), ({"speed_angle": "120 deg"}, ["speed-angle=120 deg", "beyond 90"]),
@@ -166,7 +169,10 @@ class Sizes(ProgramTest):
         self.assertEqual(done.returncode, 2)
         self.assertIn("--lab several droplets", done.stderr)
         self.sweep()
-        self.refuse("clogfit", "s.h5", "--lab", "lab.cfg", words=["lab.cfg describes 4 droplets"])
+        self.refuse("clogfit", "s.h5", "--lab", "lab.cfg", words=["lab.cfg describes 4 droplets", "omit --lab"])
+        for words in (["compare", "s.h5", "--by", "diameter"], ["compare", "s.h5", "--by", "angle"]):
+            self.refuse("clogfit", *words, words=["no parameter of a run", "clogfit lists the lengths in mm of each droplet"])
+        self.refuse("clogsweep", "select", "s.h5", "diameter=0.8", "--output", "x.h5", words=["no column 'diameter'", "laboratory"])
         self.refuse("clogsweep", "--quiet", "--lab", self.lab(diameter="0.8 mm, 0.8 mm"), *ARRAY, "--output", "x.h5", words=["mean the same run"])
 
     def test_such_a_sweep_resumes_and_grows_and_is_one_of_its_config(self):
@@ -214,9 +220,15 @@ class Sizes(ProgramTest):
 
     def test_measured_distances_are_compared_in_millimetres_with_the_same_droplet(self):
         self.sweep()
-        self.write("own.csv", "distance [mm],clogged,diameter,angle\n3,1,1.6,20\n5,1,1.6,20\n4,0,0.8,45\n")
-        found = json.loads(self.succeed("clogfit", "compare", "own.csv", "s.h5", "--format", "json").stdout)
-        self.assertEqual({(one["diameter"], one["angle"]) for one in found["comparisons"]}, {(1.6, 20.0), (0.8, 45.0)})
+        for diameter, angle, factor in [("diameter", "angle", 1), ("diameter [mm]", "angle [deg]", 1), ("Diameter_um", "angle (degrees)", 1000)]:
+            self.write("own.csv", f"distance [mm],clogged,{diameter},{angle}\n3,1,{1.6 * factor},20\n5,1,{1.6 * factor},20\n4,0,{0.8 * factor},45\n")
+            found = json.loads(self.succeed("clogfit", "compare", "own.csv", "s.h5", "--format", "json").stdout)
+            self.assertEqual({(one["diameter"], one["angle"]) for one in found["comparisons"]}, {(1.6, 20.0), (0.8, 45.0)})
+        self.succeed("clogsweep", "select", "s.h5", f"laboratory={table(self.folder / 's.h5').laboratory[0]}", "--output", "one.h5")
+        self.refuse("clogfit", "compare", self.write("large.csv", "distance [mm],clogged,diameter\n3,1,1.6\n"), "one.h5", words=["no group"])
+        self.write("sigma.csv", "distance [sigma],clogged\n3,1\n")
+        self.refuse("clogfit", "compare", "sigma.csv", "s.h5", words=["several droplets", "distances in mm, and a column diameter"])
+        self.refuse("clogfit", "compare", "sigma.csv", "s.h5", "--lab", "lab.cfg", words=["omit --lab: the sweep stores its laboratories"])
 
     def test_figures_show_millimetres_over_the_diameter_and_a_curve_for_each_tilt(self):
         self.sweep()

@@ -2,13 +2,14 @@
 
 import json
 import pathlib
+import sys
 from typing import Any
 
 from matplotlib.axes import Axes
 
 from .. import style
 from ..labels.groups import Groups
-from ..reading import programs
+from ..reading import fits, programs
 from ..tools.errors import UserError
 
 COLOUR = "#444444"
@@ -22,8 +23,13 @@ def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None,
     @throws UserError  if the table is in mm and no diameter is known"""
     told = json.loads(programs.run_program(programs.programs_in(folder) / "clogfit", "lengths", table, "--format", "json", "--confidence", groups.confidence, *options))
     members: list[dict[str, Any]] = told["groups"]
+    known = {fits.DROPLETS[column]["key"] if column in fits.DROPLETS else column for column in groups.columns}
+    if unmatched := [label for label in told["labels"] if label.replace("-", "_") not in known]:
+        print(f"{table}: columns without a match in the sweep: {', '.join(unmatched)}", file=sys.stderr)
     if told["unit"] == ("mm" if groups.are_in_mm else "sigma"):
         return members if told["unit"] == "sigma" else [group | {name: group[f"{name}_mm"] for name in LENGTHS} for group in members]
+    if groups.are_in_mm:
+        raise UserError(f"{table} is in droplet diameters and the sweep has several droplets; give distances in mm")
     diameter = groups.laboratory.get("length_mm")
     if not diameter:
         raise UserError(f"{table} is in mm and the sweep in droplet diameters; give the droplet's diameter by --lab lab.cfg")

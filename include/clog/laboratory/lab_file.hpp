@@ -34,12 +34,15 @@ struct Laboratory {
 /// laboratory for each combination of the diameters and the angles that the file lists; angles vary fastest.
 /// @throws Error naming file and key
 std::vector<Laboratory> read_laboratories(const std::string& path);
+constexpr const char* give_one_droplet = "give one diameter and one angle";
 /// Reads a file of one laboratory. @throws Error as read_laboratories(), and if there are several
 /// laboratories
-Laboratory read_laboratory(const std::string& path);
+/// @param remedy  what to do if there are several, for the message
+Laboratory read_laboratory(const std::string& path, const std::string& remedy = give_one_droplet);
 /// One line on how the terminal speed was scaled; empty if it was measured.
 std::string law_of_speed(const Laboratory& lab);
 /// @param source  name of the text in messages
-Laboratory parse_laboratory(const std::string& text, const std::string& source);
+Laboratory parse_laboratory(const std::string& text, const std::string& source,
+                            const std::string& remedy = give_one_droplet);
 
 }  // namespace clog::laboratory

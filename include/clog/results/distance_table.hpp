@@ -28,17 +28,22 @@ struct DistanceTable {
 /// Whether this is the name of a text table, not of a sweep's file.
 bool is_distance_table(const std::string& path);
 /// Reads a table with the columns `distance [UNIT]` and `clogged` (1 or 0, yes or no, true or false). Rows
-/// with the same values in all other columns form a group.
+/// with the same values in all other columns form a group. The columns `diameter [UNIT]` and `angle [deg]`
+/// become the labels `diameter` [mm] and `angle`. Prints a hint if each droplet is a group of its own.
 /// @throws Error that names file and line
 DistanceTable read_distances(const std::string& path);
 /// The model's units in each laboratory. The key of the map is the checksum of the laboratory's description
 /// (the text of `lab.cfg`).
 using Scales = std::map<std::string, LaboratoryScale>;
-/// The runs of a sweep. Runs with the same values of all parameters that vary form a group. @throws Error as
-/// require_lengths()
-/// @param scales  if not empty, the units of several laboratories. Then distances are in mm, and the
-/// droplet's diameter [mm] and the tilt [degrees] separate groups, too.
-DistanceTable distances_of(const Side& side, const Scales& scales = {});
+/// The runs of a sweep. Runs with the same values of all parameters that vary or are asked for form a group.
+/// @param scales  units of the laboratories, if any. If there are several, or if `diameter` or `angle` is
+/// asked for, distances are in mm, and the droplet's diameter [mm] and the tilt [degrees] separate groups,
+/// too.
+/// @param asked  labels of the tables to compare with
+/// @throws Error as require_lengths()
+DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked);
+/// Labels of a table that the other table lacks.
+std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other);
 
 /// These functions print lengths, intervals, doubts and survival of each group, estimated as for a sweep.
 /// @param sigma_mm  the droplet's diameter in mm, if it is known: then lengths are given in both units

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct MergedSweep {
   std::int64_t num_shared = 0;                   ///< runs that several files have
   std::int64_t num_differing = 0;                ///< shared runs whose results differ by instruction set
   std::int64_t num_faulty = 0;  ///< rows that are excluded because they are physically impossible
+  /// Numerical keys in which the files differ, if no parameter set is in two of them.
+  std::set<std::string> differing_numerics;
 };
 
 /// Merges complete or stopped sweeps, to be written to a new file.

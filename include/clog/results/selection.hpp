@@ -10,6 +10,10 @@
 
 namespace clog::results {
 
+/// End of a message that there is no column of this name. @param meant  the column that may be meant, or
+/// empty
+std::string hint_at_column(const std::string& name, const std::string& meant);
+
 /// A condition on a column: `line_tension>=0.5`, `status=clogged,broken`, `preset!=robust`.
 class Condition {
  public:
