@@ -51,7 +51,7 @@ class Sweep(ProgramTest):
         (self.folder / "logger.c").write_text(FORK_LOGGER)
         subprocess.run(["cc", "-shared", "-fPIC", "-o", "logger.so", "logger.c", "-ldl"], cwd=self.folder, check=True)
         log = self.folder / "log.txt"
-        env = {**os.environ, "LD_PRELOAD": str(self.folder / "logger.so"), "FORK_LOG": str(log), "ASAN_OPTIONS": "verify_asan_link_order=0"}
+        env = {**os.environ, "LD_PRELOAD": str(self.folder / "logger.so"), "FORK_LOG": str(log), "ASAN_OPTIONS": f"{os.environ.get('ASAN_OPTIONS', '')}:verify_asan_link_order=0"}
         for more in (["--dry-run"], ["--output", "s.h5"], ["--output", "s.h5", "--dry-run"]):
             with self.subTest(more=more):
                 log.unlink(missing_ok=True)
