@@ -7,11 +7,22 @@ volatile std::sig_atomic_t stop_flag = 0;  // the only thing that a signal handl
 
 void raise_stop_flag(int) { stop_flag = 1; }
 
+bool hangup_was_ignored = false;  // as under nohup
+
+void look_at_hangup() {
+  struct sigaction action {};
+  hangup_was_ignored = sigaction(SIGHUP, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+/// Looks before the initialisation of shared libraries, in which UCX, a library of Open MPI, takes over
+/// SIGHUP.
+[[gnu::section(".preinit_array"), gnu::used]] void (*const look_first)() = look_at_hangup;
+
 }  // namespace
 
 void catch_stop_signals() {
   for (const int signal : stop_signals)
-    if (signal != SIGHUP || std::signal(SIGHUP, SIG_IGN) != SIG_IGN) std::signal(signal, raise_stop_flag);
+    std::signal(signal, signal == SIGHUP && hangup_was_ignored ? SIG_IGN : raise_stop_flag);
 }
 
 bool stop_signalled() { return stop_flag != 0; }

@@ -541,7 +541,7 @@ class WrongDrawings(Analysis):
         with self.subTest("a wall with teeth is a post"):
             teeth = [(3600 - 100 * i, 20 + 40 * (i % 2)) for i in range(37)]
             told = self.said_of("teeth", "--as-rows", circles=[(800, 300), (800, 900)], outlines=[[(0, 0), (3600, 0), *teeth], box(0, 1200, 3600, 1220)])
-            self.assertIn("1 outline or line as long", told)
+            self.assertIn("1 outline or line extends along the whole device", told)
             self.assertIn("3 posts", told)
 
     def test_the_package_that_rows_need_is_named(self):
