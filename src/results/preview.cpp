@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -57,12 +56,7 @@ void print_task(const sweep::Plan& plan, std::int64_t task,
   const sweep::RunRow row = sweep::describe(plan.task(task));
   std::cout << task;
   for (const sweep::Column* column : columns) {
-    Value value = column->get(row);
-    // Lengths from a laboratory have round-off in their last digits.
-    constexpr double most_with_six_digits = 1e6;
-    if (auto* number = std::get_if<double>(&value); number && std::abs(*number) < most_with_six_digits)
-      *number = std::stod(fmt::format("{:.6g}", *number));
-    const std::string text = sweep::text_of(value);
+    const std::string text = sweep::text_of(column->get(row));
     std::cout << ' ' << (text.empty() ? "-" : text);
   }
   std::cout << '\n';
