@@ -160,6 +160,7 @@ TEST_P(Step, JoinsStepsOfDifferentLengths) {
     constexpr double long_step = 1e-3, short_step = 0.3e-3;
     // Each entry makes one step, because the rates of the near-wall drag are renewed between entries.
     std::vector<Steps> all;
+    all.reserve(9);
     for (int k = 0; k < 9; ++k) all.push_back({1, k % 3 == 1 ? short_step : long_step});
     for (const std::string& set : instruction_sets()) {
       use_instruction_set(set);
