@@ -151,9 +151,6 @@ class Sizes(ProgramTest):
             with self.subTest(key):
                 self.refuse("clogsweep", "--quiet", "--lab", lab, key, *ARRAY[:3], "--output", "x.h5", words=[f"invalid {key}"])
 
-    def test_the_list_of_tasks_has_no_round_off(self):
-        self.assertRegex(self.sweep(*ARRAY, "--dry-run", diameter="0.8 mm, 1.3 mm", angle="20 deg").stdout, r"\n1 [^\n]* 0\.307692 0\.184615 ")
-
     def test_mistakes_in_lists_get_one_line(self):
         for changed, words in [({"speed": "1 mm/s, 2 mm/s"}, ["2 values of speed for 4 sets"]), ({"tension": "1 mN/m, 2 mN/m"}, ["tension=1 mN/m, 2 mN/m", "one value"]),
                                ({"diameter": "0.8, 1.6 mm"}, ["'0.8' has no unit"]), ({"speed_angle": "120 deg"}, ["speed-angle=120 deg", "beyond 90"]),
