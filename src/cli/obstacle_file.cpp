@@ -101,7 +101,7 @@ bool take_column(Columns& columns, int place, const std::string& cell) {
                                   : column == &columns.radius ? "the radius"
                                                               : std::string_view{name};
     throw Error(
-        fmt::format("there are two columns for {}, the second is '{}'; leave one", what, excerpt(cell)));
+        fmt::format("there are two columns for {}, the second is '{}'; delete one", what, excerpt(cell)));
   }
   if (unit.empty()) return true;
   if (columns.unit.empty()) columns.unit = unit;

@@ -47,7 +47,7 @@ struct Head {
 
 void set_once(int& place, std::size_t column, const char* name) {
   if (std::exchange(place, static_cast<int>(column)) >= 0)
-    throw Error(fmt::format("there are two columns named {}; leave one", name));
+    throw Error(fmt::format("there are two columns named {}; delete one", name));
 }
 
 /// Reads a column of distances. @throws Error if its unit is not a length
@@ -86,7 +86,7 @@ Head head_of(std::vector<std::string> cells, DistanceTable& table) {
       head.label_factors.push_back(factor.value_or(1));
       table.labels.push_back(factor ? name : console::printable(cells[i]));
       if (std::ranges::count(table.labels, table.labels.back()) > 1)
-        throw Error(fmt::format("there are two columns named {}; leave one", table.labels.back()));
+        throw Error(fmt::format("there are two columns named {}; delete one", table.labels.back()));
     }
   }
   if (head.distance < 0 || head.clogged < 0)
