@@ -123,7 +123,7 @@ class Devices(Walls):
 
     def test_files_that_say_too_little_are_refused(self):
         for text, words in [("a,b\n1,2\n", ["columns have to be x, y"]), ("x,y,width\n1,2,3\n", ["columns have to be", "width"]),
-                            ("x,y,d,r\n1,2,1,1\n", ["leave one"]), ("x,X,y\n1,2,1\n", ["two columns for x, the second is 'X'"]), ("x,y,d,diameter\n1,2,1,1\n", ["two columns for the diameter, the second is 'diameter'", "leave one"]),
+                            ("x,y,d,r\n1,2,1,1\n", ["leave one"]), ("x,X,y\n1,2,1\n", ["two columns for x, the second is 'X'"]), ("x,y,d,diameter\n1,2,1,1\n", ["two columns for the diameter, the second is 'diameter'", "delete one"]),
                             ("# units=um\nx,y\n1,2\n", ["line 1", "droplet=200um"]), ("# units=foot droplet=2foot\n1,2\n", ["'foot' is no unit"]),
                             ("# units=um droplet=-2um\n1,2\n", ["droplet must be"]), ("x,y,diameter\n1\n", ["line 2"]),
                             ("# units=um droplet=200um\nx,y\n100,200\n", ["line 3", "needs a diameter", "in um"])]:
