@@ -46,13 +46,18 @@ std::vector<results::Side> sides(const cli::CommandLine& line, const std::vector
   return results::sides_of_files(paths);
 }
 
-/// Says which columns of a measured table choose no groups of another table.
+/// Says which columns of a measured table choose no groups of another table, and which groups are left out.
 void say_unmatched(const results::DistanceTable& table, const results::DistanceTable& other) {
+  if (!results::is_distance_table(table.source)) return;
   const std::vector<std::string> columns = results::unmatched_labels(table, other);
-  if (results::is_distance_table(table.source) && !columns.empty())
+  if (!columns.empty())
     console::say(fmt::format(
         "clogfit compare: {}: columns without a match in {}: {} (groups are compared whatever their values)",
         table.source, other.source, joined(columns)));
+  const std::vector<std::string> groups = results::unmatched_groups(table, other);
+  if (!groups.empty())
+    console::say(fmt::format("clogfit compare: {}: left out, {} of {} groups match no runs of {}, such as {}",
+                             table.source, groups.size(), table.groups.size(), other.source, groups.front()));
 }
 
 /// Compares files, at least one of which is a table of measured distances.

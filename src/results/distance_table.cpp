@@ -205,6 +205,22 @@ std::vector<std::string> unmatched_labels(const DistanceTable& table, const Dist
   return unmatched;
 }
 
+std::vector<std::string> unmatched_groups(const DistanceTable& table, const DistanceTable& other) {
+  const Match match = match_of(table, other);
+  std::vector<std::string> unmatched;
+  for (const DistanceGroup& group : table.groups) {
+    if (std::ranges::any_of(
+            other.groups, [&](const DistanceGroup& there) { return match.have_common_labels(group, there); }))
+      continue;
+    std::vector<std::string> words;
+    words.reserve(table.labels.size());
+    for (std::size_t i = 0; i < table.labels.size(); ++i)
+      words.push_back(table.labels[i] + "=" + sweep::text_of(group.labels[i]));
+    unmatched.push_back(joined(words));
+  }
+  return unmatched;
+}
+
 bool is_distance_table(const std::string& path) {
   static const std::set<std::string> endings = {".csv", ".tsv", ".txt", ".dat"};
   return endings.contains(console::in_lower_case(std::filesystem::path(path).extension()));

@@ -151,6 +151,11 @@ class Beside(ProgramTest):
         self.write("own.csv", "distance [sigma],clogged,vertices\n3,1,96\n")
         self.refuse("clogfit", "compare", "own.csv", "sweep.h5", words=["no group"])
 
+    def test_groups_that_match_nothing_are_named(self):
+        self.write("own.csv", "distance [sigma],clogged,line-tension,wall\n3,1,1,glass\n4,1,7,glass\n4,1,7,steel\n")
+        done = self.succeed("clogfit", "compare", "own.csv", "sweep.h5")
+        self.assertEqual(done.stderr.splitlines()[-1], "clogfit compare: own.csv: left out, 2 of 3 groups match no runs of sweep.h5, such as line-tension=7, wall=glass")
+
     def test_a_column_of_numbers_of_droplets_gets_a_hint(self):
         for rows, hint in [("1,glass,3,1\n2,glass,4,1\n3,steel,5,0\n", "clogfit: own.csv: each droplet is a group of its own; delete columns such as no to join droplets\n"),
                            ("1,glass,3,1\n1,glass,4,1\n3,steel,5,0\n4,steel,6,1\n", "")]:

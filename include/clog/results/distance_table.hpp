@@ -44,6 +44,8 @@ using Scales = std::map<std::string, LaboratoryScale>;
 DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked);
 /// Labels of a table that the other table lacks.
 std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other);
+/// The groups of a table that match no group of the other table, each as `label=value, label=value`.
+std::vector<std::string> unmatched_groups(const DistanceTable& table, const DistanceTable& other);
 
 /// These functions print lengths, intervals, doubts and survival of each group, estimated as for a sweep.
 /// @param sigma_mm  the droplet's diameter in mm, if it is known: then lengths are given in both units
