@@ -268,7 +268,7 @@ class Refusals(SweepTest):
         """The environment in which these system calls of a program fail."""
         self.write("shim.c", SHIM)
         subprocess.run(["cc", "-shared", "-fPIC", "-o", "shim.so", "shim.c", "-ldl"], cwd=self.folder, check=True)
-        return {**os.environ, "LD_PRELOAD": str(self.folder / "shim.so"), "FAILS": fails, "ASAN_OPTIONS": "verify_asan_link_order=0", **more}
+        return {**os.environ, "LD_PRELOAD": str(self.folder / "shim.so"), "FAILS": fails, "ASAN_OPTIONS": f"{os.environ.get('ASAN_OPTIONS', '')}:verify_asan_link_order=0", **more}
 
     def succeed_where(self, fails, *arguments, **more):
         return self.succeed("clogsweep", *arguments, env=self.where(fails, **more))
