@@ -183,6 +183,17 @@ class Beside(ProgramTest):
         with self.assertRaisesRegex(UserError, "--lab"):
             measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None).known, None)
 
+    def test_measured_lengths_have_the_colour_of_their_curve(self):
+        self.succeed("clogsweep", "vertices=64", "box=20", "obstacle-density=saturated", "obstacle-gap=0.2,0.3", "line-tension=1,3", "max-time=60", "seeds=1", "--output", "two.h5")
+        groups = fit.read(self.folder / "two.h5", None).known
+        self.write("own.csv", "distance [sigma],clogged,line-tension,obstacle-gap\n3,1,1,0.2\n4,1,1,0.301\n4,1,2,0.3\n5,1,1,0.25\n")
+        own = measured.lengths_of(self.folder / "own.csv", groups, None)
+        figure = style.figure_of(lambda axes, these: measured.draw_on(axes, own, these, "own.csv"), groups)
+        stars = {(line.get_xdata()[0], line.get_ydata()[0]): line.get_color() for line in figure.axes[0].lines if line.get_marker() == "*"}
+        first, second = style.COLOURS[:2]
+        self.assertEqual([groups.curves()[i][1][0]["obstacle_gap"] for i in range(2)], [0.2, 0.3])
+        self.assertEqual(stars, {(1, 3): first, (1, 4): second, (2, 4): second, (1, 5): measured.COLOUR})
+
     def test_the_legend_names_the_bands_of_measured_lengths_with_the_confidence_of_the_sweep(self):
         self.write("own.csv", "distance [sigma],clogged,wall\n3,1,glass\n5,1,glass\n9,1,steel\n")
         groups = fit.read(self.folder / "sweep.h5", None, "--confidence", 0.5).known

@@ -1,6 +1,7 @@
 """Draws measured clogging lengths beside the simulated ones."""
 
 import json
+import math
 import pathlib
 import sys
 from typing import Any
@@ -14,6 +15,7 @@ from ..tools.errors import UserError
 
 COLOUR = "#444444"
 ABOVE = 4  # Drawing order in front of the simulated markers, which have 3.
+ROUNDING = 0.005  # Users may round numbers to three digits, see clogfit compare.
 LENGTHS = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 
 
@@ -36,24 +38,39 @@ def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None,
     return [group | {name: None if group[f"{name}_mm"] is None else group[f"{name}_mm"] / diameter for name in LENGTHS} for group in members]
 
 
+def are_alike(one: Any, other: Any) -> bool:
+    if isinstance(one, int | float) and isinstance(other, int | float):
+        return math.isclose(one, other, rel_tol=ROUNDING)
+    return bool(one == other)
+
+
+def colour_of(group: dict[str, Any], groups: Groups) -> str:
+    """The colour of the curve that has the values of a measured group, or a dark grey if the values choose no curve."""
+    columns = {fits.DROPLETS[name]["key"] if name in fits.DROPLETS else name: name for name in groups.curve_parameters()}
+    values = {columns[key]: value for name, value in group.items() if (key := name.replace("-", "_")) in columns}
+    alike = [place for place, (_, members) in enumerate(groups.curves()) if all(are_alike(value, members[0][name]) for name, value in values.items())]
+    return str(style.curve_style(alike[0])["color"]) if values and len(alike) == 1 else COLOUR
+
+
 def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: str) -> None:
-    """Draws a star with an interval for each group with a value of the abscissa. A group without this value becomes a
-    band over the whole range of the abscissa. If no droplet of a group clogged, an arrow points up from the lower
-    bound."""
+    """Draws a star with an interval for each group with a value of the abscissa, in the colour of the curve that has
+    the group's other values. A group without a value of the abscissa becomes a band over the whole range of the
+    abscissa. If no droplet of a group clogged, an arrow points up from the lower bound."""
     drawn = False
     for group in measured:
+        colour = colour_of(group, groups)
         place = next((value for name, value in group.items() if name.replace("-", "_") == groups.abscissa_key()), None)
         length, lower, upper = (group[f"clogging_length{end}"] for end in ("", "_lower", "_upper"))
         name = "_" if drawn else label
         if not isinstance(place, int | float):
             if length is None:
-                axes.axhline(lower, color=COLOUR, linestyle=":", label=f"{label} (lower bound)")
+                axes.axhline(lower, color=colour, linestyle=":", label=f"{label} (lower bound)")
                 continue
-            axes.axhline(length, color=COLOUR, linestyle="--", linewidth=1, label=name)
-            axes.axhspan(lower, upper, color=COLOUR, alpha=0.15, linewidth=0, zorder=0, label=f"{name}, {100 * groups.confidence:g} % interval")
+            axes.axhline(length, color=colour, linestyle="--", linewidth=1, label=name)
+            axes.axhspan(lower, upper, color=colour, alpha=0.15, linewidth=0, zorder=0, label=f"{name}, {100 * groups.confidence:g} % interval")
         elif length is None:
-            axes.plot(place, lower, marker=style.LOWER_BOUND, color=COLOUR, linestyle="none", markersize=25, label=name, zorder=ABOVE)
+            axes.plot(place, lower, marker=style.LOWER_BOUND, color=colour, linestyle="none", markersize=25, label=name, zorder=ABOVE)
         else:
-            axes.errorbar(place, length, yerr=[[length - lower], [upper - length]], fmt="*", color=COLOUR, markersize=9, capsize=2.5, label=name, zorder=ABOVE)
+            axes.errorbar(place, length, yerr=[[length - lower], [upper - length]], fmt="*", color=colour, ecolor=COLOUR, markeredgecolor=COLOUR, markersize=9, capsize=2.5, label=name, zorder=ABOVE)
         drawn = True
     style.legend(axes)  # The legend has entries for the sweep's markers already.
