@@ -197,6 +197,17 @@ void hint_at_lone_droplets(const DistanceTable& table) {
       table.source, joined(unique.empty() ? table.labels : unique)));
 }
 
+/// Whether the droplet, with its diameter and tilt, fixes the value of this column.
+bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
+                          const Scales& scales) {
+  std::map<std::pair<double, double>, Value> known;
+  return std::ranges::all_of(rows, [&](const sweep::RunRow* row) {
+    const LaboratoryScale& scale = scales.at(row->parameters.laboratory->check_sum());
+    const Value value = separating_value(column, *row);
+    return known.try_emplace({scale.length, scale.tilt}, value).first->second == value;
+  });
+}
+
 }  // namespace
 
 std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other) {
@@ -268,10 +279,13 @@ DistanceTable distances_of(const Side& side, const Scales& scales, const std::ve
   for (const sweep::Column* column : group_columns())
     if (has_label(asked, column->name) || std::ranges::any_of(rows, [&](const sweep::RunRow* row) {
           return separating_value(*column, *row) != separating_value(*column, *rows.front());
-        })) {
+        }))
       varying.push_back(column);
-      table.labels.push_back(column->name);
-    }
+  if (is_in_mm)
+    std::erase_if(varying, [&](const sweep::Column* column) {
+      return !has_label(asked, column->name) && follows_from_droplet(*column, rows, scales);
+    });
+  for (const sweep::Column* column : varying) table.labels.push_back(column->name);
   if (is_in_mm) table.labels.insert(table.labels.end(), {"diameter", "angle"});
   std::map<std::vector<Value>, std::vector<fit::Observation>> runs;
   for (const sweep::RunRow* row : rows) {

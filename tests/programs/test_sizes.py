@@ -221,6 +221,8 @@ class Sizes(ProgramTest):
             self.write("own.csv", f"distance [mm],clogged,{diameter},{angle}\n3,1,{1.6 * factor},20\n5,1,{1.6 * factor},20\n4,0,{0.8 * factor},45\n")
             found = json.loads(self.succeed("clogfit", "compare", "own.csv", "s.h5", "--format", "json").stdout)
             self.assertEqual({(one["diameter"], one["angle"]) for one in found["comparisons"]}, {(1.6, 20.0), (0.8, 45.0)})
+            # These follow from the droplet, so they would only widen the table.
+            self.assertFalse({"laboratory", "line_tension", "obstacle_gap"} & set(found["comparisons"][0]))
         self.succeed("clogsweep", "select", "s.h5", f"laboratory={table(self.folder / 's.h5').laboratory[0]}", "--output", "one.h5")
         self.refuse("clogfit", "compare", self.write("large.csv", "distance [mm],clogged,diameter\n3,1,1.6\n"), "one.h5", words=["no group"])
         self.write("sigma.csv", "distance [sigma],clogged\n3,1\n")

@@ -37,8 +37,8 @@ DistanceTable read_distances(const std::string& path);
 using Scales = std::map<std::string, LaboratoryScale>;
 /// The runs of a sweep. Runs with the same values of all parameters that vary or are asked for form a group.
 /// @param scales  units of the laboratories, if any. If there are several, or if `diameter` or `angle` is
-/// asked for, distances are in mm, and the droplet's diameter [mm] and the tilt [degrees] separate groups,
-/// too.
+/// asked for, distances are in mm, and the droplet's diameter [mm] and the tilt [degrees] separate groups, in
+/// place of parameters that follow from them.
 /// @param asked  labels of the tables to compare with
 /// @throws Error as require_lengths()
 DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked);
