@@ -205,8 +205,11 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
     const std::vector<std::string> columns = common_columns(there, here, sets_there, sets_here.back());
     if (i == 1) comparisons.columns = columns;
     if (columns != comparisons.columns)
-      throw Error(fmt::format("cannot compare {} (it varies {}, but {} varies {}); compare two at a time",
-                              here.name, joined(columns), sides[1].name, joined(comparisons.columns)));
+      throw Error(
+          fmt::format("cannot compare {} (it varies {}, but {} varies {}); compare two at a time, "
+                      "chosen with clogsweep select",
+                      here.name, columns.empty() ? "nothing" : joined(columns), sides[1].name,
+                      comparisons.columns.empty() ? "nothing" : joined(comparisons.columns)));
     const ByValues all_there = by_values(sets_there, columns, there);
     for (const auto& [values, set] : by_values(sets_here.back(), columns, here)) {
       const auto other = all_there.find(values);

@@ -169,6 +169,7 @@ class Sizes(ProgramTest):
         self.refuse("clogfit", "s.h5", "--lab", "lab.cfg", words=["lab.cfg describes 4 droplets", "omit --lab"])
         for words in (["compare", "s.h5", "--by", "diameter"], ["compare", "s.h5", "--by", "angle"]):
             self.refuse("clogfit", *words, words=["no parameter of a run", "clogfit lists the lengths in mm of each droplet"])
+        self.refuse("clogfit", "compare", "s.h5", "--by", "line-tension", words=["varies nothing", "clogsweep select"])
         self.refuse("clogsweep", "select", "s.h5", "diameter=0.8", "--output", "x.h5", words=["no column 'diameter'", "laboratory"])
         self.refuse("clogsweep", "--quiet", "--lab", self.lab(diameter="0.8 mm, 0.8 mm"), *ARRAY, "--output", "x.h5", words=["mean the same run"])
 
