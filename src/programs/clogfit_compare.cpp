@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clog/cli/command_line.hpp"
@@ -36,6 +38,9 @@ other parameters are the same on both sides of a comparison. Two runs of the sam
 obstacles. If the two lengths are correlated, the interval of their ratio comes from the pairs and is narrower than for
 two independent lengths. The interval comes from the numbers of clogs if fewer than ten pairs differ, if the correlation
 is uncertain, or if --by changes the array, so that equal seeds share no obstacles.
+
+Droplets of several sizes or tilts (see clogfit units) are compared with droplets of the same size and tilt, and their
+lengths are printed in mm.
 )";
 
 std::vector<results::Side> sides(const cli::CommandLine& line, const std::vector<std::string>& paths) {
@@ -44,6 +49,30 @@ std::vector<results::Side> sides(const cli::CommandLine& line, const std::vector
     throw Error(
         "nothing to compare this file with; give a second file, or --by and a key that varies in this file");
   return results::sides_of_files(paths);
+}
+
+/// One run of each laboratory, and one run without a laboratory if there are such runs.
+std::vector<sweep::RunRow> one_of_each_laboratory(const std::vector<results::Side>& sides) {
+  std::map<std::string, sweep::RunRow> known;
+  for (const results::Side& side : sides)
+    for (const sweep::RunRow& row : side.rows) {
+      const auto& own = row.parameters.laboratory;
+      known.try_emplace(own ? own->check_sum() : "", row);
+    }
+  std::vector<sweep::RunRow> rows;
+  rows.reserve(known.size());
+  for (auto& [check_sum, row] : known) rows.push_back(std::move(row));
+  return rows;
+}
+
+/// Compares sweeps, or the values of a parameter in a sweep.
+results::Comparisons compare_sweeps(const cli::CommandLine& line, const std::vector<std::string>& paths,
+                                    double confidence, std::optional<double> within) {
+  const std::vector<results::Side> all = sides(line, paths);
+  const std::vector<sweep::RunRow> rows = one_of_each_laboratory(all);
+  results::Comparisons found = results::compare(all, confidence, within, scales_of_rows(line, rows));
+  if (found.unit == "sigma") found.sigma_mm = sigma_in_mm(line, rows);
+  return found;
 }
 
 /// Says which columns of a measured table choose no groups of another table, and which groups are left out.
@@ -126,7 +155,7 @@ int clogfit_compare(int argc, const char* const* argv) {
   const bool are_measured = std::ranges::any_of(paths, results::is_distance_table);
   if (line.has("picture") && !are_measured) draw(line, paths);
   const results::Comparisons found = are_measured ? compare_measured(line, paths, confidence)
-                                                  : results::compare(sides(line, paths), confidence, within);
+                                                  : compare_sweeps(line, paths, confidence, within);
   std::cout << (format == "csv"    ? results::to_csv(found)
                 : format == "json" ? results::to_json(found, confidence)
                                    : results::to_text(found, confidence));

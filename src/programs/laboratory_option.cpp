@@ -30,6 +30,10 @@ laboratory::Laboratory laboratory_for(const cli::CommandLine& line, const sweep:
                                                           : laboratory::give_one_droplet);
 }
 
+void say_replaced(const cli::CommandLine& line) {
+  console::say(fmt::format("clogfit: {} replaces the laboratory stored with the rows", line.get("lab")));
+}
+
 results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
   constexpr double milli = 1e-3;
   const laboratory::Scales scales = laboratory::scales_of(lab);
@@ -244,7 +248,14 @@ results::Scales scales_of_rows(const cli::CommandLine& line, const std::vector<s
 }
 
 std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows) {
-  if (line.has("lab")) return scale_of(laboratory_for(line, rows.empty() ? nullptr : &rows.front())).length;
+  if (line.has("lab")) {
+    const laboratory::Laboratory lab = laboratory_for(line, rows.empty() ? nullptr : &rows.front());
+    if (std::ranges::any_of(rows, [&](const sweep::RunRow& row) {
+          return row.parameters.laboratory && row.parameters.laboratory->text() != lab.text;
+        }))
+      say_replaced(line);
+    return scale_of(lab).length;
+  }
   if (rows.empty() || !rows.front().parameters.laboratory) return std::nullopt;
   const LaboratoryText& first = *rows.front().parameters.laboratory;
   const bool is_shared = std::ranges::all_of(rows, [&](const sweep::RunRow& row) {
@@ -270,8 +281,7 @@ void set_scales(const cli::CommandLine& line, std::vector<results::Group>& group
       group.laboratory = scale_of(laboratory::parse_laboratory(own->text(), "the laboratory of some rows"));
     }
   }
-  if (replaces)
-    console::say(fmt::format("clogfit: {} replaces the laboratory stored with the rows", line.get("lab")));
+  if (replaces) say_replaced(line);
 }
 
 }  // namespace clog::programs

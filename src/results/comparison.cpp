@@ -134,6 +134,9 @@ Comparison compare_sets(const ParameterSet& here, const ParameterSet& there, dou
   return comparison;
 }
 
+/// What distinguishes the droplets of a cell: their diameter [mm] and their tilt [degrees].
+std::pair<double, double> droplet_of(const LaboratoryScale& scale) { return {scale.length, scale.tilt}; }
+
 /// Columns in which all compared sets differ, except automatic values.
 std::vector<std::string> differing_columns(
     const std::vector<std::pair<const RunRow*, const RunRow*>>& pairs) {
@@ -146,7 +149,52 @@ std::vector<std::string> differing_columns(
   return columns;
 }
 
+/// Names each comparison by its droplet, and gives its lengths in mm. @see compare()
+void name_droplets(Comparisons& comparisons,
+                   const std::vector<std::pair<const RunRow*, const RunRow*>>& compared,
+                   const Scales& scales) {
+  const auto scale_of = [&](const RunRow* row) -> const LaboratoryScale& {
+    return scales.at(row->parameters.laboratory->check_sum());
+  };
+  std::vector<const RunRow*> rows;
+  for (const auto& [here, there] : compared) {
+    if (droplet_of(scale_of(here)) != droplet_of(scale_of(there))) return;
+    rows.push_back(here);
+  }
+  std::vector<std::string> columns = {"diameter", "angle"};
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < comparisons.columns.size(); ++i)
+    if (!follows_from_droplet(sweep::column(comparisons.columns[i]), rows, scales)) {
+      kept.push_back(i);
+      columns.push_back(comparisons.columns[i]);
+    }
+  for (std::size_t i = 0; i < comparisons.all.size(); ++i) {
+    Comparison& one = comparisons.all[i];
+    const LaboratoryScale& scale = scale_of(rows[i]);
+    std::vector<Value> common = {short_number(scale.length), scale.tilt};
+    for (const std::size_t place : kept) common.push_back(one.common[place]);
+    one.common = std::move(common);
+    for (fit::CloggingLength* length : {&one.length_here, &one.length_there}) {
+      length->length *= scale.length;
+      length->interval.lower *= scale.length;
+      length->interval.upper *= scale.length;
+    }
+  }
+  comparisons.columns = std::move(columns);
+  comparisons.unit = "mm";
+}
+
 }  // namespace
+
+bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
+                          const Scales& scales) {
+  std::map<std::pair<double, double>, Value> known;
+  return std::ranges::all_of(rows, [&](const RunRow* row) {
+    const Value value = separating_value(column, *row);
+    return known.try_emplace(droplet_of(scales.at(row->parameters.laboratory->check_sum())), value)
+               .first->second == value;
+  });
+}
 
 void require_lengths(const Side& side) {
   if (side.rows.empty()) throw Error(side.name + " has no runs yet; let the sweep finish some first");
@@ -189,7 +237,8 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
   return sides;
 }
 
-Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within) {
+Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within,
+                    const Scales& scales) {
   if (sides.size() < 2) throw std::invalid_argument("a comparison has two sides or more");
   for (const Side& side : sides) require_lengths(side);
   Comparisons comparisons;
@@ -228,6 +277,7 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
         "cannot compare {} with {} (no parameter set of one has the values of any set of the other)",
         sides[1].name, there.name));
   comparisons.differing = differing_columns(compared);
+  if (scales.size() > 1) name_droplets(comparisons, compared, scales);
   return comparisons;
 }
 

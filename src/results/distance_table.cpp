@@ -197,17 +197,6 @@ void hint_at_lone_droplets(const DistanceTable& table) {
       table.source, joined(unique.empty() ? table.labels : unique)));
 }
 
-/// Whether the droplet, with its diameter and tilt, fixes the value of this column.
-bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
-                          const Scales& scales) {
-  std::map<std::pair<double, double>, Value> known;
-  return std::ranges::all_of(rows, [&](const sweep::RunRow* row) {
-    const LaboratoryScale& scale = scales.at(row->parameters.laboratory->check_sum());
-    const Value value = separating_value(column, *row);
-    return known.try_emplace({scale.length, scale.tilt}, value).first->second == value;
-  });
-}
-
 }  // namespace
 
 std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other) {

@@ -49,6 +49,14 @@ class Compared(Analysis):
             same = ((pairs.distance - pairs.distance_there).abs() <= near) & ((pairs.lateral_displacement - pairs.lateral_displacement_there).abs() <= near)
             self.assertEqual((one["both_clogged"], one["same_place"]), (len(pairs), same.sum()))
 
+    def test_lengths_are_in_millimetres_if_the_laboratory_is_known(self):
+        self.both_presets()
+        self.write("lab.cfg", "diameter = 2 mm\nangle = 20 deg\n")
+        for arguments in (["both.h5", "--by", "preset"], ["elastic.h5", "robust.h5"]):
+            for one in self.compare(*arguments, "--lab", "lab.cfg")["comparisons"]:
+                self.assertEqual(one["clogging_length_there_mm"], 2 * one["clogging_length_there"])
+        self.assertIn("lambda/mm", self.succeed("clogfit", "compare", "both.h5", "--by", "preset", "--lab", "lab.cfg").stdout)
+
     def test_files_are_compared_as_values_of_one_file_are(self):
         self.both_presets()
         of_files, of_values = self.compare("elastic.h5", "robust.h5"), self.compare("both.h5", "--by", "preset")

@@ -15,7 +15,7 @@ from support import BIN, ROOT, ProgramTest, table
 sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
 from clogsweep import style  # noqa: E402
-from clogsweep.drawing import critical_angles, device, lengths  # noqa: E402
+from clogsweep.drawing import critical_angles, device, lengths, ratios  # noqa: E402
 from clogsweep.pages import poster  # noqa: E402
 from clogsweep.reading import fits  # noqa: E402
 
@@ -229,6 +229,24 @@ class Sizes(ProgramTest):
         self.write("sigma.csv", "distance [sigma],clogged\n3,1\n")
         self.refuse("clogfit", "compare", "sigma.csv", "s.h5", words=["several droplets", "distances in mm, and a column diameter"])
         self.refuse("clogfit", "compare", "sigma.csv", "s.h5", "--lab", "lab.cfg", words=["omit --lab: the sweep stores its laboratories"])
+
+    def test_sweeps_are_compared_in_millimetres_with_the_same_droplet(self):
+        self.sweep(*ARRAY, "preset=elastic", "friction=0,0.3", output="f.h5")
+        told = json.loads(self.succeed("clogfit", "compare", "f.h5", "--by", "friction", "--format", "json").stdout)
+        self.assertEqual((told["columns"], told["differing"]), (["diameter", "angle"], ["friction"]))
+        lengths_in_mm = {(one["diameter_mm"], one["angle_degrees"], one["friction"]): one["clogging_length_lower_mm"] for one in self.fit("f.h5")["groups"]}
+        self.assertEqual(len(told["comparisons"]), len(SETS))
+        for one in told["comparisons"]:
+            for side, friction in [("here", 0.3), ("there", 0)]:
+                self.assertAlmostEqual(one[f"clogging_length_{side}_lower_mm"], lengths_in_mm[one["diameter"], one["angle"], friction])
+        figure = style.figure_of(ratios.draw_on, {**told, "comparisons": [one | {"ratio": 1, "ratio_lower": 0.5, "ratio_upper": 2} for one in told["comparisons"]]})
+        self.assertEqual(figure.axes[0].get_xlabel(), "diameter of the droplet [mm]")
+        self.assertEqual({text.get_text() for text in figure.axes[0].get_legend().get_texts()}, {"tilt 20°", "tilt 45°"})
+        # Droplets of the same size and tilt may differ in their tension.
+        self.sweep()
+        self.sweep(*ARRAY, output="softer.h5", tension="1 mN/m")
+        told = json.loads(self.succeed("clogfit", "compare", "s.h5", "softer.h5", "--format", "json").stdout)
+        self.assertEqual((told["columns"], len(told["comparisons"])), (["diameter", "angle"], len(SETS)))
 
     def test_figures_show_millimetres_over_the_diameter_and_a_curve_for_each_tilt(self):
         self.sweep()

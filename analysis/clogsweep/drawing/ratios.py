@@ -8,12 +8,14 @@ from typing import Any
 from matplotlib.axes import Axes
 
 from .. import style
-from ..labels import AXES, is_number
+from ..labels import AXES, axis_label, is_number, said
+from ..reading import fits
 from ..tools.errors import UserError
 from ..tools.rounded import counted
 from ..tools.texts import literal
 
 Comparison = dict[str, Any]
+DROPLETS = {column["key"]: column for column in fits.droplet_columns().values()}
 
 
 def abscissa_of(told: dict[str, Any]) -> str:
@@ -32,9 +34,15 @@ def curves_of(told: dict[str, Any], abscissa: str) -> list[tuple[str, list[Compa
         curves.setdefault((one["here"], *(one[name] for name in others)), []).append(one)
     told_apart = {key[0] for key in curves}
     labels = [", ".join([*([side(told, key[0])] if len(told_apart) > 1 or not others else []),
-                         *(f"{name.replace('_', ' ')} {value:g}" if isinstance(value, int | float) else literal(value) for name, value in zip(others, key[1:]))])
+                         *(value_label(name, value) for name, value in zip(others, key[1:]))])
               for key in curves]
     return list(zip(labels, curves.values()))
+
+
+def value_label(name: str, value: float | str) -> str:
+    if name in DROPLETS:
+        return said(DROPLETS[name], value)
+    return f"{name.replace('_', ' ')} {value:g}" if isinstance(value, int | float) else literal(value)
 
 
 def side(told: dict[str, Any], name: str) -> str:
@@ -49,7 +57,7 @@ def draw_curve(axes: Axes, places: Sequence[float], curve: Sequence[Comparison],
     looks = style.curve_style(index)
     axes.errorbar([x for x, _ in known], [one["ratio"] for _, one in known],
                   yerr=[[abs(one["ratio"] - one[end]) for _, one in known] for end in ("ratio_lower", "ratio_upper")],
-                  color=looks["color"], linestyle=looks["linestyle"], linewidth=1, elinewidth=1, capsize=2.5, label=label)
+                  color=looks["color"], linestyle=looks["linestyle"], linewidth=1, elinewidth=1, capsize=2.5, label=label if known else "_")
     for x, one in known:
         face = "auto" if one["interval"] == "paired" else "white"
         axes.plot(x, one["ratio"], color=looks["color"], marker=looks["marker"], markerfacecolor=face, markersize=5.5, zorder=3)
@@ -89,7 +97,7 @@ def draw_on(axes: Axes, told: dict[str, Any]) -> None:
     if is_logarithmic:
         style.logarithmic_abscissa(axes, values)
     if abscissa:
-        axes.set_xlabel(AXES.get(abscissa, abscissa.replace("_", " ")))
+        axes.set_xlabel(axis_label(DROPLETS[abscissa]) if abscissa in DROPLETS else AXES.get(abscissa, abscissa.replace("_", " ")))
     else:
         axes.set_xticks([])
     reference = side(told, comparisons[0]["there"])

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,14 @@ struct Side {
   std::vector<sweep::RunRow> rows;
   std::vector<std::string> lists;  ///< see listed_columns()
 };
+
+/// The model's units in each laboratory. The key of the map is the checksum of the laboratory's description
+/// (the text of `lab.cfg`).
+using Scales = std::map<std::string, LaboratoryScale>;
+/// Whether the droplet's diameter and tilt fix the value of this column in these runs, each of which has a
+/// laboratory in `scales`.
+bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
+                          const Scales& scales);
 
 /// A parameter set of one side (`here`), compared with a parameter set of the first side (`there`).
 struct Comparison {
@@ -52,10 +61,14 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
 /// compared; their runs of the same seed form pairs.
 /// @param sides  two or more
 /// @param within  see Comparisons; nullopt: half an obstacle spacing
+/// @param scales  units of the runs' laboratories. If there are several, and the two sides of each comparison
+/// have the same droplet, its diameter [mm] and tilt [degrees] name the comparison, in place of columns that
+/// follow from them, and lengths are in mm.
 /// @throws std::invalid_argument if there are fewer than two sides
 /// @throws Error if two sides have no value in common, or if it is not clear which parameter sets belong
 /// together
-Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within);
+Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within,
+                    const Scales& scales = {});
 
 std::string to_text(const Comparisons& comparisons, double confidence);
 std::string to_csv(const Comparisons& comparisons);

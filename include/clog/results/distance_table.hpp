@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,9 +31,6 @@ bool is_distance_table(const std::string& path);
 /// become the labels `diameter` [mm] and `angle`. Prints a hint if each droplet is a group of its own.
 /// @throws Error that names file and line
 DistanceTable read_distances(const std::string& path);
-/// The model's units in each laboratory. The key of the map is the checksum of the laboratory's description
-/// (the text of `lab.cfg`).
-using Scales = std::map<std::string, LaboratoryScale>;
 /// The runs of a sweep. Runs with the same values of all parameters that vary or are asked for form a group.
 /// @param scales  units of the laboratories, if any. If there are several, or if `diameter` or `angle` is
 /// asked for, distances are in mm, and the droplet's diameter [mm] and the tilt [degrees] separate groups, in
