@@ -3,6 +3,7 @@ import csv
 import io
 import json
 import math
+import os
 import subprocess
 import sys
 import types
@@ -217,7 +218,7 @@ class Beside(ProgramTest):
         self.succeed("clogsweep", "obstacle-layout=lattice", "pitch=2", "vertices=64", "box=20", "max-time=1", "seeds=1", "--output", "lattice.h5")
         self.write("own.csv", "distance [sigma],clogged\n3,1\n")
         done = subprocess.run([sys.executable, "-m", "clogsweep", "clogging-length", "lattice.h5", "--with", "own.csv"], cwd=self.folder, capture_output=True, text=True,
-                              env={"PYTHONPATH": str(ROOT / "analysis"), "PATH": str(support.BIN)})
+                              env={**os.environ, "PYTHONPATH": str(ROOT / "analysis"), "PATH": str(support.BIN)})
         self.assertEqual((done.returncode, done.stderr), (2, "python3 -m clogsweep clogging-length: no place for --with (pictures of lattices show lateral displacements); "
                                                           "clogfit compare own.csv lattice.h5 compares lengths\n"))
 

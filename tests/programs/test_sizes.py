@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import subprocess
 import sys
 import unittest
@@ -162,7 +163,7 @@ class Sizes(ProgramTest):
         self.refuse("clogrun", "array", "--lab", "lab.cfg", "--output", "r.h5", words=["lab.cfg describes 4 droplets"])
         self.refuse("clogfit", "units", "lab.cfg", "--length", "2", words=["--length", "4 droplets"])
         done = subprocess.run([sys.executable, "-m", "clogsweep", "refine", "terminal-speed", "terminal-speed=0.02,0.06", "--lab", "lab.cfg", *ARRAY, "--until", "curve=90%", "--output", "r.h5"],
-                              cwd=self.folder, capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "analysis"), "PATH": str(BIN)})
+                              cwd=self.folder, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis"), "PATH": str(BIN)})
         self.assertEqual(done.returncode, 2)
         self.assertIn("--lab several droplets", done.stderr)
         self.sweep()
@@ -324,7 +325,7 @@ class Sizes(ProgramTest):
     def test_critical_angles_are_named_by_the_droplets(self):
         self.sweep("obstacle-layout=lattice", "pitch=2.4mm", "obstacle-diameter=0.8mm", "lattice-angle=15,25", "line-tension=1,3", "vertices=64", "max-time=1", "seeds=1", angle="20 deg")
         command = [sys.executable, "-m", "clogsweep", "critical-angle", "s.h5"]
-        around = {"cwd": self.folder, "capture_output": True, "text": True, "env": {"PYTHONPATH": str(ROOT / "analysis"), "PATH": str(BIN)}}
+        around = {"cwd": self.folder, "capture_output": True, "text": True, "env": {**os.environ, "PYTHONPATH": str(ROOT / "analysis"), "PATH": str(BIN)}}
         done = subprocess.run([*command, "--format", "csv"], **around)
         self.assertEqual(done.stdout, "diameter_mm,line_tension,lower,upper,runs\n0.8,1,,,2\n0.8,3,,,2\n1.6,1,,,2\n1.6,3,,,2\n", done.stderr)
         empty = subprocess.run(command, **around)
