@@ -54,20 +54,21 @@ class Resumed(SweepTest):
         return (process, error) if (self.folder / "s.h5.journal").exists() else None
 
     def test_a_signal_stops_and_the_same_command_resumes(self):
+        sweep = [word.replace("max-time=2e4", "max-time=8e4") for word in SLOW]  # A fast machine needs more time to stop.
         for signal_number in (signal.SIGUSR1, signal.SIGINT, signal.SIGTERM):
-            process, error = self.until_in_time(lambda: self.stop_with_a_snapshot(SLOW, signal_number))
+            process, error = self.until_in_time(lambda: self.stop_with_a_snapshot(sweep, signal_number))
             if signal_number == signal.SIGUSR1:  # A second after any other signal, mpirun kills the remaining ranks.
                 self.assertIn("the same command resumes the sweep", error)
                 rows = table(self.folder / "s.h5")
                 self.assertGreater((rows.status == "interrupted").sum(), 0)
             if MPI == "Open MPI":  # MPICH's mpirun may end with 0 after any signal.
                 self.assertEqual(process.returncode, 75 if signal_number == signal.SIGUSR1 else 1, error)
-        done = self.succeed("clogsweep", *SLOW, ranks=2)
+        done = self.succeed("clogsweep", *sweep, ranks=2)
         self.assertRegex(done.stderr, "1 run resumes from the last checkpoint|2 runs resume from the last checkpoint")
-        self.check_equal("s.h5", undisturbed(SLOW))
-        again = self.succeed("clogsweep", *SLOW, ranks=2)
+        self.check_equal("s.h5", undisturbed(sweep))
+        again = self.succeed("clogsweep", *sweep, ranks=2)
         self.assertIn("there is nothing left to do", again.stderr)
-        self.check_equal("s.h5", undisturbed(SLOW))
+        self.check_equal("s.h5", undisturbed(sweep))
 
     def test_a_rank_alone_stops_at_every_warning_and_its_processes_ignore_it(self):
         for warned in (signal.SIGUSR2, signal.SIGXCPU, signal.SIGHUP):
