@@ -225,6 +225,14 @@ class Sizes(ProgramTest):
             self.assertEqual({(one["diameter"], one["angle"]) for one in found["comparisons"]}, {(1.6, 20.0), (0.8, 45.0)})
             # These follow from the droplet, so they would only widen the table.
             self.assertFalse({"laboratory", "line_tension", "obstacle_gap"} & set(found["comparisons"][0]))
+        # Friction that differs between the sizes does not follow from them.
+        for size, friction in [("0.8 mm", "0"), ("1.6 mm", "0.3")]:
+            self.sweep(*ARRAY, "preset=elastic", f"friction={friction}", output=f"{friction}.h5", diameter=size, angle="20 deg")
+        self.succeed("clogsweep", "merge", "0.h5", "0.3.h5", "--output", "merged.h5")
+        self.write("own.csv", "distance [mm],clogged,diameter\n3,1,0.8\n4,1,1.6\n")
+        found = json.loads(self.succeed("clogfit", "compare", "own.csv", "merged.h5", "--format", "json").stdout)
+        self.assertEqual({(one["diameter"], one["friction"]) for one in found["comparisons"]}, {(0.8, 0), (1.6, 0.3)})
+        self.lab()
         self.succeed("clogsweep", "select", "s.h5", f"laboratory={table(self.folder / 's.h5').laboratory[0]}", "--output", "one.h5")
         self.refuse("clogfit", "compare", self.write("large.csv", "distance [mm],clogged,diameter\n3,1,1.6\n"), "one.h5", words=["no group"])
         self.write("sigma.csv", "distance [sigma],clogged\n3,1\n")

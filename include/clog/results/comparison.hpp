@@ -24,7 +24,7 @@ struct Side {
 /// (the text of `lab.cfg`).
 using Scales = std::map<std::string, LaboratoryScale>;
 /// Whether the droplet's diameter and tilt fix the value of this column in these runs, each of which has a
-/// laboratory in `scales`.
+/// laboratory in `scales`. Columns without a unit, such as friction, never follow: they may coincide.
 bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
                           const Scales& scales);
 
