@@ -47,7 +47,9 @@ constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
     {"relative_speed_all", "v_t"},
     {"relative_speed_all_error", "v_t"},
     {"relative_speed_pooled", "v_t"},
-    {"relative_speed_pooled_error", "v_t"}};
+    {"relative_speed_pooled_error", "v_t"},
+    {"relative_speed_steady", "v_t"},
+    {"relative_speed_steady_error", "v_t"}};
 
 }  // namespace
 
@@ -144,6 +146,9 @@ std::vector<Field> result_fields(const Group& group) {
             {"relative_speed_pooled_error", value_of(group.relative_speed_pooled.standard_error)},
             {"relative_speed_all", value_of(group.relative_speed_all.mean)},
             {"relative_speed_all_error", value_of(group.relative_speed_all.standard_error)},
+            {"relative_speed_steady", value_of(group.relative_speed_steady.mean)},
+            {"relative_speed_steady_error", value_of(group.relative_speed_steady.standard_error)},
+            {"relative_speed_steady_runs", value_of(group.relative_speed_steady.num_runs)},
             {"capillary_number", value_of(group.relative_speed.mean * units::droplet_mass / line_tension)},
             {"lateral_slope", value_of(group.migration.slope)},
             {"lateral_slope_error", value_of(group.migration.standard_error)},

@@ -264,7 +264,7 @@ struct Tally {
   std::vector<Arrival> arrivals;
   Meetings meetings;
   std::vector<double> speeds;
-  std::vector<fit::Travel> travels, travels_until_arrest;
+  std::vector<fit::Travel> travels, travels_until_arrest, steady_travels;
   std::vector<fit::Displacement> displacements;
 };
 
@@ -293,6 +293,7 @@ void add_motion(const sweep::RunRow& run, Group& group, Tally& tally) {
   const double relative_speed = run.mean_speed / run.parameters.drag.terminal_speed;
   tally.speeds.push_back(relative_speed);
   tally.travels.push_back({relative_speed * run.travel_time, run.travel_time});
+  tally.steady_travels.push_back({run.steady.distance / run.parameters.drag.terminal_speed, run.steady.time});
   tally.displacements.push_back({run.distance, run.lateral_displacement});
   group.num_repeating += sweep::has_met_repetition(run);
   if (run.steps == 0) return;
@@ -390,6 +391,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     group.relative_speed = of_enough_runs(fit::fit_mean_speed(tally.speeds));
     group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(tally.travels));
     group.relative_speed_all = mean_speed_of_all(tally.travels_until_arrest, run.drag.terminal_speed);
+    group.relative_speed_steady = of_enough_runs(fit::fit_pooled_speed(tally.steady_travels));
     group.migration = fit::fit_migration(tally.displacements);
     if (run.obstacles.layout == ObstacleLayout::lattice) group.row_angle = run.obstacles.lattice_angle;
     group.doubts = doubts_about(group);

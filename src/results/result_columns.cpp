@@ -96,7 +96,7 @@ void append(const char* name, console::RoundedError (*number)(const Group&),
 }
 
 console::RoundedError speed_of(const Group& group) {
-  return console::with_error(group.relative_speed.mean, group.relative_speed.standard_error);
+  return console::with_error(group.relative_speed_steady.mean, group.relative_speed_steady.standard_error);
 }
 console::RoundedError speed_of_all(const Group& group) {
   return console::with_error(group.relative_speed_all.mean, group.relative_speed_all.standard_error);
@@ -109,9 +109,9 @@ console::RoundedError share_of(const Group& group) {
   return console::with_error(share.slope, share.standard_error);
 }
 
-/// Whether some runs are too short to have a speed.
+/// Whether some runs ended before the steady speed begins.
 bool lacks_speeds(const Group& group) {
-  return !std::isnan(group.relative_speed.mean) && group.relative_speed.num_runs < group.clogging.num_runs;
+  return group.relative_speed_steady.num_runs < group.clogging.num_runs;
 }
 
 std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, double confidence,
@@ -142,7 +142,7 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
   const bool have_few_speeds = std::ranges::any_of(groups, lacks_speeds);
   if (have_few_speeds)
     columns.push_back(
-        {"of", [](const Group& group) { return std::to_string(group.relative_speed.num_runs); }});
+        {"of", [](const Group& group) { return std::to_string(group.relative_speed_steady.num_runs); }});
   // Speeds in laboratory units are those of all runs.
   if (has_laboratory || have_few_speeds) append("all runs", speed_of_all, columns);
   // Only groups with rows of posts have these columns: in a random array, droplets go straight on average.

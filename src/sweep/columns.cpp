@@ -1,5 +1,7 @@
 #include "clog/sweep/columns.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -278,6 +280,15 @@ std::vector<Column> make_columns() {
       member("transient", &RunRow::transient, result, "t0", "time at which the transient ends"),
       member("travel_time", &RunRow::travel_time, result, "t0",
              "time from the end of the transient to the arrest, over which mean_speed is averaged"),
+      number_in(
+          "steady_distance", [](auto& row) -> auto& { return row.steady.distance; }, "sigma",
+          fmt::format(
+              "displacement along the flow from the time {:g} sigma/V_t to the end of the run, or to the "
+              "last dwell of a clogged run; NaN: the run, or the way to its clog, was shorter",
+              SteadyRecord::free_fall)),
+      number_in(
+          "steady_time", [](auto& row) -> auto& { return row.steady.time; }, "t0",
+          "time in which the droplet went steady_distance"),
       member("contacts", &RunRow::contacts, result, "",
              "number of contacts with obstacles, checked every 64 steps; an obstacle counts again after a "
              "separation of 0.1 sigma; -1: unknown"),

@@ -128,6 +128,20 @@ std::string motion_fault(const RunRow& row) {
   return "";
 }
 
+/// Checks the travel from the fixed start of the steady speed on; older files lack it.
+std::string steady_fault(const RunRow& row) {
+  const auto [distance, time] = row.steady;
+  if (is_known(distance) != is_known(time)) return "steady_distance, steady_time: only one is known";
+  if (!is_known(time)) return "";
+  const double longest = row.time - SteadyRecord::free_fall / row.parameters.drag.terminal_speed;
+  if (!(time > 0 && time <= longest + round_off * row.time))
+    return named("steady_time", time) + " is not within the run";
+  // The droplet may have been ahead of, or behind, its release when the steady speed began.
+  if (!is_number_below(distance, 2 * farthest_way(row)))
+    return named("steady_distance", distance) + " is not on the droplet's way";
+  return "";
+}
+
 /// Checks that a dwell begins within the path and the time of the run.
 std::string dwell_begin_fault(const RunRow& row, const std::string& column, double distance, double begin) {
   if (distance < 0 || distance > farthest_way(row))
@@ -288,8 +302,8 @@ std::string release_fault(const RunRow& row) {
 
 std::string result_fault(const RunRow& row) {
   if (row.status == RunStatus::failed) return row.message.empty() ? "failed without a reason" : "";
-  for (const auto check : {time_fault, motion_fault, dwells_fault, contacts_fault, shape_fault, clog_fault,
-                           passage_fault, neck_fault, release_fault})
+  for (const auto check : {time_fault, motion_fault, steady_fault, dwells_fault, contacts_fault, shape_fault,
+                           clog_fault, passage_fault, neck_fault, release_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
 }

@@ -47,6 +47,7 @@ void record(const RunResult& result, RunRow& row) {
   row.mean_speed_error = result.speed.error;
   row.transient = result.speed.transient;
   row.travel_time = result.speed.time;
+  row.steady = result.steady;
   row.dwells = result.dwells;
   row.contacts = result.contacts.number;
   row.first_contact_at = result.contacts.first_distance;

@@ -1,5 +1,6 @@
 """Draws all figures of the article from small sweeps."""
 
+import math
 import unittest
 
 import h5py
@@ -12,11 +13,13 @@ from test_figures import SET
 class Figures(test_figures.Drawn):
     def test_curves_show_what_clogfit_says(self):
         names = {"6c-saturated": ("clogging-saturated", "clogging_length"), "7a": ("clogging-sp", "clogging_length"),
-                 "7a-saturated": ("clogging-sp-saturated", "clogging_length"), "8a": ("speed", "relative_speed"),
-                 "8b": ("speed-diameter", "relative_speed"), "8ca": ("speed", "capillary_number"), "9a": ("speed-sp", "relative_speed"),
-                 "E": ("near-wall-drag", "relative_speed")}
+                 "7a-saturated": ("clogging-sp-saturated", "clogging_length"), "8a": ("speed", "relative_speed_steady"),
+                 "8b": ("speed-diameter", "relative_speed_steady"), "8ca": ("speed", "relative_speed_steady"), "9a": ("speed-sp", "relative_speed_steady"),
+                 "E": ("near-wall-drag", "relative_speed_steady")}
         self.assert_curves(names, "6c", "6c-filling", "7c", "7c-saturated", "9b")
         self.assert_sags("7c")
+        for point in self.drawn("8ca"):
+            self.assertAlmostEqual(float(point["capillary_number"]), float(point["relative_speed_steady"]) * math.pi / 4 / float(point["line_tension"]))
 
         # Figure 6c shows every point of all families on both meshes.
         drawn = {(row["curve"].split(",")[0], row["vertices"], row["friction"], row["obstacle_gap"], row["line_tension"], row["clogging_length_lower"]) for row in self.drawn("6c")}

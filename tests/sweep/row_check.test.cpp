@@ -92,10 +92,10 @@ TEST(FaultOf, NoRunThatFailed) {
 /// Rows in files of earlier versions have only some of the columns.
 TEST(FaultOf, NoColumnThatAnOlderVersionDidNotHave) {
   RunRow row = clogged();
-  for (const char* name :
-       {"near_wall_cutoff", "contact_range", "self_contact_range", "mean_speed_error", "transient",
-        "travel_time", "mechanism", "wrapped_support", "num_wrapped", "num_gaps", "num_arcs", "clogged_by",
-        "mesh_hold", "dwells_known_from", "last_dwell_at", "last_dwell_from"})
+  for (const char* name : {"near_wall_cutoff", "contact_range", "self_contact_range", "mean_speed_error",
+                           "transient", "travel_time", "mechanism", "wrapped_support", "num_wrapped",
+                           "num_gaps", "num_arcs", "clogged_by", "mesh_hold", "dwells_known_from",
+                           "last_dwell_at", "last_dwell_from", "steady_distance", "steady_time"})
     column(name).set_unknown(row);
   EXPECT_EQ(fault_of(row), "near_wall_cutoff is not known") << "this version has it";
   row.model_version = model_version - 1;
@@ -212,6 +212,8 @@ TEST(FaultOf, NamesEveryNumberThatIsNone) {
                                           "mean_speed_error",
                                           "transient",
                                           "travel_time",
+                                          "steady_distance",
+                                          "steady_time",
                                           "wrapped_support",
                                           "mesh_hold",
                                           "largest_shape_parameter",
@@ -270,6 +272,9 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
       {"travel_time=", [](RunRow& row) { row.travel_time = -1; }},
       {"mean_speed=", [](RunRow& row) { row.mean_speed = 1e3, row.travel_time = row.time / 2; }},
       {"mean_speed_error=", [](RunRow& row) { row.mean_speed_error = -1e-3; }},
+      {"steady_time=", [](RunRow& row) { row.steady = {.distance = 1, .time = row.time}; }},
+      {"steady_time=", [](RunRow& row) { row.steady = {.distance = 1, .time = 0}; }},
+      {"only one is known", [](RunRow& row) { row.steady = {.distance = 1}; }},
       {"shape_parameter=0.9", [](RunRow& row) { row.shape_parameter = 0.9; }},
       {"shape_parameter=1e6", [](RunRow& row) { row.shape_parameter = 1e6; }},
       {"kinetic_energy_ratio=", [](RunRow& row) { row.kinetic_energy_ratio = 1e9; }},

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+from ..paper.arrays import STEADY
 from ..tools import rounded
 from ..tools.hints import Group
 from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
@@ -27,8 +28,8 @@ def shorter(first: Group, second: Group) -> bool:
 
 def slower(first: Group, second: Group) -> bool:
     """Whether the first mean speed is clearly lower."""
-    error = math.hypot(first["relative_speed_error"] or 0.0, second["relative_speed_error"] or 0.0)
-    return second["relative_speed"] - first["relative_speed"] > 2 * error
+    error = math.hypot(first[f"{STEADY}_error"] or 0.0, second[f"{STEADY}_error"] or 0.0)
+    return second[STEADY] - first[STEADY] > 2 * error
 
 
 def length_of(group: Group) -> str:
@@ -38,7 +39,7 @@ def length_of(group: Group) -> str:
 
 
 def speed_of(group: Group) -> str:
-    return rounded.with_error(group["relative_speed"], group["relative_speed_error"])
+    return rounded.with_error(group[STEADY], group[f"{STEADY}_error"])
 
 
 def curves(groups: Iterable[Group], parameter: str) -> dict[Any, list[Group]]:

@@ -13,8 +13,7 @@ from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding, statement
 
 
 def speed_curves(shop: Workshop, config: str, parameter: str, abscissa: str) -> dict[Any, list[Group]]:
-    groups = [group for group in shop.sweep(config) if group["relative_speed"] is not None]
-    return {value: sorted(curve, key=lambda group: group[abscissa]) for value, curve in curves(groups, parameter).items()}
+    return {value: sorted(curve, key=lambda group: group[abscissa]) for value, curve in curves(arrays.with_speeds(shop, config), parameter).items()}
 
 
 def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Finding:
@@ -22,7 +21,7 @@ def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Findi
     verdicts, words = [], []
     for value, curve in speed_curves(shop, config, parameter, "line_tension").items():
         verdicts.append(trend(rises(curve, slower), falls(curve, slower)))
-        top = max(curve, key=lambda group: group["relative_speed"])
+        top = max(curve, key=lambda group: group[arrays.STEADY])
         words.append(f"{name} {value:g}: " + ", ".join(f"{speed_of(group)} at {group['line_tension']:g}" for group in (curve[0], top, curve[-1])))
     return Finding(overall(verdicts), "; ".join(words))
 
@@ -62,7 +61,7 @@ def speed_by_capillary_number(shop: Workshop) -> Finding:
     verdicts, words = [], []
     for gap, curve in speed_curves(shop, "speed", "obstacle_gap", "capillary_number").items():
         small = [group for group in curve if group["capillary_number"] < 1]
-        spread = max(group["relative_speed"] for group in small) - min(group["relative_speed"] for group in small) if small else math.nan
+        spread = max(group[arrays.STEADY] for group in small) - min(group[arrays.STEADY] for group in small) if small else math.nan
         verdicts.append(NOT_KNOWN if not small else DOES_NOT if not falls(curve, slower) else AGREES if spread < 0.05 else IN_KIND)
         words.append(f"gap {gap:g}: below Ca = 1 speeds differ by up to {spread:.2f}, {speed_of(curve[-1])} at Ca = {curve[-1]['capillary_number']:.2g}")
     return Finding(overall(verdicts), "; ".join(words))
@@ -76,7 +75,7 @@ statement("4.3, figure 9a", "the speed of soft disks falls with E_w", "9a")(
            in_kind="the softest are not soft enough")
 def soft_disks_are_free(shop: Workshop) -> Finding:
     soft = [curve[0] for curve in speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness").values()]
-    return Finding(overall([by_tolerance(group["relative_speed"], 1, 0.02) for group in soft]), ", ".join(f"{speed_of(group)} at {group['wall_stiffness']:g}" for group in soft))
+    return Finding(overall([by_tolerance(group[arrays.STEADY], 1, 0.02) for group in soft]), ", ".join(f"{speed_of(group)} at {group['wall_stiffness']:g}" for group in soft))
 
 
 def speed_pairs(shop: Workshop) -> list[tuple[float, Group, float, Group]]:
@@ -84,7 +83,7 @@ def speed_pairs(shop: Workshop) -> list[tuple[float, Group, float, Group]]:
     Each droplet comes with its sag."""
     found = []
     for config in ("speed", "speed-sp"):
-        groups = [group for group in shop.sweep(config) if math.isclose(group["obstacle_gap"], 1.1) and group["relative_speed"] is not None]
+        groups = [group for group in arrays.with_speeds(shop, config) if math.isclose(group["obstacle_gap"], 1.1)]
         found.append(sorted(zip(arrays.sags(shop, config, groups), groups), key=lambda point: point[0]))
     return [(*found[0][end], *found[1][end]) for end in (0, -1)]
 

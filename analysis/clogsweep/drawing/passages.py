@@ -45,9 +45,9 @@ CHANNEL = Kind(
     "h is the position of the droplet's centre relative to the orifice, v<sub>t</sub> the speed of a free droplet.")
 WALL = Kind(
     "Sags", "clogged", {"clogged": "at rest", "broken": "broken up", "flowing": "not yet at rest"},
-    {"sag": AXES["sag"], "top_sag": r"sag of the top $/\sigma$"},
+    {"sag": AXES["sag"], "top_sag": AXES["top_sag"]},
     {"sag": "sag/&sigma;", "top_sag": "sag of the top/&sigma;", "shape_parameter": "A"},
-    "at the end", "The sag is how far the droplet's centre sinks under its own weight.")
+    "at the end", "The sag is how far the droplet's centroid, or its top, sinks under its own weight.")
 
 
 def kind_of(groups: Groups) -> Kind:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ from matplotlib.axes import Axes
 
 from .. import style
 from ..drawing import surroundings, survival_curve
-from ..drawing.lengths import SPEED_NOTES, draw_lengths, draw_speeds, length_notes
+from ..drawing.lengths import draw_lengths, draw_speeds, length_notes
 from ..labels import AXES, interface_of, said
 from ..reading import stored, trajectory
 from ..tools import rounded
@@ -24,6 +25,9 @@ from .workshop import Workshop
 if TYPE_CHECKING:
     import pandas
 
+# clogfit's mean speed whose start is not chosen from the data.
+STEADY = "relative_speed_steady"
+SPEED_NOTES = [r"distance divided by time, from $5\sigma/v_t$ on; bars: standard errors"]
 # Columns of clogfit that show what holds droplets: the mesh, and the mechanisms.
 HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
 
@@ -31,7 +35,7 @@ HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
 def numbers(groups: Sequence[Group], label: str, **more: Sequence[Any]) -> list[dict[str, Any]]:
     """The numbers from clogfit that a figure draws, for each group."""
     columns = ["model", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter", "obstacle_density", "near_wall_drag", "runs", "clogs",
-               "clogging_length", "clogging_length_lower", "clogging_length_upper", "relative_speed", "relative_speed_error", "capillary_number", "doubts"]
+               "clogging_length", "clogging_length_lower", "clogging_length_upper", STEADY, f"{STEADY}_error", "capillary_number", "doubts"]
     return [{"curve": label, **{name: group[name] for name in columns}, **{name: values[i] for name, values in more.items()}}
             for i, group in enumerate(groups)]
 
@@ -45,7 +49,22 @@ def by(groups: Iterable[Group], name: str) -> list[tuple[Any, list[Group]]]:
     return [(value, [group for group in groups if group[name] == value]) for value in sorted({group[name] for group in groups})]
 
 
-DRAWINGS: dict[str, Callable[..., None]] = {"length": draw_lengths, "speed": draw_speeds}  # the function that draws each quantity
+# the function that draws each quantity
+DRAWINGS: dict[str, Callable[..., None]] = {"length": draw_lengths, "speed": functools.partial(draw_speeds, column=STEADY)}
+
+
+def with_speeds(shop: Workshop, config: str) -> list[Group]:
+    """The groups of a sweep that have a steady speed, with the capillary number of this speed. @throws UserError if
+    there are none"""
+    groups = [group for group in shop.sweep(config) if group[STEADY] is not None]
+    if not groups:
+        raise UserError(f"no group of {shop.sweep_file(config)} has a {STEADY} (version 1.0 did not record it, and it needs three runs beyond 5 sigma/v_t); "
+                        "remove the file and sweep again, or raise max-time")
+    return [group | {"capillary_number": group[STEADY] * math.pi / (4 * group["line_tension"])} if group["model"] == "dp" else group for group in groups]
+
+
+def of_quantity(shop: Workshop, config: str, quantity: str) -> list[Group]:
+    return with_speeds(shop, config) if quantity == "speed" else shop.sweep(config)
 
 
 def finish(axes: Axes, shop: Workshop, config: str, drawn: Sequence[Group], abscissa: str, quantity: str, varied: Sequence[str]) -> None:
@@ -61,7 +80,7 @@ def finish(axes: Axes, shop: Workshop, config: str, drawn: Sequence[Group], absc
 
 def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity: str) -> Plate:
     """Draws one curve for each value of a parameter. @param quantity  a key of DRAWINGS"""
-    groups = shop.sweep(config)
+    groups = of_quantity(shop, config, quantity)
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
     families = by(groups, parameter)
@@ -98,10 +117,11 @@ enter("E", "mean speed against line tension for three near-wall drags", "near-wa
       abscissa="line_tension", parameter="near_wall_drag", quantity="speed")
 
 
-# Both models against the sag
+# Both models against the sag, which in the article is the sinking of the top: it tends to one diameter for very soft
+# droplets, whereas the centroid sinks by at most half a diameter. For a disk, which has no shape, both are the same.
 
 def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
-    """The sag delta_s of each group. The sags come from one sweep of droplets on walls, with the line tension or
+    """The sag delta_s of each group, which is the sinking of the top. The sags come from one sweep of droplets on walls, with the line tension or
     stiffness of each group."""
     is_polygon = groups[0]["model"] == "dp"
     column, key = ("line_tension", "line-tension") if is_polygon else ("wall_stiffness", "wall-stiffness")
@@ -110,7 +130,7 @@ def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
     values = sorted({group[column] for group in groups})
     rows = shop.runs(f"sag-{config}", None, {"obstacle-layout": "wall", **settings, key: values})
     known = dict(zip(values, rows, strict=True))
-    return [known[group[column]]["sag"] for group in groups]
+    return [known[group[column]]["top_sag"] for group in groups]
 
 
 # For each curve: a sweep, the curve's label, and a function that selects the groups of this curve.
@@ -121,17 +141,17 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data, drawn = [], []
     for index, (config, label, chosen) in enumerate(curves):
-        groups = [group for group in chosen(shop.sweep(config)) if math.isclose(group["obstacle_gap"], gap)]
+        groups = [group for group in chosen(of_quantity(shop, config, quantity)) if math.isclose(group["obstacle_gap"], gap)]
         if not groups:
             raise UserError(f"sweep {config} has no runs with obstacle-gap={gap}; add it to the list")
         places = sags(shop, config, groups)
         DRAWINGS[quantity](axes, places, groups, index, label)
-        data += numbers(groups, label, sag=places)
+        data += numbers(groups, label, top_sag=places)
         drawn += groups
     style.logarithmic_abscissa(axes)
     axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)
     axes.text(0.25, 0.02, " published\n curves separate", ha="left", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
-    finish(axes, shop, curves[0][0], drawn, "sag", quantity, ["line_tension"])
+    finish(axes, shop, curves[0][0], drawn, "top_sag", quantity, ["line_tension"])
     return Plate(drawing, data)
 
 
@@ -148,7 +168,7 @@ def sag_picture(shop: Workshop) -> Plate:
     row, = shop.runs("sag-polygon", "channel", {**on_wall, "line-tension": line_tension})
     polygon, = shop.ways("sag-polygon", [row], 1, 2)
     disk, = shop.runs("sag-disk", None, {**on_wall, "model": "sp", "wall-stiffness": stiffness})
-    disk_sag, polygon_sag = disk["sag"], row["sag"]
+    disk_sag, polygon_sag = disk["top_sag"], row["top_sag"]
     drawing, panels = style.subplots(1, 2, figsize=(7.2, 4.2), sharey=True)
     wall = polygon.wedges[0, :2]
     # In the model gravity points along +x, and in the picture it points down.
@@ -162,17 +182,18 @@ def sag_picture(shop: Workshop) -> Plate:
         axes.axhspan(-0.3, 0, facecolor=style.OBSTACLE)
         axes.fill(*after, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1.2, label="with weight")
         axes.plot(*np.append(before, before[:, :1], axis=1), color="black", linestyle="--", linewidth=1, label="without")
-        axes.plot([-0.08, 0.08], [0.5, 0.5], color="black", linewidth=1)
-        axes.plot([-0.08, 0.08], [0.5 - sag, 0.5 - sag], color="black", linewidth=1)
-        axes.annotate("", (0, 0.5 - sag), (0, 0.5), arrowprops={"arrowstyle": "-|>", "color": "black"})
-        axes.text(0, 0.46 - sag, rf"$\delta_s = {sag:.3f}\sigma$", ha="center", va="top")
+        top = before[1].max()
+        axes.plot([-0.08, 0.08], [top, top], color="black", linewidth=1)
+        axes.plot([-0.08, 0.08], [top - sag, top - sag], color="black", linewidth=1)
+        axes.annotate("", (0, top - sag), (0, top), arrowprops={"arrowstyle": "-|>", "color": "black"})
+        axes.text(0, top - sag - 0.04, rf"$\delta_s = {sag:.3f}\sigma$", ha="center", va="top")
         surroundings.frame_limits(axes, (-0.85, -0.25), (0.85, 1.1))
         axes.set_xlabel(r"along the wall $/\sigma$")
         style.caption(axes, title)
     panels[0].set_ylabel(r"height above the wall $/\sigma$")
     panels[1].legend(frameon=False, loc="lower center", ncols=2, fontsize=8)
-    return Plate(drawing, [{"model": "sp", "wall_stiffness": stiffness, "sag": disk_sag},
-                           {"model": "dp", "line_tension": line_tension, "sag": polygon_sag}])
+    return Plate(drawing, [{"model": "sp", "wall_stiffness": stiffness, "top_sag": disk_sag},
+                           {"model": "dp", "line_tension": line_tension, "top_sag": polygon_sag}])
 
 
 # Clogs
@@ -348,13 +369,20 @@ def displacements(shop: Workshop) -> dict[float, trajectory.Trajectory]:
     return {row["line_tension"]: way for row, way in zip(rows, shop.ways("displacement", rows, 2))}
 
 
+def steady_speed(row: np.void) -> float:
+    """The steady speed of one run divided by the terminal speed. NaN for a row of version 1.0."""
+    if "steady_time" not in stored.columns_of(row):
+        return math.nan
+    return float(row["steady_distance"] / row["steady_time"] / row["terminal_speed"])
+
+
 @figure("D", "displacement against time for five line tensions, minimum gap 1.1", ["trajectory"], "3 s")
 def displacement(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
     ends = {}
     for index, (line_tension, run) in enumerate(displacements(shop).items()):
-        speed = run.row["mean_speed"] / run.row["terminal_speed"]
+        speed = steady_speed(run.row)
         label = rf"$\Gamma = {line_tension:g}$" + (rf": $v_g = {speed:.2f}\,v_t$" if math.isfinite(speed) else "") + (
             ", clogged" if run.word("status") == "clogged" else "")
         line, = axes.plot(run.table["time"], run.table["distance"], color=style.COLOURS[index], linewidth=1.2, label=label)

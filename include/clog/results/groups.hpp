@@ -140,6 +140,9 @@ struct Group {
   /// counts until its end, a clogged run until its last dwell began. This speed is not biased towards fast
   /// runs: if droplets clog, only the faster ones go far enough to have a mean speed of their own.
   fit::MeanSpeed relative_speed_all;
+  /// v_g/v_t, total distance divided by total time of all runs from a fixed time on (SteadyRecord); a clogged
+  /// run counts until its last dwell began. Nothing is chosen from the data.
+  fit::MeanSpeed relative_speed_steady;
   fit::Migration migration;
   /// Tilt of the rows of posts from the flow towards +y, given by a lattice or by --row-angle; NaN: unknown
   /// [degrees].

@@ -55,6 +55,7 @@ struct RunRow {
   double mean_speed_error = not_known;
   double transient = not_known;
   double travel_time = not_known;
+  SteadyTravel steady;
   Dwells dwells;
   std::optional<std::int64_t> contacts;
   double first_contact_at = not_known;

@@ -94,6 +94,7 @@ DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> o
       max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step.value()))),
       first_quiet_time_(relaxation_times_before_a_clog * relaxation_time(run_)),
       next_search_(first_search(run_)),
+      steady_(run_.drag.terminal_speed),
       dwells_(run_.dwell_length, run_.drag.terminal_speed),
       contacts_(model_of(run_).contact_reach(run_)) {}
 
@@ -133,6 +134,7 @@ void DropletRun::start_afresh_and_take_snapshot() {
   bytes.put(quiet_checks_);
   bytes.put(next_search_);
   record_.save(bytes);
+  steady_.save(bytes);
   dwells_.save(bytes);
   contacts_.save(bytes);
   if (is_passage()) passage_.save(bytes);
@@ -161,6 +163,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     rest.get(resumed.next_search_);
     if (!resumed.is_in_range()) throw Error("its progress is out of range");
     resumed.record_.restore(rest, resumed.time());
+    resumed.steady_.restore(rest);
     resumed.dwells_.restore(rest);
     resumed.contacts_.restore(rest);
     if (resumed.is_passage()) resumed.passage_.restore(rest);
@@ -198,6 +201,7 @@ void DropletRun::check() {
     return;
   }
   record_.add(time(), displacement()[0]);
+  steady_.add(time(), displacement()[0]);
   dwells_.add(time(), displacement()[0]);
   contacts_.add(droplet_->state(), *obstacles_, displacement_of({0, 0}), displacement()[0]);
   if (is_passage())
@@ -261,6 +265,11 @@ bool DropletRun::finds_rest(double energy_ratio) {
   return true;
 }
 
+SteadyTravel DropletRun::steady(const Dwells& dwells) const {
+  if (status_ == RunStatus::clogged) return steady_.until(dwells.last_begin, dwells.last_distance);
+  return steady_.until(time(), displacement()[0]);
+}
+
 Sag DropletRun::sag(const Droplet& droplet) const {
   // Before gravity acted, the droplet was a circle around its centre, so the centroid had no displacement.
   const DropletState& state = droplet.state();
@@ -274,6 +283,7 @@ RunResult DropletRun::result() const {
   const Eigen::Array2d displaced = displacement_of(last.centre());
   const Scene& scene = scene_of(run_);
   Hold hold;
+  const Dwells dwells = dwells_.found(time(), status_ == RunStatus::clogged);
   if (status_ == RunStatus::clogged) hold = model_of(run_).hold(run_, *obstacles_, last.state());
   return {.status = status_,
           .clogged_by = clogged_by_,
@@ -281,7 +291,8 @@ RunResult DropletRun::result() const {
           .lateral = displaced[1],
           .time = time(),
           .speed = record_.travel_speed(),
-          .dwells = dwells_.found(time(), status_ == RunStatus::clogged),
+          .steady = steady(dwells),
+          .dwells = dwells,
           .contacts = contacts_.found(),
           .kinetic_energy_ratio = kinetic_energy_ratio(),
           .shape_parameter = last.shape().shape_parameter(),

@@ -38,9 +38,10 @@ RunResult result_of(const RunParameters& parameters, int checks_at_a_time) {
   return run.result();
 }
 
-std::vector<std::byte> bytes_of(const Dwells& dwells) {
+template <class T>
+std::vector<std::byte> bytes_of(const T& values) {
   ByteWriter bytes;
-  bytes.put(dwells);
+  bytes.put(values);
   return bytes.take();
 }
 
@@ -54,6 +55,7 @@ void expect_identical(const RunResult& a, const RunResult& b) {
   EXPECT_EQ(a.steps, b.steps);
   EXPECT_EQ(a.hold.mechanism, b.hold.mechanism);
   EXPECT_TRUE(a.neck.width == b.neck.width || (std::isnan(a.neck.width) && std::isnan(b.neck.width)));
+  EXPECT_EQ(bytes_of(a.steady), bytes_of(b.steady));
   EXPECT_EQ(bytes_of(a.dwells), bytes_of(b.dwells));
   EXPECT_EQ(a.contacts.number, b.contacts.number);
   EXPECT_TRUE(a.contacts.first_distance == b.contacts.first_distance || a.contacts.number == 0);
@@ -246,6 +248,39 @@ TEST(DropletRun, ADropletThatHangsToTheEndOfItsTimeHasADwell) {
   EXPECT_GT(result.dwells.longest[0].length, 200);
   EXPECT_EQ(result.dwells.longest[0].begin, result.dwells.last_begin);
   EXPECT_EQ(result.dwells.longest[0].begin + result.dwells.longest[0].length, result.time);
+}
+
+/// The time at rest does not depend on how the clog is detected, so it must not count in the speed.
+TEST(DropletRun, ItsSteadyTravelEndsAtTheArrestHoweverTheClogIsFound) {
+  RunParameters run = small_run(1);
+  run.drag.terminal_speed = 0.1;  // the steady speed begins after 50 t0
+  run.max_time = 5000;
+  RunResult certified;
+  while (!(certified.dwells.last_begin > 60)) {
+    ASSERT_LT(++run.seed, 100u);
+    certified = result_of(run, 1000);
+  }
+  run.clog_detection = ClogDetection::threshold;
+  const RunResult threshold = result_of(run, 1000);
+  ASSERT_EQ(certified.status, RunStatus::clogged);
+  ASSERT_EQ(threshold.status, RunStatus::clogged);
+  EXPECT_GT(threshold.time, certified.time);
+  EXPECT_EQ(bytes_of(certified.steady), bytes_of(threshold.steady));
+  EXPECT_NEAR(certified.steady.time, certified.dwells.last_begin - 50, 1);
+}
+
+TEST(DropletRun, ItsSteadyTravelIsThatOfTwoRunsOfTheSameSeed) {
+  RunParameters run = small_run();
+  run.drag.terminal_speed = 0.1;
+  run.obstacles.gap = 1.2;
+  run.obstacles.density = {};
+  run.max_time = 90;
+  const RunResult result = result_of(run, 1000);
+  ASSERT_EQ(result.status, RunStatus::flowing);
+  run.max_time = result.time - result.steady.time;
+  const RunResult start = result_of(run, 1000);
+  EXPECT_NEAR(start.time, 50, 1);
+  EXPECT_DOUBLE_EQ(result.steady.distance, result.distance - start.distance);
 }
 
 TEST(DropletRun, OfAnotherSeedDiffers) {

@@ -15,6 +15,7 @@
 #include "clog/core/run/displacement_record.hpp"
 #include "clog/core/run/dwell_record.hpp"
 #include "clog/core/run/passage.hpp"
+#include "clog/core/run/steady_record.hpp"
 #include "clog/core/world/obstacle_array.hpp"
 
 namespace clog {
@@ -39,8 +40,8 @@ inline constexpr double diverged_area_error = 0.5;
 /// How far a droplet on a flat wall has sunk since it touched the wall without weight [sigma]; NaN in other
 /// scenes.
 struct Sag {
-  double centre = std::numeric_limits<double>::quiet_NaN();  ///< delta_s, of the area's centroid
-  double top = std::numeric_limits<double>::quiet_NaN();
+  double centre = std::numeric_limits<double>::quiet_NaN();  ///< of the area's centroid
+  double top = std::numeric_limits<double>::quiet_NaN();     ///< delta_s
 };
 
 /// The thinnest neck of a droplet so far, and where the droplet was then [sigma]; NaN without a neck, or
@@ -59,6 +60,7 @@ struct RunResult {
   double lateral = 0;   ///< displacement across the flow, certified: at rest [sigma]
   double time = 0;      ///< [t0]
   TravelSpeed speed;    ///< speed of the run so far
+  SteadyTravel steady;  ///< until the end, or until the last dwell of a clogged run began
   Dwells dwells;
   Contacts contacts;
   double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
@@ -148,6 +150,7 @@ class DropletRun {
   std::unique_ptr<Droplet> at_rest_;  // the droplet at rest, if the clog is certified
   std::string message_;
   DisplacementRecord record_;
+  SteadyRecord steady_;
   DwellRecord dwells_;
   ContactRecord contacts_;
   Passage passage_;  // through a channel
@@ -158,6 +161,7 @@ class DropletRun {
   bool is_passage() const;
   bool has_fallen() const { return time() > first_quiet_time_; }
   void check();
+  SteadyTravel steady(const Dwells& dwells) const;
   Sag sag(const Droplet& droplet) const;
   void start_afresh_and_take_snapshot();
   bool has_broken();
