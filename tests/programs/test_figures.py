@@ -284,7 +284,7 @@ class Figures(Drawn):
     """Tests some figures of every kind. slow_figures tests all figures."""
 
     def test_curves_show_what_clogfit_says(self):
-        self.assert_curves({"7a": ("clogging-sp", "clogging_length"), "8ca": ("speed", "capillary_number")}, "9b")
+        self.assert_curves({"7a": ("clogging-sp", "clogging_length"), "8ca": ("speed", "relative_speed_steady")}, "9b")
         self.assert_sags("9b")
 
     def test_clogs_are_those_of_the_sweep(self):
