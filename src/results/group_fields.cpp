@@ -123,6 +123,7 @@ std::vector<Field> result_fields(const Group& group) {
             {"dwells_known_from", value_of(group.dwells_known_from)},
             {"repeating", value_of(group.num_repeating)},
             {"on_mesh", value_of(group.num_on_mesh)},
+            {"near_friction_limit", value_of(group.num_near_friction_limit)},
             {"total_distance", value_of(group.clogging.total_distance)},
             {"clogging_length", value_of(group.clogging.length)},
             {"clogging_length_lower", value_of(group.clogging.interval.lower)},

@@ -36,6 +36,12 @@ bool hangs_on_mesh(const Group& group) {
   return group.num_on_mesh > 0 && group.num_on_mesh >= tolerated * group.clogging.num_clogs;
 }
 
+/// Whether a finer mesh may let so many of the clogged droplets go that the length may be wrong.
+bool is_near_friction_limit(const Group& group) {
+  constexpr double tolerated = 0.15;  // tolerated fraction of the clogs
+  return group.num_near_friction_limit > tolerated * group.clogging.num_clogs;
+}
+
 std::vector<Doubt> doubts_about(const Group& group) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool has_length = has_clogging_length(group.first_row);
@@ -51,6 +57,7 @@ std::vector<Doubt> doubts_about(const Group& group) {
       {Doubt::incomplete, group.num_interrupted > 0 || group.num_failed > 0},
       {Doubt::damaged, group.num_damaged > 0},
       {Doubt::held_by_mesh, has_length && hangs_on_mesh(group)},
+      {Doubt::near_friction_limit, has_length && is_near_friction_limit(group)},
       {Doubt::wetted_mesh, has_length && clogging.num_clogs > 0 && wets_walls},
       {Doubt::array_repeats, has_length && group.num_repeating > 0},
       {Doubt::met_none, has_length && group.num_free > 0 && !is_device(group.first_row.parameters)},
@@ -283,6 +290,7 @@ void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Ta
   tally.endings.push_back(*ending);
   group.seeds.push_back(run.parameters.seed);
   group.num_on_mesh += sweep::may_hang_on_mesh(run);
+  group.num_near_friction_limit += sweep::is_near_friction_limit(run);
   if (ending->is_clog) return;
   group.num_passed += run.status == RunStatus::passed;
   group.num_flowing += run.status == RunStatus::flowing;

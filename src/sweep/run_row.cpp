@@ -40,7 +40,9 @@ RunRow describe(const RunParameters& run) {
 void record(const RunResult& result, RunRow& row) {
   row.status = result.status;
   row.clogged_by = found_by(result.clogged_by);
+  row.failed_by = result.failed_by;
   row.distance = result.distance;
+  row.sound_distance = result.sound_distance;
   row.lateral_displacement = result.lateral;
   row.time = result.time;
   row.mean_speed = result.speed.mean;
@@ -58,6 +60,7 @@ void record(const RunResult& result, RunRow& row) {
   row.num_gaps = result.hold.geometry.num_gaps;
   row.num_arcs = result.hold.geometry.num_arcs;
   row.mesh_hold = result.hold.geometry.mesh_hold;
+  row.friction_use = result.friction_use;
   row.largest_shape_parameter = result.passage.largest_shape_parameter.value;
   row.largest_shape_parameter_at = result.passage.largest_shape_parameter.place;
   row.largest_relative_speed = result.passage.largest_speed.value;
@@ -67,6 +70,7 @@ void record(const RunResult& result, RunRow& row) {
   row.sag = result.sag.centre;
   row.top_sag = result.sag.top;
   row.neck = result.neck;
+  row.healed_crossings = result.healed_crossings;
   row.release_x = result.release[0];
   row.release_y = result.release[1];
   row.steps = result.steps;

@@ -17,6 +17,7 @@ from ..tools.hints import Group
 HOLLOW_MARKERS = {
     "few_clogs": "fewer than 5 clogs",
     "held_by_mesh": "clogs that the polygon's corners may hold",
+    "near_friction_limit": "clogs that almost exceed the friction (a finer mesh may let them go)",
     "wetted_mesh": "wetted walls, where the mesh matters",
     "array_repeats": "longer paths than the period of the array",
     "below_spacing": "lengths below one obstacle spacing (they reflect the release void, not clogging)",

@@ -28,6 +28,7 @@ enum class Doubt {
   incomplete,
   damaged,
   held_by_mesh,
+  near_friction_limit,
   wetted_mesh,
   array_repeats,
   met_none,
@@ -54,6 +55,9 @@ inline constexpr DoubtText doubt_texts[] = {
     {Doubt::held_by_mesh, 'm', "held_by_mesh",
      "in a tenth of the clogs or more, the polygon's edges are so long that its corners may hold the droplet "
      "(corner pinning, column mesh_hold): use more vertices"},
+    {Doubt::near_friction_limit, 'h', "near_friction_limit",
+     "more than 15 % of the clogs hold by almost all of the friction that there is (column friction_use): a "
+     "finer mesh could let these droplets go; compare with twice the vertices"},
     {Doubt::wetted_mesh, 'w', "wetted_mesh",
      "the droplet wets walls (contact angle below 180 degrees): the mesh decides where some droplets clog; "
      "compare with twice the vertices"},
@@ -157,9 +161,10 @@ struct Group {
   int num_damaged = 0;   ///< damaged runs, left out of all fits
   /// Runs that ended before distances are counted (see group_runs()), left out of all fits.
   int num_left_out = 0;
-  int num_on_mesh = 0;    ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
-  int num_free = 0;       ///< runs that met no obstacle
-  int num_repeating = 0;  ///< runs that went farther than their array's period
+  int num_on_mesh = 0;  ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
+  int num_near_friction_limit = 0;  ///< clogs with almost all friction used (sweep::is_near_friction_limit)
+  int num_free = 0;                 ///< runs that met no obstacle
+  int num_repeating = 0;            ///< runs that went farther than their array's period
   /// Passages through a device, in downstream order; the last one is the exit.
   std::vector<Passage> passages;
   std::vector<Doubt> doubts;

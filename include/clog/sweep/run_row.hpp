@@ -48,7 +48,9 @@ struct RunRow {
 
   RunStatus status = RunStatus::running;
   std::optional<FoundBy> clogged_by;
+  std::optional<FailedBy> failed_by;
   double distance = 0;
+  double sound_distance = not_known;
   double lateral_displacement = 0;
   double time = 0;
   double mean_speed = not_known;
@@ -64,6 +66,7 @@ struct RunRow {
   double wrapped_support = not_known;
   std::optional<std::int64_t> num_wrapped, num_gaps, num_arcs;
   double mesh_hold = not_known;
+  double friction_use = not_known;
   /// For a passage through a channel, like the next five members.
   double largest_shape_parameter = not_known;
   double largest_shape_parameter_at = not_known;
@@ -74,6 +77,7 @@ struct RunRow {
   double sag = not_known;  ///< for a droplet on a flat wall
   double top_sag = not_known;
   ThinnestNeck neck;
+  std::optional<std::int64_t> healed_crossings;
   double release_x = not_known;  ///< place in the coordinates of user-supplied circles
   double release_y = not_known;
   std::int64_t steps = 0;
