@@ -84,7 +84,7 @@ std::unique_ptr<SweepState::Entry>& SweepState::place_of(std::int64_t task) {
 }
 
 bool SweepState::is_over(const sweep::RunRow& row) const {
-  if (row.status == RunStatus::failed) return row.attempt >= attempts_;
+  if (row.status == RunStatus::failed) return !tries_again(row);
   return !sweep::is_unfinished(row.status);
 }
 

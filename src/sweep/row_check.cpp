@@ -189,6 +189,8 @@ std::string soundness_fault(const RunRow& row) {
     return named("failed_by", name(*row.failed_by)) + ", but " + named("status", name(row.status));
   if (is_known(row.sound_distance) && !is_number_below(row.sound_distance, farthest_way(row)))
     return named("sound_distance", row.sound_distance) + " is not on the droplet's way";
+  if (row.status == RunStatus::failed && !is_number_below(*observed_distance(row), farthest_way(row)))
+    return named("distance", row.distance) + " is not on the droplet's way";
   if (row.healed_crossings.value_or(0) < 0) return "a negative number of healed crossings";
   return "";
 }
@@ -309,10 +311,10 @@ std::string release_fault(const RunRow& row) {
 std::string result_fault(const RunRow& row) {
   if (row.status == RunStatus::failed) {
     if (row.message.empty()) return "failed without a reason";
-    // Nothing else of a failed run is used, nor needs to make sense.
-    if (!is_known(row.sound_distance)) return "";
-    const std::string fault = duration_fault(row);
-    return fault.empty() ? soundness_fault(row) : fault;
+    if (!observed_distance(row)) return "";  // nothing else is used, nor needs to make sense
+    for (const auto check : {duration_fault, soundness_fault, dwells_fault, contacts_fault})
+      if (std::string fault = check(row); !fault.empty()) return fault;
+    return "";
   }
   for (const auto check : {time_fault, motion_fault, soundness_fault, dwells_fault, contacts_fault,
                            shape_fault, clog_fault, passage_fault, neck_fault, release_fault})

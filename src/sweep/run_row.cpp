@@ -77,6 +77,14 @@ void record(const RunResult& result, RunRow& row) {
   row.message = result.message;
 }
 
+std::optional<double> observed_distance(const RunRow& row) {
+  if (row.status != RunStatus::failed) return row.distance;
+  if (is_known(row.sound_distance)) return row.sound_distance;
+  // Rows of model version 11 do not name the cause otherwise.
+  const bool has_crossed = row.message.starts_with("the interface crossed itself");
+  return has_crossed && is_known(row.distance) ? std::optional(row.distance) : std::nullopt;
+}
+
 std::size_t packed_size() {
   static const std::size_t size = [] {
     std::size_t sum = 0;

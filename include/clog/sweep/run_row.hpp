@@ -105,6 +105,16 @@ inline bool is_unfinished(RunStatus status) {
   return status == RunStatus::running || status == RunStatus::interrupted;
 }
 
+/// Whether another attempt may succeed: the run failed, but not because of its parameters and seed alone.
+inline bool may_succeed_later(const RunRow& row) {
+  return row.status == RunStatus::failed && row.failed_by != FailedBy::divergence &&
+         row.failed_by != FailedBy::crossing;
+}
+/// Distance up to which a run was observed; nullopt for failed runs of older files that diverged or crashed,
+/// because their `distance` may be wrong. In these files a run that crossed itself was observed up to the
+/// check that found the crossing, at most 2048 steps too far [sigma].
+std::optional<double> observed_distance(const RunRow& row);
+
 /// Cost of a run so far [s]: its processor time, or its wall-clock time if that is unknown.
 inline double cost_seconds(const RunRow& row) {
   return is_known(row.processor_seconds) ? row.processor_seconds : row.wall_seconds;
