@@ -41,12 +41,10 @@ std::vector<Value> column_values(const RunRow& row, const std::vector<std::strin
   return values;
 }
 
-bool counts(const RunRow& row) { return row.status != RunStatus::failed && sweep::fault_of(row).empty(); }
-
 std::vector<ParameterSet> sets_of(const std::vector<RunRow>& rows) {
   std::map<std::vector<Value>, ParameterSet> sets;
   for (const RunRow& row : rows) {
-    if (!counts(row)) continue;
+    if (!is_observed(row)) continue;
     ParameterSet& set = sets.try_emplace(parameter_values(row), ParameterSet{row, {}}).first->second;
     set.by_seed.emplace(row.parameters.seed, &row);
   }

@@ -263,7 +263,7 @@ DistanceTable distances_of(const Side& side, const Scales& scales, const std::ve
   DistanceTable table{.source = side.name, .unit = is_in_mm ? "mm" : "sigma", .labels = {}, .groups = {}};
   std::vector<const sweep::RunRow*> rows;
   for (const sweep::RunRow& row : side.rows)
-    if (row.status != RunStatus::failed && sweep::fault_of(row).empty()) rows.push_back(&row);
+    if (is_observed(row)) rows.push_back(&row);
   std::vector<const sweep::Column*> varying;
   for (const sweep::Column* column : group_columns())
     if (has_label(asked, column->name) || std::ranges::any_of(rows, [&](const sweep::RunRow* row) {

@@ -137,7 +137,7 @@ std::string left_out(const std::vector<Group>& groups) {
   };
   const int num_failed = sum(&Group::num_failed), num_damaged = sum(&Group::num_damaged),
             num_interrupted = sum(&Group::num_interrupted), num_left_out = sum(&Group::num_left_out),
-            num_repeated = sum(&Group::num_repeated);
+            num_repeated = sum(&Group::num_repeated), num_excluded = sum(&Group::num_failed_somewhere);
   std::string text;
   if (num_left_out > 0)
     text += fmt::format(
@@ -152,7 +152,16 @@ std::string left_out(const std::vector<Group>& groups) {
   if (num_repeated > 0)
     text += fmt::format("   {} repeat droplets of longer runs and do not count (--pool)\n",
                         sweep::counted(num_repeated, "run"));
-  if (num_failed > 0) text += fmt::format("   {} failed; the column `message` says why\n", num_failed);
+  if (num_failed > 0) {
+    text += fmt::format("   {} failed; the column `message` says why", num_failed);
+    if (has_clogging_length(groups.front().first_row))
+      text += num_failed == num_excluded ? ", and left out because the distance is unknown"
+              : num_excluded == 0
+                  ? ", and counted as not clogged up to sound_distance"
+                  : fmt::format(", counted as not clogged up to sound_distance, except {} without one",
+                                num_excluded);
+    text += '\n';
+  }
   if (num_damaged > 0) text += fmt::format("   {} damaged; clogsweep verify tells which\n", num_damaged);
   return text;
 }

@@ -36,25 +36,38 @@ bool hangs_on_mesh(const Group& group) {
   return group.num_on_mesh > 0 && group.num_on_mesh >= tolerated * group.clogging.num_clogs;
 }
 
+/// Whether a finer mesh may let so many of the clogged droplets go that the length may be wrong.
+bool is_near_friction_limit(const Group& group) {
+  constexpr double tolerated = 0.15;  // tolerated fraction of the clogs
+  return group.num_near_friction_limit > tolerated * group.clogging.num_clogs;
+}
+
 std::vector<Doubt> doubts_about(const Group& group) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool has_length = has_clogging_length(group.first_row);
   // If all droplets passed the exit, more seeds would only raise the lower bound.
   const bool lacks_clogs =
       clogging.num_runs > 0 && group.num_passed != clogging.num_runs && clogging.num_clogs < enough_clogs;
+  // Counting failures as clogs is the worst that they can hide.
+  const int num_failures = group.num_failed_counted + group.num_failed_somewhere;
+  const bool do_failures_matter =
+      num_failures > 0 &&
+      clogging.total_distance < (clogging.num_clogs + num_failures) * clogging.interval.lower;
   const bool is_below_spacing = clogging.length < sweep::obstacle_spacing(group.first_row);
   const RunParameters& run = group.first_row.parameters;
   const bool wets_walls = run.model == Model::dp && (wall_tension(run.dp) < 1 || has_hysteresis(run.dp));
   const std::pair<Doubt, bool> all[] = {
       {Doubt::few_clogs, has_length && lacks_clogs},
       {Doubt::censored_by_time, has_length && group.num_flowing > 0},
-      {Doubt::incomplete, group.num_interrupted > 0 || group.num_failed > 0},
+      {Doubt::incomplete, group.num_interrupted > 0 || group.num_failed_somewhere > 0},
       {Doubt::damaged, group.num_damaged > 0},
       {Doubt::held_by_mesh, has_length && hangs_on_mesh(group)},
+      {Doubt::near_friction_limit, has_length && is_near_friction_limit(group)},
       {Doubt::wetted_mesh, has_length && clogging.num_clogs > 0 && wets_walls},
       {Doubt::array_repeats, has_length && group.num_repeating > 0},
       {Doubt::met_none, has_length && group.num_free > 0 && !is_device(group.first_row.parameters)},
       {Doubt::below_spacing, has_length && is_below_spacing},
+      {Doubt::failures_matter, has_length && do_failures_matter},
       {Doubt::untested, !sweep::untested_parameters(group.first_row).empty()}};
   std::vector<Doubt> doubts;
   for (const auto& [doubt, holds] : all)
@@ -110,11 +123,15 @@ bool has_dwells_to_tell(const sweep::RunRow& run, double dwell) {
 /// @param dwell  see group_runs()
 Ending ending_of(const sweep::RunRow& run, double dwell) {
   const bool is_clogged = run.status == RunStatus::clogged;
-  const Ending last = {run.distance, is_clogged, cause_of(run)};
+  const double observed = sweep::observed_distance(run).value();
+  const Ending last = {observed, is_clogged, cause_of(run)};
   if (!has_dwells_to_tell(run, dwell)) return last;
   // The mechanism of a droplet that moved on is unknown, so its clog counts as `other`.
-  if (const Dwell* first = run.dwells.first_longer(dwell)) return {first->distance, true, Cause::other};
-  return is_clogged || last.cause ? last : Ending{run.dwells.last_distance, false, {}};
+  const bool has_failed = run.status == RunStatus::failed;
+  const Dwell* first = run.dwells.first_longer(dwell);
+  if (first && (!has_failed || first->distance <= observed)) return {first->distance, true, Cause::other};
+  if (is_clogged || last.cause) return last;
+  return {has_failed ? std::min(run.dwells.last_distance, observed) : run.dwells.last_distance, false, {}};
 }
 
 /// See observation_of().
@@ -140,7 +157,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
   double known_from = 0;
   for (const sweep::RunRow& row : rows) {
     if (!has_dwells_to_tell(row, dwell) || dwell >= row.dwells.known_from) continue;
-    if (row.status == RunStatus::failed || !sweep::fault_of(row).empty()) continue;  // left out
+    if (!is_observed(row)) continue;  // left out
     num_unknown += !sweep::is_known(row.dwells.known_from);
     if (row.dwells.known_from > known_from) known_from = row.dwells.known_from;
   }
@@ -198,8 +215,8 @@ struct Meetings {
   void count(const sweep::RunRow& run, const Ending& ending, double from_distance) {
     if (!run.contacts) return;
     num_contacts += *run.contacts;
-    way += std::max(0.0, run.distance);
-    num_free += run.contacts == 0;
+    way += std::max(0.0, sweep::observed_distance(run).value());
+    num_free += run.contacts == 0 && run.status != RunStatus::failed;
     const double begin = std::max(from_distance, run.first_contact_at);
     if (*run.contacts > 0) from_first.push_back({std::max(0.0, ending.distance - begin), ending.is_clog});
   }
@@ -247,13 +264,15 @@ fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double te
   return of_enough_runs(is_far ? fit::fit_pooled_speed(travels) : fit::fit_pooled_speed({}));
 }
 
-/// Keeps one run of each droplet (one seed in one array), the run with the largest max-time.
+/// Keeps one run of each droplet (one seed in one array), the run with the largest max-time. A crash tells
+/// less about a droplet than any other run.
 void keep_longest(std::vector<const sweep::RunRow*>& runs) {
-  std::ranges::stable_sort(runs, std::ranges::greater(),
-                           [](const sweep::RunRow* run) { return run->parameters.max_time; });
+  std::ranges::stable_sort(runs, std::ranges::greater(), [](const sweep::RunRow* run) {
+    return std::pair(!sweep::may_succeed_later(*run), run->parameters.max_time);
+  });
   std::set<std::pair<std::uint32_t, std::string>> known;
   std::erase_if(runs, [&](const sweep::RunRow* run) {
-    if (run->status == RunStatus::failed || !sweep::fault_of(*run).empty()) return false;
+    if (!is_observed(*run)) return false;
     return !known.emplace(run->parameters.seed, sweep::array_key(run->parameters)).second;
   });
 }
@@ -283,6 +302,8 @@ void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Ta
   tally.endings.push_back(*ending);
   group.seeds.push_back(run.parameters.seed);
   group.num_on_mesh += sweep::may_hang_on_mesh(run);
+  group.num_near_friction_limit += sweep::is_near_friction_limit(run);
+  group.num_failed_counted += run.status == RunStatus::failed;
   if (ending->is_clog) return;
   group.num_passed += run.status == RunStatus::passed;
   group.num_flowing += run.status == RunStatus::flowing;
@@ -301,18 +322,20 @@ void add_motion(const sweep::RunRow& run, Group& group, Tally& tally) {
   group.dwells_known_from = later(group.dwells_known_from, run.dwells.known_from);
 }
 
-/// Counts failed and damaged runs, and includes all others.
+/// Counts failed and damaged runs, and includes all runs that are observed. Failed runs are left out of
+/// speeds and lateral displacements, which they may have changed before they were found.
 Tally tally_of(std::span<const sweep::RunRow* const> runs, double from_distance, Group& group) {
   Tally tally;
   for (const sweep::RunRow* run : runs) {
     if (!sweep::fault_of(*run).empty()) {
       ++group.num_damaged;
-    } else if (run->status == RunStatus::failed) {
-      ++group.num_failed;
-    } else {
-      add_ending(*run, from_distance, group, tally);
-      add_motion(*run, group, tally);
+      continue;
     }
+    const bool has_failed = run->status == RunStatus::failed;
+    group.num_failed += has_failed;
+    group.num_failed_somewhere += !is_observed(*run);
+    if (is_observed(*run)) add_ending(*run, from_distance, group, tally);
+    if (!has_failed) add_motion(*run, group, tally);
   }
   return tally;
 }
@@ -344,9 +367,18 @@ bool is_device(const RunParameters& run) {
          (run.obstacles.release == Release::entrance || run.obstacles.exit > 0);
 }
 
+bool is_observed(const sweep::RunRow& run) {
+  return sweep::observed_distance(run) && sweep::fault_of(run).empty();
+}
+
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run) {
   const std::optional<Ending> ending = counted(run, ending_of(run, std::numeric_limits<double>::infinity()));
   return ending ? std::optional(fit::Observation{ending->distance, ending->is_clog}) : std::nullopt;
+}
+
+double failures_per_length(const Group& group) {
+  const double way = group.clogging.total_distance;
+  return way > 0 ? group.num_failed_counted / way : sweep::RunRow::not_known;
 }
 
 bool is_dwell_possible(const Group& group) { return group.dwell < group.first_row.parameters.max_time; }

@@ -126,6 +126,11 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
   if (have_any(&Group::num_passed))
     columns.insert(columns.end(),
                    {column_of("passed", &Group::num_passed), column_of("flowing", &Group::num_flowing)});
+  if (have_any(&Group::num_failed))
+    columns.insert(columns.end(), {column_of("failed", &Group::num_failed),
+                                   {"per 1000 sigma", [](const Group& group) {
+                                      return console::plain(1000 * failures_per_length(group));
+                                    }}});
   if (are_mechanisms_shown(groups)) columns.push_back({"w/s/h/o", mechanism_counts});
   append(is_of_device ? "lambda_met/sigma" : "lambda/sigma", &Group::clogging, confidence, columns);
   if (is_of_device || have_any(&Group::num_free)) columns.push_back(column_of("met none", &Group::num_free));

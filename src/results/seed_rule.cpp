@@ -55,18 +55,23 @@ SeedRule::SeedRule(double precision, std::int64_t num_groups, std::int64_t first
 
 std::int64_t SeedRule::clogs_needed() const { return clogs_for(precision_); }
 
-std::vector<std::int64_t> SeedRule::next_round(const std::function<bool(std::int64_t task)>& has_clogged) {
+std::vector<std::int64_t> SeedRule::next_round(const std::function<RunStatus(std::int64_t task)>& status) {
   const std::int64_t needed = clogs_needed();
   std::vector<std::int64_t> tasks;
   num_reached_ = 0;
   unreached_.clear();
   for (std::int64_t group = 0; group < num_groups(); ++group) {
     std::int64_t& num_seeds = num_seeds_[static_cast<std::size_t>(group)];
-    std::int64_t clogs = 0;
-    for (std::int64_t seed = 0; seed < num_seeds; ++seed) clogs += has_clogged(seed * num_groups() + group);
+    std::int64_t clogs = 0, failed = 0;
+    for (std::int64_t seed = 0; seed < num_seeds; ++seed) {
+      const RunStatus ended = status(seed * num_groups() + group);
+      clogs += ended == RunStatus::clogged;
+      failed += ended == RunStatus::failed;
+    }
     num_reached_ += clogs >= needed;
     if (clogs >= needed) continue;
-    unreached_.push_back({group, clogs, num_seeds});
+    unreached_.push_back({group, clogs, num_seeds, failed});
+    if (failed == num_seeds) continue;
     const auto estimate =
         static_cast<std::int64_t>(std::ceil(static_cast<double>(num_seeds) * static_cast<double>(needed) /
                                             static_cast<double>(std::max<std::int64_t>(clogs, 1))));
@@ -93,8 +98,9 @@ std::string outcome(const SeedRule& rule, const sweep::Plan& plan) {
   std::vector<std::string> named;
   for (const SeedRule::Unreached& one : rule.unreached()) {
     if (named.size() == most_named) break;
-    named.push_back(fmt::format("{} with {} of {} seeds", name_of(one.group, plan),
-                                sweep::counted(one.num_clogs, "clog"), one.num_seeds));
+    named.push_back(fmt::format("{} with {} of {} seeds{}", name_of(one.group, plan),
+                                sweep::counted(one.num_clogs, "clog"), one.num_seeds,
+                                one.num_failed > 0 ? fmt::format(", {} failed", one.num_failed) : ""));
   }
   if (rule.unreached().size() > most_named)
     named.push_back(fmt::format("{} more", rule.unreached().size() - most_named));

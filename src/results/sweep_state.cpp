@@ -84,7 +84,7 @@ std::unique_ptr<SweepState::Entry>& SweepState::place_of(std::int64_t task) {
 }
 
 bool SweepState::is_over(const sweep::RunRow& row) const {
-  if (row.status == RunStatus::failed) return row.attempt >= attempts_;
+  if (row.status == RunStatus::failed) return !tries_again(row);
   return !sweep::is_unfinished(row.status);
 }
 
@@ -115,6 +115,9 @@ sweep::RunRow SweepState::new_row(std::int64_t task) const {
   sweep::RunRow row = sweep::describe(plan_->task(task));
   row.task = task;
   row.clogged_by = sweep::FoundBy::not_clogged;
+  row.failed_by = FailedBy::none;
+  row.sound_distance = 0;
+  row.healed_crossings = 0;
   row.mechanism = ClogMechanism::none;
   return row;
 }

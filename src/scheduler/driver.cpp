@@ -122,8 +122,7 @@ class Driver {
 
 /// Requests the next round from the state of the sweep, if the rule needs one. Returns whether it does.
 bool begin_round(results::SeedRule& rule, results::SweepState& state) {
-  std::vector<std::int64_t> next =
-      rule.next_round([&](std::int64_t task) { return state.row(task).status == RunStatus::clogged; });
+  std::vector<std::int64_t> next = rule.next_round([&](std::int64_t task) { return state.row(task).status; });
   // An earlier call with a higher precision may have started more tasks than this call needs. They are
   // finished, too.
   if (next.empty()) next = state.tasks_begun();

@@ -282,6 +282,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
     is_over_ = true;
     last_.snapshot.clear();
     last_.row.status = RunStatus::failed;
+    last_.row.failed_by = FailedBy::crash;
     last_.row.message = reason;
     last_.row.wall_seconds = std::max(0.0, std::chrono::duration<double>(Clock::now() - begin_).count());
     last_.row.processor_seconds = sweep::RunRow::not_known;

@@ -184,7 +184,8 @@ class Master {
     report.row.attempt = attempt;
     schedule_.tasks.ended(ended, seconds());
     if (report.row.status == RunStatus::interrupted) return;
-    if (report.row.status != RunStatus::failed) {
+    // Runs that diverge or cross themselves do so on every rank.
+    if (!sweep::may_succeed_later(report.row)) {
       set_aside(schedule_.trust.succeeded(ended, rank));
       return;
     }
@@ -230,7 +231,7 @@ class Master {
       take_back(report);
       // Answer the worker before writing the row: workers do not wait for the disk.
       answer(worker);
-      if (report.row.status != RunStatus::failed) events_.ended(report);
+      if (!sweep::may_succeed_later(report.row)) events_.ended(report);
     }
     return served;
   }
@@ -266,7 +267,7 @@ class Master {
       Report report = own_job_->last_report();
       own_job_.reset();
       take_back(report);
-      if (report.row.status != RunStatus::failed) events_.ended(report);
+      if (!sweep::may_succeed_later(report.row)) events_.ended(report);
     } else if (std::optional<Report> report = own_job_->due_report()) {
       report->row.attempt = running_.at(report->row.task).attempt;
       events_.progressed(*report);

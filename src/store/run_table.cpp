@@ -129,7 +129,7 @@ std::optional<std::string> publish_sweep(const OutputPath& place, const std::str
 
 namespace {
 
-constexpr std::array<std::string_view, 2> readable_versions = {"9", format_version};
+constexpr std::array<std::string_view, 3> readable_versions = {"9", "10", format_version};
 
 /// @throws Error if the open file has a format version that this program does not read
 void require_readable_version(hid_t file, const std::string& path) {

@@ -267,8 +267,15 @@ std::vector<Column> make_columns() {
              "fell below clog_energy; none: not clogged; "
              "empty: unknown",
              16),
+      member("failed_by", &RunRow::failed_by, result, "",
+             "crossing: the interface crossed itself; divergence: the integration diverged; crash: the "
+             "program or its process failed; none: not failed; empty: unknown",
+             16),
       member("distance", &RunRow::distance, result, "sigma",
              "displacement of the centre of mass along the flow since release"),
+      member("sound_distance", &RunRow::sound_distance, result, "sigma",
+             "distance at the last check that found the droplet whole and not crossing itself, at which "
+             "failed runs are censored; NaN: unknown"),
       member("lateral_displacement", &RunRow::lateral_displacement, result, "sigma",
              "displacement across the flow"),
       member("time", &RunRow::time, result, "t0", "time since release"),
@@ -315,6 +322,10 @@ std::vector<Column> make_columns() {
       member("mesh_hold", &RunRow::mesh_hold, result, "",
              "largest fraction of the weight that corners of the mesh can hold where a clogged polygon hangs "
              "over obstacles; NaN for other droplets"),
+      member("friction_use", &RunRow::friction_use, result, "",
+             "net tangential force on a post about its centre divided by the largest that friction could "
+             "bear in its direction, the largest over the posts that hold a clogged polygon; NaN for other "
+             "droplets"),
       member("largest_shape_parameter", &RunRow::largest_shape_parameter, result, "",
              "largest A in a channel; this and the next five columns are NaN for other runs"),
       member(
@@ -339,6 +350,9 @@ std::vector<Column> make_columns() {
       number_in(
           "thinnest_neck_at", [](auto& row) -> auto& { return row.neck.distance; }, "sigma",
           "distance at which the droplet had this neck"),
+      member("healed_crossings", &RunRow::healed_crossings, result, "",
+             "number of times that a vertex passed through another part of the interface and was pushed "
+             "back; -1: unknown"),
       member("release_x", &RunRow::release_x, result, "sigma",
              "place of release of the centre of mass in the coordinates of user-supplied circles, possibly a "
              "little outside their array; NaN for other obstacles"),

@@ -41,6 +41,9 @@ constexpr std::int64_t most_contacts = 1'000'000;
 /// obstacle as thin as a needle.
 constexpr double most_mesh_hold = 1e6;
 
+/// Droplets that have almost come to rest may be held by slightly more than the friction at rest.
+constexpr double most_friction_use = 1 + 1e-6;
+
 bool is_number_below(double value, double bound) { return std::isfinite(value) && std::abs(value) <= bound; }
 
 std::string named(std::string_view column, double value) {
@@ -91,10 +94,14 @@ std::string bookkeeping_fault(const RunRow& row) {
 
 double time_step_of(const RunRow& row) { return row.parameters.time_step.value(); }
 
+std::string duration_fault(const RunRow& row) {
+  if (row.time >= 0 && row.time <= (1 + round_off) * row.parameters.max_time + time_step_of(row)) return "";
+  return named("time", row.time) + " is not between 0 and " + named("max_time", row.parameters.max_time);
+}
+
 /// Checks that the run ended after a whole number of steps.
 std::string time_fault(const RunRow& row) {
-  if (!(row.time >= 0 && row.time <= (1 + round_off) * row.parameters.max_time + time_step_of(row)))
-    return named("time", row.time) + " is not between 0 and " + named("max_time", row.parameters.max_time);
+  if (std::string fault = duration_fault(row); !fault.empty()) return fault;
   if (row.status == RunStatus::flowing &&
       row.time < (1 - round_off) * row.parameters.max_time - time_step_of(row))
     return "flowing, but " + named("time", row.time) + " is before " +
@@ -190,6 +197,18 @@ std::string dwells_fault(const RunRow& row) {
   return "";
 }
 
+/// Checks what readers use of a failed run, too.
+std::string soundness_fault(const RunRow& row) {
+  if (row.failed_by && (*row.failed_by != FailedBy::none) != (row.status == RunStatus::failed))
+    return named("failed_by", name(*row.failed_by)) + ", but " + named("status", name(row.status));
+  if (is_known(row.sound_distance) && !is_number_below(row.sound_distance, farthest_way(row)))
+    return named("sound_distance", row.sound_distance) + " is not on the droplet's way";
+  if (row.status == RunStatus::failed && !is_number_below(*observed_distance(row), farthest_way(row)))
+    return named("distance", row.distance) + " is not on the droplet's way";
+  if (row.healed_crossings.value_or(0) < 0) return "a negative number of healed crossings";
+  return "";
+}
+
 /// Checks the shape of a droplet that has moved; the shape is unknown before.
 std::string shape_fault(const RunRow& row) {
   if (row.steps == 0) return "";
@@ -228,6 +247,9 @@ std::string clog_fault(const RunRow& row) {
     return named("wrapped_support", row.wrapped_support) + " is no share of a clog's support";
   if (is_known(row.mesh_hold) && !(is_clogged && row.mesh_hold >= 0 && row.mesh_hold <= most_mesh_hold))
     return named("mesh_hold", row.mesh_hold) + " is no part of a clogged droplet's weight";
+  if (is_known(row.friction_use) &&
+      !(is_clogged && row.friction_use >= 0 && row.friction_use <= most_friction_use))
+    return named("friction_use", row.friction_use) + " is no fraction of what friction can bear";
   const auto [fewest, most] =
       std::minmax({row.num_wrapped.value_or(0), row.num_gaps.value_or(0), row.num_arcs.value_or(0)});
   if (fewest < 0) return "a negative number of contacts";
@@ -301,9 +323,15 @@ std::string release_fault(const RunRow& row) {
 }
 
 std::string result_fault(const RunRow& row) {
-  if (row.status == RunStatus::failed) return row.message.empty() ? "failed without a reason" : "";
-  for (const auto check : {time_fault, motion_fault, steady_fault, dwells_fault, contacts_fault, shape_fault,
-                           clog_fault, passage_fault, neck_fault, release_fault})
+  if (row.status == RunStatus::failed) {
+    if (row.message.empty()) return "failed without a reason";
+    if (!observed_distance(row)) return "";  // nothing else is used, nor needs to make sense
+    for (const auto check : {duration_fault, soundness_fault, dwells_fault, contacts_fault})
+      if (std::string fault = check(row); !fault.empty()) return fault;
+    return "";
+  }
+  for (const auto check : {time_fault, motion_fault, steady_fault, soundness_fault, dwells_fault,
+                           contacts_fault, shape_fault, clog_fault, passage_fault, neck_fault, release_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
 }

@@ -62,6 +62,7 @@ bool RunJob::advance() {
     RunResult failure;
     if (run_) failure = run_->result();
     failure.status = RunStatus::failed;
+    failure.failed_by = FailedBy::crash;
     failure.message = error.what();
     record(failure, row_);
     run_.reset();

@@ -40,7 +40,9 @@ RunRow describe(const RunParameters& run) {
 void record(const RunResult& result, RunRow& row) {
   row.status = result.status;
   row.clogged_by = found_by(result.clogged_by);
+  row.failed_by = result.failed_by;
   row.distance = result.distance;
+  row.sound_distance = result.sound_distance;
   row.lateral_displacement = result.lateral;
   row.time = result.time;
   row.mean_speed = result.speed.mean;
@@ -59,6 +61,7 @@ void record(const RunResult& result, RunRow& row) {
   row.num_gaps = result.hold.geometry.num_gaps;
   row.num_arcs = result.hold.geometry.num_arcs;
   row.mesh_hold = result.hold.geometry.mesh_hold;
+  row.friction_use = result.friction_use;
   row.largest_shape_parameter = result.passage.largest_shape_parameter.value;
   row.largest_shape_parameter_at = result.passage.largest_shape_parameter.place;
   row.largest_relative_speed = result.passage.largest_speed.value;
@@ -68,10 +71,19 @@ void record(const RunResult& result, RunRow& row) {
   row.sag = result.sag.centre;
   row.top_sag = result.sag.top;
   row.neck = result.neck;
+  row.healed_crossings = result.healed_crossings;
   row.release_x = result.release[0];
   row.release_y = result.release[1];
   row.steps = result.steps;
   row.message = result.message;
+}
+
+std::optional<double> observed_distance(const RunRow& row) {
+  if (row.status != RunStatus::failed) return row.distance;
+  if (is_known(row.sound_distance)) return row.sound_distance;
+  // Rows of model version 11 do not name the cause otherwise.
+  const bool has_crossed = row.message.starts_with("the interface crossed itself");
+  return has_crossed && is_known(row.distance) ? std::optional(row.distance) : std::nullopt;
 }
 
 std::size_t packed_size() {

@@ -10,9 +10,10 @@ import zlib
 import h5py
 import numpy as np
 import pandas
+import scipy.stats
 
 import stored_rows
-from support import ROOT, SMALL, ProgramTest
+from support import BIN, ROOT, SMALL, ProgramTest
 
 sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.tools import rounded  # noqa: E402
@@ -74,6 +75,7 @@ class Fit(ProgramTest):
         if "status" in columns:
             status = np.array(columns["status"])
             columns.setdefault("clogged_by", np.where(status == b"clogged", b"certified", b"none"))
+            columns.setdefault("failed_by", np.where(status == b"failed", b"crossing", b"none"))
             columns.setdefault("message", np.where(status == b"failed", b"made to fail", b""))
         stored_rows.change_columns(self.folder / "sweep.h5", **columns)
 
@@ -446,15 +448,100 @@ class Fit(ProgramTest):
             self.assertEqual([old[name] for name in ("relative_speed", "relative_speed_all", "clogging_length")], [new[name] for name in ("relative_speed", "relative_speed_all", "clogging_length")])
         self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r"<v_g>/v_t +\+- +of +all runs")
 
-    def test_interrupted_runs_are_censored_and_failed_ones_left_out(self):
-        self.sweep("seeds=1..4", *FAR)
-        self.change(distance=[1, 2, 3, 100], status=[b"clogged", b"flowing", b"interrupted", b"failed"])
+    def test_interrupted_runs_are_censored(self):
+        self.sweep("seeds=1..3", *FAR)
+        self.change(distance=[1, 2, 3], status=[b"clogged", b"flowing", b"interrupted"])
         group, = self.fit()["groups"]
-        self.assertEqual(group["clogging_length"], 6)
-        self.assertEqual((group["runs"], group["interrupted"], group["failed"]), (3, 1, 1))
+        self.assertEqual((group["clogging_length"], group["runs"], group["interrupted"]), (6, 3, 1))
+        self.assertIn("1 run is unfinished: lambda holds for the distances reached so far", self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_failed_runs_are_censored_where_they_were_sound(self):
+        self.sweep("seeds=1..7", *FAR)
+        status = [b"clogged"] * 3 + [b"flowing"] + [b"failed"] * 3
+        # What a failed droplet did after its last passed check is of no use, whatever it is.
+        self.change(distance=[1, 2.5, 7, 10, 1e300, np.nan, 12], sound_distance=[1, 2.5, 7, 10, 0.5, 4, 6.25], status=status,
+                    failed_by=[b"none"] * 4 + [b"divergence", b"crash", b"crossing"])
+        group, = self.fit()["groups"]
+        # From R 4.2.2, package survival 3.5-3:
+        #   d <- c(1, 2.5, 7, 10, 0.5, 4, 6.25); clog <- c(1, 1, 1, 0, 0, 0, 0)
+        #   exp(coef(survreg(Surv(d, clog) ~ 1, dist="exponential", control=survreg.control(rel.tolerance=1e-14))))
+        #   s <- summary(survfit(Surv(d, clog) ~ 1)); cbind(s$time, s$n.risk, s$surv)
+        self.assertAlmostEqual(group["clogging_length"], 10.4166666666667, delta=1e-9)
+        self.assertEqual([(step["distance"], step["at_risk"]) for step in group["survival"]], [(1, 6), (2.5, 5), (7, 2)])
+        for step, probability in zip(group["survival"], [0.833333333333333, 0.666666666666667, 0.333333333333333]):
+            self.assertAlmostEqual(step["probability"], probability, delta=1e-9)
+        self.assertEqual((group["runs"], group["clogs"], group["failed"], group["failed_somewhere"]), (7, 3, 3, 0))
+        self.assertAlmostEqual(group["failures_per_length"], 3 / 31.25, places=12)
+        self.assertEqual(group["doubts"], "few_clogs censored_by_time")
+        self.assertEqual(group["censored_distances"], [0.5, 4, 6.25, 10])
         text = self.succeed("clogfit", "sweep.h5").stdout
-        self.assertIn("1 run is unfinished: lambda holds for the distances reached so far", text)
-        self.assertIn("1 failed", text)
+        self.assertRegex(text, r"failed +per 1000 sigma .*\n.* 3 +96\.0 ")
+        self.assertIn("3 failed; the column `message` says why, and counted as not clogged up to sound_distance", text)
+        self.succeed("clogsweep", "verify", "sweep.h5")
+        # A failed run that ended before the distance from which on runs are observed is left out like any other.
+        group, = self.fit("--from-distance", 5)["groups"]
+        self.assertEqual((group["runs"], group["left_out"], group["total_distance"]), (3, 4, 2 + 5 + 1.25))
+
+    def test_files_of_older_versions_tell_only_where_droplets_crossed_themselves(self):
+        self.sweep("seeds=1..6", *FAR)
+        self.change(distance=[1, 2, 3, 4, 5, 50], status=[b"clogged"] * 3 + [b"failed"] * 3,
+                    message=[b""] * 3 + [b"the interface crossed itself by t=9; try", b"diverged at t=3", b"its process was ended by SIGSEGV"])
+        new = ["sound_distance", "failed_by", "healed_crossings", "friction_use"]
+        stored_rows.make_older(self.folder / "sweep.h5", "10", new)
+        group, = self.fit()["groups"]
+        self.assertEqual([group[name] for name in ("runs", "total_distance", "failed", "failed_somewhere")], [4, 10, 3, 2])
+        self.assertIn("incomplete", group["doubts"])
+        self.assertIn("counted as not clogged up to sound_distance, except 2 without one", self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_failures_are_a_doubt_where_they_could_move_the_length_out_of_its_interval(self):
+        self.sweep("seeds=1..10", *FAR)
+        for num_failed, is_doubtful in ((0, False), (4, False), (5, True), (7, True)):
+            # If failures were clogs, seven droplets would have clogged, and lambda would be 10/7.
+            clogs = 7 - num_failed
+            self.change(distance=1.0, sound_distance=1.0, status=[b"clogged"] * clogs + [b"flowing"] * 3 + [b"failed"] * num_failed)
+            lower = 20 / scipy.stats.chi2.ppf(0.975, 2 * clogs + 1) if clogs else 10 / -math.log(0.05)
+            self.assertEqual(10 / 7 < lower, is_doubtful, num_failed)
+            self.assertEqual("failures_matter" in (self.fit()["groups"][0]["doubts"] or ""), is_doubtful)
+
+    def test_failures_at_random_places_do_not_move_the_length(self):
+        self.sweep("seeds=1..120", "line-tension=0.5,2", *FAR)
+        rows = stored.read_table(self.folder / "sweep.h5", BIN)
+        may_fail = (rows.line_tension == 2).to_numpy()
+        random = np.random.default_rng(1)
+        clogs = np.zeros(2)
+        distances = np.zeros(2)
+        for _ in range(30):
+            ends = [random.exponential(10, len(rows)), np.where(may_fail, random.exponential(10, len(rows)), np.inf), np.full(len(rows), 30.0)]
+            status = np.array([b"clogged", b"failed", b"flowing"])[np.argmin(ends, axis=0)]
+            self.change(distance=np.min(ends, axis=0), sound_distance=np.min(ends, axis=0), status=status)
+            groups = self.fit()["groups"]
+            clogs += [group["clogs"] for group in groups]
+            distances += [group["total_distance"] for group in groups]
+        self.assertGreater((status == b"failed").sum(), 40)
+        for length, number in zip(distances / clogs, clogs):
+            self.assertLess(abs(math.log(length / 10)), 3 / math.sqrt(number))
+        one, = json.loads(self.succeed("clogfit", "compare", "sweep.h5", "--by", "line-tension", "--format", "json").stdout)["comparisons"]
+        self.assertEqual(one["pairs"], 120)
+        self.assertTrue(one["ratio_lower"] < 1 < one["ratio_upper"], one)
+
+    def test_the_longest_run_of_a_pool_counts_even_if_it_failed(self):
+        for name, time in (("short", 1), ("long", 2)):
+            self.succeed("clogsweep", *SMALL, FAR[1], "line-tension=0.5", "seeds=1..3", f"max-time={time}", "--output", f"{name}.h5")
+        self.succeed("clogsweep", "merge", "short.h5", "long.h5", "--output", "sweep.h5")
+        rows = stored.read_table(self.folder / "sweep.h5", BIN)
+        fails = ((rows.max_time == 2) & (rows.seed > 1)).to_numpy()
+        crashes = fails & (rows.seed == 3).to_numpy()
+        self.change(distance=np.where(fails, np.nan, 1.0), sound_distance=np.where(fails, 2.0, 1.0), status=np.where(fails, b"failed", b"flowing"),
+                    failed_by=np.where(crashes, b"crash", np.where(fails, b"crossing", b"none")))
+        group, = self.fit("--pool=max-time")["groups"]
+        self.assertEqual((group["runs"], group["repeated"], group["failed"], group["total_distance"]), (3, 3, 1, 1 + 2 + 1))
+
+    def test_clogs_near_the_limit_of_friction_are_marked(self):
+        self.sweep("seeds=1..10", *FAR)
+        for use, doubts in (([0.91] + [0.5] * 9, None), ([0.91] * 2 + [np.nan] * 8, "near_friction_limit")):
+            self.change(distance=3 * EXPONENTIAL, status=[b"clogged"] * 10, mechanism=[b"wrapped"] * 10, mesh_hold=0.0, friction_use=use)
+            self.assertEqual(self.fit()["groups"][0]["doubts"], doubts)
+        self.assertIn("\nh: more than 15 % of the clogs", self.succeed("clogfit", "sweep.h5").stdout)
 
     def test_droplets_that_passed_are_counted(self):
         self.sweep("seeds=1..4", *FAR)

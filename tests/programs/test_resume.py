@@ -385,6 +385,18 @@ class Resumed(SweepTest):
         for other in (["--shard=1/2"], ["--until-precision=20%"]):
             self.refuse("clogsweep", *fill, *other, words=["both choose seeds", "give one of them"])
 
+    def test_a_droplet_that_crosses_itself_is_not_tried_again(self):
+        # Far below the tested line tensions.
+        keys = ["line-tension=0.001", "vertices=64", "box=20", "obstacle-density=saturated", "max-time=1000", "seeds=1..4", "--attempts=3", "--output", "s.h5"]
+        done = self.run_program("clogsweep", *keys, ranks=2)
+        rows = table(self.folder / "s.h5")
+        failed = rows[rows.status == "failed"]
+        self.assertGreater(len(failed), 0, done.stderr)
+        self.assertEqual((set(failed.failed_by), set(failed.attempt)), ({"crossing"}, {1}))
+        self.assertTrue(((failed.sound_distance > 0) & (failed.sound_distance < failed.distance)).all())
+        self.assertNotIn("will be tried again", done.stderr)
+        self.assertIn("nothing left to do", self.run_program("clogsweep", *keys).stderr)
+
     def test_a_failed_run_is_tried_again_up_to_a_limit(self):
         blocked = [*BLOCKED, "seeds=63..65", "--output", "s.h5"]
         self.succeed("clogsweep", *blocked, "--attempts=3", ranks=2)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <set>
 #include <vector>
@@ -13,18 +14,24 @@
 namespace clog::results {
 namespace {
 
+/// How tasks end of which some clog, and the others are censored.
+auto statuses(const std::function<bool(std::int64_t task)>& has_clogged) {
+  return [=](std::int64_t task) { return has_clogged(task) ? RunStatus::clogged : RunStatus::flowing; };
+}
+
 TEST(SeedRule, AsksForMoreOnlyWhereTheIntervalIsWide) {
   // In one of two parameter sets every droplet clogs, and in the other every fourth. A precision of 60 %
   // requires 14 clogs.
   const auto has_clogged = [](std::int64_t task) { return task % 2 == 0 || task / 2 % 4 == 3; };
   SeedRule rule(0.6, 2, 16, 100);
-  const std::vector<std::int64_t> next = rule.next_round(has_clogged);
+  const std::vector<std::int64_t> next = rule.next_round(statuses(has_clogged));
   EXPECT_EQ(rule.num_reached(), 1);
   // The set has only 16 runs, so no more are added, although 4 clogs of 16 require 40 more.
   ASSERT_EQ(next.size(), 16u);
   for (std::size_t i = 0; i < next.size(); ++i) EXPECT_EQ(next[i], 2 * (16 + static_cast<int>(i)) + 1);
-  EXPECT_EQ(rule.next_round(has_clogged).size(), 24u);  // 8 of 32 runs clogged, so 56 seeds are needed
-  EXPECT_TRUE(rule.next_round(has_clogged).empty());
+  EXPECT_EQ(rule.next_round(statuses(has_clogged)).size(),
+            24u);  // 8 of 32 runs clogged, so 56 seeds are needed
+  EXPECT_TRUE(rule.next_round(statuses(has_clogged)).empty());
   EXPECT_EQ(rule.num_reached(), 2);
 }
 
@@ -35,15 +42,38 @@ TEST(SeedRule, NamesWhatItDidNotReach) {
   GrowingSweep sweep = growing_sweep(settings, 0.6, 20);
   const sweep::Plan plan(sweep.settings);
   const auto has_clogged = [](std::int64_t task) { return task % 2 == 1 || task == 0; };
-  while (!sweep.rule.next_round(has_clogged).empty()) {
+  while (!sweep.rule.next_round(statuses(has_clogged)).empty()) {
   }
   EXPECT_EQ(
       outcome(sweep.rule, plan),
       "1 of 2 parameter sets reached --until-precision=60 %; not: line_tension=0.2 with 1 clog of 20 seeds "
       "(it takes 14 clogs); give more --most-seeds, or a longer max-time");
   const auto always = [](std::int64_t) { return true; };
-  EXPECT_TRUE(sweep.rule.next_round(always).empty());
+  EXPECT_TRUE(sweep.rule.next_round(statuses(always)).empty());
   EXPECT_EQ(outcome(sweep.rule, plan), "2 of 2 parameter sets reached --until-precision");
+}
+
+TEST(SeedRule, AddsNoSeedsWhereAllRunsFail) {
+  sweep::Settings settings;
+  settings.set("line-tension", "0.2,1");
+  settings.set("seeds", "1..16");
+  GrowingSweep sweep = growing_sweep(settings, 0.6, 100'000);
+  // All runs of one set fail, and half of those of the other, which reaches the precision.
+  const auto status = [](std::int64_t task) {
+    return task % 2 == 0 || task / 2 % 2 == 0 ? RunStatus::failed : RunStatus::clogged;
+  };
+  int num_rounds = 0;
+  std::size_t num_added = 0;
+  for (auto next = sweep.rule.next_round(status); !next.empty(); next = sweep.rule.next_round(status)) {
+    ++num_rounds;
+    num_added += next.size();
+    for (const std::int64_t task : next) EXPECT_EQ(task % 2, 1);
+  }
+  EXPECT_EQ(num_rounds, 1);
+  EXPECT_EQ(num_added, 12u);  // 8 of 16 runs clogged, so 14 clogs require 28
+  EXPECT_EQ(outcome(sweep.rule, sweep::Plan(sweep.settings)),
+            "1 of 2 parameter sets reached --until-precision=60 %; not: line_tension=0.2 with 0 clogs of 16 "
+            "seeds, 16 failed (it takes 14 clogs); give more --most-seeds, or a longer max-time");
 }
 
 TEST(SeedRule, SaysHowManyClogsAPrecisionTakes) {
@@ -58,7 +88,7 @@ TEST(SeedRule, StopsWhereTheIntervalIsNarrowEnough) {
       std::int64_t num_tasks = 10;
       const auto has_clogged = [=](std::int64_t task) { return task % 3 >= censored_of_three; };
       while (true) {
-        const auto next = rule.next_round(has_clogged);
+        const auto next = rule.next_round(statuses(has_clogged));
         if (next.empty()) break;
         num_tasks += static_cast<std::int64_t>(next.size());
       }
@@ -76,8 +106,8 @@ TEST(SeedRule, EndsAtTheBudgetWhereNothingClogs) {
   SeedRule rule(0.1, 3, 4, 25);
   std::set<std::int64_t> tasks;
   int num_rounds = 0;
-  for (auto next = rule.next_round([](std::int64_t) { return false; }); !next.empty();
-       next = rule.next_round([](std::int64_t) { return false; })) {
+  for (auto next = rule.next_round([](std::int64_t) { return RunStatus::flowing; }); !next.empty();
+       next = rule.next_round([](std::int64_t) { return RunStatus::flowing; })) {
     EXPECT_TRUE(std::is_sorted(next.begin(), next.end()));
     for (const std::int64_t task : next) EXPECT_TRUE(tasks.insert(task).second) << "twice";
     ++num_rounds;
@@ -107,7 +137,8 @@ TEST(SeedRule, DoesNotBiasTheClogsThatItStopsAt) {
     SeedRule rule(0.4, 1, 10, 1000);
     run_up_to(9);
     const auto has_clogged = [&](std::int64_t task) { return runs[static_cast<std::size_t>(task)].clogged; };
-    for (auto next = rule.next_round(has_clogged); !next.empty(); next = rule.next_round(has_clogged))
+    for (auto next = rule.next_round(statuses(has_clogged)); !next.empty();
+         next = rule.next_round(statuses(has_clogged)))
       run_up_to(next.back());
     const fit::CloggingLength fit = fit::fit_clogging_length(runs);
     mean += fit.length / num_sweeps;

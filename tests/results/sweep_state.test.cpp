@@ -84,7 +84,10 @@ class SweepStateTest : public testing::Test {
     row.time = static_cast<double>(row.steps) * *row.parameters.time_step;
     row.shape_parameter = 1.2;
     if (row.status == RunStatus::clogged) row.clogged_by = sweep::FoundBy::certified;
-    if (row.status == RunStatus::failed) row.message = "diverged";
+    if (row.status == RunStatus::failed) {
+      row.failed_by = FailedBy::crash;
+      row.message = "its process was killed";
+    }
     return report;
   }
   const std::vector<std::byte> snapshot_{10, std::byte{7}};
@@ -130,6 +133,27 @@ TEST_F(SweepStateTest, KeepsAFailureThatCounts) {
   EXPECT_EQ(open(2).tasks_left(), (std::vector<std::int64_t>{0, 1}));
 }
 
+TEST_F(SweepStateTest, KeepsAFailureThatNoRetryCanChange) {
+  for (const FailedBy cause : {FailedBy::divergence, FailedBy::crossing, FailedBy::crash}) {
+    std::filesystem::remove(path());
+    std::filesystem::remove(store::journal_path(path()));
+    {
+      SweepState state = open(3);
+      state.start(0, 0);
+      sweep::Report failed = report(state, 0, RunStatus::failed, 0);
+      failed.row.failed_by = cause;
+      failed.row.sound_distance = 0.5;
+      state.report(failed);
+      EXPECT_EQ(state.tries_again(failed.row), cause == FailedBy::crash);
+      state.finish();
+    }
+    const sweep::RunRow shown = store::read_sweep(path()).rows.at(0);
+    EXPECT_EQ(shown.status, cause == FailedBy::crash ? RunStatus::interrupted : RunStatus::failed);
+    EXPECT_EQ(shown.sound_distance, cause == FailedBy::crash ? 0 : 0.5);
+    EXPECT_EQ(open(3).tasks_left().size(), cause == FailedBy::crash ? 2u : 1u);
+  }
+}
+
 TEST_F(SweepStateTest, ShowsAFailureToReadersOnceItsAttemptsAreUsedUp) {
   SweepState state = open(2);
   const auto shown = [&] {
@@ -147,7 +171,7 @@ TEST_F(SweepStateTest, ShowsAFailureToReadersOnceItsAttemptsAreUsedUp) {
   state.report(report(state, 0, RunStatus::failed, std::nan("")));
   EXPECT_EQ(shown().status, RunStatus::failed);
   EXPECT_EQ(shown().attempt, 2);
-  EXPECT_EQ(shown().message, "diverged");
+  EXPECT_EQ(shown().message, "its process was killed");
 }
 
 TEST_F(SweepStateTest, CountsAnAttemptThatFailedThoughReadersDoNotSeeIt) {

@@ -97,18 +97,21 @@ void running_tasks_report_and_go_on_from_there(const scheduler::Communicator& ra
 /// A job that fails in its first attempts.
 class FailingJob final : public sweep::Job {
  public:
-  explicit FailingJob(std::int64_t task, bool fails) : task_(task), fails_(fails) {}
+  FailingJob(std::int64_t task, bool fails, FailedBy cause = FailedBy::crash)
+      : task_(task), fails_(fails), cause_(cause) {}
   bool advance() override { return true; }
   sweep::RunRow row() const override {
     sweep::RunRow row;
     row.task = task_;
     row.status = fails_ ? RunStatus::failed : RunStatus::clogged;
+    row.failed_by = fails_ ? cause_ : FailedBy::none;
     return row;
   }
 
  private:
   std::int64_t task_;
   bool fails_;
+  FailedBy cause_;
 };
 
 void failed_tasks_are_tried_again(const scheduler::Communicator& ranks) {
@@ -133,6 +136,26 @@ void failed_tasks_are_tried_again(const scheduler::Communicator& ranks) {
   expect(successes.size() == 19 && !successes.contains(3), "what can succeed does");
   expect(attempts[3] == 3, "attempts are limited");
   expect(attempts[5] == 2 && attempts[6] == 1, "no more attempts than needed");
+}
+
+void what_fails_everywhere_is_tried_once(const scheduler::Communicator& ranks) {
+  // Half of the tasks cross themselves or diverge. They are results: no second attempt, and no rank is
+  // blamed.
+  const auto make_job = [](std::int64_t task, std::span<const std::byte>) {
+    return std::make_unique<FailingJob>(task, task % 2 == 0,
+                                        task % 4 == 0 ? FailedBy::crossing : FailedBy::divergence);
+  };
+  std::map<std::int64_t, int> starts, ends;
+  scheduler::SweepEvents events;
+  events.started = [&](std::int64_t task, int) { return scheduler::Start{{}, ++starts[task]}; };
+  events.set_aside = [](const sweep::RunRow&) { expect(false, "no rank is at fault"); };
+  events.failure_withdrawn = [](std::int64_t) { expect(false, "no failure is in doubt"); };
+  events.ended = [&](const scheduler::Report& report) { ++ends[report.row.task]; };
+  const scheduler::SweepEnd end = run_once(ranks, scheduler::order_of(40, 4), make_job, events, true);
+  if (ranks.rank() != 0) return;
+  expect(end == scheduler::SweepEnd::complete, "the sweep is complete");
+  for (std::int64_t task = 0; task < 40; ++task)
+    expect(starts[task] == 1 && ends[task] == 1, "each task has one attempt and one row");
 }
 
 /// Makes jobs that fail on broken ranks and take some milliseconds on other ranks. A job fails everywhere if
@@ -276,6 +299,7 @@ int main(int argc, char** argv) {
   every_task_comes_back_once(ranks, true, 0);
   a_stop_ends_running_tasks_as_interrupted(ranks);
   running_tasks_report_and_go_on_from_there(ranks);
+  what_fails_everywhere_is_tried_once(ranks);
   failed_tasks_are_tried_again(ranks);
   impossible_tasks_are_no_rank_to_blame(ranks);
   if (ranks.size() > 1) {

@@ -84,7 +84,10 @@ TEST(FaultOf, NoRunThatFailed) {
   row.status = RunStatus::failed;
   row.message = "diverged";
   row.distance = row.shape_parameter = std::nan("");
+  row.failed_by = FailedBy::divergence;
   EXPECT_EQ(fault_of(row), "");
+  row.sound_distance = 1e9;
+  EXPECT_EQ(fault_of(row), "sound_distance=1e9 is not on the droplet's way");
   row.message = "";
   EXPECT_EQ(fault_of(row), "failed without a reason");
 }
@@ -92,10 +95,12 @@ TEST(FaultOf, NoRunThatFailed) {
 /// Rows in files of earlier versions have only some of the columns.
 TEST(FaultOf, NoColumnThatAnOlderVersionDidNotHave) {
   RunRow row = clogged();
-  for (const char* name : {"near_wall_cutoff", "contact_range", "self_contact_range", "mean_speed_error",
-                           "transient", "travel_time", "mechanism", "wrapped_support", "num_wrapped",
-                           "num_gaps", "num_arcs", "clogged_by", "mesh_hold", "dwells_known_from",
-                           "last_dwell_at", "last_dwell_from", "steady_distance", "steady_time"})
+  for (const char* name :
+       {"near_wall_cutoff", "contact_range",    "self_contact_range", "mean_speed_error", "transient",
+        "travel_time",      "mechanism",        "wrapped_support",    "num_wrapped",      "num_gaps",
+        "num_arcs",         "clogged_by",       "mesh_hold",          "failed_by",        "sound_distance",
+        "friction_use",     "healed_crossings", "dwells_known_from",  "last_dwell_at",    "last_dwell_from",
+        "steady_distance",  "steady_time"})
     column(name).set_unknown(row);
   EXPECT_EQ(fault_of(row), "near_wall_cutoff is not known") << "this version has it";
   row.model_version = model_version - 1;
@@ -178,7 +183,7 @@ TEST(Unpack, NamesEveryWordThatIsUnknown) {
     EXPECT_EQ(fault_with<std::string>(column, "wrapqed"), column.name + "='wrapqed' " + what);
     ++num_tried;
   }
-  EXPECT_EQ(num_tried, 15);
+  EXPECT_EQ(num_tried, 16);
 }
 
 TEST(Unpack, KeepsWhatIsUnknown) {
@@ -216,6 +221,8 @@ TEST(FaultOf, NamesEveryNumberThatIsNone) {
                                           "steady_time",
                                           "wrapped_support",
                                           "mesh_hold",
+                                          "sound_distance",
+                                          "friction_use",
                                           "largest_shape_parameter",
                                           "largest_shape_parameter_at",
                                           "largest_relative_speed",
@@ -285,6 +292,12 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
       {"kinetic_energy_ratio=", [](RunRow& row) { row.clogged_by = FoundBy::threshold; }},
       {"wrapped_support=", [](RunRow& row) { row.wrapped_support = 1.5; }},
       {"mesh_hold=", [](RunRow& row) { row.mesh_hold = -0.1; }},
+      {"friction_use=", [](RunRow& row) { row.friction_use = 1.1; }},
+      {"not clogged",
+       [](RunRow& row) { row.friction_use = 0.5, row.status = RunStatus::interrupted, row.clogged_by = {}; }},
+      {"failed_by='crossing'", [](RunRow& row) { row.failed_by = FailedBy::crossing; }},
+      {"sound_distance=", [](RunRow& row) { row.sound_distance = 1e3; }},
+      {"healed crossings", [](RunRow& row) { row.healed_crossings = -2; }},
       {"number of contacts", [](RunRow& row) { row.num_gaps = -2; }},
       {"more than a droplet has", [](RunRow& row) { row.num_wrapped = std::int64_t{1} << 62; }},
       {"model_version=", [](RunRow& row) { row.model_version = -1; }}};

@@ -17,9 +17,11 @@ from ..tools.hints import Group
 HOLLOW_MARKERS = {
     "few_clogs": "fewer than 5 clogs",
     "held_by_mesh": "clogs that the polygon's corners may hold",
+    "near_friction_limit": "clogs that almost exceed the friction (a finer mesh may let them go)",
     "wetted_mesh": "wetted walls, where the mesh matters",
     "array_repeats": "longer paths than the period of the array",
     "below_spacing": "lengths below one obstacle spacing (they reflect the release void, not clogging)",
+    "failures_matter": "failures, which would change the length if they were clogs",
     "untested": "outside the range that was tested for soundness",
 }
 
@@ -55,7 +57,9 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
     if reasons := dict.fromkeys(HOLLOW_MARKERS[reason] for group in groups for reason in reasons_for_hollow_marker(group)):
         lines += textwrap.wrap(f"hollow: {', or '.join(reasons)}", NOTE_WIDTH)
     if num_incomplete := sum("incomplete" in style.doubts(group) for group in groups):
-        lines.append(f"incomplete: runs of {num_incomplete} of {rounded.counted(len(groups), 'point')} are unfinished or failed")
+        lines.append(f"incomplete: runs of {num_incomplete} of {rounded.counted(len(groups), 'point')} are unfinished")
+    if num_failed := sum((group.get("failed") or 0) > 0 for group in groups):
+        lines.append(f"failed: some runs of {num_failed} of {rounded.counted(len(groups), 'point')} (not clogged up to their last check)")
     return lines
 
 

@@ -209,14 +209,22 @@ def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequenc
     return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
 
 
+def per_1000_sigma(group: Group) -> float | None:
+    rate = group["failures_per_length"]
+    return None if rate is None else 1000 * rate
+
+
 def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.DataFrame) -> str:
     names = parameters(groups)
     mechanisms = [name for name in style.MECHANISM_COLOURS if any(group[name] for group in groups.members)]
     passed = ["passed", "flowing"] if any(group["passed"] for group in groups.members) else []
-    titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *mechanisms, *passed, f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
+    has_failed = any(group["failed"] for group in groups.members)
+    titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *mechanisms, *passed,
+              *(["failed", "failed per 1000&sigma;"] if has_failed else []), f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
               *(["lateral/r", "along rows"] if groups.are_lattices else []), "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", *laboratory_columns(groups).values(), "Ca", "seeds"]
     lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
-              *(str(group[name]) for name in [*mechanisms, *passed]), length(group),
+              *(str(group[name]) for name in [*mechanisms, *passed]),
+              *([str(group["failed"]), rounded.plain(per_1000_sigma(group))] if has_failed else []), length(group),
               *([migration(group, "lateral_slope"), migration(group, "row_share")] if groups.are_lattices else []), speed(group), *(in_laboratory(group, name) for name in laboratory_columns(groups)),
               rounded.plain(group["capillary_number"]), seeds_of(groups.row_values(group), rows)] for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
@@ -240,6 +248,8 @@ def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.Data
     failed = rows[rows.status == "failed"]
     for _, row in failed.head(5).iterrows():
         words.append(f"<li class=doubt>task {row.task} (seed {row.seed}) failed: {html.escape(row.message)}</li>")
+    if len(failed):
+        words.append("<li class=doubt>Failed runs count as not clogged up to their last passed check (column sound_distance).</li>")
     return "<ul>" + "\n".join(words) + "</ul>" if words else "<p>None.</p>"
 
 

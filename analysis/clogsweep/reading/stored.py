@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 SEAL = re.compile(rb"\nclogsweep seal 1: crc32 ([0-9a-f]{8}) of ([0-9]{20}) bytes\n")
 SEAL_SIZE = 64
-READABLE_VERSIONS = ("9", "10")
+READABLE_VERSIONS = ("9", "10", "11")
 SWEEP, RUN = "sweep", "run"
 KINDS = {"clogsweep sweep": SWEEP, "clogsweep trajectory": RUN}  # kind of a file by its attribute `kind`
 WRITERS: dict[str | None, str] = {

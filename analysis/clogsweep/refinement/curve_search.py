@@ -98,12 +98,13 @@ class CurveSearch:
     def _look(self, rows: pandas.DataFrame, members: Membership) -> Known:
         runs = members.of_values(rows)
         runs = runs[~runs["status"].isin(UNFINISHED)]
-        succeeded = runs["status"] != "failed"
+        failed = runs["status"] == "failed"
         table = pandas.DataFrame({
-            "values": runs["values"], "runs": 1, "failed": ~succeeded, "last_seed": runs["seed"].astype(int),
+            "values": runs["values"], "runs": 1, "failed": failed, "last_seed": runs["seed"].astype(int),
             "hours": runs["processor_seconds"] / HOUR, "clogs": runs["status"] == "clogged",
-            "distance": runs["distance"].clip(lower=0).where(succeeded, 0), "time": runs["time"].where(succeeded, 0),
-            "work": (runs["steps"] * runs["vertices"].where(runs["model"] == "dp", 1)).where(succeeded, 0)})
+            # A failed run is censored where it was last sound.
+            "distance": runs["distance"].where(~failed, runs["sound_distance"]).clip(lower=0).fillna(0), "time": runs["time"],
+            "work": runs["steps"] * runs["vertices"].where(runs["model"] == "dp", 1)})
         of_values = table.groupby("values")
         sums = of_values.sum().assign(last_seed=of_values["last_seed"].max())
         informing, places = _informing(sums)

@@ -28,10 +28,12 @@ enum class Doubt {
   incomplete,
   damaged,
   held_by_mesh,
+  near_friction_limit,
   wetted_mesh,
   array_repeats,
   met_none,
   below_spacing,
+  failures_matter,
   untested
 };
 /// The texts of a doubt: a letter for tables, a word for files, and a sentence for readers.
@@ -49,11 +51,15 @@ inline constexpr DoubtText doubt_texts[] = {
     {Doubt::censored_by_time, 't', "censored_by_time",
      "runs ended by max-time: lambda is right only if slow droplets clog as often per distance as fast ones"},
     {Doubt::incomplete, 'i', "incomplete",
-     "some runs are in progress or interrupted (they count as not clogged so far) or failed (excluded)"},
+     "some runs are in progress or interrupted (they count as not clogged so far), or failed at an unknown "
+     "distance (excluded)"},
     {Doubt::damaged, 'd', "damaged", "damaged rows were excluded (clogsweep verify lists them)"},
     {Doubt::held_by_mesh, 'm', "held_by_mesh",
      "in a tenth of the clogs or more, the polygon's edges are so long that its corners may hold the droplet "
      "(corner pinning, column mesh_hold): use more vertices"},
+    {Doubt::near_friction_limit, 'h', "near_friction_limit",
+     "more than 15 % of the clogs hold by almost all of the friction that there is (column friction_use): a "
+     "finer mesh could let these droplets go; compare with twice the vertices"},
     {Doubt::wetted_mesh, 'w', "wetted_mesh",
      "the droplet wets walls (contact angle below 180 degrees): the mesh decides where some droplets clog; "
      "compare with twice the vertices"},
@@ -66,6 +72,8 @@ inline constexpr DoubtText doubt_texts[] = {
     {Doubt::below_spacing, 'v', "below_spacing",
      "lambda is below one obstacle spacing (diameter + gap): it reflects the release void, not how often "
      "gaps clog droplets (for user-supplied circles the spacing is 1/sqrt(circles per area))"},
+    {Doubt::failures_matter, 'c', "failures_matter",
+     "lambda would be below its interval if all failed runs had clogged where they failed"},
     {Doubt::untested, 'u', "untested",
      "line tension, preset, vertices or obstacles are outside the range tested for soundness: droplets may "
      "cross themselves or obstacles (handbook, Which droplets are sound)"}};
@@ -155,25 +163,35 @@ struct Group {
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity();
   int num_interrupted = 0;
-  int num_repeated = 0;  ///< runs left out because a longer run of the same droplet counts (pooled)
-  int num_failed = 0;    ///< failed runs, left out of all fits
-  int num_damaged = 0;   ///< damaged runs, left out of all fits
+  int num_repeated = 0;          ///< runs left out because a longer run of the same droplet counts (pooled)
+  int num_failed = 0;            ///< failed runs; those that count for the clogging length are censored
+  int num_failed_counted = 0;    ///< those that count for the clogging length
+  int num_failed_somewhere = 0;  ///< those at an unknown distance, left out of all fits
+  int num_damaged = 0;           ///< damaged runs, left out of all fits
   /// Runs that ended before distances are counted (see group_runs()), left out of all fits.
   int num_left_out = 0;
-  int num_on_mesh = 0;    ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
-  int num_free = 0;       ///< runs that met no obstacle
-  int num_repeating = 0;  ///< runs that went farther than their array's period
+  int num_on_mesh = 0;  ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
+  int num_near_friction_limit = 0;  ///< clogs with almost all friction used (sweep::is_near_friction_limit)
+  int num_free = 0;                 ///< runs that met no obstacle
+  int num_repeating = 0;            ///< runs that went farther than their array's period
   /// Passages through a device, in downstream order; the last one is the exit.
   std::vector<Passage> passages;
   std::vector<Doubt> doubts;
   std::optional<LaboratoryScale> laboratory = {};  ///< units in which results are also given
 };
 
+/// Number of failures divided by the distance of the runs that count for the clogging length; NaN if they
+/// went nowhere [1/sigma].
+double failures_per_length(const Group& group);
 /// Whether there are user-supplied circles with an entrance or an exit.
 bool is_device(const RunParameters& run);
 
-/// The outcome of an intact run. The distance counts from the release, but in a device from the first
-/// obstacle that the droplet met. There the outcome is nullopt if the droplet met no obstacle.
+/// Whether a run has an outcome: it is intact, and did not fail at an unknown distance.
+bool is_observed(const sweep::RunRow& run);
+
+/// The outcome of a run that is_observed(). A failed run is censored at its sound distance. The distance
+/// counts from the release, but in a device from the first obstacle that the droplet met. There the outcome
+/// is nullopt if the droplet met no obstacle.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
 /// Groups rows by all parameters except the seed. The groups are in the order of their parameters. Runs count

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "clog/core/run/droplet_run.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"
 
@@ -23,9 +24,10 @@ class SeedRule {
 
   /// Call this when all tasks so far are over. Returns the tasks of the next round; none at the end. Task s
   /// num_groups + g is the s-th seed of parameter set g. A set that is not precise enough gets as many more
-  /// seeds as its fraction of clogs so far requires, but at most as many as it already has.
-  /// @param has_clogged  whether a finished task has clogged
-  std::vector<std::int64_t> next_round(const std::function<bool(std::int64_t task)>& has_clogged);
+  /// seeds as its fraction of clogs so far requires, but at most as many as it already has. A set whose runs
+  /// have all failed gets no more.
+  /// @param status  how a task ended
+  std::vector<std::int64_t> next_round(const std::function<RunStatus(std::int64_t task)>& status);
 
   std::int64_t num_groups() const { return static_cast<std::int64_t>(num_seeds_.size()); }
   /// Number of clogs that a parameter set needs to be precise enough.
@@ -36,7 +38,7 @@ class SeedRule {
   std::int64_t num_reached() const { return num_reached_; }
   /// The clogs and seeds of a parameter set that did not reach the precision.
   struct Unreached {
-    std::int64_t group, num_clogs, num_seeds;
+    std::int64_t group, num_clogs, num_seeds, num_failed;
   };
   const std::vector<Unreached>& unreached() const { return unreached_; }
   /// The rule in words, as it is stored with the result.

@@ -29,7 +29,7 @@ class SweepState {
   /// Reads the files, and checks that they belong to this sweep.
   /// @param num_wanted  number of tasks, from the start of the plan, that are requested at first (rounds may
   /// request more)
-  /// @param attempts  number of attempts for a failing run, over all sessions
+  /// @param attempts  number of attempts for a crashing run, over all sessions
   /// @throws Error if the file is not a sweep's, has another model version or other settings, or another
   /// sweep is writing to it
   SweepState(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
@@ -68,7 +68,9 @@ class SweepState {
   const sweep::RunRow* first_if_all_failed() const;
   /// Discards a failure, so that the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);
-  bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
+  bool tries_again(const sweep::RunRow& failed) const {
+    return sweep::may_succeed_later(failed) && failed.attempt < attempts_;
+  }
   /// Call this often: it starts to publish the table if that is due, or detects that a publication has ended,
   /// and never waits for the disk.
   void tick();

@@ -14,7 +14,7 @@
 namespace clog::store {
 
 /// Version of the file format; see docs/reference/files.md.
-inline constexpr const char* format_version = "10";
+inline constexpr const char* format_version = "11";
 
 /// Names and texts of the attributes at the file's root, which describe the origin of the file's numbers.
 using Provenance = std::vector<std::pair<std::string, std::string>>;

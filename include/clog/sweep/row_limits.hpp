@@ -43,6 +43,11 @@ double weight_borne_by_friction(const DpParameters& dp);
 /// If mesh_hold is unknown, or friction acts only on the interface next to the wall, the result is true for
 /// every droplet that hangs over obstacles (docs/explanation/wrapped.md).
 bool may_hang_on_mesh(const RunRow& row);
+/// Largest friction_use of a clog that finer meshes hold, too; beyond it, a finer mesh may let the droplet
+/// go.
+inline constexpr double tolerated_friction_use = 0.9;
+/// Whether the droplet is held by nearly all the friction that there is.
+bool is_near_friction_limit(const RunRow& row);
 
 /// Smallest possible centre-to-centre distance of two obstacles, or its mean if diameters vary [sigma].
 /// User-supplied circles may have any diameters, and one gap may be narrower than all others, so their

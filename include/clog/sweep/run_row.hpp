@@ -48,7 +48,9 @@ struct RunRow {
 
   RunStatus status = RunStatus::running;
   std::optional<FoundBy> clogged_by;
+  std::optional<FailedBy> failed_by;
   double distance = 0;
+  double sound_distance = not_known;
   double lateral_displacement = 0;
   double time = 0;
   double mean_speed = not_known;
@@ -65,6 +67,7 @@ struct RunRow {
   double wrapped_support = not_known;
   std::optional<std::int64_t> num_wrapped, num_gaps, num_arcs;
   double mesh_hold = not_known;
+  double friction_use = not_known;
   /// For a passage through a channel, like the next five members.
   double largest_shape_parameter = not_known;
   double largest_shape_parameter_at = not_known;
@@ -75,6 +78,7 @@ struct RunRow {
   double sag = not_known;  ///< for a droplet on a flat wall
   double top_sag = not_known;
   ThinnestNeck neck;
+  std::optional<std::int64_t> healed_crossings;
   double release_x = not_known;  ///< place in the coordinates of user-supplied circles
   double release_y = not_known;
   std::int64_t steps = 0;
@@ -101,6 +105,16 @@ inline bool is_result(RunStatus status) {
 inline bool is_unfinished(RunStatus status) {
   return status == RunStatus::running || status == RunStatus::interrupted;
 }
+
+/// Whether another attempt may succeed: the run failed, but not because of its parameters and seed alone.
+inline bool may_succeed_later(const RunRow& row) {
+  return row.status == RunStatus::failed && row.failed_by != FailedBy::divergence &&
+         row.failed_by != FailedBy::crossing;
+}
+/// Distance up to which a run was observed; nullopt for failed runs of older files that diverged or crashed,
+/// because their `distance` may be wrong. In these files a run that crossed itself was observed up to the
+/// check that found the crossing, at most 2048 steps too far [sigma].
+std::optional<double> observed_distance(const RunRow& row);
 
 /// Cost of a run so far [s]: its processor time, or its wall-clock time if that is unknown.
 inline double cost_seconds(const RunRow& row) {

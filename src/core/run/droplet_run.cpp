@@ -37,11 +37,12 @@ constexpr double fall_between_searches = 0.1;
 constexpr double rise_of_a_moving_droplet = 10;
 
 /// The run looks for crossings of the interface once in this number of steps, which takes less than 1 % of
-/// its time. No crossing is missed, because parts of the interface that crossed stay crossed.
+/// its time. No crossing is missed, because parts of the interface that crossed stay crossed. The sound
+/// distance is that of the last of these checks.
 constexpr std::int64_t steps_per_crossing_check = std::int64_t{32} * DropletRun::steps_per_check;
 
 /// Change this whenever the content of a snapshot changes.
-constexpr std::uint64_t snapshot_kind = 0x636c6f6773000004;
+constexpr std::uint64_t snapshot_kind = 0x636c6f6773000005;
 
 /// Whether a snapshot's frame is possible. @param way  largest distance of any droplet of the run [sigma]
 bool is_in_range(const LocalFrame& frame, const Period& period, double way) {
@@ -133,6 +134,7 @@ void DropletRun::start_afresh_and_take_snapshot() {
   bytes.put(steps_done_);
   bytes.put(quiet_checks_);
   bytes.put(next_search_);
+  bytes.put(sound_distance_);
   record_.save(bytes);
   steady_.save(bytes);
   dwells_.save(bytes);
@@ -161,6 +163,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     rest.get(resumed.steps_done_);
     rest.get(resumed.quiet_checks_);
     rest.get(resumed.next_search_);
+    rest.get(resumed.sound_distance_);
     if (!resumed.is_in_range()) throw Error("its progress is out of range");
     resumed.record_.restore(rest, resumed.time());
     resumed.steady_.restore(rest);
@@ -182,6 +185,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
 bool DropletRun::is_in_range() const {
   return (start_.abs() < burst_perimeter).all() &&
          clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&
+         std::abs(sound_distance_) <= farthest_way(run_) + obstacles_->period().along() &&
          steps_done_ <= max_steps_ && steps_done_ % steps_per_snapshot == 0 && quiet_checks_ >= 0 &&
          quiet_checks_ <= 1 && next_search_ > 0 && std::isfinite(next_search_) &&
          kinetic_energy_ratio() < diverged_energy_ratio;
@@ -198,6 +202,7 @@ void DropletRun::check() {
         "terminal-speed",
         time(), energy_ratio, shape.area, shape.perimeter);
     status_ = RunStatus::failed;
+    failed_by_ = FailedBy::divergence;
     return;
   }
   record_.add(time(), displacement()[0]);
@@ -221,20 +226,28 @@ void DropletRun::check() {
     status_ = RunStatus::passed;
   else if (steps_done_ >= max_steps_)
     status_ = RunStatus::flowing;
-  if ((status_ != RunStatus::running || steps_done_ % steps_per_crossing_check == 0) &&
-      has_crossed_itself()) {
+  if (status_ == RunStatus::running && steps_done_ % steps_per_crossing_check != 0) return;
+  if (has_crossed_itself()) {
     message_ = fmt::format(
         "the interface crossed itself by t={:.6g}; try a larger line-tension, a larger wall-stiffness or a "
         "smaller inertia",
         time());
     status_ = RunStatus::failed;
+    failed_by_ = FailedBy::crossing;
+    return;
   }
+  sound_distance_ = last_displacement()[0];
 }
 
 /// Without self-contact, nothing prevents crossings, and the run goes on as the equations say.
 bool DropletRun::has_crossed_itself() const {
   const Droplet& last = at_rest_ ? *at_rest_ : *droplet_;
   return run_.dp.self_contact == SelfContact::on && num_self_crossings(last.state().position) > 0;
+}
+
+/// Displacement along and across the flow, certified: at rest [sigma].
+Eigen::Array2d DropletRun::last_displacement() const {
+  return at_rest_ ? displacement_of(at_rest_->centre()) : displacement();
 }
 
 bool DropletRun::is_passage() const { return scene_of(run_).finding == Finding::passage; }
@@ -280,14 +293,16 @@ Sag DropletRun::sag(const Droplet& droplet) const {
 
 RunResult DropletRun::result() const {
   const Droplet& last = at_rest_ ? *at_rest_ : *droplet_;
-  const Eigen::Array2d displaced = displacement_of(last.centre());
+  const Eigen::Array2d displaced = last_displacement();
   const Scene& scene = scene_of(run_);
   Hold hold;
   const Dwells dwells = dwells_.found(time(), status_ == RunStatus::clogged);
   if (status_ == RunStatus::clogged) hold = model_of(run_).hold(run_, *obstacles_, last.state());
   return {.status = status_,
           .clogged_by = clogged_by_,
+          .failed_by = failed_by_,
           .distance = displaced[0],
+          .sound_distance = sound_distance_,
           .lateral = displaced[1],
           .time = time(),
           .speed = record_.travel_speed(),

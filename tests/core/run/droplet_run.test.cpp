@@ -48,6 +48,7 @@ std::vector<std::byte> bytes_of(const T& values) {
 void expect_identical(const RunResult& a, const RunResult& b) {
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.distance, b.distance);
+  EXPECT_EQ(a.sound_distance, b.sound_distance);
   EXPECT_EQ(a.lateral, b.lateral);
   EXPECT_EQ(a.time, b.time);
   EXPECT_EQ(a.kinetic_energy_ratio, b.kinetic_energy_ratio);
@@ -63,6 +64,7 @@ void expect_identical(const RunResult& a, const RunResult& b) {
 
 void expect_diverged(const RunResult& result) {
   EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_EQ(result.failed_by, FailedBy::divergence);
   EXPECT_NE(result.message.find("diverged"), std::string::npos) << result.message;
 }
 
@@ -364,7 +366,17 @@ TEST(DropletRun, FailsWhenTheInterfaceCrossesItself) {
   const RunResult result = result_of(parameters, 1000);
   EXPECT_EQ(result.status, RunStatus::failed);
   EXPECT_NE(result.message.find("crossed itself"), std::string::npos) << result.message;
+  EXPECT_EQ(result.failed_by, FailedBy::crossing);
   EXPECT_LT(result.time, 1000);
+
+  // The sound distance is where the droplet was when it last did not cross itself: crossings are looked for
+  // once in 2048 steps. Afterwards it stays, while the droplet sinks on.
+  parameters.max_time = result.time - 2048 * parameters.time_step.value();
+  const RunResult before = result_of(parameters, 1000);
+  EXPECT_EQ(before.status, RunStatus::flowing);
+  EXPECT_EQ(before.distance, before.sound_distance);
+  EXPECT_EQ(result.sound_distance, before.distance);
+  EXPECT_GT(result.distance, result.sound_distance);
 
   // The published equations have no self-contact, so they permit crossings.
   parameters.dp.self_contact = SelfContact::off;

@@ -30,6 +30,17 @@ struct Words<RunStatus> {
       {RunStatus::failed, "failed"}};
 };
 
+/// Why a run failed. The first two causes depend on its parameters and seed alone, so no retry can succeed; a
+/// crash is an exception or the end of the process, which may be the machine's fault.
+enum class FailedBy { none, divergence, crossing, crash };
+template <>
+struct Words<FailedBy> {
+  static constexpr Worded<FailedBy> all[] = {{FailedBy::none, "none"},
+                                             {FailedBy::divergence, "divergence"},
+                                             {FailedBy::crossing, "crossing"},
+                                             {FailedBy::crash, "crash"}};
+};
+
 /// E_k/E_t above which the integration has failed: a free fall without drag over a whole box stays below this
 /// ratio.
 inline constexpr double diverged_energy_ratio = 1e8;
@@ -56,7 +67,11 @@ struct ThinnestNeck {
 struct RunResult {
   RunStatus status = RunStatus::running;
   std::optional<ClogDetection> clogged_by;  ///< how a clog was found; empty unless clogged
+  FailedBy failed_by = FailedBy::none;
   double distance = 0;  ///< displacement along the flow since release, certified: at rest [sigma]
+  /// `distance` at the last check that found the droplet whole and, with self-contact, not crossing itself
+  /// [sigma].
+  double sound_distance = 0;
   double lateral = 0;   ///< displacement across the flow, certified: at rest [sigma]
   double time = 0;      ///< [t0]
   TravelSpeed speed;    ///< speed of the run so far
@@ -69,6 +84,11 @@ struct RunResult {
   Passage passage;                  ///< through a channel; NaN elsewhere
   Sag sag;                          ///< certified: at rest
   ThinnestNeck neck;
+  /// Number of times that a vertex of the interface passed through another part of it and was pushed back.
+  std::int64_t healed_crossings = 0;
+  /// For a clogged droplet held by friction: the largest, over the posts, of the net tangential force about
+  /// the post's centre divided by the largest that the walls could bear in this direction; NaN if unset.
+  double friction_use = std::numeric_limits<double>::quiet_NaN();
   /// Where the centre of mass was released, in the coordinates of user-supplied circles; NaN elsewhere
   /// [sigma].
   Eigen::Array2d release{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
@@ -146,6 +166,8 @@ class DropletRun {
   int quiet_checks_ = 0;
   RunStatus status_ = RunStatus::running;
   std::optional<ClogDetection> clogged_by_;
+  FailedBy failed_by_ = FailedBy::none;
+  double sound_distance_ = 0;
   double next_search_;                // E_k/E_t below which the run searches for an equilibrium
   std::unique_ptr<Droplet> at_rest_;  // the droplet at rest, if the clog is certified
   std::string message_;
@@ -166,6 +188,7 @@ class DropletRun {
   void start_afresh_and_take_snapshot();
   bool has_broken();
   bool has_crossed_itself() const;
+  Eigen::Array2d last_displacement() const;
   bool is_quiet(double energy_ratio);
   bool finds_rest(double energy_ratio);
 };
