@@ -41,7 +41,7 @@ constexpr double rise_of_a_moving_droplet = 10;
 constexpr std::int64_t steps_per_crossing_check = std::int64_t{32} * DropletRun::steps_per_check;
 
 /// Change this whenever the content of a snapshot changes.
-constexpr std::uint64_t snapshot_kind = 0x636c6f6773000004;
+constexpr std::uint64_t snapshot_kind = 0x636c6f6773000005;
 
 /// Whether a snapshot's frame is possible. @param way  largest distance of any droplet of the run [sigma]
 bool is_in_range(const LocalFrame& frame, const Period& period, double way) {
@@ -70,7 +70,11 @@ void check_state(const DropletState& state, const RunParameters& run, const Obst
            (wall.abs() < burst_perimeter).all() && anchor.wall.radius >= 0 &&
            anchor.wall.radius < burst_perimeter && anchor.wall.wedge >= -1 && anchor.wall.wedge < num_wedges;
   });
-  if (!is_placed || !is_moving || !is_held) throw Error("its droplet is out of range");
+  const bool is_crossed = std::ranges::all_of(state.crossings, [&](const SelfCrossing& one) {
+    return std::min(one.vertex, one.edge) >= 0 && std::max(one.vertex, one.edge) < state.size();
+  });
+  if (!is_placed || !is_moving || !is_held || !is_crossed || state.num_healed < 0)
+    throw Error("its droplet is out of range");
 }
 
 }  // namespace
@@ -132,6 +136,7 @@ void DropletRun::start_afresh_and_take_snapshot() {
   bytes.put(steps_done_);
   bytes.put(quiet_checks_);
   bytes.put(next_search_);
+  bytes.put(was_crossed_);
   record_.save(bytes);
   dwells_.save(bytes);
   contacts_.save(bytes);
@@ -159,6 +164,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     rest.get(resumed.steps_done_);
     rest.get(resumed.quiet_checks_);
     rest.get(resumed.next_search_);
+    rest.get(resumed.was_crossed_);
     if (!resumed.is_in_range()) throw Error("its progress is out of range");
     resumed.record_.restore(rest, resumed.time());
     resumed.dwells_.restore(rest);
@@ -217,8 +223,13 @@ void DropletRun::check() {
     status_ = RunStatus::passed;
   else if (steps_done_ >= max_steps_)
     status_ = RunStatus::flowing;
-  if ((status_ != RunStatus::running || steps_done_ % steps_per_crossing_check == 0) &&
-      has_crossed_itself()) {
+  const bool has_ended = status_ != RunStatus::running;
+  if (!has_ended && !was_crossed_ && steps_done_ % steps_per_crossing_check != 0) return;
+  const bool is_crossed = has_crossed_itself();
+  // Self-contact pushes a vertex back that has passed through an edge, which takes a few steps.
+  const bool stays_crossed = is_crossed && (was_crossed_ || has_ended);
+  was_crossed_ = is_crossed;
+  if (stays_crossed) {
     message_ = fmt::format(
         "the interface crossed itself by t={:.6g}; try a larger line-tension, a larger wall-stiffness or a "
         "smaller inertia",
