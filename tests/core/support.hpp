@@ -111,11 +111,13 @@ inline Eigen::ArrayXd renumbered(const Eigen::ArrayXd& position, int first) {
   return result;
 }
 
-/// The number of vertices that walls hold without touching them.
-inline int num_behind_films(const DropletState& state, double contact_range) {
+/// The number of vertices that walls hold through films: the same walls hold others nearer to their centres.
+inline int num_behind_films(const DropletState& state) {
   return static_cast<int>(std::ranges::count_if(state.anchors, [&](const WallAnchor& one) {
-    return std::hypot(state.x()[one.holder] - one.wall.x, state.y()[one.holder] - one.wall.y) >
-           one.wall.radius + 2 * contact_range;
+    return std::ranges::any_of(state.anchors, [&](const WallAnchor& other) {
+      return std::hypot(one.wall.x - other.wall.x, one.wall.y - other.wall.y) < 1e-6 &&
+             other.wall.radius < one.wall.radius - 1e-6;
+    });
   }));
 }
 

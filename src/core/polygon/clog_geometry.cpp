@@ -1,11 +1,13 @@
 #include "clog/core/polygon/clog_geometry.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "clog/core/droplet/shape.hpp"
+#include "clog/core/polygon/contact/wall_contacts.hpp"
 
 namespace clog {
 namespace {
@@ -16,6 +18,7 @@ struct Polygon {
   Eigen::Index size() const { return position.size() / 2; }
   Eigen::Index next(Eigen::Index i) const { return i + 1 < size() ? i + 1 : 0; }
   Eigen::Array2d vertex(Eigen::Index i) const { return {position[i], position[size() + i]}; }
+  double length(Eigen::Index edge) const { return (vertex(next(edge)) - vertex(edge)).matrix().norm(); }
 
   /// Wherever the contour crosses the line on which coordinate `axis` equals `value`, calls visit() with the
   /// other coordinate.
@@ -85,23 +88,31 @@ class Contacts {
   Contacts(const Polygon& polygon, double range)
       : range_(range), of_edge_(static_cast<std::size_t>(polygon.size()), -1), deepest_(of_edge_.size(), 0) {}
 
-  void add_post(const Polygon& polygon, const Post& post) {
+  void add_post(const Polygon& polygon, const Post& post, std::span<const Surroundings::Layer> layers) {
     Touched touched{.circles = post.circles, .wall = {}};
     bool is_touched = false;
+    const auto add_link = [&](Eigen::Index edge, const Obstacle& circle) {
+      touched.longest_link = std::max(touched.longest_link, polygon.length(edge) / (range_ + circle.radius));
+    };
     for (const Obstacle& circle : post.circles) {
-      const Eigen::Array2d centre{circle.x, circle.y};
       for (Eigen::Index i = 0; i < polygon.size(); ++i) {
-        const Eigen::Array2d away =
-            nearest_on_segment(centre, polygon.vertex(i), polygon.vertex(polygon.next(i))) - centre;
-        const double distance = away.matrix().norm();
-        const double overlap = range_ + circle.radius - distance;
-        if (!take(i, overlap, overlap * away[0] / distance, touched)) continue;
+        const auto [overlap, push] = overlap_with(polygon, circle, i);
+        if (!take(i, overlap, push, touched)) continue;
         is_touched = true;
-        const double length = (polygon.vertex(polygon.next(i)) - polygon.vertex(i)).matrix().norm();
-        touched.longest_link = std::max(touched.longest_link, length / (range_ + circle.radius));
+        add_link(i, circle);
       }
     }
     if (!is_touched) return;
+    for (const Surroundings::Layer& layer : layers) {
+      if (std::ranges::none_of(post.circles, [&](const Obstacle& circle) {
+            return std::hypot(circle.x - layer.circle.x, circle.y - layer.circle.y) < same_centre;
+          }))
+        continue;
+      const auto [overlap, push] = overlap_with(polygon, layer.circle, layer.edge);
+      if (overlap <= 0) continue;
+      touched.support -= push;
+      add_link(layer.edge, layer.circle);
+    }
     touched.is_wrapped = hangs_over(polygon, post);
     touched_.push_back(touched);
   }
@@ -132,10 +143,23 @@ class Contacts {
   const std::vector<int>& of_edge() const { return of_edge_; }
 
  private:
+  static constexpr double same_centre = 1e-6;  // rounding errors of one centre in two lists [sigma]
   double range_;
   std::vector<Touched> touched_;
   std::vector<int> of_edge_;
   std::vector<double> deepest_;
+
+  /// The overlap of an edge with a circle, and the part of it along the flow [sigma].
+  struct Overlap {
+    double size, along;
+  };
+  Overlap overlap_with(const Polygon& polygon, const Obstacle& circle, Eigen::Index edge) const {
+    const Eigen::Array2d centre{circle.x, circle.y};
+    const Eigen::Array2d away =
+        nearest_on_segment(centre, polygon.vertex(edge), polygon.vertex(polygon.next(edge))) - centre;
+    const double distance = away.matrix().norm(), size = range_ + circle.radius - distance;
+    return {size, size * away[0] / distance};
+  }
 
   /// Whether the edge touches `obstacle`, the next entry of touched_. If so, adds the edge's force along the
   /// flow to this entry.
@@ -200,7 +224,7 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& a
                            int links_per_edge) {
   const Polygon polygon{position};
   Contacts contacts(polygon, contact_range);
-  for (const Post& post : posts_of(around.circles)) contacts.add_post(polygon, post);
+  for (const Post& post : posts_of(around.circles)) contacts.add_post(polygon, post, around.layers);
   for (const Wedge& wall : around.walls) contacts.add_wall(polygon, wall);
 
   ClogGeometry geometry;
@@ -235,6 +259,26 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& a
   return geometry;
 }
 
+namespace {
+
+/// The edges of the refined interface in upper layers.
+std::vector<Surroundings::Layer> layers_on(const ObstacleArray& array, const DropletState& state,
+                                           const DpParameters& dp) {
+  const double range = dp.contact_range.value();
+  WallContacts contacts(array, range, WallContacts::Keep::touched_by_edge, film_thickness(dp));
+  contacts.update(state, {});
+  std::vector<Surroundings::Layer> layers;
+  for (const WallContacts::Item& item : contacts.items())
+    for (unsigned edges = item.layer > 0 ? item.edges : 0; edges != 0; edges &= edges - 1) {
+      const Eigen::Index edge = item.group * WallContacts::edges_per_group + std::countr_zero(edges);
+      for (const Eigen::Index half : {2 * edge, 2 * edge + 1})
+        layers.push_back({half, {item.x, item.y, item.reach - range}});
+    }
+  return layers;
+}
+
+}  // namespace
+
 ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, const DpParameters& dp) {
   const double contact_range = dp.contact_range.value();
   const bool meets_edges = dp.wall_contact == WallContact::edge;
@@ -247,6 +291,7 @@ ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array
                around.circles);
   around.walls = array.wedges();
   for (Wedge& wall : around.walls) wall.tip -= state.frame.global({0, 0});
+  if (film_thickness(dp) > 0) around.layers = layers_on(array, state, dp);
   return clog_geometry(interface, around, contact_range, meets_edges ? 2 : 1);
 }
 

@@ -96,6 +96,7 @@ Axes axes_of_interface(const DpParameters& dp, const DropletState& state) {
 
 std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, const ObstacleArray& obstacles,
                                                    const DropletState& state) {
+  if (!state.crossings.empty()) return std::nullopt;
   DpForces forces(run, obstacles);
   RestForces rest_forces(run, forces);
   const auto axes = [&](const DropletState& at) { return axes_of_interface(run.dp, at); };
@@ -129,9 +130,19 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   return std::nullopt;
 }
 
+double friction_use(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {
+  DpForces forces(run, obstacles);
+  if (!forces.friction().is_on()) return std::numeric_limits<double>::quiet_NaN();
+  forces.update_contacts(state, {});
+  WallTouches touches(run, obstacles);
+  return forces.friction().use(state, touches.find(state, forces.walls().items()));
+}
+
 Hold hold_of_polygon(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {
   const ClogGeometry geometry = clog_geometry(state, obstacles, run.dp);
-  return {.mechanism = geometry.mechanism(), .geometry = geometry};
+  return {.mechanism = geometry.mechanism(),
+          .geometry = geometry,
+          .friction_use = friction_use(run, obstacles, state)};
 }
 
 double neck_of_polygon(const DropletState& state, double below) {

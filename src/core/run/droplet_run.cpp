@@ -71,7 +71,11 @@ void check_state(const DropletState& state, const RunParameters& run, const Obst
            (wall.abs() < burst_perimeter).all() && anchor.wall.radius >= 0 &&
            anchor.wall.radius < burst_perimeter && anchor.wall.wedge >= -1 && anchor.wall.wedge < num_wedges;
   });
-  if (!is_placed || !is_moving || !is_held) throw Error("its droplet is out of range");
+  const bool is_crossed = std::ranges::all_of(state.crossings, [&](const SelfCrossing& one) {
+    return std::min(one.vertex, one.edge) >= 0 && std::max(one.vertex, one.edge) < state.size();
+  });
+  if (!is_placed || !is_moving || !is_held || !is_crossed || state.num_healed < 0)
+    throw Error("its droplet is out of range");
 }
 
 }  // namespace
@@ -135,6 +139,7 @@ void DropletRun::start_afresh_and_take_snapshot() {
   bytes.put(quiet_checks_);
   bytes.put(next_search_);
   bytes.put(sound_distance_);
+  bytes.put(was_crossed_);
   record_.save(bytes);
   steady_.save(bytes);
   dwells_.save(bytes);
@@ -164,6 +169,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     rest.get(resumed.quiet_checks_);
     rest.get(resumed.next_search_);
     rest.get(resumed.sound_distance_);
+    rest.get(resumed.was_crossed_);
     if (!resumed.is_in_range()) throw Error("its progress is out of range");
     resumed.record_.restore(rest, resumed.time());
     resumed.steady_.restore(rest);
@@ -226,8 +232,13 @@ void DropletRun::check() {
     status_ = RunStatus::passed;
   else if (steps_done_ >= max_steps_)
     status_ = RunStatus::flowing;
-  if (status_ == RunStatus::running && steps_done_ % steps_per_crossing_check != 0) return;
-  if (has_crossed_itself()) {
+  const bool has_ended = status_ != RunStatus::running;
+  if (!has_ended && !was_crossed_ && steps_done_ % steps_per_crossing_check != 0) return;
+  const bool is_crossed = has_crossed_itself();
+  // Self-contact pushes a vertex back that has passed through an edge, which takes a few steps.
+  const bool stays_crossed = is_crossed && (was_crossed_ || has_ended);
+  was_crossed_ = is_crossed;
+  if (stays_crossed) {
     message_ = fmt::format(
         "the interface crossed itself by t={:.6g}; try a larger line-tension, a larger wall-stiffness or a "
         "smaller inertia",
@@ -236,7 +247,7 @@ void DropletRun::check() {
     failed_by_ = FailedBy::crossing;
     return;
   }
-  sound_distance_ = last_displacement()[0];
+  if (!is_crossed) sound_distance_ = last_displacement()[0];
 }
 
 /// Without self-contact, nothing prevents crossings, and the run goes on as the equations say.
@@ -315,6 +326,8 @@ RunResult DropletRun::result() const {
           .passage = passage_,
           .sag = scene.finding == Finding::sag ? sag(last) : Sag(),
           .neck = neck_,
+          .healed_crossings = droplet_->state().num_healed,
+          .friction_use = hold.friction_use,
           .release = scene.place_in_file ? scene.place_in_file(run_, start_frame_.global(start_))
                                          : RunResult().release,
           .steps = droplet_->num_integrated_steps(),

@@ -62,13 +62,20 @@ inline double possible_way(double speed, double time) { return 2 * time * (speed
 /// Largest motion for which contact lists allow [sigma]. A droplet that needs more has diverged.
 inline constexpr double widest_skin = 4;
 
+/// A vertex that has passed through an edge of the same droplet, see SelfCrossings.
+struct SelfCrossing {
+  Eigen::Index vertex, edge;  ///< edge e joins vertices e and e + 1 (mod N)
+};
+
 /// Points (the polygon's vertices, or the soft disk's centre) and their velocities. Coordinates are one
 /// array, all x then all y, so that integrator and minimiser use plain vectors.
 struct DropletState {
   Eigen::ArrayXd position;  ///< 2N, local [sigma]
   Eigen::ArrayXd velocity;  ///< 2N [sqrt(sigma g)]
   LocalFrame frame;
-  std::vector<WallAnchor> anchors;  ///< where walls hold the interface
+  std::vector<WallAnchor> anchors;      ///< where walls hold the interface
+  std::vector<SelfCrossing> crossings;  ///< usually none
+  std::int64_t num_healed = 0;          ///< number of crossings that have ended
 
   Eigen::Index size() const { return position.size() / 2; }
   auto x() { return position.head(size()); }
@@ -96,12 +103,16 @@ struct DropletState {
     bytes.put(velocity);
     frame.save(bytes);
     bytes.put(anchors);
+    bytes.put(crossings);
+    bytes.put(num_healed);
   }
   void restore(ByteReader& bytes) {
     bytes.get(position);
     bytes.get(velocity);
     frame.restore(bytes);
     bytes.get(anchors);
+    bytes.get(crossings);
+    bytes.get(num_healed);
   }
 
   /// Keeps local coordinates of order one: if the centre is more than one diameter from the origin along

@@ -42,6 +42,8 @@ struct ClogGeometry {
 struct Hold {
   ClogMechanism mechanism = ClogMechanism::none;
   ClogGeometry geometry;  ///< geometry of a polygon; unset for a soft disk
+  /// See WallFriction::use(); NaN if friction holds nothing.
+  double friction_use = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace clog

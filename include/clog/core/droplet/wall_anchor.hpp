@@ -12,7 +12,8 @@
 
 namespace clog {
 
-/// A wall near a droplet, in the droplet's frame: a circle, or a wedge of the scene.
+/// A wall near a droplet, in the droplet's frame: a circle, or a wedge of the scene. A circle enlarged by
+/// films is a wall of its own, see WallContacts.
 struct WallPlace {
   double x = 0, y = 0;      ///< centre [sigma]
   double radius = 0;        ///< [sigma]
@@ -22,7 +23,8 @@ struct WallPlace {
   /// rounding errors; the centres of different walls differ by much more.
   bool is(const WallPlace& other) const {
     constexpr double rounding = 1e-6;
-    return wedge == other.wedge && std::abs(x - other.x) < rounding && std::abs(y - other.y) < rounding;
+    return wedge == other.wedge && std::abs(x - other.x) < rounding && std::abs(y - other.y) < rounding &&
+           std::abs(radius - other.radius) < rounding;
   }
 };
 

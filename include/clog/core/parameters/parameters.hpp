@@ -33,8 +33,8 @@ template <>
 struct Words<SelfContact> {
   static constexpr Worded<SelfContact> all[] = {{SelfContact::on, "on"}, {SelfContact::off, "off"}};
 };
-/// Whether wall friction acts only on the part of the interface next to the wall, or through closed films
-/// also on the parts of the interface above the films.
+/// Whether wall friction acts only on the part of the interface next to the wall, or through films also on
+/// the layers of the interface above (see WallContacts).
 enum class FilmFriction { off, on };
 template <>
 struct Words<FilmFriction> {

@@ -14,6 +14,13 @@ namespace clog {
 struct Surroundings {
   std::vector<Obstacle> circles;
   std::vector<Wedge> walls;
+  /// An edge above other parts of the interface, and the circle that it touches through them, enlarged by the
+  /// films in between; see WallContacts.
+  struct Layer {
+    Eigen::Index edge;
+    Obstacle circle;
+  };
+  std::vector<Layer> layers;
 };
 
 /// Geometry of a droplet at rest among obstacles.

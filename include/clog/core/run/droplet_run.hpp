@@ -169,6 +169,7 @@ class DropletRun {
   FailedBy failed_by_ = FailedBy::none;
   double sound_distance_ = 0;
   double next_search_;                // E_k/E_t below which the run searches for an equilibrium
+  bool was_crossed_ = false;          // whether the interface crossed itself at the last check for crossings
   std::unique_ptr<Droplet> at_rest_;  // the droplet at rest, if the clog is certified
   std::string message_;
   DisplacementRecord record_;

@@ -15,10 +15,17 @@ namespace {
 constexpr double touching_skin = 0.05;
 constexpr double nearest_skin = 0.02;
 
+/// Parts of the interface closer than this many films along the contour belong to the same layer: at the tip
+/// of a fold, where the interface turns, there is no room for a film.
+constexpr double arc_of_a_fold = 3;
+/// An edge that is lower than its layer by more than this part of a film is in the next layer that is low
+/// enough. So an edge that gets a layer below itself only slowly, at the tip of a fold, is not thrown off.
+constexpr double layer_tolerance = 0.25;
+
 }  // namespace
 
-WallContacts::WallContacts(const ObstacleArray& array, double range, Keep keep)
-    : array_(&array), range_(range), keep_(keep) {}
+WallContacts::WallContacts(const ObstacleArray& array, double range, Keep keep, double film)
+    : array_(&array), range_(range), film_(film), keep_(keep) {}
 
 void WallContacts::update(const DropletState& state, const Travel& travel) {
   const Eigen::Index n = state.size();
@@ -55,7 +62,7 @@ void WallContacts::gather_nearby(const DropletState& state) {
                                x.maxCoeff(),
                                y.minCoeff(),
                                y.maxCoeff(),
-                               range_ + skin_ + std::sqrt(longest2) / 8};
+                               range_ + highest_layer * film_ + skin_ + std::sqrt(longest2) / 8};
   nearby_.clear();
   array_->gather(window, nearby_);
   // A wedge's flanks touch a vertex first, but its tip may touch an edge between two vertices, like a circle.
@@ -88,7 +95,7 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   if (!reference_.allFinite()) return;  // the droplet has diverged; the run detects this at its next check
   gather_nearby(state);
   if (keep_ == Keep::touched_by_edge) {
-    list_by_edge(refined(state.position));
+    list_by_edge(state.position, refined(state.position));
   } else {
     list_by_vertex(state);
     fill_items();
@@ -100,11 +107,10 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   largest_radius_ = nearby_.empty() ? 0 : largest->radius;
 }
 
-/// Lists the edges of each group that a circle near the group's bounds may touch until the lists are renewed.
-/// An obstacle that gets within range before the renewal is within range + skin now.
+/// Lists the edges that a circle may touch until the lists are renewed. An obstacle that gets within range
+/// before the renewal is within range + skin now.
 /// @param fine  the refined contour, see refined()
-void WallContacts::list_by_edge(const Eigen::ArrayXd& fine) {
-  constexpr double rounding = 1e-12;
+void WallContacts::list_by_edge(const Eigen::ArrayXd& position, const Eigen::ArrayXd& fine) {
   const int n = static_cast<int>(num_points_);
   const auto point = [&](int k) {
     const int wrapped = k < 2 * n ? k : k - 2 * n;
@@ -119,25 +125,85 @@ void WallContacts::list_by_edge(const Eigen::ArrayXd& fine) {
     }
     bounds_.push_back(bounds);
   }
-  const double reach = range_ + skin_;
-  for (const Obstacle& obstacle : nearby_) {
-    const Eigen::Array2d centre{obstacle.x, obstacle.y};
-    const double radius = obstacle.radius, far = (radius + reach) * (1 + rounding);
-    for (int group = 0; group < static_cast<int>(bounds_.size()); ++group) {
-      const Bounds& bounds = bounds_[static_cast<std::size_t>(group)];
-      if ((bounds.least - centre).max(centre - bounds.most).max(0).square().sum() > far * far) continue;
-      Item item{centre[0], centre[1], radius + range_, group, 0};
-      const int first = group * edges_per_group;
-      for (int i = first; i < std::min(first + edges_per_group, n); ++i) {
-        const Eigen::Array2d begin = point(2 * i), middle = point(2 * i + 1), end = point(2 * i + 2);
-        const double nearest =
-            std::min(distance_to_segment(centre, begin, middle), distance_to_segment(centre, middle, end));
-        if (nearest - radius > reach) continue;
-        item.edges |= static_cast<std::uint8_t>(1u << (i - first));
+  along_.assign(1, 0);
+  for (int i = 0; i < n; ++i)
+    along_.push_back(along_.back() + (point(2 * i + 2) - point(2 * i)).matrix().norm());
+  for (const Obstacle& circle : nearby_) {
+    find_layers(circle, position, fine);
+    const int highest = *std::ranges::max_element(layer_of_);
+    for (int layer = 0; layer <= highest; ++layer)
+      for (int first = 0; first < n; first += edges_per_group) {
+        Item item{circle.x,
+                  circle.y,
+                  circle.radius + range_ + layer * film_,
+                  first / edges_per_group,
+                  0,
+                  static_cast<std::uint8_t>(layer)};
+        for (int i = first; i < std::min(first + edges_per_group, n); ++i)
+          if (layer_of_[static_cast<std::size_t>(i)] == layer)
+            item.edges |= static_cast<std::uint8_t>(1u << (i - first));
+        if (item.edges != 0) items_.push_back(item);
       }
-      if (item.edges != 0) items_.push_back(item);
+  }
+}
+
+/// Fills layer_of_.
+void WallContacts::find_layers(const Obstacle& circle, const Eigen::ArrayXd& position,
+                               const Eigen::ArrayXd& fine) {
+  constexpr double rounding = 1e-12;
+  const int n = static_cast<int>(num_points_);
+  const Eigen::Array2d centre{circle.x, circle.y};
+  const double lowest = circle.radius + range_;  // distance of layer 0 from the centre
+  const double far = (lowest + highest_layer * film_ + skin_) * (1 + rounding);
+  layer_of_.assign(static_cast<std::size_t>(n), -1);
+  for (std::size_t group = 0; group < bounds_.size(); ++group) {
+    const Bounds& bounds = bounds_[group];
+    if ((bounds.least - centre).max(centre - bounds.most).max(0).square().sum() > far * far) continue;
+    const int first = static_cast<int>(group) * edges_per_group;
+    for (int i = first; i < std::min(first + edges_per_group, n); ++i) {
+      const int end = 2 * i + 2 < 2 * n ? 2 * i + 2 : 0;
+      const Eigen::Array2d begin{fine[2 * i], fine[2 * n + 2 * i]};
+      const Eigen::Array2d middle{fine[2 * i + 1], fine[2 * n + 2 * i + 1]};
+      const double nearest =
+          std::min(distance_to_segment(centre, begin, middle),
+                   distance_to_segment(centre, middle, Eigen::Array2d(fine[end], fine[2 * n + end])));
+      int layer = 0;
+      if (film_ > 0 && nearest > lowest + (1 - layer_tolerance) * film_ && nearest <= far) {
+        const double fit = (nearest - lowest) / film_ + layer_tolerance;
+        layer =
+            std::min({num_parts_below(circle, i, middle, position), static_cast<int>(fit), highest_layer});
+      }
+      if (nearest - lowest - layer * film_ <= skin_) layer_of_[static_cast<std::size_t>(i)] = layer;
     }
   }
+}
+
+/// Counts how often the contour crosses the line from the circle's centre to a place on an edge.
+int WallContacts::num_parts_below(const Obstacle& circle, int edge, const Eigen::Array2d& place,
+                                  const Eigen::ArrayXd& position) const {
+  const int n = static_cast<int>(num_points_);
+  const Eigen::Array2d centre{circle.x, circle.y}, way = place - centre;
+  const Eigen::Array2d least = centre.min(place), most = centre.max(place);
+  const auto cross = [](const Eigen::Array2d& a, const Eigen::Array2d& b) {
+    return a[0] * b[1] - a[1] * b[0];
+  };
+  const double middle = (along_[edge] + along_[edge + 1]) / 2;
+  int crossings = 0;
+  for (std::size_t group = 0; group < bounds_.size(); ++group) {
+    if ((bounds_[group].least > most).any() || (bounds_[group].most < least).any()) continue;
+    const int first = static_cast<int>(group) * edges_per_group;
+    for (int i = first; i < std::min(first + edges_per_group, n); ++i) {
+      const int end = i + 1 < n ? i + 1 : 0;
+      const Eigen::Array2d a{position[i], position[n + i]}, b{position[end], position[n + end]};
+      const bool passes = (cross(way, a - centre) > 0) != (cross(way, b - centre) > 0) &&
+                          (cross(b - a, centre - a) > 0) != (cross(b - a, place - a) > 0);
+      if (!passes) continue;
+      const double apart = std::abs((along_[i] + along_[i + 1]) / 2 - middle);
+      const double own = (along_[i + 1] - along_[i] + along_[edge + 1] - along_[edge]) / 2;
+      if (std::min(apart, along_.back() - apart) - own > arc_of_a_fold * film_) ++crossings;
+    }
+  }
+  return crossings;
 }
 
 /// Measures the distances of all vertices to all circles nearby, and to the nearest.

@@ -1,6 +1,9 @@
 #include "clog/core/polygon/contact/wall_friction.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace clog {
 
@@ -27,6 +30,35 @@ double WallFriction::energy(const DropletState& state) const {
     energy += 0.5 * stiffness_ * (at.point - Eigen::Array2d(anchor.x, anchor.y)).square().sum();
   }
   return energy;
+}
+
+double WallFriction::use(const DropletState& state, std::span<const WallTouch> touches) const {
+  struct Moments {
+    WallPlace centre;
+    double carried = 0, bearable = 0;
+  };
+  std::vector<Moments> circles;
+  const auto on = [&](const WallPlace& wall) -> Moments& {
+    const WallPlace centre{.x = wall.x, .y = wall.y};
+    const auto known =
+        std::ranges::find_if(circles, [&](const Moments& one) { return one.centre.is(centre); });
+    return known != circles.end() ? *known : circles.emplace_back(Moments{.centre = centre});
+  };
+  for (const WallTouch& touch : touches)
+    if (touch.wall.wedge < 0 && touch.foot.gradient > 0)
+      on(touch.wall).bearable +=
+          (coefficient_ * touch.push + traction_ * touch.wetted) * touch.wall.radius / touch.foot.gradient;
+  for (const WallAnchor& anchor : state.anchors) {
+    if (anchor.wall.wedge >= 0) continue;
+    const WallFoot at = foot(state, anchor);
+    const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
+    on(anchor.wall).carried += stiffness_ * anchor.slip_of_force(slip) * anchor.wall.radius;
+  }
+  double most = std::numeric_limits<double>::quiet_NaN();
+  for (const Moments& circle : circles)
+    if (circle.bearable > 0)
+      most = std::fmax(most, std::min(1.0, std::abs(circle.carried) / circle.bearable));
+  return most;
 }
 
 /// hold_group() in dp_step_holds-inl.hpp is the version of this function for circles in contact with edges.

@@ -40,8 +40,7 @@ WallTouches::WallTouches(const RunParameters& run, const ObstacleArray& obstacle
       range_(run.dp.contact_range.value()),
       stiffness_(contact_stiffness(run.wall_stiffness.value(), units::regular_edge_length(*run.dp.vertices))),
       meets_edges_(run.dp.wall_contact == WallContact::edge),
-      acts_through_films_(run.dp.film_friction == FilmFriction::on),
-      films_(range_, stiffness_, obstacles.wedges()) {}
+      acts_through_films_(run.dp.film_friction == FilmFriction::on) {}
 
 int WallTouches::part(int vertex, const WallPlace& wall) {
   for (int i = first_part_[vertex]; i >= 0; i = parts_[i].next)
@@ -65,7 +64,7 @@ void WallTouches::add_edges(const Contour& contour, const WallContacts::Item& it
       if (known < 0) known = part((first + edge + k - 1 + contour.size) % contour.size, circle);
       Part& touched = parts_[known];
       touched.push += Eigen::Array2d(found.push_x[k][edge], found.push_y[k][edge]);
-      if (k == 1 || k == 2) touched.wetted += found.wetted[k - 1][edge];
+      if ((k == 1 || k == 2) && item.layer == 0) touched.wetted += found.wetted[k - 1][edge];
     }
   }
 }
@@ -84,8 +83,7 @@ void WallTouches::add_vertex(const Contour& contour, int vertex, const WallPlace
 }
 
 const std::vector<WallTouch>& WallTouches::find(const DropletState& state,
-                                                std::span<const WallContacts::Item> circles,
-                                                const SelfContacts& self) {
+                                                std::span<const WallContacts::Item> circles) {
   const auto n = static_cast<std::size_t>(state.size());
   constexpr std::size_t before = 1, behind = WallContacts::edges_per_group + 2;
   closed_contour_.resize(2 * (before + n + behind));
@@ -97,12 +95,11 @@ const std::vector<WallTouch>& WallTouches::find(const DropletState& state,
   double *const x = closed_contour_.data(), *const y = x + before + n + behind;
   close(state.position.data(), x);
   close(state.position.data() + n, y);
-  return find({static_cast<int>(n), x + before, y + before}, state.frame, circles, self);
+  return find({static_cast<int>(n), x + before, y + before}, state.frame, circles);
 }
 
 const std::vector<WallTouch>& WallTouches::find(const Contour& contour, const LocalFrame& frame,
-                                                std::span<const WallContacts::Item> circles,
-                                                const SelfContacts& self) {
+                                                std::span<const WallContacts::Item> circles) {
   first_part_.assign(static_cast<std::size_t>(contour.size), -1);
   parts_.clear();
   wedges_.clear();
@@ -111,10 +108,11 @@ const std::vector<WallTouch>& WallTouches::find(const Contour& contour, const Lo
     wedges_.push_back({place.x, place.y, place.radius, static_cast<Eigen::Index>(wedges_.size())});
   }
   for (const WallContacts::Item& item : circles) {
+    if (item.layer > 0 && !acts_through_films_) continue;
     WallPlace circle{.x = item.x, .y = item.y, .radius = item.reach - range_};
     // The rounded tip of a wedge is in the list as a circle.
     for (const WallPlace& wedge : wedges_)
-      if (wedge.x == circle.x && wedge.y == circle.y) circle.wedge = wedge.wedge;
+      if (item.layer == 0 && wedge.x == circle.x && wedge.y == circle.y) circle.wedge = wedge.wedge;
     if (meets_edges_) {
       add_edges(contour, item, circle);
       continue;
@@ -133,7 +131,6 @@ const std::vector<WallTouch>& WallTouches::find(const Contour& contour, const Lo
       add_vertex(contour, i, wedges_[k], distance, normal);
     }
   keep_pushed(contour);
-  if (acts_through_films_) films_.add_to(touches_, contour, self);
   return touches_;
 }
 

@@ -18,7 +18,8 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
       has_near_wall_drag_(run.drag.near_wall > 0),
       walls_(obstacles, dp_.contact_range.value(),
              dp_.wall_contact == WallContact::edge ? WallContacts::Keep::touched_by_edge
-                                                   : WallContacts::Keep::touched_by_vertex),
+                                                   : WallContacts::Keep::touched_by_vertex,
+             film_thickness(dp_)),
       nearest_walls_(obstacles, dp_.contact_range.value(), WallContacts::Keep::nearest_to_vertex),
       wetted_walls_(run, obstacles),
       self_(dp_.self_contact_range, vertex_diameter_),
@@ -74,7 +75,7 @@ InterfaceTerms DpForces::interface(double area, double perimeter) const {
 WallYield DpForces::let_walls_yield(DropletState& state, WallTouches& touches,
                                     std::span<const WallContacts::Item> circles, Purpose purpose) const {
   if (friction_.is_on())
-    return friction_.follow(state, touches.find(state, circles, self_), purpose, touches.known_anchors());
+    return friction_.follow(state, touches.find(state, circles), purpose, touches.known_anchors());
   return wetted_walls_.follow(state, purpose);
 }
 
@@ -108,6 +109,22 @@ double DpForces::deepest_overlap(const DropletState& state) const {
   return deepest;
 }
 
+double DpForces::self_contact_energy(const Contour& contour, const DropletState& state) const {
+  double energy = 0;
+  SelfCrossings crossings;
+  std::vector<SelfCrossing> crossed = state.crossings;
+  crossings.renew(contour, crossed);
+  for (const SelfContacts::Pair& pair : self_.pairs()) {
+    if (crossings.is_muted(pair)) continue;
+    const double overlap =
+        std::max(0.0, self_.range() - nearest_point(pair, contour.x, contour.y, contour.size).distance);
+    energy += 0.5 * contact_stiffness_ * overlap * overlap;
+  }
+  for (const SelfCrossing& crossing : crossed)
+    energy += contact_stiffness_ * SelfCrossings::energy(crossing, contour, self_);
+  return energy;
+}
+
 PotentialEnergy DpForces::energy(const DropletState& state) const {
   const int n = *dp_.vertices;
   const double* x = state.position.data();
@@ -128,11 +145,7 @@ PotentialEnergy DpForces::energy(const DropletState& state) const {
   visit_overlaps(state, [&](double overlap) {
     if (overlap > 0) energy.wall += 0.5 * contact_stiffness_ * overlap * overlap;
   });
-  if (dp_.self_contact == SelfContact::on)
-    for (const SelfContacts::Pair& pair : self_.pairs()) {
-      const double overlap = std::max(0.0, self_.range() - nearest_point(pair, x, y, n).distance);
-      energy.self_contact += 0.5 * contact_stiffness_ * overlap * overlap;
-    }
+  if (dp_.self_contact == SelfContact::on) energy.self_contact = self_contact_energy({n, x, y}, state);
   energy.line_tension += wetted_walls_.tension_energy(state);
   energy.anchors = friction_.is_on() ? friction_.energy(state) : wetted_walls_.spring_energy(state);
   return energy;

@@ -129,10 +129,11 @@ class PairedVertices {
   static HWY_INLINE void subtract(V v, double* p) { store(hn::Sub(load(p), v), p); }
 };
 
-/// Repulsion of edges and vertices.
-void push_off_each_other(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
-                         const StepArrays& a) {
+/// Repulsion of edges and vertices. Returns the smallest squared distance of a listed pair.
+double push_off_each_other(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
+                           const StepArrays& a) {
   const V reach = all(contact.self_range), stiffness = all(contact.stiffness);
+  V least = all(1e300);
   const SelfContacts::Item* const end = items + num_items;
   for (const SelfContacts::Item *begin = items, *next = items; begin != end; begin = next) {
     while (next != end && next->edges == begin->edges) ++next;
@@ -143,13 +144,15 @@ void push_off_each_other(const SelfContacts::Item* items, std::size_t num_items,
       for (const SelfContacts::Item* item = begin; item != next; ++item) {
         const PairedVertices vertices(*item, lane, a);
         const NearestPoints nearest(edges, vertices.place());
-        const M touch = hn::And(nearest.are_nearer_than(reach), lanes_of(item->pairs, lane));
+        const M listed = lanes_of(item->pairs, lane), touch = hn::And(nearest.are_nearer_than(reach), listed);
+        least = hn::Min(least, hn::IfThenElse(listed, nearest.distance2, least));
         if (hn::AllFalse(D(), touch)) continue;
         vertices.push_back(pushes.add(nearest, touch, reach, stiffness), a);
       }
       pushes.hand_out(i, edges, a);
     }
   }
+  return hn::GetLane(hn::MinOfLanes(D(), least));
 }
 
 /// The smallest distance of the listed edges to their points.
@@ -175,32 +178,26 @@ double pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const C
   return least;
 }
 
-void push(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
-          const Contact& contact, const StepArrays& arrays) {
+double push(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
+            const Contact& contact, const StepArrays& arrays) {
   const StepArrays a = arrays;
   if (num_self > 0) clear_pushes(n + edges_per_group - 1, a);
   push_off_circles(walls, contact, a);
-  push_off_each_other(self, num_self, contact, a);
+  const double nearest2 = push_off_each_other(self, num_self, contact, a);
   fold_ends(a.push, n, num_self > 0 ? edges_per_group : 2);
+  return std::sqrt(nearest2);
 }
 
-double push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, const SelfContacts::Item* self,
-                     std::size_t num_self, const Contact& contact, const StepArrays& arrays) {
+Held push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, const SelfContacts::Item* self,
+                   std::size_t num_self, const Contact& contact, const StepArrays& arrays) {
   const StepArrays a = arrays;
   const bool wets = grip.traction > 0;
   clear_pushes(n + edges_per_group - 1, a);
-  // Friction through films needs the forces of self-contact.
-  if (num_self > 0 && grip.film_reach > 0) {
-    push_off_each_other(self, num_self, contact, a);
-    fold_ends(a.push, n, edges_per_group);
-    return wets ? push_off_and_hold_with_films<true>(n, walls, grip, contact, a)
-                : push_off_and_hold_with_films<false>(n, walls, grip, contact, a);
-  }
   const double taken = wets ? push_off_and_hold<true>(n, walls, grip, contact, a)
                             : push_off_and_hold<false>(n, walls, grip, contact, a);
-  push_off_each_other(self, num_self, contact, a);
+  const double nearest2 = push_off_each_other(self, num_self, contact, a);
   if (num_self > 0) fold_ends(a.push, n, edges_per_group);
-  return taken;
+  return {.nearest_pair = std::sqrt(nearest2), .taken = taken};
 }
 
 /// Distances from a wedge for a vector of vertices. distance_to() of wedge.hpp computes the same for one

@@ -51,35 +51,28 @@ HWY_INLINE void fold_ends(const ContourPair& p, int n, int beyond = 2) {
   fold_ends(p.y, n, beyond);
 }
 
-/// Whether friction acts through films, and whether films of several circles may overlap.
-enum class Films { none, those_of_one_circle, those_of_several };
-
 /// Where the vertices of a vector are relative to a circle.
 struct CircleAtVertices {
   V normal_x, normal_y;
-  V inverse;   ///< inverse of the distance from the centre
-  V distance;  ///< distance from the surface
+  V inverse;  ///< inverse of the distance from the centre
 
   HWY_INLINE CircleAtVertices(const HoldingCircle& circle, std::ptrdiff_t i, const StepArrays& a) {
     const Pair place = load(a.position, i);
     const V dx = hn::Sub(place.x, all(circle.x)), dy = hn::Sub(place.y, all(circle.y));
-    const Root root = square_root(hn::Max(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), all(1e-300)));
-    inverse = root.inverse;
+    inverse = square_root(hn::Max(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), all(1e-300))).inverse;
     normal_x = hn::Mul(dx, inverse);
     normal_y = hn::Mul(dy, inverse);
-    distance = hn::Sub(root.root, all(circle.radius));
   }
 };
 
-/// Adds one circle's normal forces and friction to the forces on a group. With friction through films, the
-/// sum is kept apart until all circles have read the forces of self-contact. Returns the work that the wall
+/// Adds one circle's normal forces and friction to the forces on a group. Returns the work that the wall
 /// took. This function does for a vector of vertices what WallFriction::follow() does for one vertex;
 /// dp_step.test.cpp compares the two.
-/// @param pushes  whether the circle touches vertices of the group
-template <bool wets, Films films, bool pushes = true>
+template <bool wets>
 HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCircles& walls,
                         const WallGrip& grip, const StepArrays& a) {
-  constexpr bool has_films = films != Films::none;
+  const V coefficient = all(circle.layer == 0 ? grip.coefficient : grip.coefficient_of_layers);
+  const V traction = all(circle.layer == 0 ? grip.traction : 0);
   const V radius = all(circle.radius), stiffness = all(grip.stiffness);
   V taken = all(0);
   const unsigned held_before = walls.holds[entry];
@@ -87,40 +80,18 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
     const std::ptrdiff_t i = std::ptrdiff_t{walls.groups[entry]} * edges_per_group + lane;
     const std::ptrdiff_t k = std::ptrdiff_t{entry} * edges_per_group + lane;
-    const V push_x = pushes ? load(walls.push.x + i) : all(0),
-            push_y = pushes ? load(walls.push.y + i) : all(0);
+    const V push_x = load(walls.push.x + i), push_y = load(walls.push.y + i);
     const M is_known = lanes_of(static_cast<int>(held_before), lane);
     M touched_or_held = hn::Or(is_known, hn::Or(hn::Ne(push_x, all(0)), hn::Ne(push_y, all(0))));
     // The closest point of a half edge may be its end, so the wall does not push every vertex that it wets.
-    if constexpr (wets && pushes)
-      touched_or_held = hn::Or(touched_or_held, hn::Gt(load(walls.wetted + i), all(0)));
-    V self_x = all(0), self_y = all(0);
-    if constexpr (has_films) {
-      self_x = load(a.push.x + i);
-      self_y = load(a.push.y + i);
-      touched_or_held = hn::Or(touched_or_held, hn::Or(hn::Ne(self_x, all(0)), hn::Ne(self_y, all(0))));
-    }
-    if (hn::AllFalse(D(), touched_or_held)) {
-      if constexpr (has_films) {
-        store(all(0), walls.added_x + k);
-        store(all(0), walls.added_y + k);
-      }
-      continue;
-    }
+    if constexpr (wets) touched_or_held = hn::Or(touched_or_held, hn::Gt(load(walls.wetted + i), all(0)));
+    if (hn::AllFalse(D(), touched_or_held)) continue;
     const CircleAtVertices at(circle, i, a);
     // At the end of a contact, the last middle pulls the next vertex a little towards the wall (refined_far
     // is negative); this does not count as a normal force.
-    V push = hn::Max(hn::MulAdd(push_x, at.normal_x, hn::Mul(push_y, at.normal_y)), all(0));
-    if constexpr (has_films) {
-      M counts = hn::Lt(at.distance, all(grip.film_reach));
-      if constexpr (films == Films::those_of_several)
-        counts = hn::And(counts, hn::Le(at.distance, load(walls.nearest + i)));
-      const V by_self = hn::MulAdd(self_x, at.normal_x, hn::Mul(self_y, at.normal_y));
-      counts = hn::And(counts, hn::Ge(hn::Abs(by_self), all(grip.least_film_push)));
-      push = hn::Max(hn::Add(push, hn::IfThenElseZero(counts, by_self)), all(0));
-    }
-    V bears = hn::Mul(all(grip.coefficient), push);
-    if constexpr (wets && pushes) bears = hn::MulAdd(all(grip.traction), load(walls.wetted + i), bears);
+    const V push = hn::Max(hn::MulAdd(push_x, at.normal_x, hn::Mul(push_y, at.normal_y)), all(0));
+    V bears = hn::Mul(coefficient, push);
+    if constexpr (wets) bears = hn::MulAdd(traction, load(walls.wetted + i), bears);
     const M touches = hn::Gt(bears, all(0));
 
     // The wall's point closest to the vertex is radius * normal. Slips count along (-normal_y, normal_x).
@@ -147,13 +118,8 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
     const V pull = hn::Mul(spring, held);
     const V added_x = hn::MulAdd(pull, at.normal_y, push_x),
             added_y = hn::NegMulAdd(pull, at.normal_x, push_y);
-    if constexpr (has_films) {
-      store(added_x, walls.added_x + k);
-      store(added_y, walls.added_y + k);
-    } else {
-      const Pair others = load(a.push, i);
-      store({hn::Add(others.x, added_x), hn::Add(others.y, added_y)}, a.push, i);
-    }
+    const Pair others = load(a.push, i);
+    store({hn::Add(others.x, added_x), hn::Add(others.y, added_y)}, a.push, i);
   }
   walls.holds[entry] = static_cast<std::uint8_t>(holds);
   return taken;
@@ -163,10 +129,10 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
 template <bool wets>
 HWY_INLINE void gather_circle(int n, const HoldingCircle& circle, const HoldingCircles& walls, V span,
                               const StepArrays& a) {
-  for (int k = circle.first_group; k < circle.end_own_group; ++k)
+  for (int k = circle.first_group; k < circle.end_group; ++k)
     gather_pushes(walls.groups[k], circle.pushes, walls.push);
   if constexpr (wets) {
-    for (int k = circle.first_group; k < circle.end_own_group; ++k)
+    for (int k = circle.first_group; k < circle.end_group; ++k)
       for (int lane = 0; lane < edges_per_group; lane += lanes)
         store(all(0), walls.wetted + std::ptrdiff_t{walls.groups[k]} * edges_per_group + lane);
     for (int k = circle.first_window; k < circle.end_window; ++k)
@@ -189,75 +155,11 @@ double push_off_and_hold(int n, const HoldingCircles& given, const WallGrip& gri
     for (int k = circle->first_window; k < circle->end_window; ++k)
       push_window<false>(walls.windows[k], span, stiffness, circle->pushes, a);
     gather_circle<wets>(n, *circle, walls, span, a);
-    for (int k = circle->first_group; k < circle->end_own_group; ++k)
+    for (int k = circle->first_group; k < circle->end_group; ++k)
       if (walls.groups[k] >= 0 && walls.groups[k] < num_groups)
-        taken = hn::Add(taken, hold_group<wets, Films::none>(*circle, k, walls, grip, a));
+        taken = hn::Add(taken, hold_group<wets>(*circle, k, walls, grip, a));
   }
   return sum(taken);
-}
-
-/// Finds the distance of each vertex from the nearest circle that pushes the droplet.
-void find_nearest(int num_groups, const HoldingCircles& walls, const StepArrays& a) {
-  const auto visit = [&](auto what) CLOG_INLINE {
-    for (std::size_t c = 0; c < walls.num; ++c)
-      for (int k = walls.all[c].first_group; k < walls.all[c].end_group; ++k)
-        if (walls.touches[c] != 0 && walls.groups[k] >= 0 && walls.groups[k] < num_groups)
-          for (int lane = 0; lane < edges_per_group; lane += lanes)
-            what(walls.all[c], std::ptrdiff_t{walls.groups[k]} * edges_per_group + lane);
-  };
-  visit([&](const HoldingCircle&, std::ptrdiff_t i) CLOG_INLINE { store(all(1e300), walls.nearest + i); });
-  visit([&](const HoldingCircle& circle, std::ptrdiff_t i) CLOG_INLINE {
-    store(hn::Min(load(walls.nearest + i), CircleAtVertices(circle, i, a).distance), walls.nearest + i);
-  });
-}
-
-/// Adds normal forces and friction of circles to the forces of self-contact.
-/// @param films  of all circles that push the droplet
-template <bool wets, Films films>
-double hold_with_films(int n, const HoldingCircles& walls, const WallGrip& grip, V span,
-                       const StepArrays& a) {
-  const int num_groups = (n + edges_per_group - 1) / edges_per_group;
-  const auto is_inside = [&](int k) { return walls.groups[k] >= 0 && walls.groups[k] < num_groups; };
-  V taken = all(0);
-  for (std::size_t c = 0; c < walls.num; ++c) {
-    const HoldingCircle& circle = walls.all[c];
-    WallGrip own = grip;
-    if (walls.touches[c] == 0) own.film_reach = -1e300;
-    gather_circle<wets>(n, circle, walls, span, a);
-    for (int k = circle.first_group; k < circle.end_own_group; ++k)
-      if (is_inside(k)) taken = hn::Add(taken, hold_group<wets, films>(circle, k, walls, own, a));
-    for (int k = circle.end_own_group; k < circle.end_group; ++k)
-      taken = hn::Add(taken, hold_group<wets, films, false>(circle, k, walls, own, a));
-  }
-  for (std::size_t c = 0; c < walls.num; ++c)
-    for (int k = walls.all[c].first_group; k < walls.all[c].end_group; ++k)
-      for (int lane = 0; is_inside(k) && lane < edges_per_group; lane += lanes) {
-        const std::ptrdiff_t i = std::ptrdiff_t{walls.groups[k]} * edges_per_group + lane;
-        const std::ptrdiff_t from = std::ptrdiff_t{k} * edges_per_group + lane;
-        const Pair push = load(a.push, i);
-        store({hn::Add(push.x, load(walls.added_x + from)), hn::Add(push.y, load(walls.added_y + from))},
-              a.push, i);
-      }
-  return sum(taken);
-}
-
-/// Like push_off_and_hold(), but friction also acts through films (see FilmTouches). Before this call the
-/// forces are those of self-contact alone.
-template <bool wets>
-double push_off_and_hold_with_films(int n, const HoldingCircles& given, const WallGrip& grip,
-                                    const Contact& contact, const StepArrays& a) {
-  const HoldingCircles walls = given;
-  const V span = all(contact.span), stiffness = all(contact.stiffness);
-  for (std::size_t c = 0; c < walls.num; ++c) {
-    const HoldingCircle& circle = walls.all[c];
-    bool touches = false;
-    for (int k = circle.first_window; k < circle.end_window; ++k)
-      touches |= push_window<false>(walls.windows[k], span, stiffness, circle.pushes, a);
-    walls.touches[c] = touches ? 1 : 0;
-  }
-  if (!walls.are_close) return hold_with_films<wets, Films::those_of_one_circle>(n, walls, grip, span, a);
-  find_nearest((n + edges_per_group - 1) / edges_per_group, walls, a);
-  return hold_with_films<wets, Films::those_of_several>(n, walls, grip, span, a);
 }
 
 }  // namespace clog::kernel::HWY_NAMESPACE

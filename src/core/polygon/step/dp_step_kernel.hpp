@@ -114,9 +114,10 @@ struct Power {
 /// circle.
 struct WallWindow {
   double x, y;   ///< circle's centre [sigma]
-  double reach;  ///< radius + range [sigma]
+  double reach;  ///< radius + range, for the layer [sigma]
   int first;
   std::uint8_t edges;
+  std::uint8_t layer;  ///< see WallContacts
 };
 /// Forces of edges on their vertices, as windows store them. The first three of six arrays contain the x of
 /// the forces on an edge's first vertex, on its second vertex, and on each of the two vertices beyond them;
@@ -137,13 +138,12 @@ struct WallWindows {
   int num_groups;
   WindowPushArrays pushes;
 };
-/// A circle that pushes vertices and holds them by friction.
+/// A circle that pushes vertices of one layer and holds them by friction.
 struct HoldingCircle {
   double x, y, radius;  ///< [sigma]
+  int layer;            ///< see WallContacts
   int first_window, end_window;
-  /// Groups of vertices that the circle may push, by itself or through films.
-  int first_group, end_group;
-  int end_own_group;  ///< end of the groups that the circle may push by itself, which come first
+  int first_group, end_group;  ///< groups of vertices that the circle may push
   /// Whether the circle pushes vertices -1, n or n + 1, which belong to the contour's other end.
   bool wraps;
   WindowPushArrays pushes;  ///< forces of this circle
@@ -160,21 +160,17 @@ struct HoldingCircles {
   std::uint8_t* holds;          ///< vertices that have an anchor, as bits
   ContourPair push;             ///< push on the vertices, by one circle; working memory
   ContourArray wetted;          ///< length of the interface on one circle [sigma]; working memory
-  /// What circles add to self-contact, with an entry for each anchor; working memory.
-  double *added_x, *added_y;
-  /// Distance of the vertices from the nearest circle that pushes [sigma]; working memory.
-  ContourArray nearest;
-  std::uint8_t* touches;  ///< whether a circle pushes the droplet; working memory
-  bool are_close;         ///< whether a vertex may be in the film's reach of two circles
+};
+struct Held {
+  double nearest_pair;  ///< smallest distance of a listed pair of self-contact [sigma]
+  double taken;         ///< energy lost to walls, divided by k_t [sigma^2]
 };
 /// Limits of friction, as kicks.
 struct WallGrip {
-  double coefficient;  ///< coefficient of friction
-  double traction;     ///< yield traction for each sigma of wetted length
-  double stiffness;    ///< k_t of the springs between interface and wall
-  /// Distance from the surface up to which friction acts through films; 0: there is no such friction [sigma].
-  double film_reach;
-  double least_film_push;  ///< smaller forces of self-contact count as zero
+  double coefficient;            ///< coefficient of friction, for the layer next to the wall
+  double coefficient_of_layers;  ///< coefficient of friction, for the layers above
+  double traction;               ///< yield traction for each sigma of wetted length, next to the wall
+  double stiffness;              ///< k_t of the springs between interface and wall
 };
 struct Contact {
   double stiffness;   ///< k_c as a kick
@@ -224,15 +220,15 @@ struct StepKernel {
   double (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                       const StepArrays& arrays, double* gaps);
   /// clear_pushes() sets the pushes on all vertices to zero. push() finds the pushes of circles, on the
-  /// groups of vertices that `walls` names, and the pushes of the droplet on itself.
+  /// groups of vertices that `walls` names, and the pushes of the droplet on itself. It returns the smallest
+  /// distance of a listed pair [sigma].
   void (*clear_pushes)(int n, const StepArrays& arrays);
-  void (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
-               const Contact& contact, const StepArrays& arrays);
-  /// Does the same as push(), but for all groups, and includes the circles' friction. Returns the energy lost
-  /// to walls, divided by k_t [sigma^2].
-  double (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
-                          const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
-                          const StepArrays& arrays);
+  double (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
+                 const Contact& contact, const StepArrays& arrays);
+  /// Does the same as push(), but for all groups, and includes the circles' friction.
+  Held (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
+                        const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
+                        const StepArrays& arrays);
   /// Adds the forces of wedges on vertices that are nearer to a wedge's surface than `range` [sigma]. Edges
   /// need no test: they meet a wedge's tip first, which is listed as a circle.
   void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,

@@ -15,13 +15,6 @@ namespace {
 /// The rate of the drag far from walls [1/t0].
 double far_rate_of(const RunParameters& run) { return 1 / relaxation_time(run); }
 
-/// See kernel::WallGrip.
-double film_reach_of(const RunParameters& run, const DpForces& forces) {
-  return run.dp.film_friction == FilmFriction::on
-             ? film_reach(forces.walls().range(), forces.self_contacts().range())
-             : 0;
-}
-
 kernel::KickTerms with_implicit_pressure(kernel::KickTerms terms) {
   terms.implicit_pressure = true;
   return terms;
@@ -58,7 +51,7 @@ DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, D
       kernel_(kernel::step_kernel(terms_)),
       implicit_kernel_(kernel::step_kernel(with_implicit_pressure(terms_))),
       memory_(n_),
-      near_{.plan = WallPlan(n_), .hold = WallHold(n_, forces.walls().range(), film_reach_of(run, forces))},
+      near_{.plan = WallPlan(n_), .hold = WallHold(n_, forces.walls().range())},
       wetting_(n_),
       friction_{.touches = WallTouches(run, obstacles), .force = Eigen::ArrayXd::Zero(Eigen::Index{2} * n_)} {
 }
@@ -78,12 +71,26 @@ std::int64_t DpStepper::move(DropletState& state, int num_steps, Droplet::Work* 
     const int steps = std::min(steps_per_survey_, num_steps - done);
     prepare_contacts(state, now, steps * run_.time_step.value(), work);
     const StiffModes modes = stiff_modes(run_.dp, *run_.wall_stiffness, now.perimeter, now.shortest);
-    const Steps stable = stable_steps(modes, steps, run_.time_step.value(), most_pressure_);
+    Steps stable = stable_steps(modes, steps, run_.time_step.value(), most_pressure_);
+    const int parts =
+        near_.contacts.self().empty() ? 1 : parts_of_fast_step(now.relative_speed * stable.length);
+    stable.num *= parts;
+    stable.length /= parts;
     advance(state, stable, work);
     num_taken += stable.num;
   }
   finish(state, work);
   return num_taken;
+}
+
+/// The number of parts of a step in which vertices may move as far as `way` against each other. Vertices that
+/// move farther than the range of self-contact in one step would pass through other parts of the interface
+/// before these push them.
+int DpStepper::parts_of_fast_step(double way) const {
+  constexpr double farthest = 0.25;  // in units of the range
+  constexpr double most_parts = 16;
+  const double parts = std::ceil(way / (farthest * forces_->self_contacts().range()));
+  return static_cast<int>(std::clamp(parts, 1.0, most_parts));
 }
 
 void DpStepper::move(DropletState& state, std::span<const Steps> all, Droplet::Work* work) {
@@ -126,6 +133,7 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
     forces_->update_contacts(state, travel);
   }
   rates_.fastest = now.speed;
+  fastest_relative_ = now.relative_speed;
   kernel_.clear_pushes(n_, a);  // the lists may name other groups than before
   // A contact accelerates its vertices. For a few steps, they therefore move farther by up to half of the
   // contact's depth per step, which `travel` does not include.
@@ -133,15 +141,21 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
   const double unforeseen =
       0.1 * forces_->vertex_diameter() +
       thrown * near_.contacts.measure(kernel_, contact_as_kick(run_, *forces_, 0), *forces_, a);
-  near_.contacts.keep(kernel_, *forces_, refined_sway * (travel.absolute + unforeseen),
-                      2 * (travel.relative + unforeseen));
+  near_.wall_way = refined_sway * (travel.absolute + unforeseen);
+  near_.self_way = 2 * (travel.relative + unforeseen);
+  crossings_.renew(contour(), state.crossings);
+  keep_near_contacts();
   if (holds_circles_) {
-    const WallHold::Near near{near_.contacts.walls(), near_.contacts.self(), travel.absolute + unforeseen};
-    const double lost = forces_->friction().stiffness() * near_.hold.make(near, a.position, state);
+    const double lost = forces_->friction().stiffness() * near_.hold.make(near_.contacts.walls(), state);
     if (work != nullptr) work->dissipated += lost;
   } else {
     near_.plan.make(near_.contacts.walls());
   }
+}
+
+void DpStepper::keep_near_contacts() {
+  near_.contacts.keep(kernel_, *forces_, near_.wall_way, near_.self_way);
+  near_.contacts.mute(crossings_.muted(), n_);
 }
 
 /// Leaves the last half kick open: positions belong to the end of the steps, velocities to half a step
@@ -196,22 +210,55 @@ void DpStepper::kick_and_drift(DropletState& state, double half_step, double dri
   open_.length = drift_time;
 }
 
-void DpStepper::push_off_circles(const kernel::Contact& touching, double impulse, Droplet::Work* work) {
+/// Returns the smallest distance of a listed pair of self-contact [sigma].
+double DpStepper::push_off_circles(const kernel::Contact& touching, double impulse, Droplet::Work* work) {
   const std::vector<SelfContacts::Item>& self = near_.contacts.self();
-  if (!holds_circles_) {
-    kernel_.push(n_, near_.plan.windows(), self.data(), self.size(), touching, memory_.arrays());
-    return;
-  }
+  if (!holds_circles_)
+    return kernel_.push(n_, near_.plan.windows(), self.data(), self.size(), touching, memory_.arrays());
   const WallFriction& friction = forces_->friction();
-  const double taken =
-      kernel_.push_and_hold(n_, near_.hold.circles(),
-                            {.coefficient = friction.coefficient(),
-                             .traction = impulse * friction.yield_traction(),
-                             .stiffness = impulse * friction.stiffness(),
-                             .film_reach = near_.hold.film_reach(),
-                             .least_film_push = least_film_push * touching.stiffness * touching.self_range},
-                            self.data(), self.size(), touching, memory_.arrays());
-  if (work != nullptr) work->dissipated += friction.stiffness() * taken;
+  const kernel::Held held = kernel_.push_and_hold(
+      n_, near_.hold.circles(),
+      {.coefficient = friction.coefficient(),
+       .coefficient_of_layers = run_.dp.film_friction == FilmFriction::on ? friction.coefficient() : 0,
+       .traction = impulse * friction.yield_traction(),
+       .stiffness = impulse * friction.stiffness()},
+      self.data(), self.size(), touching, memory_.arrays());
+  if (work != nullptr) work->dissipated += friction.stiffness() * held.taken;
+  return held.nearest_pair;
+}
+
+Contour DpStepper::contour() const {
+  return {n_, memory_.arrays().position.x.first, memory_.arrays().position.y.first};
+}
+
+/// Finds the vertices that passed through edges in the last drift. Returns whether muted contacts changed.
+bool DpStepper::follow_crossings(DropletState& state, double nearest_pair) {
+  // A pair whose vertex passed through the edge is at most as far apart now as the two moved. Since the last
+  // survey vertices may have become faster. Neighbours along the contour, which are not listed, pass through
+  // each other's edges in folds that close fast.
+  constexpr double faster = 3, fast = 0.1;
+  const double way = 2 * faster * fastest_relative_ * open_.length;
+  const bool may_have_passed = way >= std::min(nearest_pair, fast * forces_->self_contacts().range());
+  if (run_.dp.self_contact == SelfContact::off || open_.length == 0 ||
+      (!may_have_passed && state.crossings.empty()))
+    return false;
+  const kernel::ContourPair& velocity = memory_.arrays().velocity;
+  return crossings_.follow(contour(), {velocity.x.first, velocity.y.first, open_.length},
+                           forces_->self_contacts(), state);
+}
+
+void DpStepper::push_back_crossed(const DropletState& state, const kernel::Contact& touching) {
+  const kernel::ContourPair& push = memory_.arrays().push;
+  for (const SelfCrossing& crossing : state.crossings) {
+    const SelfCrossings::Push back = SelfCrossings::push_back(crossing, contour(), forces_->self_contacts());
+    const auto add = [&](Eigen::Index vertex, double share) {
+      push.x[vertex] += share * touching.stiffness * back.force[0];
+      push.y[vertex] += share * touching.stiffness * back.force[1];
+    };
+    add(back.vertex, 1);
+    add(back.edge, back.fraction - 1);
+    add((back.edge + 1) % n_, -back.fraction);
+  }
 }
 
 void DpStepper::push_off_everything(DropletState& state, const kernel::KickCoefficients& coefficients,
@@ -224,7 +271,13 @@ void DpStepper::push_off_everything(DropletState& state, const kernel::KickCoeff
   if (!wedges.empty() || forces_->wetted_walls().is_on() || slides || friction_.has_pushed)
     kernel_.clear_pushes(n_, memory_.arrays());
   friction_.has_pushed = slides;
-  push_off_circles(touching, impulse, work);
+  const double nearest_pair = push_off_circles(touching, impulse, work);
+  if (follow_crossings(state, nearest_pair)) {
+    keep_near_contacts();
+    kernel_.clear_pushes(n_, memory_.arrays());
+    push_off_circles(touching, impulse, work);
+  }
+  push_back_crossed(state, touching);
   kernel_.push_off_wedges(n_, wedges.data(), wedges.size(), forces_->walls().range(), touching.stiffness,
                           memory_.arrays());
   if (forces_->wetted_walls().is_on()) add_wetting(state, impulse, work);
@@ -278,9 +331,8 @@ void DpStepper::add_wetting(DropletState& state, double impulse, Droplet::Work* 
 /// the vertices.
 void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
-  const std::vector<WallTouch>& touches =
-      friction_.touches.find({n_, a.position.x.first, a.position.y.first}, state.frame,
-                             near_.contacts.walls(), forces_->self_contacts());
+  const std::vector<WallTouch>& touches = friction_.touches.find({n_, a.position.x.first, a.position.y.first},
+                                                                 state.frame, near_.contacts.walls());
   const WallYield yield = forces_->friction().follow(state, touches, Purpose::motion,
                                                      friction_.touches.known_anchors(), &friction_.force);
   if (work != nullptr) work->dissipated += yield.dissipated;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "clog/core/droplet/droplet.hpp"
+#include "clog/core/polygon/contact/self_crossings.hpp"
 #include "clog/core/polygon/contact/wall_touches.hpp"
 #include "clog/core/polygon/forces/dp_forces.hpp"
 #include "clog/core/polygon/forces/stability.hpp"
@@ -47,6 +48,7 @@ class DpStepper {
   /// Possible contacts of the droplet before the next survey.
   struct Near {
     NearContacts contacts{};
+    double wall_way = 0, self_way = 0;         // distances from contact up to which `contacts` has entries
     WallPlan plan;                             // used if holds_circles_ is false
     WallHold hold;                             // used if holds_circles_ is true
     std::vector<kernel::WedgePlace> wedges{};  // wedges in the droplet's frame
@@ -83,6 +85,8 @@ class DpStepper {
   VertexFriction friction_;
   KeptRates rates_;
   OpenStep open_;
+  SelfCrossings crossings_;
+  double fastest_relative_ = 0;  // relative speed of the fastest vertex at the last survey [sqrt(sigma g)]
 
   void load(DropletState& state);
   kernel::Survey survey() const;
@@ -90,7 +94,12 @@ class DpStepper {
   void advance(DropletState& state, const Steps& steps, Droplet::Work* work);
   void finish(DropletState& state, Droplet::Work* work);
   void kick_and_drift(DropletState& state, double half_step, double drift_time, Droplet::Work* work);
-  void push_off_circles(const kernel::Contact& touching, double impulse, Droplet::Work* work);
+  double push_off_circles(const kernel::Contact& touching, double impulse, Droplet::Work* work);
+  int parts_of_fast_step(double way) const;
+  void keep_near_contacts();
+  bool follow_crossings(DropletState& state, double nearest_pair);
+  void push_back_crossed(const DropletState& state, const kernel::Contact& touching);
+  Contour contour() const;
   void push_off_everything(DropletState& state, const kernel::KickCoefficients& coefficients, double impulse,
                            Droplet::Work* work);
   void renew_rates(const kernel::KickCoefficients& coefficients);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "clog/core/polygon/forces/dp_forces.hpp"
@@ -15,6 +16,9 @@ class NearContacts {
                  const kernel::StepArrays& arrays);
   /// Keeps the entries that measure() found within these distances from contact [sigma].
   void keep(const kernel::StepKernel& kernel, const DpForces& forces, double wall_way, double self_way);
+
+  /// Removes these pairs until the next keep(). @param num_vertices  number of the droplet's vertices
+  void mute(std::span<const SelfContacts::Pair> pairs, int num_vertices);
 
   const std::vector<WallContacts::Item>& walls() const { return walls_; }
   const std::vector<SelfContacts::Item>& self() const { return self_; }

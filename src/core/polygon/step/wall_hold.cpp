@@ -14,23 +14,18 @@ constexpr int before = 2, behind = 2;
 
 }  // namespace
 
-WallHold::WallHold(int num_vertices, double range, double film_reach)
+WallHold::WallHold(int num_vertices, double range)
     : num_vertices_(num_vertices),
       num_groups_((num_vertices + kernel::edges_per_group - 1) / kernel::edges_per_group),
-      range_(range),
-      film_reach_(film_reach) {}
+      range_(range) {}
 
-double WallHold::make(const Near& near, const kernel::ContourPair& vertices, DropletState& droplet) {
+double WallHold::make(const std::vector<WallContacts::Item>& near, DropletState& droplet) {
   hand_back(droplet);
   clear_pushes();
-  list_windows(near.walls, num_groups_, windows_);
+  list_windows(near, num_groups_, windows_);
   find_circles();
   groups_.clear();
-  if (film_reach_ > 0) find_films(near);
-  for (kernel::HoldingCircle& circle : all_) {
-    add_groups(circle);
-    if (film_reach_ > 0) add_film_groups(circle, circle.radius + film_reach_ + near.way, vertices);
-  }
+  for (kernel::HoldingCircle& circle : all_) add_groups(circle);
   arrange_memory();
   double lost = 0;
   for (const WallAnchor& anchor : droplet.anchors)
@@ -47,7 +42,7 @@ void WallHold::find_circles() {
     const double radius = window.reach - range_;
     if (all_.empty() || all_.back().x != window.x || all_.back().y != window.y ||
         all_.back().radius != radius)
-      all_.push_back({window.x, window.y, radius, k, k, 0, 0, 0, false, {}});
+      all_.push_back({window.x, window.y, radius, window.layer, k, k, 0, 0, false, {}});
     all_.back().end_window = k + 1;
   }
 }
@@ -69,45 +64,6 @@ void WallHold::add_groups(kernel::HoldingCircle& circle) {
   circle.first_group = static_cast<int>(groups_.size());
   for (std::size_t k = 0; k < is_pushed_.size(); ++k)
     if (is_pushed_[k] != 0) groups_.push_back(static_cast<int>(k) - 1);
-  circle.end_group = circle.end_own_group = static_cast<int>(groups_.size());
-}
-
-/// Finds the groups of vertices that self-contact may push, and whether films of two circles may overlap.
-void WallHold::find_films(const Near& near) {
-  touches_itself_.assign(static_cast<std::size_t>(num_groups_), 0);
-  const auto mark = [&](int vertex) {
-    touches_itself_[static_cast<std::size_t>(vertex % num_vertices_ / kernel::edges_per_group)] = 1;
-  };
-  for (const SelfContacts::Item& item : near.self) {
-    mark(item.edges);
-    mark(std::min(item.edges + kernel::edges_per_group, num_vertices_));  // behind the last edge
-    mark(item.vertices);
-    mark(item.vertices + kernel::edges_per_group - 1);
-    if (item.vertices < num_vertices_ && item.vertices + kernel::edges_per_group > num_vertices_)
-      mark(num_vertices_ - 1), mark(0);
-  }
-  circles_.are_close = false;
-  for (std::size_t i = 0; i < all_.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      circles_.are_close |= std::hypot(all_[i].x - all_[j].x, all_[i].y - all_[j].y) <
-                            all_[i].radius + all_[j].radius + 2 * film_reach_;
-}
-
-/// Adds the groups of vertices that a circle may push through films. @param reach  distance from the circle's
-/// centre up to which it may push
-void WallHold::add_film_groups(kernel::HoldingCircle& circle, double reach,
-                               const kernel::ContourPair& vertices) {
-  const auto& [x, y] = vertices;
-  for (int group = 0; group < num_groups_; ++group) {
-    if (touches_itself_[static_cast<std::size_t>(group)] == 0 ||
-        is_pushed_[static_cast<std::size_t>(group) + 1] != 0)
-      continue;
-    bool may_touch = false;
-    for (int i = group * kernel::edges_per_group; i < (group + 1) * kernel::edges_per_group; ++i)
-      may_touch |=
-          (x[i] - circle.x) * (x[i] - circle.x) + (y[i] - circle.y) * (y[i] - circle.y) < reach * reach;
-    if (may_touch) groups_.push_back(group);
-  }
   circle.end_group = static_cast<int>(groups_.size());
 }
 
@@ -130,17 +86,16 @@ void WallHold::clear_pushes() {
             kernel::edges_per_group, 0.0);
 }
 
-/// The memory consists of arrays of the whole contour, all of equal length. The first four are for all
+/// The memory consists of arrays of the whole contour, all of equal length. The first three are for all
 /// circles together; the arrays of each circle follow.
 void WallHold::arrange_memory() {
   const std::size_t stride =
       (static_cast<std::size_t>(num_groups_) + before + behind) * kernel::edges_per_group;
-  constexpr std::size_t num_common = 4;
+  constexpr std::size_t num_common = 3;
   const std::size_t needed = (num_common + all_.size() * kernel::num_window_push_arrays) * stride;
   memory_.make_room(needed, num_common * stride);
   double* next = memory_.numbers.get() + std::ptrdiff_t{before} * kernel::edges_per_group;
-  for (kernel::ContourArray* array :
-       {&circles_.push.x, &circles_.push.y, &circles_.wetted, &circles_.nearest}) {
+  for (kernel::ContourArray* array : {&circles_.push.x, &circles_.push.y, &circles_.wetted}) {
     array->first = next;
     next += stride;
   }
@@ -155,17 +110,14 @@ void WallHold::arrange_memory() {
   circles_.windows = windows_.data();
   circles_.groups = groups_.data();
   circles_.holds = holds_.data();
-  touches_.assign(all_.size(), 0);
-  circles_.touches = touches_.data();
 }
 
 void WallHold::arrange_anchors() {
   const std::size_t num_entries = groups_.size() * kernel::edges_per_group;
-  constexpr std::size_t num_arrays = 5;
+  constexpr std::size_t num_arrays = 3;
   anchors_.make_room(num_arrays * num_entries, num_arrays * num_entries);
   double* next = anchors_.numbers.get();
-  for (double** array :
-       {&circles_.anchor_x, &circles_.anchor_y, &circles_.slip, &circles_.added_x, &circles_.added_y}) {
+  for (double** array : {&circles_.anchor_x, &circles_.anchor_y, &circles_.slip}) {
     *array = next;
     next += num_entries;
   }
@@ -175,7 +127,7 @@ void WallHold::arrange_anchors() {
 bool WallHold::take(const WallAnchor& anchor) {
   const auto vertex = static_cast<int>(anchor.holder);
   for (const kernel::HoldingCircle& circle : all_) {
-    if (!anchor.wall.is({.x = circle.x, .y = circle.y})) continue;
+    if (!anchor.wall.is({.x = circle.x, .y = circle.y, .radius = circle.radius})) continue;
     for (int k = circle.first_group; k < circle.end_group; ++k) {
       if (groups_[static_cast<std::size_t>(k)] != vertex / kernel::edges_per_group) continue;
       const std::ptrdiff_t entry =

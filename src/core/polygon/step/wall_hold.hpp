@@ -16,32 +16,23 @@ namespace clog {
 /// valid until the next make(); hand_back() copies the anchors into the droplet.
 class WallHold {
  public:
-  /// Possible contacts of the contour until the next make().
-  struct Near {
-    const std::vector<WallContacts::Item>& walls;  ///< see list_windows()
-    const std::vector<SelfContacts::Item>& self;
-    double way;  ///< largest displacement of any vertex until the next make() [sigma]
-  };
-
   /// @param range  distance from a circle's surface at which contact begins [sigma]
-  /// @param film_reach  see kernel::WallGrip
-  WallHold(int num_vertices, double range, double film_reach);
+  WallHold(int num_vertices, double range);
 
   /// Takes over the droplet's anchors. Returns half the sum of the squared slips of those anchors that none
   /// of these circles can hold [sigma^2].
-  /// @param vertices  positions of the droplet's vertices
-  double make(const Near& near, const kernel::ContourPair& vertices, DropletState& droplet);
+  /// @param near  possible contacts until the next make(), see list_windows()
+  double make(const std::vector<WallContacts::Item>& near, DropletState& droplet);
   /// Copies the anchors into the droplet, if make() was called since forget().
   void hand_back(DropletState& droplet) const;
   /// Discards the anchors: the next make() adopts those of its droplet.
   void forget() { has_anchors_ = false; }
-  double film_reach() const { return film_reach_; }  ///< [sigma]
   /// Valid until the next make(). A step changes the anchors in it.
   const kernel::HoldingCircles& circles() const { return circles_; }
 
  private:
   int num_vertices_, num_groups_;  // number of vertices, and of groups of edges
-  double range_, film_reach_;
+  double range_;
   bool has_anchors_ = false;
   struct Memory {
     hwy::AlignedFreeUniquePtr<double[]> numbers;
@@ -54,14 +45,11 @@ class WallHold {
   std::vector<kernel::WallWindow> windows_;
   std::vector<kernel::HoldingCircle> all_;
   std::vector<int> groups_;  // groups of vertices, circle after circle
-  std::vector<std::uint8_t> holds_, is_pushed_, touches_;
-  std::vector<std::uint8_t> touches_itself_;  // groups of vertices that self-contact may push
+  std::vector<std::uint8_t> holds_, is_pushed_;
   kernel::HoldingCircles circles_{};
 
   void find_circles();
   void add_groups(kernel::HoldingCircle& circle);
-  void find_films(const Near& near);
-  void add_film_groups(kernel::HoldingCircle& circle, double reach, const kernel::ContourPair& vertices);
   void clear_pushes();
   void arrange_memory();
   void arrange_anchors();

@@ -281,25 +281,25 @@ Obstacle on_neck(const DropletState& state, double x, double radius, double dist
 }
 
 TEST_P(Step, HoldsAThinNeckThroughItsFilm) {
-  // The neck touches itself, and one or two circles. The distance between two circles is within the reach of
-  // friction through the film. The contour begins in a lobe or in the neck.
+  // The neck touches itself, and one or two circles. The circles touch both layers of the neck. The contour
+  // begins in a lobe or in the neck.
   int num_held = 0;
   for (const int vertices : {64, 101, 256}) {
     const RunParameters run = parameters(vertices);
     const double diameter = units::regular_edge_length(vertices);
     for (const bool are_two : {false, true}) {
       DropletState initial =
-          state_of(renumbered(shaken(full_size_dumbbell(vertices, 0.95 * diameter), 0.002 * diameter),
+          state_of(renumbered(shaken(full_size_dumbbell(vertices, 0.98 * diameter), 0.002 * diameter),
                               are_two ? vertices / 4 : 0));
       initial.velocity = shaken(Eigen::ArrayXd::Zero(initial.position.size()), 0.03, 7);
-      std::vector<Obstacle> circles = {on_neck(initial, 0.01, are_two ? 0.025 : 0.1, 0.4 * diameter)};
-      if (are_two) circles.push_back(on_neck(initial, -0.05, 0.025, 0.4 * diameter));
+      std::vector<Obstacle> circles = {on_neck(initial, 0.01, are_two ? 0.025 : 0.1, 0.466 * diameter)};
+      if (are_two) circles.push_back(on_neck(initial, -0.05, 0.025, 0.466 * diameter));
       const ObstacleArray walls(20, circles);
       ReadableDroplet readable(run, walls, initial);
       constexpr int num_steps = 10;
       for (int step = 0; step < num_steps; ++step) {
         readable.step();
-        if (run.dp.friction > 0) num_held += num_behind_films(readable.state(), *run.dp.contact_range);
+        if (run.dp.friction > 0) num_held += num_behind_films(readable.state());
       }
       for (const std::string& set : instruction_sets()) {
         use_instruction_set(set);

@@ -5,9 +5,19 @@
 #include <vector>
 
 #include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/parameters/parameters.hpp"
 #include "clog/core/world/obstacle_array.hpp"
 
 namespace clog {
+
+/// Thickness of the films between layers of the interface on a circle, see WallContacts; 0 if there are no
+/// layers [sigma]. It is larger than the range of self-contact, so that chords of one layer, which lie a
+/// little lower than their arc, do not touch the next layer.
+inline double film_thickness(const DpParameters& dp) {
+  constexpr double room_for_chords = 1.25;
+  const bool has_layers = dp.self_contact == SelfContact::on && dp.wall_contact == WallContact::edge;
+  return has_layers ? room_for_chords * dp.self_contact_range : 0;
+}
 
 /// Lists of the obstacles near a polygon. `Keep` defines what is listed:
 /// - `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
@@ -17,12 +27,20 @@ namespace clog {
 /// - `nearest_to_vertex`: vertex i lists every obstacle that could become its nearest.
 ///
 /// The lists are valid while no vertex has moved by more than the skin.
+///
+/// Where a droplet hangs over a circle, a second part of its interface may lie on the first, and further
+/// parts on these. Such a stack has layers. Layer k, which has k other parts of the interface between itself
+/// and the circle, touches the circle itself, enlarged by k times the thickness `film`. So the circle carries
+/// each layer by a force along its own smooth normal. If layers lay on each other instead, corners of their
+/// edges would interlock and transmit a tangential force, which a film of liquid does not bear. Only lists
+/// of edges have layers.
 class WallContacts {
  public:
   enum class Keep { touched_by_edge, touched_by_vertex, nearest_to_vertex };
 
   /// @param range  largest surface distance at which a wall force acts [sigma]
-  WallContacts(const ObstacleArray& array, double range, Keep keep);
+  /// @param film  thickness of each film between layers; 0: all edges are in layer 0 [sigma]
+  WallContacts(const ObstacleArray& array, double range, Keep keep, double film = 0);
 
   /// Renews the lists if a vertex may move by more than the skin before the next update.
   void update(const DropletState& state, const Travel& travel);
@@ -43,20 +61,23 @@ class WallContacts {
   double largest_radius() const { return largest_radius_; }
 
   /// The same lists, in the form of items. An item is a circle and a group of `edges_per_group` edges
-  /// (vertices), at least one of which lists the circle. Items of edges are sorted by circle, then by group;
-  /// items of vertices are sorted by group.
+  /// (vertices), at least one of which lists the circle. Items of edges are sorted by circle, then by layer,
+  /// then by group; items of vertices are sorted by group.
   struct Item {
     double x, y;   ///< centre, relative to the state's frame [sigma]
-    double reach;  ///< radius + range [sigma]
+    double reach;  ///< radius + range + layer * film [sigma]
     int group;
-    std::uint8_t edges;  ///< edges (vertices) of the group that list the circle, as bits
+    std::uint8_t edges;      ///< edges (vertices) of the group that list the circle, as bits
+    std::uint8_t layer = 0;  ///< number of other parts of the interface between the circle and these edges
   };
+  /// Edges in a higher layer count as edges of this layer.
+  static constexpr int highest_layer = 3;
   static constexpr int edges_per_group = 8;
   const std::vector<Item>& items() const { return items_; }
 
  private:
   const ObstacleArray* array_;
-  double range_;
+  double range_, film_;
   Keep keep_;
   double skin_ = 0;  // skin with which the present lists were made [sigma]
   Eigen::Index num_points_ = 0;
@@ -67,18 +88,23 @@ class WallContacts {
     Eigen::Array2d least, most;
   };
   std::vector<Bounds> bounds_;  // bounds of each group of edges
-  Eigen::ArrayXXd distances_;   // distances of the vertices from the circles nearby, a column for each circle
-  Eigen::ArrayXd nearest_;      // distance of each vertex from its nearest circle
+  std::vector<double>
+      along_;  // distance of each vertex from vertex 0 along the contour, then the whole length
+  std::vector<int> layer_of_;  // layer of each edge on one circle, -1 if it does not list the circle
+  Eigen::ArrayXXd distances_;  // distances of the vertices from the circles nearby, a column for each circle
+  Eigen::ArrayXd nearest_;     // distance of each vertex from its nearest circle
   std::vector<std::size_t> item_of_;  // the latest item of each circle
   std::vector<Item> items_;
   double smallest_radius_ = 0, largest_radius_ = 0;
 
   void rebuild(const DropletState& state, double skin);
   void gather_nearby(const DropletState& state);
-  void list_by_edge(const Eigen::ArrayXd& fine);
+  void list_by_edge(const Eigen::ArrayXd& position, const Eigen::ArrayXd& fine);
+  void find_layers(const Obstacle& circle, const Eigen::ArrayXd& position, const Eigen::ArrayXd& fine);
+  int num_parts_below(const Obstacle& circle, int edge, const Eigen::Array2d& place,
+                      const Eigen::ArrayXd& position) const;
   void measure_distances(const DropletState& state);
   void list_by_vertex(const DropletState& state);
-  void fill_slots();
   void fill_items();
 };
 

@@ -33,6 +33,11 @@ class WallFriction {
   void add_forces(const DropletState& state, Eigen::ArrayXd& force) const;
   /// [g rho sigma^3]
   double energy(const DropletState& state) const;
+  /// How near the droplet is to sliding around a circle: the moment of the springs' forces about the circle's
+  /// centre, divided by the largest moment that the walls' present pushes can bear; 1 where the interface
+  /// begins to slide. All layers on the circle count together. Returns the largest of all circles; NaN if no
+  /// circle holds the droplet.
+  double use(const DropletState& state, std::span<const WallTouch> touches) const;
   /// Moves anchors whose springs exceed the limit, adds anchors of new contacts, and removes those of ended
   /// contacts.
   /// @param state  the droplet whose anchors are updated

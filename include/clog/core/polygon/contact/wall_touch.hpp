@@ -17,7 +17,7 @@ struct WallFoot {
 /// @param wedges  of the scene @param from_centre  vector from the wall to the vertex
 WallFoot foot_on(const WallPlace& wall, std::span<const Wedge> wedges, const Eigen::Array2d& from_centre);
 
-/// A vertex that a wall pushes, directly or through closed films.
+/// A vertex that a wall pushes, directly or through films.
 struct WallTouch {
   int vertex;
   WallPlace wall;

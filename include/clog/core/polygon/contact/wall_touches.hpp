@@ -6,8 +6,6 @@
 
 #include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/parameters/parameters.hpp"
-#include "clog/core/polygon/contact/film_touches.hpp"
-#include "clog/core/polygon/contact/self_contacts.hpp"
 #include "clog/core/polygon/contact/wall_contacts.hpp"
 #include "clog/core/polygon/contact/wall_touch.hpp"
 #include "clog/core/world/obstacle_array.hpp"
@@ -21,12 +19,10 @@ class WallTouches {
   WallTouches(const RunParameters& run, const ObstacleArray& obstacles);
 
   /// @param circles  circles that may touch the droplet
-  /// @param self  the contacts through which films transmit friction
   /// @return valid until the next call
   const std::vector<WallTouch>& find(const Contour& contour, const LocalFrame& frame,
-                                     std::span<const WallContacts::Item> circles, const SelfContacts& self);
-  const std::vector<WallTouch>& find(const DropletState& state, std::span<const WallContacts::Item> circles,
-                                     const SelfContacts& self);
+                                     std::span<const WallContacts::Item> circles);
+  const std::vector<WallTouch>& find(const DropletState& state, std::span<const WallContacts::Item> circles);
 
   /// Working memory of WallFriction::follow().
   KnownAnchors& known_anchors() { return known_anchors_; }
@@ -43,7 +39,6 @@ class WallTouches {
   const ObstacleArray* obstacles_;
   double range_, stiffness_;
   bool meets_edges_, acts_through_films_;
-  FilmTouches films_;
   std::vector<int> first_part_;  // first part of each vertex
   std::vector<Part> parts_;
   std::vector<WallPlace> wedges_;

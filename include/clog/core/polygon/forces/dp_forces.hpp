@@ -6,6 +6,7 @@
 #include "clog/core/droplet/energy.hpp"
 #include "clog/core/parameters/parameters.hpp"
 #include "clog/core/polygon/contact/self_contacts.hpp"
+#include "clog/core/polygon/contact/self_crossings.hpp"
 #include "clog/core/polygon/contact/wall_contacts.hpp"
 #include "clog/core/polygon/contact/wall_friction.hpp"
 #include "clog/core/polygon/contact/wall_touches.hpp"
@@ -98,6 +99,7 @@ class DpForces {
 
   /// Calls visit(overlap) for every half edge (or vertex) with every listed circle, and for every vertex with
   /// every wedge. The overlap [sigma] is negative where the two do not touch.
+  double self_contact_energy(const Contour& contour, const DropletState& state) const;
   template <class Visit>
   void visit_overlaps(const DropletState& state, Visit visit) const;
 };
