@@ -93,7 +93,7 @@ class Parts(unittest.TestCase):
 
     def test_the_legend_of_displacements_has_the_order_of_the_curves_at_their_ends(self):
         def run(end):
-            row = dict.fromkeys(("obstacle_gap", "obstacle_diameter", "terminal_speed", "vertices", "seed"), 1) 
+            row = dict.fromkeys(("obstacle_gap", "obstacle_diameter", "terminal_speed", "vertices", "seed"), 1)
             row = np.array([tuple(row.values())], dtype=[(name, float) for name in row])[0]
             return SimpleNamespace(row=row, table={"time": np.array([0, 1]), "distance": np.array([0, end])}, word=lambda _: "flowing")
 

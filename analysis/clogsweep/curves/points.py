@@ -197,6 +197,7 @@ def grid_over(places: Numbers) -> Numbers:
 def seeds_of_groups(fit: Fit, rows: Records) -> list[set[int]]:
     """The seeds of the runs of each group. @param rows  from all files of the sweep"""
     names = [column["name"] for column in fit["columns"] if len({str(group[column["name"]]) for group in fit["groups"]}) > 1]
+
     def is_of(group: Group) -> Any:
         matches = np.ones(len(rows), dtype=bool)
         for name in set(names) & set(stored.columns_of(rows)):

@@ -143,9 +143,7 @@ TEST(DropletRun, GoesOnFromASnapshotWithAnchorsThroughFilms) {
   run.dp.line_tension = 0.03;
   run.max_time = 2000;
   run = resolve(run);
-  expect_to_go_on(run, [&](const DropletState& state) {
-    return test::num_behind_films(state) > 0;
-  });
+  expect_to_go_on(run, [&](const DropletState& state) { return test::num_behind_films(state) > 0; });
 }
 
 TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
@@ -371,8 +369,9 @@ TEST(DropletRun, FailsWhenTheInterfaceCrossesItself) {
   EXPECT_LT(result.time, 1000);
 
   // The sound distance is where the droplet was when it last did not cross itself: crossings are looked for
-  // once in 2048 steps. Afterwards it stays, while the droplet sinks on.
-  parameters.max_time = result.time - 2048 * parameters.time_step.value();
+  // once in 2048 steps, and a crossing that is still there at the next check fails the run. Afterwards the
+  // sound distance stays, while the droplet sinks on.
+  parameters.max_time = result.time - (2048 + DropletRun::steps_per_check) * parameters.time_step.value();
   const RunResult before = result_of(parameters, 1000);
   EXPECT_EQ(before.status, RunStatus::flowing);
   EXPECT_EQ(before.distance, before.sound_distance);
