@@ -136,7 +136,7 @@ void require_readable_version(hid_t file, const std::string& path) {
   const std::string version = text_as_written(file, "format_version", readable_versions);
   if (std::ranges::find(readable_versions, version) == readable_versions.end())
     throw Error(fmt::format(
-        "cannot read {} (format version {}, this program reads {} and {}); use the program that wrote it, or "
+        "cannot read {} (format version {}, this program reads {} to {}); use the program that wrote it, or "
         "compute the rows anew",
         path, version, readable_versions.front(), format_version));
 }

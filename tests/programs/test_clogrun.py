@@ -218,7 +218,7 @@ class Run(ProgramTest):
         # of 10 in 330 t0. The search for a rest begins shortly before max-time.
         done = self.succeed("clogrun", "array", "preset=elastic", "friction=0.2", "line-tension=0.1", "vertices=256", "obstacle-gap=0.3",
                             "obstacle-density=saturated", "box=40", "seeds=1", "max-time=2400", "--output", "rest.h5")
-        self.assertIn("clogged after r = 1.328", done.stdout)
+        self.assertIn("clogged after r = 1.3258", done.stdout)
 
     def test_a_channel_run_writes_h_speed_shape_and_polygons(self):
         self.succeed(

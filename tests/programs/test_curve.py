@@ -32,7 +32,7 @@ class Curve(ProgramTest):
         if lengths is not None:
             way = np.array([lengths[row.line_tension] * EXPONENTIAL[row.seed - 1] for row in table.itertuples()])
             stored_rows.change_columns(self.folder / "sweep.h5", distance=way, status=np.array([b"clogged"] * len(table)),
-                                       clogged_by=np.array([b"certified"] * len(table)), mechanism=np.array([b"wrapped"] * len(table)))
+                                       clogged_by=np.array([b"certified"] * len(table)), failed_by=np.array([b"none"] * len(table)), mechanism=np.array([b"wrapped"] * len(table)))
         return table
 
     def curve(self, *arguments):

@@ -155,7 +155,7 @@ class Looks(Analysis):
         self.assertEqual(groups.curve_parameters(), ["friction", "preset"])
 
     def test_lengths_over_the_time_that_counts_as_clogged_are_those_of_clogfit(self):
-        self.succeed("clogsweep", *SMALL, "line-tension=0.05,0.3", "max-time=400", "seeds=1..8", "--output", "s.h5")
+        self.succeed("clogsweep", *SMALL, "line-tension=0.03,0.3", "max-time=400", "seeds=1..8", "--output", "s.h5")
         times = dwell.times_of(self.fit_at())
         self.assertEqual(len(times), 12)
         self.assertEqual((times[0], times[-1]), (stored.read_rows(self.folder / "s.h5")["dwells_known_from"].max(), 400))
@@ -164,7 +164,7 @@ class Looks(Analysis):
         self.assert_title_is_whole(drawing)
         axes, = drawing.axes
         self.assertIn("moved by $0.05", axes.get_xlabel())
-        self.assertEqual([curve.get_label() for curve in axes.containers], [r"$\Gamma = 0.05$", r"$\Gamma = 0.3$"])
+        self.assertEqual([curve.get_label() for curve in axes.containers], [r"$\Gamma = 0.03$", r"$\Gamma = 0.3$"])
         soft, stiff = axes.containers
         # No soft droplet rests, so arrows show the lower bounds.
         self.assertTrue(np.isnan(soft.lines[0].get_xydata()[:, 1]).all())

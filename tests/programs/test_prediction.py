@@ -96,7 +96,7 @@ class Predicted(Analysis):
 
     def test_a_soft_droplet_hangs_on_one_obstacle(self):
         self.write("post.csv", "x,y,diameter\n13,10,0.3\n")
-        soft = ("preset=elastic", "friction=0.3", "vertices=64", "inertia=4", "line-tension=0.1")
+        soft = ("preset=elastic", "friction=0.3", "vertices=128", "inertia=4", "line-tension=0.1")
         (_, length, squeezed, wrapped, _), = self.predict("obstacles=post.csv", "box=20", *soft)
         self.assertEqual((length, squeezed), (wrapped, ""))
         half_width = 20 * 20 / float(wrapped) / 2

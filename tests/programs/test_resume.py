@@ -393,7 +393,7 @@ class Resumed(SweepTest):
         failed = rows[rows.status == "failed"]
         self.assertGreater(len(failed), 0, done.stderr)
         self.assertEqual((set(failed.failed_by), set(failed.attempt)), ({"crossing"}, {1}))
-        self.assertTrue(((failed.sound_distance > 0) & (failed.sound_distance < failed.distance)).all())
+        self.assertTrue(((failed.sound_distance > 0) & (failed.sound_distance != failed.distance)).all())
         self.assertNotIn("will be tried again", done.stderr)
         self.assertIn("nothing left to do", self.run_program("clogsweep", *keys).stderr)
 

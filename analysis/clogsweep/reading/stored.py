@@ -63,7 +63,7 @@ def check_kind(path: AnyPath, file: h5py.File, kind: str | None) -> None:
         raise unreadable(path, "an HDF5 file, but not one of clogsweep or clogrun", kind)
     version = text(file.attrs["format_version"])
     if version not in READABLE_VERSIONS:
-        raise UserError(f"cannot read {path} (format version {version}, this program reads {' and '.join(READABLE_VERSIONS)}); "
+        raise UserError(f"cannot read {path} (format version {version}, this program reads {READABLE_VERSIONS[0]} to {READABLE_VERSIONS[-1]}); "
                         "use the program that wrote it, or compute the rows anew")
     if kind == SWEEP and found == RUN:
         raise unreadable(path, "holds one run of clogrun, not a sweep", kind)

@@ -236,9 +236,9 @@ bool DpStepper::follow_crossings(DropletState& state, double nearest_pair) {
   // A pair whose vertex passed through the edge is at most as far apart now as the two moved. Since the last
   // survey vertices may have become faster. Neighbours along the contour, which are not listed, pass through
   // each other's edges in folds that close fast.
-  constexpr double faster = 3, fast = 0.1;
-  const double way = 2 * faster * fastest_relative_ * open_.length;
-  const bool may_have_passed = way >= std::min(nearest_pair, fast * forces_->self_contacts().range());
+  constexpr double faster = 3, fast = 0.3;
+  const double way = 2 * fastest_relative_ * open_.length;
+  const bool may_have_passed = faster * way >= nearest_pair || way >= fast * forces_->self_contacts().range();
   if (run_.dp.self_contact == SelfContact::off || open_.length == 0 ||
       (!may_have_passed && state.crossings.empty()))
     return false;
