@@ -294,7 +294,8 @@ void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Ta
   group.num_interrupted += sweep::is_unfinished(run.status) && !from_release.is_clog;
   if (is_device(run.parameters))
     tally.arrivals.push_back(
-        {run.release_x + from_release.distance, from_release.is_clog || from_release.cause.has_value()});
+        {beginning_of_way(run.parameters.obstacles, run.release_x) + from_release.distance,
+         from_release.is_clog || from_release.cause.has_value()});
   const bool is_too_short = ending && std::max(ending->distance, 0.0) < from_distance;
   group.num_left_out += is_too_short;
   if (!is_too_short) tally.meetings.count(run, from_release, from_distance);

@@ -133,6 +133,30 @@ const RunRow& row_with(const Column& column) {
   return row == std::end(rows) ? rows[0] : *row;
 }
 
+TEST(FaultOf, NamesPlacesOfReleaseThatVersion10GotWrong) {
+  RunRow row = row_in(ObstacleLayout::wall);
+  row.parameters.obstacles.layout = ObstacleLayout::file;
+  row.parameters.obstacles.box = 5;
+  row.sag = row.top_sag = RunRow::not_known;
+  row.release_y = 4;
+  const auto fault_at = [&](std::int64_t model, double x) {
+    row.model_version = model;
+    row.release_x = x;
+    return fault_of(row);
+  };
+  // Places of a sweep of 1.0: circle 2.5,2.5,2 in box=5 with release=anywhere.
+  for (const double x : {10.005285169751458, 9.5099, -2.6}) {
+    EXPECT_NE(fault_at(11, x).find("is a period away from where the droplet started, an error of clogsweep 1.0"),
+              std::string::npos);
+    EXPECT_NE(fault_at(12, x).find("is not in the array"), std::string::npos);
+  }
+  for (const double x : {5.0563, -0.027}) {
+    EXPECT_EQ(fault_at(11, x), "") << "across the border, which 1.0 allows";
+    EXPECT_NE(fault_at(12, x).find("is not in the array"), std::string::npos);
+  }
+  EXPECT_EQ(fault_at(12, 4.99), "");
+}
+
 TEST(FaultOf, NoRunInAnyScene) {
   for (const ObstacleLayout layout : {ObstacleLayout::channel, ObstacleLayout::wall, ObstacleLayout::file})
     EXPECT_EQ(fault_of(row_in(layout)), "") << name(layout);

@@ -87,6 +87,15 @@ class Part:
 DEVICE_COLUMNS = ["obstacles", "obstacle_diameter", "box", "boxes", "length", "side_walls", "exit"]
 
 
+def beginnings_of_ways(rows: Records) -> Numbers:
+    """The x at which droplets start. The void nearest to an entrance may be across the border of the array; then this is
+    the x of the periodic image nearest to the entrance."""
+    x, entrance = rows["release_x"], rows["entrance"]
+    period = np.where(rows["length"] > 0, rows["length"], rows["boxes"] * rows["box"])
+    away = x - entrance
+    return np.where(rows["release"] == b"entrance", entrance + away - period * np.round(away / period), x)
+
+
 def places(path: AnyPath, folder: AnyPath | None = None) -> list[Place]:
     """The devices of a sweep. @throws UserError  if the sweep has no device, or does not state where droplets were
     released"""
@@ -96,6 +105,7 @@ def places(path: AnyPath, folder: AnyPath | None = None) -> list[Place]:
     if len(own) == 0:
         raise UserError(f"{path} has no circles of your own; python3 -m clogsweep droplet and clogs show what droplets meet")
     own = own[np.isfinite(own["release_x"])]
+    own["release_x"] = beginnings_of_ways(own)
     if len(own) == 0:
         raise UserError(f"{path} does not say where droplets were released (none has begun); wait")
     found = []

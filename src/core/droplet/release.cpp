@@ -65,8 +65,9 @@ DropletState state_at_rest(const Eigen::ArrayXd& droplet, const Eigen::Array2d& 
   state.frame.shift(place.floor());
   state.position = droplet;
   state.velocity = Eigen::ArrayXd::Zero(droplet.size());
-  state.x() += place[0] - state.frame.origin[0];
-  state.y() += place[1] - state.frame.origin[1];
+  const Eigen::Array2d local = place - state.frame.global({0, 0});
+  state.x() += local[0];
+  state.y() += local[1];
   return state;
 }
 

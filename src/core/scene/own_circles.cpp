@@ -278,13 +278,25 @@ DropletState release_in_device(const RunParameters& run, const ObstacleArray& de
   return release_in_void(run, starts_free ? ObstacleArray(period, {}) : device);
 }
 
+/// The periodic image of a coordinate that is in the first period.
+double in_first_period(double place, double period) {
+  constexpr double round_off = 1e-9;  // of a droplet that starts on the border
+  if (place < 0 && place > -round_off) return 0;
+  const double inside = place - period * std::floor(place / period);
+  return inside < period ? inside : 0;
+}
+
 Eigen::Array2d place_in_file(const RunParameters& run, const Eigen::Array2d& place) {
-  return place - shift_of(run);
+  const Period period = run.obstacles.period();
+  Eigen::Array2d in_file = place - shift_of(run);
+  in_file[0] = in_first_period(in_file[0], period.along());
+  if (run.obstacles.side_walls == SideWalls::off) in_file[1] = in_first_period(in_file[1], period.across());
+  return in_file;
 }
 
 double way_to_exit(const RunParameters& run, const Eigen::Array2d& start) {
   if (run.obstacles.exit == 0) return std::numeric_limits<double>::infinity();
-  return run.obstacles.exit - place_in_file(run, start)[0];
+  return run.obstacles.exit - beginning_of_way(run.obstacles, place_in_file(run, start)[0]);
 }
 
 double circle_density(const ObstacleParameters& obstacles) {
@@ -292,6 +304,11 @@ double circle_density(const ObstacleParameters& obstacles) {
 }
 
 }  // namespace
+
+double beginning_of_way(const ObstacleParameters& obstacles, double x) {
+  if (obstacles.release != Release::entrance) return x;
+  return obstacles.entrance + std::remainder(x - obstacles.entrance, obstacles.period().along());
+}
 
 const Scene own_circles_scene = {.finding = Finding::clogging_length,
                                  .walls_from = WallsFrom::circles,

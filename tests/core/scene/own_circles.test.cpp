@@ -1,13 +1,18 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/droplet/release.hpp"
+#include "clog/core/model/model.hpp"
 #include "clog/core/parameters/circles.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
@@ -221,6 +226,101 @@ TEST(OwnCircles, LetADropletPassBetweenWallsWhichHoldIt) {
   EXPECT_NEAR(result.release[0], 2, 1e-9);
   EXPECT_NEAR(result.release[0] + result.distance, 12, 0.2);
   EXPECT_GT(result.release[1] + result.lateral, 0.4) << "not through the wall";
+}
+
+/// Up to four circles, some of which are larger than the droplet, in a box of any size. Most circles that
+/// are drawn overlap, and are drawn again.
+RunParameters random_device(std::mt19937& random, Model model, Release release) {
+  const auto draw = [&](double from, double to) { return std::uniform_real_distribution(from, to)(random); };
+  while (true) {
+    RunParameters run;
+    run.model = model;
+    if (model == Model::dp) run.dp.vertices = 64;
+    if (model == Model::sp) run.wall_stiffness = 1;
+    run.obstacles.layout = ObstacleLayout::file;
+    run.obstacles.box = draw(5, 12);
+    run.obstacles.length = draw(5, 12);
+    const double smaller = std::min(run.obstacles.box, run.obstacles.length);
+    std::vector<Obstacle> circles(std::uniform_int_distribution<std::size_t>(1, 4)(random));
+    for (Obstacle& circle : circles)
+      circle = {draw(0, run.obstacles.length), draw(0, run.obstacles.box), draw(0.1, 0.4 * smaller)};
+    run.obstacles.own = OwnCircles(circles);
+    run.obstacles.release = release;
+    if (release == Release::entrance) {
+      run.obstacles.entrance = draw(0, 0.9 * run.obstacles.length);
+      run.obstacles.exit = draw(run.obstacles.entrance + 0.1, run.obstacles.length);
+    }
+    run.seed = static_cast<std::uint32_t>(random());
+    run.max_time = 10;
+    if (test::refusal_of(run).empty()) return resolve(run);
+  }
+}
+
+/// Distance between a place and the nearest surface of a circle or of one of its periodic images.
+double room_at(const Eigen::Array2d& place, const ObstacleParameters& obstacles) {
+  const Period period = obstacles.period();
+  double room = std::numeric_limits<double>::infinity();
+  for (const Obstacle& circle : obstacles.own->circles())
+    room = std::min(room, std::hypot(std::remainder(place[0] - circle.x, period.along()),
+                                     std::remainder(place[1] - circle.y, period.across())) -
+                              circle.radius);
+  return room;
+}
+
+TEST(OwnCircles, LetDropletsStartWithinTheBoxWhereverTheyAre) {
+  std::mt19937 random(7);
+  int num_across_the_border = 0;
+  for (const Model model : {Model::dp, Model::sp})
+    for (const Release release : {Release::anywhere, Release::entrance, Release::centre})
+      for (int i = 0; i < 40; ++i) {
+        const RunParameters run = random_device(random, model, release);
+        const ObstacleParameters& obstacles = run.obstacles;
+        const Scene& scene = scene_of(run);
+        const ObstacleArray device = scene.walls(run);
+        DropletState start;
+        try {
+          start = scene.release(run, device);
+        } catch (const Error&) {
+          continue;  // there is no void that is large enough
+        }
+        const Eigen::Array2d place = start.frame.global(start.centre());
+        const Eigen::Array2d in_file = scene.place_in_file(run, place);
+        ASSERT_GE(in_file.minCoeff(), 0);
+        ASSERT_LT(in_file[0], obstacles.length);
+        ASSERT_LT(in_file[1], obstacles.box);
+        // The nearest circle in the file is as far as the nearest one in the array; a soft disk overlaps it.
+        ASSERT_NEAR(room_at(in_file, obstacles),
+                    std::min(clearance(device, place[0], place[1], 12), room_at(in_file, obstacles)), 1e-9);
+        if (model == Model::dp) ASSERT_GT(room_at(in_file, obstacles), 0);
+        ASSERT_LE(start.centre().abs().maxCoeff(), 1.5) << "near the origin of its frame";
+        if ((place < 0).any() || place[0] >= obstacles.length || place[1] >= obstacles.box)
+          ++num_across_the_border;
+        if (obstacles.exit == 0) continue;
+        const double way = scene.way(run, place);
+        ASSERT_NEAR(std::remainder(in_file[0] + way - obstacles.exit, obstacles.length), 0, 1e-9);
+        ASSERT_LE(std::abs(obstacles.exit - way - obstacles.entrance), obstacles.length / 2 + 1e-9);
+      }
+  EXPECT_GE(num_across_the_border, 10) << "the case is tested";
+}
+
+TEST(OwnCircles, HaveTheirDropletStartUpstreamIfTheVoidIsAcrossTheBorder) {
+  // The only void is around the corner of the box.
+  RunParameters run = among({{5, 5, 4}});
+  run.obstacles.release = Release::entrance;
+  run.obstacles.entrance = 3;
+  run.obstacles.exit = 10;
+  run = resolve(run);
+  int num_upstream = 0;
+  for (run.seed = 1; run.seed <= 20; ++run.seed) {
+    DropletRun droplet(run);
+    droplet.advance(1);
+    const RunResult result = droplet.result();
+    EXPECT_EQ(result.status, RunStatus::running);
+    EXPECT_GE(result.release.minCoeff(), 0);
+    EXPECT_LT(result.release.maxCoeff(), 10);
+    if (result.release[0] > 8) ++num_upstream;
+  }
+  EXPECT_GE(num_upstream, 3);
 }
 
 }  // namespace

@@ -48,10 +48,15 @@ struct Scene {
   /// Displacement along the flow after which the droplet has passed [sigma]; infinite if it never has.
   /// @param start  place of release of the centre of mass, in the coordinates of the walls [sigma]
   double (*way)(const RunParameters& run, const Eigen::Array2d& start);
-  /// Converts a place from the coordinates of the walls to those of the file of circles [sigma]; nullptr
-  /// without a file.
+  /// Converts a place from the coordinates of the walls to those of the file of circles, in the first period
+  /// [sigma]; nullptr without a file.
   Eigen::Array2d (*place_in_file)(const RunParameters& run, const Eigen::Array2d& place) = nullptr;
 };
+
+/// Where the way of a droplet begins that was released at `x`, in the coordinates of the file of circles. The
+/// void that is nearest to an entrance may be across the border of the array; of the droplet's periodic images,
+/// the one nearest to the entrance is meant then [sigma].
+double beginning_of_way(const ObstacleParameters& obstacles, double x);
 
 const Scene& scene_of(ObstacleLayout layout);
 const Scene& scene_of(const RunParameters& run);
