@@ -20,7 +20,7 @@ struct Surroundings {
     Eigen::Index edge;
     Obstacle circle;
   };
-  std::vector<Layer> layers;
+  std::vector<Layer> layers{};
 };
 
 /// Geometry of a droplet at rest among obstacles.
