@@ -354,7 +354,8 @@ std::vector<Column> make_columns() {
              "number of times that a vertex passed through another part of the interface and was pushed "
              "back; -1: unknown"),
       member("release_x", &RunRow::release_x, result, "sigma",
-             "place of release of the centre of mass in their array, in the coordinates of user-supplied circles; "
+             "place of release of the centre of mass in their array, in the coordinates of user-supplied "
+             "circles; "
              "NaN for other obstacles"),
       member("release_y", &RunRow::release_y, result, "sigma",
              "place of release across the flow, in the same coordinates; NaN for other obstacles"),

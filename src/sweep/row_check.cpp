@@ -327,8 +327,9 @@ std::string release_fault(const RunRow& row) {
   };
   if (is_inside(row.release_x, period.along()) && is_inside(row.release_y, period.across())) return "";
   return margin == 0 ? place + " is not in the array"
-                     : place + " is a period away from where the droplet started, an error of clogsweep 1.0; "
-                               "compute the sweep anew";
+                     : place +
+                           " is a period away from where the droplet started, an error of clogsweep 1.0; "
+                           "compute the sweep anew";
 }
 
 std::string result_fault(const RunRow& row) {

@@ -146,8 +146,9 @@ TEST(FaultOf, NamesPlacesOfReleaseThatVersion10GotWrong) {
   };
   // Places of a sweep of 1.0: circle 2.5,2.5,2 in box=5 with release=anywhere.
   for (const double x : {10.005285169751458, 9.5099, -2.6}) {
-    EXPECT_NE(fault_at(11, x).find("is a period away from where the droplet started, an error of clogsweep 1.0"),
-              std::string::npos);
+    EXPECT_NE(
+        fault_at(11, x).find("is a period away from where the droplet started, an error of clogsweep 1.0"),
+        std::string::npos);
     EXPECT_NE(fault_at(12, x).find("is not in the array"), std::string::npos);
   }
   for (const double x : {5.0563, -0.027}) {

@@ -54,8 +54,8 @@ struct Scene {
 };
 
 /// Where the way of a droplet begins that was released at `x`, in the coordinates of the file of circles. The
-/// void that is nearest to an entrance may be across the border of the array; of the droplet's periodic images,
-/// the one nearest to the entrance is meant then [sigma].
+/// void that is nearest to an entrance may be across the border of the array; of the droplet's periodic
+/// images, the one nearest to the entrance is meant then [sigma].
 double beginning_of_way(const ObstacleParameters& obstacles, double x);
 
 const Scene& scene_of(ObstacleLayout layout);
