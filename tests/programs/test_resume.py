@@ -393,7 +393,9 @@ class Resumed(SweepTest):
         failed = rows[rows.status == "failed"]
         self.assertGreater(len(failed), 0, done.stderr)
         self.assertEqual((set(failed.failed_by), set(failed.attempt)), ({"crossing"}, {1}))
-        self.assertTrue(((failed.sound_distance > 0) & (failed.sound_distance != failed.distance)).all())
+        # The crossing was seen at most 2112 steps, 13 t0, after the last sound check, in which droplets sink 0.4 sigma.
+        apart = (failed.sound_distance - failed.distance).abs()
+        self.assertTrue(((failed.sound_distance > 0) & (apart > 0) & (apart < 1)).all())
         self.assertNotIn("will be tried again", done.stderr)
         self.assertIn("nothing left to do", self.run_program("clogsweep", *keys).stderr)
 
