@@ -6,11 +6,13 @@ Numbers may differ, because they differ between compilers (docs/notes/2026-11-23
 import os
 import re
 import subprocess
+import tempfile
 import unittest
 import unittest.mock
 
 import nbclient
 import nbformat
+import traitlets.config
 
 from support import BIN, LONGEST, ROOT, ProgramTest
 
@@ -41,8 +43,13 @@ class Notebook(ProgramTest):
         environment |= {"PATH": f"{BIN}:{environment['PATH']}", "PYTHONPATH": str(ROOT / "analysis"), "HOME": str(self.folder)}
         notebook = nbformat.read(NOTEBOOK, as_version=4)
         expected = said(notebook)
-        with unittest.mock.patch.dict(os.environ, environment):
-            nbclient.NotebookClient(notebook, timeout=LONGEST, kernel_name="python3", resources={"metadata": {"path": str(self.folder)}}).execute()
+        # Another program may take a free TCP port before the kernel does, but not a Unix socket in the kernel's folder.
+        # The folder is in /tmp, because the path of a socket has at most 107 characters.
+        with tempfile.TemporaryDirectory(dir="/tmp") as sockets, unittest.mock.patch.dict(os.environ, environment):
+            kernel = {"transport": "ipc", "connection_file": f"{sockets}/kernel.json"}
+            nbclient.NotebookClient(notebook, timeout=LONGEST, kernel_name="python3",
+                                    config=traitlets.config.Config(KernelManager=kernel),
+                                    resources={"metadata": {"path": str(self.folder)}}).execute()
         today = said(notebook)
         self.assertEqual(words(today), words(expected))
         for number, known in zip(numbers(today), numbers(expected), strict=True):
