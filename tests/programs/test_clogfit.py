@@ -594,12 +594,15 @@ class Fit(ProgramTest):
         chance = np.random.default_rng(1)
         lengths = np.tile([0.05, 7, 30], 12)  # In the order of the tasks, the seeds vary slowest.
         self.change(distance=np.minimum(lengths * chance.exponential(size=36), 90), status=[b"clogged"] * 36,
-                    mean_speed=100 * chance.uniform(0.2, 0.4, 36), travel_time=0.5)
+                    steady_distance=50 * chance.uniform(0.2, 0.4, 36), steady_time=0.5)
         text = self.succeed("clogfit", "sweep.h5").stdout
         for group in self.fit()["groups"]:
             value, lower, upper = re.fullmatch(r"(\S+) \((\S+) to (\S+)\)", rounded.with_interval(
                 *(group["clogging_length" + which] for which in ("", "_lower", "_upper")))).groups()
-            self.assertRegex(text, rf"\n +\S+ +{group['line_tension']:g} +12 +12 +{value} +{lower} \.\. {upper} ")
+            steady = [group["relative_speed_steady" + which] for which in ("", "_error")]
+            speed, error = rounded.with_error(*steady).split(" \u00b1 ")
+            self.assertRegex(text, rf"\n +\S+ +{group['line_tension']:g} +12 +12 +{value} +{lower} \.\. {upper}"
+                                   rf" +{speed} +{error} ")
         self.assertGreater(len(str(self.fit()["groups"][0]["clogging_length"])), 12)
 
     def test_lattices_have_a_migration_angle(self):
