@@ -399,5 +399,71 @@ class OwnCircles(ProgramTest):
             self.refuse(*command, words=["damaged"])
 
 
+class RandomDevices(ProgramTest):
+    """Tests random circles in random boxes, some of which extend across the border of the box."""
+
+    KEYS = {"dp": ["vertices=64", "line-tension=0.5"], "sp": ["model=sp", "wall-stiffness=1"]}
+
+    def setUp(self):
+        super().setUp()
+        self.random = np.random.default_rng(66)
+        self.num_across_border = 0
+
+    def device(self, name):
+        """Writes a file of circles that leave gaps. @return the keys and the length of the device"""
+        box, length = self.random.uniform(5, 12, 2)
+        period = np.array([length, box])
+        circles = []
+        for _ in range(60):
+            radius = self.random.uniform(0.05, 0.2 * period.min())
+            place = self.random.uniform(0, period)
+            ways = [place - other for *other, _ in circles]
+            gaps = [np.hypot(*(way - period * np.round(way / period))) - radius - r
+                    for way, (_, _, r) in zip(ways, circles)]
+            if min(gaps, default=1) > 0.15 and len(circles) < 4:
+                circles.append((*place, radius))
+        self.num_across_border += any(min(*(period - place), *place) < r for *place, r in circles)
+        self.write(name, "x,y,diameter\n" + "".join(f"{x},{y},{2 * r}\n" for x, y, r in circles))
+        return [f"obstacles={name}", f"box={box}", f"length={length}"], length
+
+    def check_sweep(self, name, keys):
+        """Runs a sweep. Its rows must be sound and repeatable. @return its rows"""
+        self.succeed("clogsweep", *keys, "--output", name)
+        rows = table(self.folder / name)
+        box, length = rows.box[0], rows.length[0] or rows.box[0]
+        self.assertTrue(rows.release_x.between(0, length, "left").all(), f"{keys}: {rows.release_x.tolist()}")
+        self.assertTrue(rows.release_y.between(0, box, "left").all(), f"{keys}: {rows.release_y.tolist()}")
+        self.succeed("clogsweep", "verify", name)
+        for task in rows.task:
+            self.succeed("clogsweep", "replay", name, task)
+            self.succeed("clogrun", "replay", name, task, "--output", f"{task}-{name}")
+            again = table(self.folder / f"{task}-{name}").drop(columns=[*TIMING, "task"])
+            expected = rows[rows.task == task].drop(columns=[*TIMING, "task"]).reset_index(drop=True)
+            pandas.testing.assert_frame_equal(again, expected, check_exact=True)
+        return rows
+
+    def test_runs_start_inside_the_box_and_are_repeated_in_all_columns(self):
+        for model, more in self.KEYS.items():
+            for number in range(4):
+                keys, length = self.device(f"{model}{number}.csv")
+                keys += [*more, "max-time=60", "seeds=1..3"]
+                entrance, exit = np.sort(self.random.uniform(0, length, 2))
+                with self.subTest(keys=keys):
+                    self.check_sweep(f"{model}{number}.h5", [*keys, "release=anywhere"])
+                    entrance_keys = ["release=entrance", f"entrance={entrance}", f"exit={exit}"]
+                    self.check_sweep(f"{model}{number}-entrance.h5", [*keys, *entrance_keys])
+        self.assertGreater(self.num_across_border, 3)
+
+    def test_droplets_that_start_across_the_border_are_inside(self):
+        # Only the corners of these boxes have room for a droplet.
+        self.write("one.csv", "x,y,diameter\n2.5,2.5,2\n")
+        self.write("large.csv", "x,y,diameter\n5,5,8\n")
+        keys = ["vertices=64", "max-time=2", "seeds=1..8"]
+        self.check_sweep("one.h5", ["obstacles=one.csv", "box=5", "release=anywhere", *keys])
+        entrance = ["release=entrance", "entrance=3", "exit=10"]
+        rows = self.check_sweep("large.h5", ["obstacles=large.csv", "box=10", *entrance, *keys])
+        self.assertEqual(set(rows.status), {"flowing"})
+
+
 if __name__ == "__main__":
     unittest.main()

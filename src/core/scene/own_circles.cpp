@@ -208,10 +208,14 @@ void check_circles(const RunParameters& run) {
   check_gaps_at_walls(run);
 }
 
+double posts_per_area(const ObstacleParameters& obstacles) {
+  return static_cast<double>(examined(obstacles).num_posts) / obstacles.period().area();
+}
+
 void find_gap_and_density(RunParameters& run) {
   ObstacleParameters& obstacles = run.obstacles;
   obstacles.gap = examined(obstacles).pair.gap;
-  obstacles.density = static_cast<double>(examined(obstacles).num_posts) / obstacles.period().area();
+  obstacles.density = posts_per_area(obstacles);
 }
 
 /// Two random numbers in [0, 1); the constant keeps this stream of numbers apart from other streams.
@@ -299,8 +303,9 @@ double way_to_exit(const RunParameters& run, const Eigen::Array2d& start) {
   return run.obstacles.exit - beginning_of_way(run.obstacles, place_in_file(run, start)[0]);
 }
 
+/// The parameters of a stored row lack the density, because the row has it in a column of its own.
 double circle_density(const ObstacleParameters& obstacles) {
-  return obstacles.density.per_area.value_or(std::numeric_limits<double>::quiet_NaN());
+  return obstacles.density.per_area ? *obstacles.density.per_area : posts_per_area(obstacles);
 }
 
 }  // namespace
