@@ -290,6 +290,7 @@ struct Tally {
 /// Includes a run in the clogging lengths, if the run counts for them.
 void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Tally& tally) {
   const Ending from_release = ending_of(run, group.dwell);
+  if (run.steps > 0) group.dwells_known_from = later(group.dwells_known_from, run.dwells.known_from);
   const std::optional<Ending> ending = counted(run, from_release);
   group.num_interrupted += sweep::is_unfinished(run.status) && !from_release.is_clog;
   if (is_device(run.parameters))
@@ -318,9 +319,7 @@ void add_motion(const sweep::RunRow& run, Group& group, Tally& tally) {
   tally.steady_travels.push_back({run.steady.distance / run.parameters.drag.terminal_speed, run.steady.time});
   tally.displacements.push_back({run.distance, run.lateral_displacement});
   group.num_repeating += sweep::has_met_repetition(run);
-  if (run.steps == 0) return;
-  tally.travels_until_arrest.push_back(travel_until_arrest(run));
-  group.dwells_known_from = later(group.dwells_known_from, run.dwells.known_from);
+  if (run.steps > 0) tally.travels_until_arrest.push_back(travel_until_arrest(run));
 }
 
 /// Counts failed and damaged runs, and includes all runs that are observed. Failed runs are left out of

@@ -90,15 +90,19 @@ class Rows {
     paths_[place] = path;
   }
 
+  /// The rank of a row: if two files have the same run, the row with the higher rank is kept.
+  static int rank_of(const RunRow& row) {
+    if (sweep::is_result(row.status)) return 3;
+    if (sweep::is_final(row)) return 2;
+    return sweep::is_unfinished(row.status) ? 1 : 0;
+  }
+
   /// Whether a row replaces the existing row of the same run. @throws Error if the two rows contradict each
   /// other
   bool is_better(const RunRow& row, std::size_t place, const std::string& path) {
     const RunRow& known = rows_[place];
-    if (!sweep::is_result(row.status) || !sweep::is_result(known.status)) {
-      if (sweep::is_result(row.status) != sweep::is_result(known.status)) return sweep::is_result(row.status);
-      const bool is_failed = row.status == RunStatus::failed;
-      return is_failed == (known.status == RunStatus::failed) ? row.steps > known.steps : !is_failed;
-    }
+    if (!sweep::is_result(row.status) || !sweep::is_result(known.status))
+      return std::pair(rank_of(row), row.steps) > std::pair(rank_of(known), known.steps);
     const std::vector<std::string> differing = differing_results(known, row);
     if (differing.empty()) return false;
     // A replay cannot reproduce a run that used two instruction sets.

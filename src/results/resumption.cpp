@@ -42,7 +42,7 @@ SweepState::Known SweepState::recognise(std::vector<sweep::RunRow> rows, std::ve
     if (!run) refuse_foreign(record.row, *fixed);
     // If the journal has lost a run's last record, the table has the result, and the journal only an earlier
     // state. Then the table's row is kept.
-    if (!run || sweep::is_result(record.row.status) || !sweep::is_result(run->row.status))
+    if (!run || sweep::is_final(record.row) || !sweep::is_final(run->row))
       run = std::make_unique<Entry>(std::move(record));
   }
   const auto is_faulty = [](const std::unique_ptr<Entry>& run) {

@@ -65,7 +65,7 @@ Salvage salvage(const std::string& path) {
     const auto [place, is_new] = places.try_emplace(run, rows.size());
     if (is_new)
       rows.push_back(record.row);
-    else if (sweep::is_result(rows[place->second].status))
+    else if (sweep::is_final(rows[place->second]))
       continue;  // the journal lacks the last record
     else
       rows[place->second] = record.row;

@@ -48,6 +48,14 @@ def change_columns(path, **columns):
     change(path, edit)
 
 
+def fail(rows, which, distance, sound_distance, failed_by=b"crossing"):
+    """Lets rows fail. @param which  mask of the rows; the other arguments are results of these rows"""
+    for name, value in {"status": b"failed", "failed_by": failed_by, "message": b"made to fail",
+                        "clogged_by": b"none", "mechanism": b"none", "distance": distance,
+                        "sound_distance": sound_distance, "lateral_displacement": distance}.items():
+        rows[name][which] = value
+
+
 def columns(path):
     with h5py.File(path) as file:
         return file["runs"].dtype.names

@@ -12,8 +12,9 @@
 namespace clog::results {
 
 /// Rows of several files as one sweep. A run that several files have is included once. A result is preferred
-/// to an unfinished row, and an unfinished row to a failed one; of two rows of the same kind, the one with
-/// more steps is kept. Of results that differ by instruction set, those of the first file are kept.
+/// to a failure that every attempt would repeat, such a failure to an unfinished row, and an unfinished row
+/// to a crash; of two rows of the same kind, the one with more steps is kept. Of results that differ by
+/// instruction set, those of the first file are kept.
 struct MergedSweep {
   store::SweepFile table;
   std::vector<store::Journal::Entry> snapshots;  ///< snapshots of unfinished runs

@@ -111,6 +111,10 @@ inline bool may_succeed_later(const RunRow& row) {
   return row.status == RunStatus::failed && row.failed_by != FailedBy::divergence &&
          row.failed_by != FailedBy::crossing;
 }
+/// Whether no further attempt can change the row.
+inline bool is_final(const RunRow& row) {
+  return is_result(row.status) || (row.status == RunStatus::failed && !may_succeed_later(row));
+}
 /// Distance up to which a run was observed; nullopt for failed runs of older files that diverged or crashed,
 /// because their `distance` may be wrong. In these files a run that crossed itself was observed up to the
 /// check that found the crossing, at most 2048 steps too far [sigma].

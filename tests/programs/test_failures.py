@@ -1,0 +1,239 @@
+"""Tests that every reader counts failed runs up to their last sound check, or states the number of failed runs.
+
+The tests write failures into the rows of sound sweeps. What a failed droplet did after its last sound check must not
+matter, so `distance` is absurd in these rows.
+"""
+
+import json
+import shutil
+import unittest
+
+import numpy as np
+import pandas
+
+import stored_rows
+from drawing import Analysis
+from stored_rows import fail
+from support import BIN, ENDLESS, QUICK, SMALL, TIMING, ProgramTest, table
+from test_clogfit import FAR
+
+import clogsweep
+from clogsweep.drawing import lengths
+
+TENSIONS = [0.25, 0.5, 1.0, 2.0]
+SWEEP = [*SMALL, *FAR, "line-tension=" + ",".join(map(str, TENSIONS)), "seeds=1..12"]
+PRECISE = [*QUICK, "obstacle-gap=0.3", "line-tension=2", "seeds=1..8"]
+
+
+def without_result(rows, which):
+    """Gives rows the status `interrupted`."""
+    for name, value in {"status": b"interrupted", "clogged_by": b"none", "mechanism": b"none"}.items():
+        rows[name][which] = value
+
+
+class Readers(Analysis):
+    def setUp(self):
+        """Makes a sweep of which at every line tension three droplets fail, two are interrupted, and seven clog."""
+        super().setUp()
+        self.copy_sweep("s.h5", *SWEEP)
+        stored_rows.change(self.folder / "s.h5", self.spoil)
+        rows = table(self.folder / "s.h5")
+        self.ways = rows.sound_distance.where(rows.status == "failed", rows.distance)
+        self.lengths = {tension: self.ways[rows.line_tension == tension].sum() / 7 for tension in TENSIONS}
+
+    def spoil(self, rows):
+        way = rows["line_tension"] * np.random.default_rng(3).exponential(size=len(rows))
+        rows["distance"], rows["sound_distance"], rows["status"], rows["failed_by"] = way, way, b"clogged", b"none"
+        rows["clogged_by"], rows["mechanism"] = b"certified", b"squeezed"
+        for seed, distance in ((3, np.nan), (7, 1e300), (12, -50.0)):
+            fail(rows, rows["seed"] == seed, distance, way[rows["seed"] == seed])
+        without_result(rows, np.isin(rows["seed"], [1, 8]))
+
+    def fit(self, *arguments):
+        return json.loads(self.succeed("clogfit", *arguments, "--format", "json").stdout)
+
+    def check_groups(self, groups, names=("runs", "clogs", "failed", "interrupted")):
+        self.assertEqual([group["line_tension"] for group in groups], TENSIONS)
+        expected = {"runs": 12, "clogs": 7, "failed": 3, "interrupted": 2}
+        for group in groups:
+            self.assertEqual({name: group[name] for name in names}, {name: expected[name] for name in names})
+            self.assertAlmostEqual(group["total_distance"], 7 * self.lengths[group["line_tension"]], places=9)
+            self.assertAlmostEqual(group["clogging_length"], self.lengths[group["line_tension"]], places=9)
+
+    def test_tables_and_states_of_a_sweep(self):
+        self.check_groups(self.fit("s.h5")["groups"])
+        self.check_groups(self.fit("s.h5", "--pool=max-time")["groups"])
+        status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
+        self.assertEqual([status[name] for name in ("clogged", "failed", "unfinished")], [28, 12, 8])
+        self.check_groups(status["groups"])
+        text = self.succeed("clogsweep", "status", "s.h5").stdout
+        self.assertIn("28 clogged, 0 flowing, 12 failed; 8 interrupted", text)
+        for told in (text, self.succeed("clogfit", "s.h5").stdout):
+            self.assertIn("12 failed; the column `message` says why, and counted as not clogged up to", told)
+            self.assertIn("8 runs are unfinished", told)
+
+    def test_parts_of_a_sweep(self):
+        for name, condition in (("few.h5", "seed<=6"), ("others.h5", "seed>6"), ("failed.h5", "status=failed")):
+            self.succeed("clogsweep", "select", "s.h5", condition, "--output", name)
+        self.succeed("clogsweep", "merge", "few.h5", "others.h5", "--output", "merged.h5")
+        self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5")
+        for files in (["merged.h5"], ["whole.h5"], ["few.h5", "others.h5"], ["s.h5", "failed.h5"]):
+            self.check_groups(self.fit(*files)["groups"])
+        for group in self.fit("failed.h5")["groups"]:
+            self.assertEqual([group[name] for name in ("runs", "clogs", "failed")], [3, 0, 3])
+
+    def test_comparisons(self):
+        told = self.fit("compare", "s.h5", "--by", "line-tension")["comparisons"]
+        self.write("own.csv", "distance [sigma],clogged\n1,1\n2,1\n3,0\n")
+        measured = self.fit("compare", "own.csv", "s.h5")["comparisons"]
+        self.assertEqual((len(told), len(measured)), (3, 4))
+        for one in told:
+            self.assertEqual((one["runs_here"], one["clogs_here"], one["pairs"]), (12, 7, 12))
+        for tension, one in zip(TENSIONS[1:], told):
+            self.assertAlmostEqual(one["clogging_length_here"], self.lengths[tension], places=9)
+            self.assertAlmostEqual(one["ratio"], self.lengths[tension] / self.lengths[TENSIONS[0]], places=9)
+        for tension, one in zip(TENSIONS, measured):
+            self.assertEqual((one["runs_there"], one["clogs_there"]), (3, 2))
+            self.assertEqual((one["runs_here"], one["clogs_here"]), (12, 7))
+            self.assertAlmostEqual(one["clogging_length_here"], self.lengths[tension], places=9)
+
+    def test_curves_reports_and_the_python_module(self):
+        curve, = self.fit("curve", "s.h5")["curves"]
+        points = sorted(curve["points"], key=lambda point: point["line_tension"])
+        self.check_groups(points, ["runs", "clogs"])
+        self.succeed("clogfit", "report", "s.h5", "--examples", 0)
+        page = (self.folder / "s-report.html").read_text()
+        for words in ("failed per 1000&sigma;", "12 failed",
+                      "Failed runs count as not clogged up to their last passed check"):
+            self.assertTrue(words in page, f"the page of the report lacks {words}")
+        for tension in TENSIONS:
+            cells = "".join(f"<td>{cell:g}</td>" for cell in (tension, 12, 7, 7, 3))
+            self.assertTrue(cells in page, f"the page of the report lacks {cells}")
+        sweep = clogsweep.open(self.folder / "s.h5", BIN)
+        self.assertIn("12 failed", repr(sweep))
+        fit = sweep.fit()
+        self.check_groups(fit.groups.to_dict("records"))
+        notes = lengths.length_notes(fit.known.members, fit.known.confidence, [])
+        self.assertIn("failed: some runs of 4 of 4 points (not clogged up to their last check)", notes)
+        rows = table(self.folder / "s.h5")
+        for number, tension in enumerate(TENSIONS):
+            steps = fit.survival(number)
+            ways = self.ways[rows.line_tension == tension]
+            self.assertEqual(steps.at_risk.tolist(), [(ways >= distance).sum() for distance in steps.distance])
+            self.assertEqual(steps.clogs.sum(), 7)
+
+    def test_rests_count_as_clogs_if_they_began_before_the_failure(self):
+        def let_droplets_rest(rows):
+            rests = np.isin(rows["seed"], [1, 2, 3, 12])
+            rows["dwells_known_from"], rows["last_dwell_at"], rows["last_dwell_from"] = 0.01, 0.9, 0.9
+            for name in rows.dtype.names:
+                if "_dwell" in name and not name.startswith("last"):
+                    rows[name] = np.nan
+            for name, value in {"longest_dwell": 0.5, "longest_dwell_at": 0.2, "longest_dwell_from": 0.3}.items():
+                rows[name][rests] = value
+            # The droplet of seed 3 fails before it rests, and that of seed 12 after.
+            for seed, share in ((3, 1.5), (12, 0.5)):
+                rows["longest_dwell_at"][rows["seed"] == seed] = share * rows["sound_distance"][rows["seed"] == seed]
+            rows["last_dwell_at"] = np.fmax(rows["last_dwell_at"], rows["longest_dwell_at"])
+
+        stored_rows.change(self.folder / "s.h5", let_droplets_rest)
+        self.succeed("clogsweep", "verify", "s.h5")
+        for group in self.fit("s.h5", "--dwell=0.1")["groups"]:
+            # The droplets of seeds 3 and 7 failed, and that of seed 8 was interrupted.
+            self.assertEqual((group["runs"], group["clogs"], group["failed"], group["interrupted"]), (12, 9, 3, 1))
+        rows = table(self.folder / "s.h5")
+        rest, end = rows.longest_dwell_at, rows.last_dwell_at
+        ways = np.select([rows.seed.isin([1, 2, 12]), rows.seed.isin([3, 7]), rows.seed == 8],
+                         [rest, np.minimum(rows.sound_distance, end), end], rows.distance)
+        for group in self.fit("s.h5", "--dwell=0.1")["groups"]:
+            of_group = ways[rows.line_tension == group["line_tension"]]
+            self.assertAlmostEqual(group["total_distance"], of_group.sum(), places=9)
+
+    def test_dwells_are_known_from_the_time_on_from_which_those_of_failed_runs_are(self):
+        rows = table(self.folder / "s.h5")
+        stored_rows.change_columns(self.folder / "s.h5", dwells_known_from=np.where(rows.seed == 7, 0.2, 0.1))
+        self.assertEqual({group["dwells_known_from"] for group in self.fit("s.h5")["groups"]}, {0.2})
+        self.draw("dwell", "s.h5", "--programs", BIN)
+
+
+class Settled(ProgramTest):
+    """Tests that a failure that every attempt would repeat is as final as a result."""
+
+    def setUp(self):
+        super().setUp()
+        self.command = [*ENDLESS, "--max-hours=0.0001"]
+        self.assertEqual(self.run_program("clogsweep", *self.command).returncode, 75)
+        shutil.copyfile(self.folder / "s.h5", self.folder / "interrupted.h5")
+        stored_rows.change(self.folder / "s.h5", lambda rows: fail(rows, rows["task"] == 0, 7.0, 0.01))
+        self.assertTrue((self.folder / "s.h5.journal").exists())
+
+    def states(self, name):
+        return list(table(self.folder / name).status)
+
+    def test_an_earlier_record_of_the_journal_does_not_replace_it(self):
+        self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5")
+        self.assertEqual(self.states("whole.h5"), ["failed"])
+        self.assertEqual(self.run_program("clogsweep", *self.command).returncode, 75)
+        self.assertEqual(self.states("s.h5"), ["failed", "interrupted"])
+
+    def test_merged_files_keep_it_in_either_order(self):
+        (self.folder / "s.h5.journal").unlink()
+        for number, names in enumerate((["s.h5", "interrupted.h5"], ["interrupted.h5", "s.h5"])):
+            self.succeed("clogsweep", "merge", *names, "--output", f"{number}.h5")
+            self.assertEqual(self.states(f"{number}.h5"), ["failed"])
+
+    def test_a_crash_is_not_final(self):
+        crashed = self.folder / "crashed.h5"
+        shutil.copyfile(self.folder / "interrupted.h5", crashed)
+        stored_rows.change(crashed, lambda rows: fail(rows, rows["task"] == 0, 7.0, 0.01, b"crash"))
+        self.succeed("clogsweep", "merge", "crashed.h5", "interrupted.h5", "--output", "merged.h5")
+        self.assertEqual(self.states("merged.h5"), ["interrupted"])
+
+
+class Seeds(ProgramTest):
+    """Tests rules that choose the number of runs."""
+
+    def counts(self):
+        rows = table(self.folder / "s.h5")
+        return {word: int((rows.status == word).sum()) for word in rows.status.unique()}
+
+    def spoil(self, seeds):
+        stored_rows.change(self.folder / "s.h5", lambda rows: fail(rows, np.isin(rows["seed"], seeds), 7.0, 0.01))
+
+    def test_failed_runs_are_among_the_seeds_of_each_set(self):
+        self.copy_sweep("s.h5", *SMALL, *FAR, "line-tension=1,2", "seeds=1..4")
+        self.spoil([2, 3])
+        self.succeed("clogsweep", *SMALL, *FAR, "line-tension=1,2", "seeds=1", "--seeds-per-set=6", "--output", "s.h5")
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(sorted(rows.seed), sorted([1, 2, 3, 4, 5, 6] * 2))
+        self.assertEqual(self.counts()["failed"], 4)
+        for group in json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]:
+            self.assertEqual((group["runs"], group["failed"]), (6, 2))
+
+    def test_until_precision_counts_clogs_and_not_failures(self):
+        # It takes eleven clogs. At this line tension almost every droplet clogs.
+        command = ["clogsweep", *PRECISE, "--until-precision=75%", "--most-seeds=20", "--output", "s.h5"]
+        self.copy_sweep("s.h5", *PRECISE)
+        self.spoil([2, 3, 4, 5])
+        self.assertIn("1 of 1 parameter set reached --until-precision", self.succeed(*command).stderr)
+        group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
+        width = (group["clogging_length_upper"] - group["clogging_length_lower"]) / (2 * group["clogging_length"])
+        self.assertLess(width, 0.75)
+        self.assertEqual((group["failed"], group["clogs"]), (4, 11))
+        self.spoil(range(1, 20))
+        told = self.run_program(*command)
+        self.assertEqual(told.returncode, 1)  # Every run has failed.
+        self.assertIn("not: the only one with 0 clogs of 8 seeds, 8 failed (it takes 11 clogs)", told.stderr)
+
+    def test_an_interrupted_run_is_resumed_and_not_failed(self):
+        command = [*PRECISE, "--until-precision=75%", "--most-seeds=14"]
+        whole = table(self.copy_sweep("s.h5", *command))
+        stored_rows.change(self.folder / "s.h5", lambda rows: without_result(rows, rows["seed"] == 3))
+        self.assertEqual(self.counts()["interrupted"], 1)
+        self.assertNotIn("failed", self.succeed("clogsweep", *command, "--output", "s.h5").stderr)
+        again = table(self.folder / "s.h5")
+        pandas.testing.assert_frame_equal(again.drop(columns=TIMING), whole.drop(columns=TIMING), check_exact=True)
+
+
+if __name__ == "__main__":
+    unittest.main()
