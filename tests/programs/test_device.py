@@ -29,6 +29,9 @@ from clogsweep.tools.errors import UserError
 
 # Places of posts, in droplet diameters.
 ROW = [(4 + 3 * i, 0.9 + 1.7 * j + 0.6 * (i % 2)) for i in range(4) for j in range(3)]
+# Columns of rows that are drawn without a file
+COLUMNS = [*((name, float) for name in ("release_x", "release_y", "distance", "sound_distance", "lateral_displacement")),
+           ("status", "S9"), ("mechanism", "S9")]
 KEYS = ["box=6", "length=18", "side-walls=on", "release=entrance", "entrance=1", "exit=16", "vertices=64", "line-tension=0.05",
         "max-time=2000", "seeds=1..3"]
 SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="3.6mm" height="1.2mm" viewBox="0 0 3600 1200">
@@ -246,8 +249,7 @@ class Devices(Walls):
         self.assertIn("share of 1 droplet each", figure.axes[-1].get_ylabel())
 
     def test_the_scale_of_the_maps_is_there_whichever_panel_has_one(self):
-        rows = np.array([(1.0, 2.0, 4.0, 0.0, b"flowing", b"none")],
-                        dtype=[*((name, float) for name in ("release_x", "release_y", "distance", "lateral_displacement")), ("status", "S9"), ("mechanism", "S9")])
+        rows = np.array([(1.0, 2.0, 4.0, 4.0, 0.0, b"flowing", b"none")], dtype=COLUMNS)
         place = drawn.Place(name="none", circles=np.empty((0, 3)), length=10.0, width=4.0, has_walls=False, exit=0.0, rows=rows)
         way = [np.array([(1.0, 2.0), (5.0, 2.0)])]
         for parts in ([drawn.Part("a", place, mapped=way), drawn.Part("b", place)], [drawn.Part("a", place), drawn.Part("b", place, mapped=way)]):
@@ -265,10 +267,12 @@ class Devices(Walls):
             self.assertEqual(groups.fitted_curve(groups.members) is not None, name == "without")
 
     def test_the_strip_tells_how_many_came_past(self):
-        rows = np.array([(1.0, 0.0, 4.0, 0.0), (1.0, 0.0, 13.0, 0.0)], dtype=[(name, float) for name in ("release_x", "release_y", "distance", "lateral_displacement")])
+        # The third droplet failed, and was last sound at x = 4.
+        rows = np.array([(1.0, 0.0, 4.0, 4.0, 0.0, b"flowing", b"none"), (1.0, 0.0, 13.0, 13.0, 0.0, b"flowing", b"none"),
+                         (1.0, 0.0, np.nan, 3.0, np.nan, b"failed", b"none")], dtype=COLUMNS)
         place = drawn.Place(name="none", circles=np.empty((0, 3)), length=10.0, width=4.0, has_walls=False, exit=0.0, rows=rows)
         at, counts = drawn.came_past(place)
-        for x, count in ((0.5, 1), (2.0, 2), (4.5, 2), (8.0, 1)):
+        for x, count in ((0.5, 1), (2.0, 3), (4.5, 2), (8.0, 1)):
             self.assertEqual(counts[np.argmin(np.abs(at - x))], count, x)
 
     def test_gaps_between_posts_are_those_of_all_pairs(self):

@@ -4,9 +4,13 @@ The tests write failures into the rows of sound sweeps. What a failed droplet di
 matter, so `distance` is absurd in these rows.
 """
 
+import contextlib
+import io
 import json
+import pathlib
 import shutil
 import unittest
+import unittest.mock
 
 import numpy as np
 import pandas
@@ -18,11 +22,15 @@ from support import BIN, ENDLESS, QUICK, SMALL, TIMING, ProgramTest, table
 from test_clogfit import FAR
 
 import clogsweep
-from clogsweep.drawing import lengths
+from clogsweep import style
+from clogsweep.collisions import collision, prediction
+from clogsweep.drawing import device, lengths
+from clogsweep.reading import programs, stored
 
 TENSIONS = [0.25, 0.5, 1.0, 2.0]
 SWEEP = [*SMALL, *FAR, "line-tension=" + ",".join(map(str, TENSIONS)), "seeds=1..12"]
 PRECISE = [*QUICK, "obstacle-gap=0.3", "line-tension=2", "seeds=1..8"]
+AMONG_CIRCLES = ["box=20", "release=anywhere", "vertices=64", "max-time=20", "seeds=1..3"]
 
 
 def without_result(rows, which):
@@ -233,6 +241,98 @@ class Seeds(ProgramTest):
         self.assertNotIn("failed", self.succeed("clogsweep", *command, "--output", "s.h5").stderr)
         again = table(self.folder / "s.h5")
         pandas.testing.assert_frame_equal(again.drop(columns=TIMING), whole.drop(columns=TIMING), check_exact=True)
+
+
+class Devices(Analysis):
+    """Tests pictures and reports of droplets among user-supplied circles, and in channels."""
+
+    def test_pictures_of_devices_count_failed_droplets_where_they_were_sound(self):
+        places = [(x, y) for x in range(1, 20, 2) for y in range(1, 20, 2)]
+        self.write("posts.csv", "x,y,diameter\n" + "".join(f"{x},{y},0.3\n" for x, y in places))
+        self.succeed("clogsweep", "obstacles=posts.csv", *AMONG_CIRCLES, "--output", "s.h5")
+        rows = table(self.folder / "s.h5")
+        for distance in (np.nan, 1e300, -1e300):
+            stored_rows.change(self.folder / "s.h5", lambda rows: fail(rows, rows["seed"] > 1, distance, 0.3))
+            place = device.the_place(self.folder / "s.h5", BIN)
+            self.assertEqual(place.ends[1:, 0].tolist(), (rows.release_x + 0.3)[1:].tolist())
+            figure, axes = style.subplots(figsize=(4, 4))
+            device.draw_ends(axes, place)
+            self.assertIn("failed: 2", [line.get_label() for line in axes.lines])
+            self.draw("device", "s.h5", "--programs", BIN, "--output", "device.png")
+        self.draw("report", "s.h5", "--programs", BIN, "--output", "r.html")
+
+    def test_a_file_of_version_1_0_says_only_where_droplets_crossed_themselves(self):
+        self.write("post.csv", "x,y,diameter\n1,1,0.3\n")
+        self.succeed("clogsweep", "obstacles=post.csv", *AMONG_CIRCLES, "--output", "s.h5")
+
+        def spoil(rows):
+            fail(rows, rows["seed"] > 1, 0.5, 0.25)
+            rows["message"][rows["seed"] == 2] = b"the interface crossed itself by t=9; try"
+
+        stored_rows.change(self.folder / "s.h5", spoil)
+        stored_rows.make_older(self.folder / "s.h5", "10", ["sound_distance", "failed_by", "healed_crossings"])
+        rows = stored.read_rows(self.folder / "s.h5", BIN)
+        self.assertEqual(stored.observed_distances(rows).tolist()[:2], [rows["distance"][0], 0.5])
+        self.assertTrue(np.isnan(stored.observed_distances(rows)[2]))
+        self.draw("report", "s.h5", "--programs", BIN, "--output", "r.html")
+        page = (self.folder / "r.html").read_text()
+        self.assertTrue("up to their last passed check (column sound_distance), except 1 without one" in page)
+
+    def test_a_report_on_channels_names_failures_without_a_word_on_lengths(self):
+        channel = ["obstacle-layout=channel", "orifice=0.7", "terminal-speed=0.05", "start=-1.5", "end=1", "vertices=64"]
+        self.succeed("clogsweep", *channel, "line-tension=0.5,1", "--output", "s.h5")
+        stored_rows.change(self.folder / "s.h5", lambda rows: fail(rows, rows["line_tension"] == 1, 7.0, 0.3))
+        self.assertRegex(self.succeed("clogfit", "s.h5").stdout, r"\n +0\.7 +1 +failed ")
+        self.draw("report", "s.h5", "--programs", BIN, "--output", "r.html")
+        page = (self.folder / "r.html").read_text()
+        for words, is_there in (("1 failed", True), ("failed: made to fail", True), ("sound_distance", False)):
+            self.assertEqual(words in page, is_there, words)
+
+
+class Searches(Analysis):
+    """Tests commands that ask how droplets end."""
+
+    def run_and_fail(self, failures):
+        """@return a function that runs a program, and lets those runs of its sweep fail that failures(rows) chooses"""
+        original = programs.run_program
+
+        def run(program, *words):
+            told = original(program, *words)
+            path = pathlib.Path(words[words.index("--output") + 1])
+            stored_rows.change(path, lambda rows: fail(rows, failures(rows), 7.0, 0.01))
+            return told
+
+        return unittest.mock.patch.object(programs, "run_program", run)
+
+    def warnings(self, call):
+        error = io.StringIO()
+        with contextlib.redirect_stderr(error):
+            found = call()
+        return found, error.getvalue()
+
+    def test_collisions_and_predictions_state_failures(self):
+        keys = {"vertices": "64", "max-time": "10"}
+        falls = collision.Collisions(BIN / "clogsweep", self.folder, keys)
+        with self.run_and_fail(lambda rows: rows["line_tension"] == 0.5):
+            broken, told = self.warnings(lambda: falls.break_up(0, [0.3, 0.5]))
+        warning = "runs failed and count as {}; the first one: made to fail\n"
+        self.assertEqual((broken, told), ([False, False], "1 of 2 " + warning.format("whole")))
+        droplets = prediction.Droplets(BIN / "clogsweep", self.folder, keys | {"line-tension": "1"})
+        with self.run_and_fail(lambda rows: rows["task"] >= 0):
+            ends, told = self.warnings(lambda: droplets.ends([[(0, 0, 0.3)]]))
+        self.assertEqual((ends, told), ({1.0: [b""]}, "1 of 1 " + warning.format("passed")))
+        self.assertEqual(self.warnings(lambda: droplets.ends([[(0, 0, 0.3)]]))[1], "")
+
+    def test_critical_angles_state_failures(self):
+        keys = ["obstacle-layout=lattice", "pitch=3", "obstacle-diameter=1", "vertices=64", "box=200", "max-time=600",
+                "terminal-speed=0.1", "line-tension=1,2", "lattice-angle=15,25", "seeds=1"]
+        self.copy_sweep("s.h5", *keys)
+        expected = self.draw("critical-angle", "s.h5", "--programs", BIN, "--format", "csv").stdout
+        self.assertEqual([line.split(",")[-1] for line in expected.splitlines()], ["runs", "2", "2"])
+        stored_rows.change(self.folder / "s.h5", lambda rows: fail(rows, rows["task"] == 0, 7.0, 0.01))
+        done = self.draw("critical-angle", "s.h5", "--programs", BIN, "--format", "csv")
+        self.assertEqual([line.split(",")[-1] for line in done.stdout.splitlines()], ["runs", "1", "2"])
+        self.assertEqual(done.stderr, "1 of 4 runs failed and do not count\n")
 
 
 if __name__ == "__main__":

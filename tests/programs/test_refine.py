@@ -16,6 +16,9 @@ import unittest.mock
 
 import numpy as np
 import pandas
+
+import stored_rows
+from stored_rows import fail
 from support import BIN, LONGEST, MPIRUN, QUICK, ROOT, TIMING, ProgramTest, children_of, table
 
 sys.path.insert(0, str(ROOT / "analysis"))
@@ -408,6 +411,14 @@ class CriticalAngle(RefineTest):
                                         ("10.01,40", 20, "no droplet went far enough")]:
             with self.subTest(angles=angles):
                 self.assertIn(words, self.angle(angles, "--until=critical-angle=2", max_time=max_time, output=f"{max_time}-{angles}.h5").stderr)
+
+    def test_failed_runs_are_counted(self):
+        words = ["10.01,40", "--until=critical-angle=2"]
+        self.angle(*words, max_time=20)
+        number = len(table(self.folder / "s.h5"))
+        stored_rows.change(self.folder / "s.h5", lambda rows: fail(rows, rows["task"] == 0, 7.0, 0.01))
+        told = self.angle(*words, max_time=20).stderr
+        self.assertIn(f"; 1 of {number} runs failed and do not count", told)
 
     def test_a_dry_run_tells_what_the_rounds_may_cost(self):
         told = self.refine("lattice-angle", *LATTICE, "lattice-angle=10.01,40", "max-time=1000", "--until=critical-angle=0.5", "--dry-run").stdout

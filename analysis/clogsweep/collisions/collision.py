@@ -5,6 +5,8 @@ import math
 import pathlib
 from collections.abc import Sequence
 
+import numpy as np
+
 from ..reading import programs, stored
 
 DIAMETER = 0.3  # Diameter of the obstacle [sigma].
@@ -48,9 +50,10 @@ class Collisions:
         circles.write_text(f"x,y,diameter\n{BOX / 2 + FALL},{BOX / 2 + offset},{DIAMETER}\n", encoding="utf-8")
         programs.run_program(self.clogsweep, f"obstacles={circles}", f"box={BOX}", "seeds=1", *(f"{key}={value}" for key, value in self.keys.items()),
                              "line-tension=" + ",".join(f"{tension:.6g}" for tension in tensions), "--output", sweep, "--quiet")
-        ends = [row["status"] for row in sorted(stored.read_rows(sweep), key=lambda row: row["line_tension"])]
+        rows = np.sort(stored.read_rows(sweep), order="line_tension")
         sweep.unlink()
-        return [end == b"broken" for end in ends]
+        stored.warn_of_failures(rows, "whole")
+        return (rows["status"] == b"broken").tolist()
 
     def threshold(self, offset: float) -> Threshold:
         """Brackets the line tension below which droplets break up. @return the bracket; an end is None if it would be

@@ -109,6 +109,7 @@ class Droplets:
         with stored.opened(sweep) as stored_sweep:
             rows, names = stored_sweep["runs"][:], stored.circle_files(stored_sweep)
         sweep.unlink()
+        stored.warn_of_failures(rows, "passed")
         found: dict[float, list[bytes]] = {}
         for row in rows:
             index = int(pathlib.Path(names[stored.text(row["obstacles"])]).stem)

@@ -65,7 +65,9 @@ class Place:
 
     @property
     def ends(self) -> Numbers:
-        return self.releases + np.column_stack([self.rows["distance"], self.rows["lateral_displacement"]])
+        """The places where the droplets were last observed. The y of failed droplets is unknown (NaN)."""
+        across = np.where(self.rows["status"] == b"failed", np.nan, self.rows["lateral_displacement"])
+        return self.releases + np.column_stack([np.nan_to_num(stored.observed_distances(self.rows)), across])
 
 
 def panel_label(groups: Groups, member: Group) -> str:
@@ -182,13 +184,15 @@ def unbroken(points: Numbers, place: Place) -> Numbers:
 
 def draw_ends(axes: Axes, place: Place) -> None:
     """Draws where droplets clogged and by which mechanism. Also draws where droplets passed the exit, broke up, or ran
-    out of time."""
+    out of time. Failed droplets are only counted."""
     ends = place.wrapped(place.ends)
     words = {"flowing": (".", "0.2", "still moving"), "passed": (">", "0.2", "passed"), "broken": ("*", style.CAUSE_COLOURS["broken"], "broken")}
     for status, (marker, colour, name) in words.items():
         of_status = place.rows["status"] == status.encode()
         if of_status.any():
             axes.plot(*ends[of_status].T, marker, color=colour, markersize=5, linestyle="none", label=f"{name}: {of_status.sum()}", zorder=4)
+    if num_failed := np.count_nonzero(place.rows["status"] == b"failed"):
+        axes.plot([], [], linestyle="none", label=f"failed: {num_failed}")
     clogged = place.rows["status"] == b"clogged"
     for mechanism, marker in style.MECHANISM_MARKERS.items():
         named = place.rows["mechanism"] == mechanism.encode()

@@ -238,18 +238,21 @@ def table_of_passages(groups: Groups, sentences: dict[str, str]) -> str:
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
 
-def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.DataFrame) -> str:
+def doubts(groups: Groups, sentences: dict[str, str], rows: pandas.DataFrame) -> str:
     """The section about doubts. @param sentences  clogfit's sentences, by the words for doubts that its groups
     contain"""
     words = []
-    for name in dict.fromkeys(name for group in groups for name in style.doubts(group)):
-        count = sum(name in style.doubts(group) for group in groups)
-        words.append(f"<li class=doubt>{count} of {rounded.counted(len(groups), 'point')}: {html.escape(sentences[name])}</li>")
+    for name in dict.fromkeys(name for group in groups.members for name in style.doubts(group)):
+        count = sum(name in style.doubts(group) for group in groups.members)
+        of_points = f"{count} of {rounded.counted(len(groups.members), 'point')}"
+        words.append(f"<li class=doubt>{of_points}: {html.escape(sentences[name])}</li>")
     failed = rows[rows.status == "failed"]
     for _, row in failed.head(5).iterrows():
         words.append(f"<li class=doubt>task {row.task} (seed {row.seed}) failed: {html.escape(row.message)}</li>")
-    if len(failed):
-        words.append("<li class=doubt>Failed runs count as not clogged up to their last passed check (column sound_distance).</li>")
+    if len(failed) and not groups.are_passages:
+        num_unknown = sum(group["failed_somewhere"] for group in groups.members)
+        words.append("<li class=doubt>Failed runs count as not clogged up to their last passed check (column "
+                     f"sound_distance){f', except {num_unknown} without one' if num_unknown else ''}.</li>")
     return "<ul>" + "\n".join(words) + "</ul>" if words else "<p>None.</p>"
 
 
@@ -433,7 +436,7 @@ def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: path
     curves, *pictures = tell(groups, sweep, examples, folder / "clogrun", charts).items()
     sections = dict([curves,
                      ("Table", table_of_passages(groups, sentences) if groups.are_passages else table_of_lengths(groups, sentences, rows)),
-                     ("What may spoil these numbers", doubts(groups.members, sentences, rows)),
+                     ("What may spoil these numbers", doubts(groups, sentences, rows)),
                      *pictures,
                      ("How busy the ranks were", busy_ranks(about, charts))])
     with outputs.replaced(output) as fresh:

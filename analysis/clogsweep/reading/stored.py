@@ -198,6 +198,25 @@ def columns_of(rows: Records | np.void) -> tuple[str, ...]:
     return rows.dtype.names or ()
 
 
+def observed_distances(rows: Records) -> Numbers:
+    """The distance up to which each run was observed [sigma]. A failed run was observed up to its last passed check. In
+    files of version 1.0 this distance is unknown (NaN), except for droplets that crossed themselves."""
+    if "sound_distance" in columns_of(rows):
+        of_failed = rows["sound_distance"]
+    else:
+        has_crossed = np.char.startswith(rows["message"], b"the interface crossed itself")
+        of_failed = np.where(has_crossed, rows["distance"], np.nan)
+    return np.where(rows["status"] == b"failed", of_failed, rows["distance"])
+
+
+def warn_of_failures(rows: Records, outcome: str) -> None:
+    """Prints how many runs failed, if any did. @param outcome  what these runs count as"""
+    failed = rows[rows["status"] == b"failed"]
+    if len(failed):
+        print(f"{len(failed)} of {len(rows)} runs failed and count as {outcome}; the first one: "
+              f"{text(failed['message'][0])}", file=sys.stderr)
+
+
 def read_rows(path: AnyPath, folder: AnyPath | None = None) -> Records:
     """Reads the table of runs, with one record per run. @throws as opened()"""
     with opened(path, folder=folder) as file:

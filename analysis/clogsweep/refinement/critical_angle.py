@@ -10,6 +10,7 @@ import numpy as np
 import pandas
 
 from ..tools.errors import UserError
+from ..tools.rounded import counted
 from .driver import HOUR, UNFINISHED, Line, number_text
 from .membership import Membership, Values
 
@@ -50,7 +51,7 @@ def bracket(angles: pandas.DataFrame) -> tuple[float, float]:
 
 def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFrame:
     """For every set of parameters: the parameters that vary, the ends of the bracket, `lower` and `upper`, and the
-    number of `runs`.
+    number of `runs` that count. Failed runs do not count.
     @param parameters  names of columns; a column is left out if its values follow from the columns before it
     @throws UserError"""
     lattices = rows[rows["lattice_angle"].notna()]
@@ -64,7 +65,7 @@ def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFr
     lines = []
     for _, runs in lattices.groupby(varying, dropna=False) if varying else [((), lattices)]:
         lower, upper = bracket(tried_angles(runs))
-        lines.append([*(runs[name].iloc[0] for name in varying), lower, upper, len(runs)])
+        lines.append([*(runs[name].iloc[0] for name in varying), lower, upper, (runs["status"] != "failed").sum()])
     return pandas.DataFrame(lines, columns=[*varying, "lower", "upper", "runs"])
 
 
@@ -113,16 +114,16 @@ class AngleSearch:
         rounded = {round(angle, DECIMALS) for angle in nearest if angle is not None and lower < angle < upper}
         return sorted(rounded - {round(angle, DECIMALS) for angle in tried})
 
-    def _look(self, rows: pandas.DataFrame, members: Membership) -> tuple[pandas.DataFrame, float]:
+    def _runs(self, rows: pandas.DataFrame, members: Membership) -> pandas.DataFrame:
         # The box is a period of the lattice, so it follows from the angle. The box has no effect on the droplet, so it
         # may differ between runs.
         runs = members.of_curve(rows, lambda name: name not in FOLLOWING)
-        runs = runs[~runs["status"].isin(UNFINISHED)]
-        return tried_angles(runs), float(runs["processor_seconds"].sum()) / HOUR
+        return runs[~runs["status"].isin(UNFINISHED)]
 
     def next_round(self, rows: pandas.DataFrame, members: Membership) -> list[Line]:
         """The points of the next round. The list is empty if the search has ended; `end` is then the reason."""
-        angles, hours = self._look(rows, members)
+        runs = self._runs(rows, members)
+        angles, hours = tried_angles(runs), float(runs["processor_seconds"].sum()) / HOUR
         lower, upper = bracket(angles)
         found: list[float] = []
         if math.isnan(upper - lower):
@@ -140,7 +141,8 @@ class AngleSearch:
 
     def known(self, rows: pandas.DataFrame, members: Membership) -> str:
         """States the result so far in one line."""
-        angles, _ = self._look(rows, members)
+        runs = self._runs(rows, members)
+        angles, num_failed = tried_angles(runs), (runs["status"] == "failed").sum()
         lower, upper = bracket(angles)
         if math.isnan(lower) and math.isnan(upper):
             text = "no droplet went far enough to say (the flow has to cross two rows); try a larger max-time"
@@ -153,8 +155,10 @@ class AngleSearch:
                     f"follow the rows at {lower:.4g} and leave them at {upper:.4g}")
         again = ", ".join(f"{angle:.4g}" for angle in angles.index[angles["follows"] & (angles.index > upper)])
         unknown = ", ".join(f"{angle:.4g}" for angle in angles.index[~angles["follows"] & ~angles["leaves"]])
-        return "; ".join(filter(None, [self.end, text, again and f"they follow them again at {again}",
-                                       unknown and f"runs were too short to say at {unknown} (max-time, clogs or failures)"]))
+        return "; ".join(filter(None, [
+            self.end, text, again and f"they follow them again at {again}",
+            unknown and f"runs were too short to say at {unknown} (max-time, clogs or failures)",
+            num_failed and f"{num_failed} of {counted(len(runs), 'run')} failed and do not count"]))
 
     def costs(self, hours_per_run: float) -> list[str]:
         """States the cost of the rounds, for --dry-run. @param hours_per_run  of the first round, or NaN if unknown"""
