@@ -267,6 +267,11 @@ std::vector<Column> make_columns() {
              "fell below clog_energy; none: not clogged; "
              "empty: unknown",
              16),
+      member("stability", &RunRow::stability, result, "",
+             "stable: the clogged droplet would return after any small displacement; unknown: differences of "
+             "forces do not decide whether it would; none: not clogged; empty: unknown (not computed by this "
+             "version)",
+             16),
       member("failed_by", &RunRow::failed_by, result, "",
              "crossing: the interface crossed itself; divergence: the integration diverged; crash: the "
              "program or its process failed; none: not failed; empty: unknown",
