@@ -486,7 +486,7 @@ class Fit(ProgramTest):
         self.sweep("seeds=1..6", *FAR)
         self.change(distance=[1, 2, 3, 4, 5, 50], status=[b"clogged"] * 3 + [b"failed"] * 3,
                     message=[b""] * 3 + [b"the interface crossed itself by t=9; try", b"diverged at t=3", b"its process was ended by SIGSEGV"])
-        new = ["sound_distance", "failed_by", "healed_crossings", "friction_use"]
+        new = ["sound_distance", "failed_by", "healed_crossings", "friction_use", "stability"]
         stored_rows.make_older(self.folder / "sweep.h5", "10", new)
         group, = self.fit()["groups"]
         self.assertEqual([group[name] for name in ("runs", "total_distance", "failed", "failed_somewhere")], [4, 10, 3, 2])
