@@ -328,9 +328,9 @@ std::vector<Column> make_columns() {
              "largest fraction of the weight that corners of the mesh can hold where a clogged polygon hangs "
              "over obstacles; NaN for other droplets"),
       member("friction_use", &RunRow::friction_use, result, "",
-             "net tangential force on a post about its centre divided by the largest that friction could "
-             "bear in its direction, the largest over the posts that hold a clogged polygon; NaN for other "
-             "droplets"),
+             "moment of the wall's friction about a post's centre divided by the largest that friction could "
+             "bear in this direction, the largest over the posts over which a clogged polygon hangs and that "
+             "give at least a tenth of its support; NaN for other droplets"),
       member("largest_shape_parameter", &RunRow::largest_shape_parameter, result, "",
              "largest A in a channel; this and the next five columns are NaN for other runs"),
       member(

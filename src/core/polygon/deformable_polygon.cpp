@@ -145,19 +145,21 @@ Stability stability_of_polygon(const RunParameters& run, const ObstacleArray& ob
   return stability_of(forces_along_interface(run, rest_forces), state);
 }
 
-double friction_use(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {
+/// @param circles  that carry the droplet
+double friction_use(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state,
+                    std::span<const Obstacle> circles) {
   DpForces forces(run, obstacles);
   if (!forces.friction().is_on()) return std::numeric_limits<double>::quiet_NaN();
   forces.update_contacts(state, {});
   WallTouches touches(run, obstacles);
-  return forces.friction().use(state, touches.find(state, forces.walls().items()));
+  return forces.friction().use(state, touches.find(state, forces.walls().items()), circles);
 }
 
 Hold hold_of_polygon(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {
   const ClogGeometry geometry = clog_geometry(state, obstacles, run.dp);
   return {.mechanism = geometry.mechanism(),
           .geometry = geometry,
-          .friction_use = friction_use(run, obstacles, state)};
+          .friction_use = friction_use(run, obstacles, state, geometry.carriers)};
 }
 
 double neck_of_polygon(const DropletState& state, double below) {
