@@ -248,7 +248,9 @@ bool may_hang_on_mesh(const RunRow& row) {
   return row.mesh_hold > std::max(tolerated_mesh_hold, weight_borne_by_friction(dp));
 }
 
-bool is_near_friction_limit(const RunRow& row) { return row.friction_use > tolerated_friction_use; }
+bool is_near_friction_limit(const RunRow& row) {
+  return row.friction_use > tolerated_friction_use && row.friction_use < arrested_friction_use;
+}
 
 double obstacle_spacing(const RunRow& row) {
   const bool is_of_user = scene_of(row.parameters).walls_from == WallsFrom::circles;

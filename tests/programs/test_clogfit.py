@@ -538,7 +538,7 @@ class Fit(ProgramTest):
 
     def test_clogs_near_the_limit_of_friction_are_marked(self):
         self.sweep("seeds=1..10", *FAR)
-        for use, doubts in (([0.96] + [0.5] * 9, None), ([0.96] * 2 + [np.nan] * 8, "near_friction_limit")):
+        for use, doubts in (([0.96] + [0.5] * 9, None), ([0.96] + [1.0] * 9, None), ([0.96] * 2 + [np.nan] * 8, "near_friction_limit")):
             self.change(distance=3 * EXPONENTIAL, status=[b"clogged"] * 10, mechanism=[b"wrapped"] * 10, mesh_hold=0.0, friction_use=use)
             self.assertEqual(self.fit()["groups"][0]["doubts"], doubts)
         self.assertIn("\nh: more than 15 % of the clogs", self.succeed("clogfit", "sweep.h5").stdout)
