@@ -21,7 +21,7 @@ file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/${shared}" "${PROJECT_BINARY_DIR}/${C
 file(CREATE_LINK "${PROJECT_SOURCE_DIR}/jobs" "${PROJECT_BINARY_DIR}/${shared}/jobs" SYMBOLIC)
 file(CREATE_LINK "${PROJECT_SOURCE_DIR}/analysis/clogsweep" "${PROJECT_BINARY_DIR}/${CLOG_PYTHON_DIR}/clogsweep" SYMBOLIC)
 install(DIRECTORY jobs DESTINATION "${shared}" USE_SOURCE_PERMISSIONS COMPONENT programs
-  FILES_MATCHING PATTERN "*.cfg" PATTERN "*.sh" PATTERN "install-*.sh" EXCLUDE PATTERN "dependency-archive.sh" EXCLUDE PATTERN "laptop.sh" EXCLUDE)
+  FILES_MATCHING PATTERN "*.cfg" PATTERN "figures/*.csv" PATTERN "*.sh" PATTERN "install-*.sh" EXCLUDE PATTERN "dependency-archive.sh" EXCLUDE PATTERN "laptop.sh" EXCLUDE)
 install(DIRECTORY analysis/clogsweep DESTINATION "${CLOG_PYTHON_DIR}" COMPONENT programs
   FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "page.*" PATTERN "__pycache__" EXCLUDE)
 set(module "${CMAKE_INSTALL_PREFIX}/${CLOG_PYTHON_DIR}/clogsweep")

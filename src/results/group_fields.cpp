@@ -128,6 +128,7 @@ std::vector<Field> result_fields(const Group& group) {
             {"dwells_known_from", value_of(group.dwells_known_from)},
             {"repeating", value_of(group.num_repeating)},
             {"on_mesh", value_of(group.num_on_mesh)},
+            {"stability_unknown", value_of(group.num_stability_unknown)},
             {"near_friction_limit", value_of(group.num_near_friction_limit)},
             {"total_distance", value_of(group.clogging.total_distance)},
             {"clogging_length", value_of(group.clogging.length)},

@@ -304,6 +304,7 @@ void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Ta
   tally.endings.push_back(*ending);
   group.seeds.push_back(run.parameters.seed);
   group.num_on_mesh += sweep::may_hang_on_mesh(run);
+  group.num_stability_unknown += run.stability == Stability::unknown;
   group.num_near_friction_limit += sweep::is_near_friction_limit(run);
   group.num_failed_counted += run.status == RunStatus::failed;
   if (ending->is_clog) return;

@@ -267,6 +267,11 @@ std::vector<Column> make_columns() {
              "fell below clog_energy; none: not clogged; "
              "empty: unknown",
              16),
+      member("stability", &RunRow::stability, result, "",
+             "stable: the clogged droplet would return after any small displacement; unknown: differences of "
+             "forces do not decide whether it would; none: not clogged; empty: unknown (not computed by this "
+             "version)",
+             16),
       member("failed_by", &RunRow::failed_by, result, "",
              "crossing: the interface crossed itself; divergence: the integration diverged; crash: the "
              "program or its process failed; none: not failed; empty: unknown",
@@ -323,9 +328,9 @@ std::vector<Column> make_columns() {
              "largest fraction of the weight that corners of the mesh can hold where a clogged polygon hangs "
              "over obstacles; NaN for other droplets"),
       member("friction_use", &RunRow::friction_use, result, "",
-             "net tangential force on a post about its centre divided by the largest that friction could "
-             "bear in its direction, the largest over the posts that hold a clogged polygon; NaN for other "
-             "droplets"),
+             "moment of the wall's friction about a post's centre divided by the largest that friction could "
+             "bear in this direction, the largest over the posts over which a clogged polygon hangs and that "
+             "give at least a tenth of its support; NaN for other droplets"),
       member("largest_shape_parameter", &RunRow::largest_shape_parameter, result, "",
              "largest A in a channel; this and the next five columns are NaN for other runs"),
       member(

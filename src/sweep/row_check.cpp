@@ -240,6 +240,13 @@ std::string clog_fault(const RunRow& row) {
     if (row.clogged_by == FoundBy::threshold && row.kinetic_energy_ratio >= row.parameters.clog_energy)
       return by + ", but " + named("kinetic_energy_ratio", row.kinetic_energy_ratio);
   }
+  if (row.stability) {
+    const bool is_held = row.stability == Stability::stable || row.stability == Stability::unknown;
+    if (is_clogged != is_held || (!is_clogged && row.stability != Stability::none))
+      return named("stability", name(*row.stability)) + ", but " + named("status", name(row.status));
+    if (row.clogged_by == FoundBy::certified && row.stability != Stability::stable)
+      return "certified, but " + named("stability", name(*row.stability));
+  }
   if (!is_clogged && row.mechanism.value_or(ClogMechanism::none) != ClogMechanism::none)
     return named("mechanism", name(*row.mechanism)) + ", but it is not clogged";
   if (is_known(row.wrapped_support) &&

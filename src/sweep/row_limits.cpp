@@ -33,7 +33,7 @@ struct SoundPreset {
   std::string_view name;
   double smallest_tension;
 };
-constexpr SoundPreset sound_presets[] = {{"robust", 0.02}, {"heavy-interface", 0.07}, {"elastic", 0.04}};
+constexpr SoundPreset sound_presets[] = {{"robust", 0.05}, {"heavy-interface", 0.07}, {"elastic", 0.04}};
 
 std::string untested_tension(const std::string& preset_name, const DpParameters& dp) {
   const auto* preset = std::find_if(std::begin(sound_presets), std::end(sound_presets),
@@ -248,7 +248,9 @@ bool may_hang_on_mesh(const RunRow& row) {
   return row.mesh_hold > std::max(tolerated_mesh_hold, weight_borne_by_friction(dp));
 }
 
-bool is_near_friction_limit(const RunRow& row) { return row.friction_use > tolerated_friction_use; }
+bool is_near_friction_limit(const RunRow& row) {
+  return row.friction_use > tolerated_friction_use && row.friction_use < arrested_friction_use;
+}
 
 double obstacle_spacing(const RunRow& row) {
   const bool is_of_user = scene_of(row.parameters).walls_from == WallsFrom::circles;

@@ -40,6 +40,7 @@ RunRow describe(const RunParameters& run) {
 void record(const RunResult& result, RunRow& row) {
   row.status = result.status;
   row.clogged_by = found_by(result.clogged_by);
+  row.stability = result.stability;
   row.failed_by = result.failed_by;
   row.distance = result.distance;
   row.sound_distance = result.sound_distance;

@@ -27,10 +27,15 @@ def edited(path, edit):
 
 
 def change(path, edit):
-    """Changes the rows of a file. @param edit  is called with the rows, and changes them in place"""
+    """Changes the rows of a file. @param edit  is called with the rows, and changes them in place; the stability
+    follows the status"""
     def edit_rows(file):
         rows = file["runs"][:]
+        before = rows["status"].copy()
         edit(rows)
+        if "stability" in rows.dtype.names:
+            changed = rows["status"] != before
+            rows["stability"][changed] = np.where(rows["status"][changed] == b"clogged", b"stable", b"none")
         file["runs"][:] = rows
 
     edited(path, edit_rows)

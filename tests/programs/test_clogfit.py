@@ -486,7 +486,7 @@ class Fit(ProgramTest):
         self.sweep("seeds=1..6", *FAR)
         self.change(distance=[1, 2, 3, 4, 5, 50], status=[b"clogged"] * 3 + [b"failed"] * 3,
                     message=[b""] * 3 + [b"the interface crossed itself by t=9; try", b"diverged at t=3", b"its process was ended by SIGSEGV"])
-        new = ["sound_distance", "failed_by", "healed_crossings", "friction_use"]
+        new = ["sound_distance", "failed_by", "healed_crossings", "friction_use", "stability"]
         stored_rows.make_older(self.folder / "sweep.h5", "10", new)
         group, = self.fit()["groups"]
         self.assertEqual([group[name] for name in ("runs", "total_distance", "failed", "failed_somewhere")], [4, 10, 3, 2])
@@ -538,7 +538,7 @@ class Fit(ProgramTest):
 
     def test_clogs_near_the_limit_of_friction_are_marked(self):
         self.sweep("seeds=1..10", *FAR)
-        for use, doubts in (([0.91] + [0.5] * 9, None), ([0.91] * 2 + [np.nan] * 8, "near_friction_limit")):
+        for use, doubts in (([0.96] + [0.5] * 9, None), ([0.96] + [1.0] * 9, None), ([0.96] * 2 + [np.nan] * 8, "near_friction_limit")):
             self.change(distance=3 * EXPONENTIAL, status=[b"clogged"] * 10, mechanism=[b"wrapped"] * 10, mesh_hold=0.0, friction_use=use)
             self.assertEqual(self.fit()["groups"][0]["doubts"], doubts)
         self.assertIn("\nh: more than 15 % of the clogs", self.succeed("clogfit", "sweep.h5").stdout)

@@ -301,6 +301,32 @@ class Figures(Drawn):
             with self.subTest(config=config.name):
                 self.succeed("clogsweep", "--config", config, "--print-config")
 
+    def test_soft_droplets_have_fine_meshes_or_their_own_inertia(self):
+        """The meshes are for droplets without friction, the inertia for those that slide off obstacles fast."""
+        for points in (ROOT / "jobs/figures").glob("*.csv"):
+            table = pandas.read_csv(points)
+            column, value, limit = ("inertia", 1, 0.049) if "robust" in points.name else ("vertices", 512, 0.1)
+            self.assertTrue(((table[column] == value) == (table["line-tension"] <= limit)).all(), points)
+            self.succeed("clogsweep", "--config", points.with_suffix(".cfg"), "--points", points, "--print-config")
+
+    def test_a_set_key_replaces_the_points_of_a_figure(self):
+        tensions = "0.04,0.07,0.1,0.2,0.5,1,3,10"
+        for settings, there, absent in [
+            ([], ["--points", "speed.reduced.csv"], ["line-tension="]),
+            (["speed:seeds=1..2"], ["--points"], ["line-tension="]),
+            (["vertices=64"], [f"line-tension={tensions}", "vertices=64"], ["--points"]),
+            (["speed:line-tension=1"], ["line-tension=1"], ["--points", tensions]),
+            (["speed-sp:vertices=64"], ["--points"], ["vertices="]),
+        ]:
+            words = [word for setting in settings for word in ("--set", setting)]
+            with self.subTest(settings=settings):
+                told = self.analyse("figures", "8a", "--programs", BIN, "--draw-only", "--output", ".", *words)
+                self.assertEqual(told.returncode, 2)
+                for word in ("speed.h5", *there):
+                    self.assertIn(word, told.stderr)
+                for word in absent:
+                    self.assertNotIn(word, told.stderr)
+
     def test_mistakes_get_one_line(self):
         for arguments, words in [
             (["6c", "13"], ["no figure 13", "list"]),

@@ -74,7 +74,7 @@ class Installed(Installation):
 
     def test_a_config_that_comes_with_it(self):
         said = self.called("clogsweep", "--config", self.prefix / "share/clogsweep/jobs/laptop.cfg", "--print-config")
-        self.assertIn("line-tension = 0.05,0.1,0.2,0.25,0.3,0.4,0.6", said)
+        self.assertIn("line-tension = 0.07,0.1,0.2,0.25,0.3,0.4,0.6", said)
 
     def test_the_script_for_slurm_finds_what_is_installed(self):
         # Slurm runs a copy of the script in another folder.

@@ -83,7 +83,10 @@ class SweepStateTest : public testing::Test {
     row.steps = 1'000'000;
     row.time = static_cast<double>(row.steps) * *row.parameters.time_step;
     row.shape_parameter = 1.2;
-    if (row.status == RunStatus::clogged) row.clogged_by = sweep::FoundBy::certified;
+    if (row.status == RunStatus::clogged) {
+      row.clogged_by = sweep::FoundBy::certified;
+      row.stability = Stability::stable;
+    }
     if (row.status == RunStatus::failed) {
       row.failed_by = FailedBy::crash;
       row.message = "its process was killed";

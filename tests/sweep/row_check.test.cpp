@@ -96,11 +96,11 @@ TEST(FaultOf, NoRunThatFailed) {
 TEST(FaultOf, NoColumnThatAnOlderVersionDidNotHave) {
   RunRow row = clogged();
   for (const char* name :
-       {"near_wall_cutoff", "contact_range",    "self_contact_range", "mean_speed_error", "transient",
-        "travel_time",      "mechanism",        "wrapped_support",    "num_wrapped",      "num_gaps",
-        "num_arcs",         "clogged_by",       "mesh_hold",          "failed_by",        "sound_distance",
-        "friction_use",     "healed_crossings", "dwells_known_from",  "last_dwell_at",    "last_dwell_from",
-        "steady_distance",  "steady_time"})
+       {"near_wall_cutoff", "contact_range",   "self_contact_range", "mean_speed_error",  "transient",
+        "travel_time",      "mechanism",       "wrapped_support",    "num_wrapped",       "num_gaps",
+        "num_arcs",         "clogged_by",      "stability",          "mesh_hold",         "failed_by",
+        "sound_distance",   "friction_use",    "healed_crossings",   "dwells_known_from", "last_dwell_at",
+        "last_dwell_from",  "steady_distance", "steady_time"})
     column(name).set_unknown(row);
   EXPECT_EQ(fault_of(row), "near_wall_cutoff is not known") << "this version has it";
   row.model_version = model_version - 1;
@@ -208,7 +208,7 @@ TEST(Unpack, NamesEveryWordThatIsUnknown) {
     EXPECT_EQ(fault_with<std::string>(column, "wrapqed"), column.name + "='wrapqed' " + what);
     ++num_tried;
   }
-  EXPECT_EQ(num_tried, 16);
+  EXPECT_EQ(num_tried, 17);
 }
 
 TEST(Unpack, KeepsWhatIsUnknown) {
@@ -234,6 +234,21 @@ TEST(Unpack, SeparatesNotCloggedFromUnknown) {
   EXPECT_EQ(column("clogged_by").get(row), Value("none"));
   EXPECT_EQ(fault_of(row), "clogged, but clogged_by='none'");
   row.clogged_by.reset();
+  EXPECT_EQ(fault_of(row), "");
+}
+
+TEST(FaultOf, StabilityThatDoesNotFitTheClog) {
+  RunRow row = clogged();
+  for (const Stability no_clog : {Stability::none, Stability::unstable}) {
+    row.stability = no_clog;
+    EXPECT_EQ(fault_of(row), "stability='" + std::string(name(no_clog)) + "', but status='clogged'");
+  }
+  row.stability = Stability::unknown;
+  EXPECT_EQ(fault_of(row), "certified, but stability='unknown'");
+  row.clogged_by = FoundBy::threshold;
+  row.kinetic_energy_ratio = 0.1 * row.parameters.clog_energy;
+  EXPECT_EQ(fault_of(row), "");
+  row.stability.reset();
   EXPECT_EQ(fault_of(row), "");
 }
 
@@ -319,7 +334,9 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
       {"mesh_hold=", [](RunRow& row) { row.mesh_hold = -0.1; }},
       {"friction_use=", [](RunRow& row) { row.friction_use = 1.1; }},
       {"not clogged",
-       [](RunRow& row) { row.friction_use = 0.5, row.status = RunStatus::interrupted, row.clogged_by = {}; }},
+       [](RunRow& row) {
+         row.friction_use = 0.5, row.status = RunStatus::interrupted, row.clogged_by = {}, row.stability = {};
+       }},
       {"failed_by='crossing'", [](RunRow& row) { row.failed_by = FailedBy::crossing; }},
       {"sound_distance=", [](RunRow& row) { row.sound_distance = 1e3; }},
       {"healed crossings", [](RunRow& row) { row.healed_crossings = -2; }},

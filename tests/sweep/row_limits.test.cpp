@@ -24,9 +24,9 @@ RunRow limits_row(const Keys& keys) { return describe(limits_plan(keys).task(0))
 
 TEST(UntestedParameters, AreNoneWithinWhatWasFoundSound) {
   const Keys sound[] = {{},
-                        {{"line-tension", "0.02"}},
+                        {{"line-tension", "0.05"}},
                         {{"line-tension", "10"}, {"vertices", "256"}},
-                        {{"line-tension", "0.02"}, {"vertices", "64"}},
+                        {{"line-tension", "0.05"}, {"vertices", "64"}},
                         {{"preset", "elastic"}, {"line-tension", "0.04"}},
                         {{"preset", "heavy-interface"}, {"line-tension", "0.07"}},
                         {{"receding-angle", "120"}},
@@ -37,9 +37,9 @@ TEST(UntestedParameters, AreNoneWithinWhatWasFoundSound) {
 
 TEST(UntestedParameters, AreNamedWithTheirValueBeyondIt) {
   const std::pair<Keys, const char*> untested[] = {
-      {{{"line-tension", "0"}}, "line-tension=0 (robust is tested from 0.02 to 10)"},
-      {{{"line-tension", "30"}}, "line-tension=30 (robust is tested from 0.02 to 10)"},
-      {{{"line-tension", "0.01"}}, "line-tension=0.01 (robust is tested from 0.02 to 10)"},
+      {{{"line-tension", "0"}}, "line-tension=0 (robust is tested from 0.05 to 10)"},
+      {{{"line-tension", "30"}}, "line-tension=30 (robust is tested from 0.05 to 10)"},
+      {{{"line-tension", "0.01"}}, "line-tension=0.01 (robust is tested from 0.05 to 10)"},
       {{{"preset", "elastic"}, {"line-tension", "0.03"}},
        "line-tension=0.03 (elastic is tested from 0.04 to 10)"},
       {{{"preset", "heavy-interface"}, {"line-tension", "0.06"}},
@@ -64,8 +64,8 @@ TEST(UntestedParameters, OfAPlanAreNamedOnceEach) {
   EXPECT_EQ(untested_parameters(limits_plan({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
             "outside the range tested for soundness (handbook, Which droplets are sound): line-tension=0 "
             "(robust is tested from "
-            "0.02 to 10), "
-            "line-tension=30 (robust is tested from 0.02 to 10)");
+            "0.05 to 10), "
+            "line-tension=30 (robust is tested from 0.05 to 10)");
   EXPECT_TRUE(
       untested_parameters(limits_plan({{"line-tension", "11,12,13,14,15,16"}})).ends_with(", and 2 more"));
 }

@@ -92,6 +92,19 @@ class Workshop:
     def config(self, name: str) -> pathlib.Path:
         return CONFIGS / f"{name}.{self.size}.cfg"
 
+    def _points(self, name: str) -> list[str]:
+        """The arguments for the points file beside a config, whose parameter sets have different meshes. If --set
+        overrides one of its keys, all values of the others are combined."""
+        file = self.config(name).with_suffix(".csv")
+        if not file.exists():
+            return []
+        with file.open(encoding="utf-8", newline="") as lines:
+            points = list(csv.DictReader(lines))
+        overridden = {override.key for override in self.overrides if override.config in (None, name)}
+        if overridden.isdisjoint(points[0]):
+            return ["--points", str(file)]
+        return [f"{key}={','.join(point[key] for point in points)}" for key in points[0] if key not in overridden and all(point[key] for point in points)]
+
     def keys(self, name: str) -> dict[str, str]:
         """The settings of a config, changed by --set."""
         keys = config_keys(self.config(name))
@@ -135,7 +148,7 @@ class Workshop:
 
     def sweep(self, name: str) -> list[Group]:
         """Runs the part of a config's sweep that is missing. @return clogfit's groups"""
-        self._complete(name, self._arguments(name, {}), self.ranks)
+        self._complete(name, self._arguments(name, {}) + self._points(name), self.ranks)
         if name not in self._fits:
             self._fits[name] = json.loads(self._call("clogfit", self.sweep_file(name), "--format", "json"))
         return [group for group in self._fits[name]["groups"] if group["runs"] > 0]

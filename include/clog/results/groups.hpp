@@ -171,6 +171,7 @@ struct Group {
   /// Runs that ended before distances are counted (see group_runs()), left out of all fits.
   int num_left_out = 0;
   int num_on_mesh = 0;  ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
+  int num_stability_unknown = 0;    ///< clogs whose stability is unknown (column stability)
   int num_near_friction_limit = 0;  ///< clogs with almost all friction used (sweep::is_near_friction_limit)
   int num_free = 0;                 ///< runs that met no obstacle
   int num_repeating = 0;            ///< runs that went farther than their array's period

@@ -48,6 +48,7 @@ struct RunRow {
 
   RunStatus status = RunStatus::running;
   std::optional<FoundBy> clogged_by;
+  std::optional<Stability> stability;
   std::optional<FailedBy> failed_by;
   double distance = 0;
   double sound_distance = not_known;

@@ -89,7 +89,9 @@ std::unique_ptr<Droplet> make_disk(const RunParameters& run, const ObstacleArray
 }
 
 Axes x_and_y(const DropletState& state) {
-  Axes axes{.directions = Eigen::SparseMatrix<double>(2 * state.size(), 2 * state.size()), .slide = {}};
+  Axes axes{.directions = Eigen::SparseMatrix<double>(2 * state.size(), 2 * state.size()),
+            .num_tangential = 0,
+            .slide = {}};
   axes.directions.setIdentity();
   return axes;
 }  // NOLINT(clang-analyzer-unix.Malloc): the matrix owns this memory after the move
@@ -98,6 +100,12 @@ std::optional<DropletState> equilibrium_of_disk(const RunParameters& run, const 
                                                 const DropletState& state) {
   SpForces forces(run, obstacles);
   return find_equilibrium(EquilibriumForces::of(forces, x_and_y, true), state);
+}
+
+Stability stability_of_disk(const RunParameters& run, const ObstacleArray& obstacles,
+                            const DropletState& state) {
+  SpForces forces(run, obstacles);
+  return stability_of(EquilibriumForces::of(forces, x_and_y, true), state);
 }
 
 /// A disk cannot hang over an obstacle, so every clog is squeezed.
@@ -122,6 +130,7 @@ const DropletModel soft_disk = {.stiffness_key = "wall-stiffness",
                                 .most_energy_at_release = energy_of_overlaps,
                                 .make = make_disk,
                                 .equilibrium = equilibrium_of_disk,
+                                .stability = stability_of_disk,
                                 .hold = hold_of_disk,
                                 .neck = neck_of_disk};
 

@@ -26,8 +26,9 @@ constexpr int most_rejections = 10;   // number of rejected steps in a row
 constexpr int most_halvings = 10;
 /// Step of the central differences [sigma]: much smaller than a contact's range, much larger than round-off.
 constexpr double difference_step = 1e-6;
-/// Largest force on a point at the equilibrium, divided by the point's weight. The round-off of the contact
-/// forces is 1e-10.
+/// Round-off of the contact forces on a point, divided by the point's weight.
+constexpr double force_round_off = 1e-10;
+/// Largest force on a point at the equilibrium, divided by the point's weight.
 constexpr double force_tolerance = 1e-7;
 /// Largest Newton step that may remain at the equilibrium [sigma].
 constexpr double move_tolerance = 1e-7;
@@ -36,6 +37,10 @@ constexpr double most_left = 0.75;
 /// A correction keeps at least this fraction of the stiffness along a step. A contact that opens during the
 /// step may remove nearly all of this stiffness, and the next step would then be far too long.
 constexpr double least_part = 0.5;
+
+double point_weight(const DropletState& state) {
+  return units::droplet_mass * units::gravity / static_cast<double>(state.size());
+}
 
 MatrixXd symmetric(const MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2; }
 
@@ -56,35 +61,46 @@ bool is_stable(double bound, const MatrixXd& k, bool has_energy) {
   return !has_energy && Eigen::EigenSolver<MatrixXd>(k, false).eigenvalues().real().minCoeff() > bound;
 }
 
-/// The stiffness K, which is minus the derivative of the force, in two parts: K_tt of the vertices along the
-/// interface, and the Schur complement K_nn - K_nt K_tt^-1 K_tn, the stiffness of the shape if the vertices
-/// adapt along the interface. If the vertices were fixed along the interface, the mesh would seem to hold a
+/// The stiffness K, which is minus the derivative of the force, in two parts: K_tt of the points along the
+/// interface, and the Schur complement K_nn - K_nt K_tt^-1 K_tn, the stiffness of the shape if the points
+/// adapt along the interface. If the points were fixed along the interface, the mesh would seem to hold a
 /// droplet that is free to drift aside.
 class Stiffness {
  public:
   explicit Stiffness(bool has_energy) : has_energy_(has_energy) {}
 
-  /// Replaces K. Returns whether the shape resists all displacements by more than `bound` and the vertices
-  /// can adapt; otherwise solve() must not be called.
-  bool set(const MatrixXd& k, double bound) {
-    const Index n = k.rows() / 2;
-    if (!is_definite(0, k.bottomRightCorner(n, n))) return false;
-    normal_along_ = k.topRightCorner(n, n);
+  /// Replaces K. Returns whether the points can adapt; otherwise no other member may be called.
+  bool set(const MatrixXd& k, Index num_tangential) {
+    const Index t = num_tangential, n = k.rows() - t;
+    if (!is_definite(0, k.bottomRightCorner(t, t))) return false;
+    normal_along_ = k.topRightCorner(n, t);
     corrections_.clear();
-    along_.compute(k.bottomRightCorner(n, n));
-    adapting_ = along_.solve(k.bottomLeftCorner(n, n));
+    along_.compute(k.bottomRightCorner(t, t));
+    adapting_ = along_.solve(k.bottomLeftCorner(t, n));
     shape_ = k.topLeftCorner(n, n) - normal_along_ * adapting_;
+    return true;
+  }
+  /// Whether the shape resists all displacements by more than `bound`; otherwise solve() must not be called.
+  bool resists(double bound) {
     if (!is_stable(bound, shape_, has_energy_)) return false;
     shape_factor_.compute(shape_);
     return true;
   }
+  /// Smallest stiffness of the shape: the slowest rate at which a displacement decays under drag, or minus
+  /// the largest one at which it grows.
+  double smallest() const {
+    if (has_energy_)
+      return Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric(shape_), Eigen::EigenvaluesOnly)
+          .eigenvalues()[0];
+    return Eigen::EigenSolver<MatrixXd>(shape_, false).eigenvalues().real().minCoeff();
+  }
   /// The displacement that these forces would cause with this stiffness.
   VectorXd solve(const VectorXd& force) const {
-    const Index n = force.size() / 2;
-    const VectorXd along = along_.solve(force.tail(n));
-    VectorXd move(2 * n);
+    const Index n = normal_along_.rows(), t = normal_along_.cols();
+    const VectorXd along = along_.solve(force.tail(t));
+    VectorXd move(n + t);
     move.head(n) = shape_factor_.solve(force.head(n) - normal_along_ * along);
-    move.tail(n) = along - adapting_ * move.head(n);
+    move.tail(t) = along - adapting_ * move.head(n);
     for (const Correction& correction : corrections_) correction.apply_to(move);
     return move;
   }
@@ -123,9 +139,10 @@ class ForceField {
   const DropletState& state() const { return state_; }
   void move_to(const ArrayXd& position) { state_.position = position; }
 
-  VectorXd force_at(const ArrayXd& position, const Axes& axes) {
+  /// The contact lists are then valid for a stiffness() with this step.
+  VectorXd force_at(const ArrayXd& position, const Axes& axes, double step = difference_step) {
     move_to(position);
-    forces_.update_contacts(state_, {.absolute = 2 * difference_step, .relative = 4 * difference_step});
+    forces_.update_contacts(state_, {.absolute = 2 * step, .relative = 4 * step});
     forces_.evaluate(state_, force_);
     VectorXd force = axes.directions.transpose() * force_.matrix();
     auto along = force.tail(state_.size());
@@ -134,7 +151,7 @@ class ForceField {
   }
 
   /// The stiffness at the position of the last force_at(). The reference is valid until the next call.
-  const MatrixXd& stiffness(const Axes& axes) {
+  const MatrixXd& stiffness(const Axes& axes, double step = difference_step) {
     const ArrayXd middle = state_.position;
     stiffness_.resize(middle.size(), middle.size());
     for (Index k = 0; k < middle.size(); ++k) {
@@ -142,12 +159,12 @@ class ForceField {
         for (SparseMatrix::InnerIterator entry(axes.directions, k); entry; ++entry)
           state_.position[entry.row()] = middle[entry.row()] + distance * entry.value();
       };
-      displace(difference_step);
+      displace(step);
       forces_.evaluate(state_, force_);
-      displace(-difference_step);
+      displace(-step);
       forces_.evaluate(state_, below_);
       displace(0);
-      stiffness_.col(k) = (below_ - force_) / (2 * difference_step);
+      stiffness_.col(k) = (below_ - force_) / (2 * step);
     }
     stiffness_ = axes.directions.transpose() * stiffness_;
     if (axes.slide.size() > 0) hold_slide(axes.slide, stiffness_);
@@ -182,7 +199,7 @@ class Search {
   Search(const EquilibriumForces& forces, const DropletState& initial)
       : forces_(forces),
         initial_(initial),
-        point_weight_(units::droplet_mass * units::gravity / static_cast<double>(initial.size())),
+        point_weight_(point_weight(initial)),
         field_(forces, initial),
         stiffness_(forces.have_energy),
         position_(initial.position),
@@ -191,7 +208,8 @@ class Search {
   std::optional<DropletState> run() {
     for (int computed = 0; computed < most_stiffnesses; ++computed) {
       find_axes_and_force();
-      const bool resists = stiffness_.set(field_.stiffness(axes_), least_stiffness * point_weight_);
+      const bool resists = stiffness_.set(field_.stiffness(axes_), axes_.num_tangential) &&
+                           stiffness_.resists(least_stiffness * point_weight_);
       if (!resists && computed == 0) return std::nullopt;
       if (resists && approach()) {
         if (distance_from(begun_at_) < difference_step && rests_along_own_axes()) return state();
@@ -294,6 +312,23 @@ class Search {
 
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial) {
   return Search(forces, initial).run();
+}
+
+Stability stability_of(const EquilibriumForces& forces, const DropletState& stopped) {
+  ForceField field(forces, stopped);
+  const Axes axes = forces.axes(stopped);
+  Stiffness stiffness(forces.have_energy);
+  const auto smallest_with = [&](double step) -> std::optional<double> {
+    field.force_at(stopped.position, axes, step);
+    if (!stiffness.set(field.stiffness(axes, step), axes.num_tangential)) return std::nullopt;
+    return stiffness.smallest();
+  };
+  const std::optional<double> once = smallest_with(difference_step);
+  const std::optional<double> twice = smallest_with(2 * difference_step);
+  if (!once || !twice) return Stability::unknown;
+  const double error = std::abs(*once - *twice) + force_round_off * point_weight(stopped) / difference_step;
+  if (*once < -error) return Stability::unstable;
+  return *once > error ? Stability::stable : Stability::unknown;
 }
 
 }  // namespace clog

@@ -82,6 +82,9 @@ struct Touched {
   double longest_link = 0;  ///< longest touching edge divided by the radius at which it lies; 0 for walls
 };
 
+/// Share of the support from which on a wrapped obstacle counts among the carriers.
+constexpr double least_share = 0.1;
+
 /// Finds the obstacle that each edge overlaps most (-1: none), and all touched obstacles.
 class Contacts {
  public:
@@ -239,6 +242,9 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& a
   }
   if (support > 0) geometry.wrapped_support = wrapped_support / support;
   if (support > 0) geometry.mesh_hold = mesh_hold / support;
+  for (const Touched& touched : contacts.touched())
+    if (touched.is_wrapped && touched.support > 0 && touched.support >= least_share * support)
+      geometry.carriers.insert(geometry.carriers.end(), touched.circles.begin(), touched.circles.end());
 
   const std::vector<Arc> arcs = find_arcs(polygon, contacts);
   geometry.num_arcs = static_cast<int>(arcs.size());

@@ -73,7 +73,9 @@ std::unique_ptr<Droplet> make_polygon(const RunParameters& run, const ObstacleAr
 Axes axes_of_interface(const DpParameters& dp, const DropletState& state) {
   using Eigen::Index;
   const Index n = state.size();
-  Axes axes{.directions = Eigen::SparseMatrix<double>(2 * n, 2 * n), .slide = Eigen::VectorXd(n)};
+  Axes axes{.directions = Eigen::SparseMatrix<double>(2 * n, 2 * n),
+            .num_tangential = n,
+            .slide = Eigen::VectorXd(n)};
   axes.directions.reserve(Eigen::VectorXi::Constant(2 * n, 2));
   for (Index i = 0; i < n; ++i) {
     const Index next = (i + 1) % n;
@@ -94,14 +96,18 @@ Axes axes_of_interface(const DpParameters& dp, const DropletState& state) {
   return axes;
 }  // NOLINT(clang-analyzer-unix.Malloc): the matrix owns this memory after the move
 
+/// @param forces  must outlive the result, like the run
+EquilibriumForces forces_along_interface(const RunParameters& run, RestForces& forces) {
+  const auto axes = [&run](const DropletState& at) { return axes_of_interface(run.dp, at); };
+  return EquilibriumForces::of(forces, axes, run.dp.perimeter_spring != PerimeterSpring::along);
+}
+
 std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, const ObstacleArray& obstacles,
                                                    const DropletState& state) {
   if (!state.crossings.empty()) return std::nullopt;
   DpForces forces(run, obstacles);
   RestForces rest_forces(run, forces);
-  const auto axes = [&](const DropletState& at) { return axes_of_interface(run.dp, at); };
-  const bool have_energy = run.dp.perimeter_spring != PerimeterSpring::along;
-  const EquilibriumForces asked = EquilibriumForces::of(rest_forces, axes, have_energy);
+  const EquilibriumForces asked = forces_along_interface(run, rest_forces);
   std::optional<DropletState> rest = find_equilibrium(asked, state);
   if (!forces.has_anchors()) return rest;
   // Springs tie the droplet to walls, with anchors that stay fixed during a search. A wall whose limit is
@@ -130,19 +136,30 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   return std::nullopt;
 }
 
-double friction_use(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {
+/// Unknown for an interface that crosses itself or may do so.
+Stability stability_of_polygon(const RunParameters& run, const ObstacleArray& obstacles,
+                               const DropletState& state) {
+  if (run.dp.self_contact == SelfContact::off || !state.crossings.empty()) return Stability::unknown;
+  DpForces forces(run, obstacles);
+  RestForces rest_forces(run, forces);
+  return stability_of(forces_along_interface(run, rest_forces), state);
+}
+
+/// @param circles  that carry the droplet
+double friction_use(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state,
+                    std::span<const Obstacle> circles) {
   DpForces forces(run, obstacles);
   if (!forces.friction().is_on()) return std::numeric_limits<double>::quiet_NaN();
   forces.update_contacts(state, {});
   WallTouches touches(run, obstacles);
-  return forces.friction().use(state, touches.find(state, forces.walls().items()));
+  return forces.friction().use(state, touches.find(state, forces.walls().items()), circles);
 }
 
 Hold hold_of_polygon(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {
   const ClogGeometry geometry = clog_geometry(state, obstacles, run.dp);
   return {.mechanism = geometry.mechanism(),
           .geometry = geometry,
-          .friction_use = friction_use(run, obstacles, state)};
+          .friction_use = friction_use(run, obstacles, state, geometry.carriers)};
 }
 
 double neck_of_polygon(const DropletState& state, double below) {
@@ -163,6 +180,7 @@ const DropletModel deformable_polygon = {.stiffness_key = "line-tension",
                                          .most_energy_at_release = energy_of_interface,
                                          .make = make_polygon,
                                          .equilibrium = equilibrium_of_polygon,
+                                         .stability = stability_of_polygon,
                                          .hold = hold_of_polygon,
                                          .neck = neck_of_polygon};
 

@@ -36,13 +36,17 @@ constexpr double fall_between_searches = 0.1;
 /// If E_k/E_t rises above this multiple of the limit for the first search, this limit applies again.
 constexpr double rise_of_a_moving_droplet = 10;
 
+/// A droplet that has stopped in an unstable balance is looked at again when E_k/E_t has changed by this
+/// factor.
+constexpr double change_between_looks = 10;
+
 /// The run looks for crossings of the interface once in this number of steps, which takes less than 1 % of
 /// its time. No crossing is missed, because parts of the interface that crossed stay crossed. The sound
 /// distance is that of the last of these checks.
 constexpr std::int64_t steps_per_crossing_check = std::int64_t{32} * DropletRun::steps_per_check;
 
 /// Change this whenever the content of a snapshot changes.
-constexpr std::uint64_t snapshot_kind = 0x636c6f6773000005;
+constexpr std::uint64_t snapshot_kind = 0x636c6f6773000006;
 
 /// Whether a snapshot's frame is possible. @param way  largest distance of any droplet of the run [sigma]
 bool is_in_range(const LocalFrame& frame, const Period& period, double way) {
@@ -137,6 +141,7 @@ void DropletRun::start_afresh_and_take_snapshot() {
   bytes.put(start_);
   bytes.put(steps_done_);
   bytes.put(quiet_checks_);
+  bytes.put(balanced_at_);
   bytes.put(next_search_);
   bytes.put(sound_distance_);
   bytes.put(was_crossed_);
@@ -167,6 +172,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     resumed.end_ = scene_of(run).way(run, resumed.start_frame_.global(resumed.start_));
     rest.get(resumed.steps_done_);
     rest.get(resumed.quiet_checks_);
+    rest.get(resumed.balanced_at_);
     rest.get(resumed.next_search_);
     rest.get(resumed.sound_distance_);
     rest.get(resumed.was_crossed_);
@@ -193,8 +199,8 @@ bool DropletRun::is_in_range() const {
          clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&
          std::abs(sound_distance_) <= farthest_way(run_) + obstacles_->period().along() &&
          steps_done_ <= max_steps_ && steps_done_ % steps_per_snapshot == 0 && quiet_checks_ >= 0 &&
-         quiet_checks_ <= 1 && next_search_ > 0 && std::isfinite(next_search_) &&
-         kinetic_energy_ratio() < diverged_energy_ratio;
+         quiet_checks_ <= 2 && !(balanced_at_ < 0 || balanced_at_ >= run_.clog_energy) && next_search_ > 0 &&
+         std::isfinite(next_search_) && kinetic_energy_ratio() < diverged_energy_ratio;
 }
 
 void DropletRun::check() {
@@ -222,7 +228,7 @@ void DropletRun::check() {
     status_ = RunStatus::broken;
     return;
   }
-  if (is_quiet(energy_ratio))
+  if (has_stopped(energy_ratio))
     clogged_by_ = ClogDetection::threshold;
   else if (run_.clog_detection == ClogDetection::certified && finds_rest(energy_ratio))
     clogged_by_ = ClogDetection::certified;
@@ -271,10 +277,16 @@ bool DropletRun::has_broken() {
   return width < run_.dp.break_up_neck;
 }
 
-bool DropletRun::is_quiet(double energy_ratio) {
+bool DropletRun::has_stopped(double energy_ratio) {
   const bool is_quiet = energy_ratio < run_.clog_energy && has_fallen();
-  quiet_checks_ = is_quiet ? quiet_checks_ + 1 : 0;
-  return quiet_checks_ >= 2;
+  quiet_checks_ = is_quiet ? std::min(quiet_checks_ + 1, 2) : 0;
+  if (!is_quiet) balanced_at_ = std::numeric_limits<double>::quiet_NaN();
+  const bool was_looked_at = energy_ratio <= change_between_looks * balanced_at_ &&
+                             change_between_looks * energy_ratio >= balanced_at_;
+  if (quiet_checks_ < 2 || was_looked_at) return false;
+  stability_ = model_of(run_).stability(run_, *obstacles_, droplet_->state());
+  balanced_at_ = energy_ratio;
+  return stability_ != Stability::unstable;
 }
 
 bool DropletRun::finds_rest(double energy_ratio) {
@@ -286,6 +298,7 @@ bool DropletRun::finds_rest(double energy_ratio) {
   std::optional<DropletState> rest = model.equilibrium(run_, *obstacles_, droplet_->state());
   if (!rest || model.neck(*rest, run_.dp.break_up_neck) < no_neck) return false;
   at_rest_ = model.make(run_, *obstacles_, std::move(*rest));
+  stability_ = Stability::stable;
   return true;
 }
 
@@ -311,6 +324,7 @@ RunResult DropletRun::result() const {
   if (status_ == RunStatus::clogged) hold = model_of(run_).hold(run_, *obstacles_, last.state());
   return {.status = status_,
           .clogged_by = clogged_by_,
+          .stability = status_ == RunStatus::clogged ? stability_ : Stability::none,
           .failed_by = failed_by_,
           .distance = displaced[0],
           .sound_distance = sound_distance_,

@@ -94,6 +94,8 @@ TEST_P(Certified, ADropletInAGapClogsWhereItComesToRest) {
   ASSERT_EQ(certified.status, RunStatus::clogged);
   EXPECT_EQ(waited.clogged_by, ClogDetection::threshold);
   EXPECT_EQ(certified.clogged_by, ClogDetection::certified);
+  EXPECT_EQ(waited.stability, Stability::stable);
+  EXPECT_EQ(certified.stability, Stability::stable);
   EXPECT_NEAR(certified.distance, waited.distance, 1e-3);
   EXPECT_NEAR(certified.lateral, waited.lateral, 1e-3);
   EXPECT_NEAR(certified.shape_parameter, waited.shape_parameter, 1e-3);
@@ -109,6 +111,29 @@ TEST_P(Certified, ADropletThatBalancesOnAnObstacleSlipsOff) {
     if (balanced.time() > 10) slowest = std::min(slowest, balanced.kinetic_energy_ratio());
   EXPECT_LT(slowest, 5e-5) << "it never looked as if it were at rest";
   EXPECT_EQ(balanced.result().status, RunStatus::passed);
+}
+
+TEST_P(Certified, ADropletThatStopsInABalanceRunsOn) {
+  RunParameters run = parameters();
+  run.clog_energy = 1e-14;
+  DropletRun balanced = falls_onto(run, single, 10 + 1e-12);
+  std::vector<std::vector<std::byte>> snapshots;
+  double slowest = 1;
+  while (!balanced.advance(1)) {
+    if (balanced.time() > 10) slowest = std::min(slowest, balanced.kinetic_energy_ratio());
+    if (snapshots.empty() || balanced.snapshot() != snapshots.back())
+      snapshots.push_back(balanced.snapshot());
+  }
+  EXPECT_LT(slowest, 0.1 * run.clog_energy) << "it did not stop";
+  EXPECT_EQ(balanced.result().status, RunStatus::passed);
+  EXPECT_EQ(balanced.result().stability, Stability::none);
+  const auto obstacles = std::make_shared<ObstacleArray>(20, single);
+  for (const std::vector<std::byte>& snapshot : snapshots) {
+    if (snapshot.empty()) continue;
+    RunResult resumed = finished(DropletRun::resume(balanced.parameters(), obstacles, snapshot));
+    EXPECT_EQ(resumed.steps, balanced.result().steps);
+    EXPECT_EQ(resumed.distance, balanced.result().distance);
+  }
 }
 
 TEST_P(Certified, TheCourseOfARunDoesNotDependOnIt) {
@@ -151,6 +176,7 @@ TEST_P(Certified, ADropletOnAFlatWallCouldDriftAside) {
   const RunResult result = finished(DropletRun(test::onto_wall(run)));
   EXPECT_EQ(result.status, RunStatus::clogged);
   EXPECT_EQ(result.clogged_by, ClogDetection::threshold);
+  EXPECT_EQ(result.stability, Stability::unknown);
 }
 
 TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
@@ -220,7 +246,8 @@ class PointsWithContacts {
   }
   std::optional<DropletState> found_from(const Eigen::ArrayXd& position) {
     const auto along_coordinates = [](const DropletState&) {
-      Axes axes{.directions = Eigen::SparseMatrix<double>(size, size), .slide = {}};
+      Axes axes{
+          .directions = Eigen::SparseMatrix<double>(size, size), .num_tangential = num_points, .slide = {}};
       axes.directions.setIdentity();
       return axes;
     };  // NOLINT(clang-analyzer-unix.Malloc): the matrix owns this memory after the move
@@ -292,8 +319,24 @@ TEST(Equilibrium, OnTopOfAnObstacleIsRefused) {
   const RunParameters run = resolve(soft_disk());
   Eigen::ArrayXd position(2);
   position << 10 - 0.65 + pi / (16 * 5), 10;  // the forces balance here
-  EXPECT_FALSE(
-      model_of(run).equilibrium(run, ObstacleArray(20, single), test::state_of(position)).has_value());
+  const DropletState state = test::state_of(position);
+  EXPECT_FALSE(model_of(run).equilibrium(run, ObstacleArray(20, single), state).has_value());
+  // The stiffness across the flow is minus the contact's force divided by the distance of the centres.
+  EXPECT_EQ(model_of(run).stability(run, ObstacleArray(20, single), state), Stability::unstable);
+}
+
+TEST(Equilibrium, IsOfUnknownStabilityWithoutResistanceOrSelfContact) {
+  const RunParameters disk = resolve(soft_disk());
+  EXPECT_EQ(model_of(disk).stability(disk, test::no_obstacles(), droplet_above(disk, 10)),
+            Stability::unknown);
+  RunParameters run = robust();
+  DropletRun held = falls_onto(run, narrow_gap);
+  while (!held.advance(100)) continue;
+  run = held.parameters();
+  const auto of_rest = [&] { return model_of(run).stability(run, held.obstacles(), held.droplet().state()); };
+  EXPECT_EQ(of_rest(), Stability::stable);
+  run.dp.self_contact = SelfContact::off;
+  EXPECT_EQ(of_rest(), Stability::unknown);
 }
 
 /// A run through an orifice with round tips. Droplets with line tensions up to about 1.26 pass this orifice.

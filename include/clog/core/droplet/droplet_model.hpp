@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "clog/core/droplet/droplet.hpp"
+#include "clog/core/droplet/equilibrium.hpp"
 #include "clog/core/droplet/hold.hpp"
 #include "clog/core/parameters/parameters.hpp"
 #include "clog/core/world/obstacle_array.hpp"
@@ -59,6 +60,8 @@ struct DropletModel {
   /// The equilibrium that the droplet approaches, see find_equilibrium().
   std::optional<DropletState> (*equilibrium)(const RunParameters& run, const ObstacleArray& obstacles,
                                              const DropletState& state);
+  /// The stability of a droplet that has stopped, see stability_of().
+  Stability (*stability)(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state);
   /// The mechanism that holds a clogged droplet.
   Hold (*hold)(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state);
   /// Width of the droplet's thinnest neck; no_neck if none is narrower than `below` [sigma].

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/tools/words.hpp"
 
 namespace clog {
 
@@ -17,9 +18,10 @@ inline constexpr double farthest_rest = 0.03;
 inline constexpr double least_stiffness = 1e-3;
 
 /// Coordinates of a displacement: first the normal components of all vertices (perpendicular to the chord
-/// between a vertex's neighbours), then the tangential components. For the soft disk: x, y.
+/// between a vertex's neighbours), then the tangential components. For the soft disk: x, y, both normal.
 struct Axes {
   Eigen::SparseMatrix<double> directions;  ///< orthonormal columns over all x, then all y
+  Eigen::Index num_tangential;  ///< number of the last columns, in which points slide along the interface
   /// Unit vector, in the tangential coordinates, of the motion in which all vertices slide along the
   /// interface; empty if this motion is tested like any other. A slide by one edge maps the polygon onto
   /// itself with its vertices renumbered, and does not move the droplet. The energy changes along this slide
@@ -60,5 +62,27 @@ struct EquilibriumForces {
 ///
 /// @param initial  the droplet; its velocities have no effect
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial);
+
+/// Whether a droplet that has stopped would return after any small displacement.
+enum class Stability {
+  none,  ///< the droplet has not stopped
+  stable,
+  unstable,  ///< it balances: some displacement grows
+  unknown    ///< the differences of forces do not decide
+};
+template <>
+struct Words<Stability> {
+  static constexpr Worded<Stability> all[] = {{Stability::none, "none"},
+                                              {Stability::stable, "stable"},
+                                              {Stability::unstable, "unstable"},
+                                              {Stability::unknown, "unknown"}};
+};
+
+/// The stability of a droplet on which the forces vanish nearly, from its smallest stiffness if the points
+/// adapt along the interface. The differences of forces from which the stiffness follows are taken with one
+/// step and with twice this step. The droplet is stable or unstable if the smallest stiffness is positive or
+/// negative by more than these two differ, and by more than round-off; otherwise, and if the points cannot
+/// adapt, the stability is unknown.
+Stability stability_of(const EquilibriumForces& forces, const DropletState& stopped);
 
 }  // namespace clog

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <limits>
+#include <vector>
 
 #include "clog/core/tools/words.hpp"
+#include "clog/core/world/obstacle_array.hpp"
 
 namespace clog {
 
@@ -32,6 +34,9 @@ struct ClogGeometry {
   /// its part of the support times x^2/16, with x the length of the longest edge on the obstacle divided by
   /// the radius at which this edge lies. NaN without support.
   double mesh_hold = std::numeric_limits<double>::quiet_NaN();
+  /// Circles of the wrapped obstacles that give at least a tenth of the support, in the droplet's
+  /// coordinates.
+  std::vector<Obstacle> carriers{};
 
   /// `wrapped` if wrapped obstacles give at least two thirds of the support, `hybrid` if they give more than
   /// a third, otherwise `squeezed` if there is a gap, and `none` if there is no gap.
@@ -42,7 +47,7 @@ struct ClogGeometry {
 struct Hold {
   ClogMechanism mechanism = ClogMechanism::none;
   ClogGeometry geometry;  ///< geometry of a polygon; unset for a soft disk
-  /// See WallFriction::use(); NaN if friction holds nothing.
+  /// See WallFriction::use(), of the carriers; NaN without carriers or friction.
   double friction_use = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "clog/core/droplet/droplet.hpp"
+#include "clog/core/droplet/equilibrium.hpp"
 #include "clog/core/droplet/hold.hpp"
 #include "clog/core/parameters/parameters.hpp"
 #include "clog/core/run/contact_record.hpp"
@@ -67,6 +68,7 @@ struct ThinnestNeck {
 struct RunResult {
   RunStatus status = RunStatus::running;
   std::optional<ClogDetection> clogged_by;  ///< how a clog was found; empty unless clogged
+  Stability stability = Stability::none;    ///< of a clogged droplet: stable or unknown
   FailedBy failed_by = FailedBy::none;
   double distance = 0;  ///< displacement along the flow since release, certified: at rest [sigma]
   /// `distance` at the last check that found the droplet whole and, with self-contact, not crossing itself
@@ -86,8 +88,7 @@ struct RunResult {
   ThinnestNeck neck;
   /// Number of times that a vertex of the interface passed through another part of it and was pushed back.
   std::int64_t healed_crossings = 0;
-  /// For a clogged droplet held by friction: the largest, over the posts, of the net tangential force about
-  /// the post's centre divided by the largest that the walls could bear in this direction; NaN if unset.
+  /// For a clogged droplet that hangs over posts with friction, see WallFriction::use(); otherwise NaN.
   double friction_use = std::numeric_limits<double>::quiet_NaN();
   /// Where the centre of mass was released, in the coordinates of user-supplied circles; NaN elsewhere
   /// [sigma].
@@ -99,7 +100,8 @@ struct RunResult {
 /// One droplet followed from its release until it clogs, breaks up, passes, or reaches max-time.
 ///
 /// The droplet counts as clogged when E_k/E_t (E_t: kinetic energy at terminal speed) has been below
-/// clog-energy at two consecutive checks, after at least ten relaxation times V_t/g. With
+/// clog-energy at two consecutive checks, after at least ten relaxation times V_t/g, unless stability_of()
+/// finds that it balances: then the run goes on, and looks again when E_k/E_t has changed tenfold. With
 /// clog-detection=certified it also counts as soon as find_equilibrium() finds where it will rest. A droplet
 /// with a neck thinner than break-up-neck has broken up, however close to rest it is; an equilibrium with
 /// such a neck does not count. If the interface crosses itself although self-contact is on, the run fails.
@@ -163,9 +165,12 @@ class DropletRun {
   std::int64_t steps_done_ = 0;
   std::int64_t max_steps_;
   double first_quiet_time_;
-  int quiet_checks_ = 0;
+  int quiet_checks_ = 0;  // at most 2
+  // E_k/E_t at the last look at the droplet's stability, NaN if it moves since
+  double balanced_at_ = std::numeric_limits<double>::quiet_NaN();
   RunStatus status_ = RunStatus::running;
   std::optional<ClogDetection> clogged_by_;
+  Stability stability_ = Stability::none;
   FailedBy failed_by_ = FailedBy::none;
   double sound_distance_ = 0;
   double next_search_;                // E_k/E_t below which the run searches for an equilibrium
@@ -190,7 +195,7 @@ class DropletRun {
   bool has_broken();
   bool has_crossed_itself() const;
   Eigen::Array2d last_displacement() const;
-  bool is_quiet(double energy_ratio);
+  bool has_stopped(double energy_ratio);
   bool finds_rest(double energy_ratio);
 };
 

@@ -32,32 +32,27 @@ double WallFriction::energy(const DropletState& state) const {
   return energy;
 }
 
-double WallFriction::use(const DropletState& state, std::span<const WallTouch> touches) const {
-  struct Moments {
-    WallPlace centre;
-    double carried = 0, bearable = 0;
-  };
-  std::vector<Moments> circles;
-  const auto on = [&](const WallPlace& wall) -> Moments& {
-    const WallPlace centre{.x = wall.x, .y = wall.y};
-    const auto known =
-        std::ranges::find_if(circles, [&](const Moments& one) { return one.centre.is(centre); });
-    return known != circles.end() ? *known : circles.emplace_back(Moments{.centre = centre});
-  };
-  for (const WallTouch& touch : touches)
-    if (touch.wall.wedge < 0 && touch.foot.gradient > 0)
-      on(touch.wall).bearable +=
-          (coefficient_ * touch.push + traction_ * touch.wetted) * touch.wall.radius / touch.foot.gradient;
-  for (const WallAnchor& anchor : state.anchors) {
-    if (anchor.wall.wedge >= 0) continue;
-    const WallFoot at = foot(state, anchor);
-    const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
-    on(anchor.wall).carried += stiffness_ * anchor.slip_of_force(slip) * anchor.wall.radius;
-  }
+double WallFriction::use(const DropletState& state, std::span<const WallTouch> touches,
+                         std::span<const Obstacle> circles) const {
+  constexpr double same_centre = 1e-6;  // rounding errors of one centre in two lists [sigma]
   double most = std::numeric_limits<double>::quiet_NaN();
-  for (const Moments& circle : circles)
-    if (circle.bearable > 0)
-      most = std::fmax(most, std::min(1.0, std::abs(circle.carried) / circle.bearable));
+  for (const Obstacle& circle : circles) {
+    const auto is_on = [&](const WallPlace& wall) {
+      return wall.wedge < 0 && std::hypot(wall.x - circle.x, wall.y - circle.y) < same_centre;
+    };
+    double carried = 0, bearable = 0;
+    for (const WallTouch& touch : touches)
+      if (is_on(touch.wall) && touch.foot.gradient > 0)
+        bearable +=
+            (coefficient_ * touch.push + traction_ * touch.wetted) * touch.wall.radius / touch.foot.gradient;
+    for (const WallAnchor& anchor : state.anchors) {
+      if (!is_on(anchor.wall)) continue;
+      const WallFoot at = foot(state, anchor);
+      const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
+      carried += stiffness_ * anchor.slip_of_force(slip) * anchor.wall.radius;
+    }
+    if (bearable > 0) most = std::fmax(most, std::min(1.0, std::abs(carried) / bearable));
+  }
   return most;
 }
 

@@ -191,7 +191,10 @@ TEST(WallFriction, IsUsedUpWhereALightRopeBeginsToSlide) {
           {i, disc, radius * std::cos(angle - slip / radius), radius * std::sin(angle - slip / radius)});
     }
     const double loaded = std::exp(mu * pi), least = std::exp(mu * (1 - share) * pi);
-    EXPECT_NEAR(friction.use(state, touches), (loaded - least) / (loaded - 1), 3e-3) << share;
+    EXPECT_NEAR(friction.use(state, touches, {{{0, 0, radius}}}), (loaded - least) / (loaded - 1), 3e-3)
+        << share;
+    EXPECT_TRUE(std::isnan(friction.use(state, touches, {{{1, 0, radius}}}))) << "another post";
+    EXPECT_TRUE(std::isnan(friction.use(state, touches, {})));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/polygon/contact/wall_touches.hpp"
+#include "clog/core/world/obstacle_array.hpp"
 #include "clog/core/world/wedge.hpp"
 
 namespace clog {
@@ -35,9 +36,10 @@ class WallFriction {
   double energy(const DropletState& state) const;
   /// How near the droplet is to sliding around a circle: the moment of the springs' forces about the circle's
   /// centre, divided by the largest moment that the walls' present pushes can bear; 1 where the interface
-  /// begins to slide. All layers on the circle count together. Returns the largest of all circles; NaN if no
-  /// circle holds the droplet.
-  double use(const DropletState& state, std::span<const WallTouch> touches) const;
+  /// begins to slide. All layers on the circle count together. Returns the largest of these circles; NaN if
+  /// none touches the droplet. @param circles  in the droplet's coordinates
+  double use(const DropletState& state, std::span<const WallTouch> touches,
+             std::span<const Obstacle> circles) const;
   /// Moves anchors whose springs exceed the limit, adds anchors of new contacts, and removes those of ended
   /// contacts.
   /// @param state  the droplet whose anchors are updated
