@@ -217,12 +217,13 @@ void DropletRun::check() {
     failed_by_ = FailedBy::divergence;
     return;
   }
-  record_.add(time(), displacement()[0]);
-  steady_.add(time(), displacement()[0]);
-  dwells_.add(time(), displacement()[0]);
-  contacts_.add(droplet_->state(), *obstacles_, displacement_of({0, 0}), displacement()[0]);
+  const double sunk = displacement()[0];
+  record_.add(time(), sunk);
+  steady_.add(time(), sunk);
+  dwells_.add(time(), sunk);
+  contacts_.add(droplet_->state(), *obstacles_, displacement_of({0, 0}), sunk);
   if (is_passage())
-    passage_.add(run_.channel.start + displacement()[0], shape.shape_parameter(),
+    passage_.add(run_.channel.start + sunk, shape.shape_parameter(),
                  droplet_->centre_velocity()[0] / run_.drag.terminal_speed, has_fallen());
   if (has_broken()) {
     status_ = RunStatus::broken;
@@ -234,7 +235,7 @@ void DropletRun::check() {
     clogged_by_ = ClogDetection::certified;
   if (clogged_by_)
     status_ = RunStatus::clogged;
-  else if (displacement()[0] >= end_)
+  else if (sunk >= end_)
     status_ = RunStatus::passed;
   else if (steps_done_ >= max_steps_)
     status_ = RunStatus::flowing;
