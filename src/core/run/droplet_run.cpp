@@ -199,7 +199,8 @@ bool DropletRun::is_in_range() const {
          clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&
          std::abs(sound_distance_) <= farthest_way(run_) + obstacles_->period().along() &&
          steps_done_ <= max_steps_ && steps_done_ % steps_per_snapshot == 0 && quiet_checks_ >= 0 &&
-         quiet_checks_ <= 2 && !(balanced_at_ < 0 || balanced_at_ >= run_.clog_energy) && next_search_ > 0 &&
+         quiet_checks_ <= steps_done_ / steps_per_check &&
+         !(balanced_at_ < 0 || balanced_at_ >= run_.clog_energy) && next_search_ > 0 &&
          std::isfinite(next_search_) && kinetic_energy_ratio() < diverged_energy_ratio;
 }
 
@@ -280,7 +281,7 @@ bool DropletRun::has_broken() {
 
 bool DropletRun::has_stopped(double energy_ratio) {
   const bool is_quiet = energy_ratio < run_.clog_energy && has_fallen();
-  quiet_checks_ = is_quiet ? std::min(quiet_checks_ + 1, 2) : 0;
+  quiet_checks_ = is_quiet ? quiet_checks_ + 1 : 0;
   if (!is_quiet) balanced_at_ = std::numeric_limits<double>::quiet_NaN();
   const bool was_looked_at = energy_ratio <= change_between_looks * balanced_at_ &&
                              change_between_looks * energy_ratio >= balanced_at_;
