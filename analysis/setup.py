@@ -1,5 +1,5 @@
-"""Adds files of ../jobs to the package: the configs and points of the figures, and the settings of mpirun. So git needs only one
-copy of these files."""
+"""Adds files of ../jobs to the package: the configs and points of the figures, and the settings of mpirun. So git needs
+only one copy of these files."""
 
 import pathlib
 import shutil
