@@ -1,5 +1,5 @@
-"""Adds files of ../jobs to the package: the configs of the figures, and the settings of mpirun. So git needs only one
-copy of these files."""
+"""Adds files of ../jobs to the package: the configs and points of the figures, and the settings of mpirun. So git needs
+only one copy of these files."""
 
 import pathlib
 import shutil
@@ -14,7 +14,8 @@ JOBS = pathlib.Path(__file__).resolve().parents[1] / "jobs"
 class BuildWithJobs(build_py):
     def run(self) -> None:
         super().run()
-        for source in (JOBS / "mpi-settings.sh", *sorted((JOBS / "figures").glob("*.cfg"))):
+        figures = JOBS / "figures"
+        for source in (JOBS / "mpi-settings.sh", *sorted(figures.glob("*.cfg")), *sorted(figures.glob("*.csv"))):
             copy = pathlib.Path(self.build_lib) / "clogsweep" / "jobs" / source.relative_to(JOBS)
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(source, copy)

@@ -202,7 +202,7 @@ class InstalledByPip(unittest.TestCase):
         said = self.called(self.venv / "bin/python", "-c", "from clogsweep.paper import workshop; print(workshop.CONFIGS)")
         configs = pathlib.Path(said.strip())
         self.assertEqual(configs.parents[1].parent, next(self.venv.glob("lib/python3*")) / "site-packages")
-        names = sorted(path.name for path in (ROOT / "jobs/figures").glob("*.cfg"))
+        names = sorted(path.name for path in (ROOT / "jobs/figures").iterdir() if path.suffix in (".cfg", ".csv"))
         self.assertEqual(sorted(path.name for path in configs.iterdir()), names)
         for name in names:
             self.assertEqual((configs / name).read_bytes(), (ROOT / "jobs/figures" / name).read_bytes(), name)

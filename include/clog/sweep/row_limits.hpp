@@ -44,8 +44,8 @@ double weight_borne_by_friction(const DpParameters& dp);
 /// every droplet that hangs over obstacles (docs/explanation/wrapped.md).
 bool may_hang_on_mesh(const RunRow& row);
 /// Largest friction_use of a clog that finer meshes hold, too. Meshes of 256 to 1024 vertices agree within
-/// 5 % on how far beside a post a droplet is held (docs/notes/2026-11-28-layers.md). Beyond the limit, a finer
-/// mesh may let the droplet go.
+/// 5 % on how far beside a post a droplet is held (docs/notes/2026-11-28-layers.md). Beyond the limit, a
+/// finer mesh may let the droplet go.
 inline constexpr double tolerated_friction_use = 0.95;
 /// From this friction_use on, the droplet slid around a post until the friction held it. So the force that
 /// drives it falls in the direction of sliding, and it would stop close by on other meshes, too.

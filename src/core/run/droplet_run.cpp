@@ -199,7 +199,8 @@ bool DropletRun::is_in_range() const {
          clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&
          std::abs(sound_distance_) <= farthest_way(run_) + obstacles_->period().along() &&
          steps_done_ <= max_steps_ && steps_done_ % steps_per_snapshot == 0 && quiet_checks_ >= 0 &&
-         quiet_checks_ <= 2 && !(balanced_at_ < 0 || balanced_at_ >= run_.clog_energy) && next_search_ > 0 &&
+         quiet_checks_ <= steps_done_ / steps_per_check &&
+         !(balanced_at_ < 0 || balanced_at_ >= run_.clog_energy) && next_search_ > 0 &&
          std::isfinite(next_search_) && kinetic_energy_ratio() < diverged_energy_ratio;
 }
 
@@ -217,12 +218,13 @@ void DropletRun::check() {
     failed_by_ = FailedBy::divergence;
     return;
   }
-  record_.add(time(), displacement()[0]);
-  steady_.add(time(), displacement()[0]);
-  dwells_.add(time(), displacement()[0]);
-  contacts_.add(droplet_->state(), *obstacles_, displacement_of({0, 0}), displacement()[0]);
+  const double sunk = displacement()[0];
+  record_.add(time(), sunk);
+  steady_.add(time(), sunk);
+  dwells_.add(time(), sunk);
+  contacts_.add(droplet_->state(), *obstacles_, displacement_of({0, 0}), sunk);
   if (is_passage())
-    passage_.add(run_.channel.start + displacement()[0], shape.shape_parameter(),
+    passage_.add(run_.channel.start + sunk, shape.shape_parameter(),
                  droplet_->centre_velocity()[0] / run_.drag.terminal_speed, has_fallen());
   if (has_broken()) {
     status_ = RunStatus::broken;
@@ -234,7 +236,7 @@ void DropletRun::check() {
     clogged_by_ = ClogDetection::certified;
   if (clogged_by_)
     status_ = RunStatus::clogged;
-  else if (displacement()[0] >= end_)
+  else if (sunk >= end_)
     status_ = RunStatus::passed;
   else if (steps_done_ >= max_steps_)
     status_ = RunStatus::flowing;
@@ -279,7 +281,7 @@ bool DropletRun::has_broken() {
 
 bool DropletRun::has_stopped(double energy_ratio) {
   const bool is_quiet = energy_ratio < run_.clog_energy && has_fallen();
-  quiet_checks_ = is_quiet ? std::min(quiet_checks_ + 1, 2) : 0;
+  quiet_checks_ = is_quiet ? quiet_checks_ + 1 : 0;
   if (!is_quiet) balanced_at_ = std::numeric_limits<double>::quiet_NaN();
   const bool was_looked_at = energy_ratio <= change_between_looks * balanced_at_ &&
                              change_between_looks * energy_ratio >= balanced_at_;

@@ -165,7 +165,7 @@ class DropletRun {
   std::int64_t steps_done_ = 0;
   std::int64_t max_steps_;
   double first_quiet_time_;
-  int quiet_checks_ = 0;  // at most 2
+  int quiet_checks_ = 0;
   // E_k/E_t at the last look at the droplet's stability, NaN if it moves since
   double balanced_at_ = std::numeric_limits<double>::quiet_NaN();
   RunStatus status_ = RunStatus::running;

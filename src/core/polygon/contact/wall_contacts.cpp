@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "clog/core/droplet/shape.hpp"
 
@@ -126,28 +127,23 @@ void WallContacts::list_by_edge(const Eigen::ArrayXd& position, const Eigen::Arr
     bounds_.push_back(bounds);
   }
   along_.assign(1, 0);
-  for (int i = 0; i < n; ++i)
-    along_.push_back(along_.back() + (point(2 * i + 2) - point(2 * i)).matrix().norm());
+  longest_edge_ = 0;
+  for (int i = 0; i < n; ++i) {
+    const double length = (point(2 * i + 2) - point(2 * i)).matrix().norm();
+    longest_edge_ = std::max(longest_edge_, length);
+    along_.push_back(along_.back() + length);
+  }
   for (const Obstacle& circle : nearby_) {
     find_layers(circle, position, fine);
-    const int highest = *std::ranges::max_element(layer_of_);
-    for (int layer = 0; layer <= highest; ++layer)
-      for (int first = 0; first < n; first += edges_per_group) {
-        Item item{circle.x,
-                  circle.y,
-                  circle.radius + range_ + layer * film_,
-                  first / edges_per_group,
-                  0,
-                  static_cast<std::uint8_t>(layer)};
-        for (int i = first; i < std::min(first + edges_per_group, n); ++i)
-          if (layer_of_[static_cast<std::size_t>(i)] == layer)
-            item.edges |= static_cast<std::uint8_t>(1u << (i - first));
-        if (item.edges != 0) items_.push_back(item);
-      }
+    for (int layer = 0; layer <= highest_layer; ++layer)
+      for (const NearbyGroup& one : nearby_groups_)
+        if (one.edges[static_cast<std::size_t>(layer)] != 0)
+          items_.push_back({circle.x, circle.y, circle.radius + range_ + layer * film_, one.group,
+                            one.edges[static_cast<std::size_t>(layer)], static_cast<std::uint8_t>(layer)});
   }
 }
 
-/// Fills layer_of_.
+/// Fills nearby_groups_.
 void WallContacts::find_layers(const Obstacle& circle, const Eigen::ArrayXd& position,
                                const Eigen::ArrayXd& fine) {
   constexpr double rounding = 1e-12;
@@ -155,11 +151,15 @@ void WallContacts::find_layers(const Obstacle& circle, const Eigen::ArrayXd& pos
   const Eigen::Array2d centre{circle.x, circle.y};
   const double lowest = circle.radius + range_;  // distance of layer 0 from the centre
   const double far = (lowest + highest_layer * film_ + skin_) * (1 + rounding);
-  layer_of_.assign(static_cast<std::size_t>(n), -1);
-  for (std::size_t group = 0; group < bounds_.size(); ++group) {
-    const Bounds& bounds = bounds_[group];
-    if ((bounds.least - centre).max(centre - bounds.most).max(0).square().sum() > far * far) continue;
-    const int first = static_cast<int>(group) * edges_per_group;
+  // The middle of an edge that the circle may touch is nearer than this, and so are the parts below it.
+  const double farthest_middle = far + longest_edge_;
+  nearby_groups_.clear();
+  for (int group = 0; group < static_cast<int>(bounds_.size()); ++group)
+    if (bounds_[group].distance2(centre) <= farthest_middle * farthest_middle)
+      nearby_groups_.push_back({.group = group});
+  for (NearbyGroup& one : nearby_groups_) {
+    if (bounds_[one.group].distance2(centre) > far * far) continue;
+    const int first = one.group * edges_per_group;
     for (int i = first; i < std::min(first + edges_per_group, n); ++i) {
       const int end = 2 * i + 2 < 2 * n ? 2 * i + 2 : 0;
       const Eigen::Array2d begin{fine[2 * i], fine[2 * n + 2 * i]};
@@ -173,34 +173,45 @@ void WallContacts::find_layers(const Obstacle& circle, const Eigen::ArrayXd& pos
         layer =
             std::min({num_parts_below(circle, i, middle, position), static_cast<int>(fit), highest_layer});
       }
-      if (nearest - lowest - layer * film_ <= skin_) layer_of_[static_cast<std::size_t>(i)] = layer;
+      if (nearest - lowest - layer * film_ <= skin_)
+        one.edges[static_cast<std::size_t>(layer)] |= static_cast<std::uint8_t>(1u << (i - first));
     }
   }
 }
 
-/// Counts how often the contour crosses the line from the circle's centre to a place on an edge.
+/// Counts how often the contour crosses the line from the circle's centre to a place on an edge of a group in
+/// nearby_groups_.
 int WallContacts::num_parts_below(const Obstacle& circle, int edge, const Eigen::Array2d& place,
                                   const Eigen::ArrayXd& position) const {
   const int n = static_cast<int>(num_points_);
-  const Eigen::Array2d centre{circle.x, circle.y}, way = place - centre;
-  const Eigen::Array2d least = centre.min(place), most = centre.max(place);
-  const auto cross = [](const Eigen::Array2d& a, const Eigen::Array2d& b) {
-    return a[0] * b[1] - a[1] * b[0];
+  const double* const x = position.data();
+  const double* const y = x + n;
+  const Eigen::Array2d centre{circle.x, circle.y};
+  const Bounds line{centre.min(place), centre.max(place)};
+  const double way_x = place[0] - circle.x, way_y = place[1] - circle.y;
+  const auto is_left = [&](int i) { return way_x * (y[i] - circle.y) - way_y * (x[i] - circle.x) > 0; };
+  const auto reaches_across = [&](int begin, int end) {
+    const double along_x = x[end] - x[begin], along_y = y[end] - y[begin];
+    const auto is_left_of_edge = [&](double px, double py) {
+      return along_x * (py - y[begin]) - along_y * (px - x[begin]) > 0;
+    };
+    return is_left_of_edge(circle.x, circle.y) != is_left_of_edge(place[0], place[1]);
   };
   const double middle = (along_[edge] + along_[edge + 1]) / 2;
+  const auto is_far = [&](int i) {
+    const double apart = std::abs((along_[i] + along_[i + 1]) / 2 - middle);
+    const double own = (along_[i + 1] - along_[i] + along_[edge + 1] - along_[edge]) / 2;
+    return std::min(apart, along_.back() - apart) - own > arc_of_a_fold * film_;
+  };
   int crossings = 0;
-  for (std::size_t group = 0; group < bounds_.size(); ++group) {
-    if ((bounds_[group].least > most).any() || (bounds_[group].most < least).any()) continue;
-    const int first = static_cast<int>(group) * edges_per_group;
+  for (const NearbyGroup& one : nearby_groups_) {
+    if (!bounds_[one.group].overlap(line)) continue;
+    const int first = one.group * edges_per_group;
+    bool before = is_left(first);
     for (int i = first; i < std::min(first + edges_per_group, n); ++i) {
       const int end = i + 1 < n ? i + 1 : 0;
-      const Eigen::Array2d a{position[i], position[n + i]}, b{position[end], position[n + end]};
-      const bool passes = (cross(way, a - centre) > 0) != (cross(way, b - centre) > 0) &&
-                          (cross(b - a, centre - a) > 0) != (cross(b - a, place - a) > 0);
-      if (!passes) continue;
-      const double apart = std::abs((along_[i] + along_[i + 1]) / 2 - middle);
-      const double own = (along_[i + 1] - along_[i] + along_[edge + 1] - along_[edge]) / 2;
-      if (std::min(apart, along_.back() - apart) - own > arc_of_a_fold * film_) ++crossings;
+      const bool after = is_left(end);
+      if (std::exchange(before, after) != after && reaches_across(i, end) && is_far(i)) ++crossings;
     }
   }
   return crossings;

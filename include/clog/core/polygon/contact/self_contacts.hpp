@@ -102,8 +102,8 @@ struct EdgeContact {
   double fraction;  ///< the point's place on the edge, 0 at its first vertex, 1 at the next
   double dx, dy;    ///< vector from the point to the vertex [sigma]
 };
-inline EdgeContact nearest_point(const SelfContacts::Pair& pair, const double* x, const double* y,
-                                 int num_vertices) {
+[[gnu::always_inline]] inline EdgeContact nearest_point(const SelfContacts::Pair& pair, const double* x,
+                                                        const double* y, int num_vertices) {
   const int begin = pair.edge;
   const int end = begin + 1 < num_vertices ? begin + 1 : 0;
   const double ex = x[end] - x[begin];

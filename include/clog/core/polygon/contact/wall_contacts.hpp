@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -86,11 +87,24 @@ class WallContacts {
   std::vector<std::vector<int>> candidates_;
   struct Bounds {
     Eigen::Array2d least, most;
+    double distance2(const Eigen::Array2d& place) const {
+      return (least - place).max(place - most).max(0).square().sum();
+    }
+    bool overlap(const Bounds& other) const {
+      return least[0] <= other.most[0] && least[1] <= other.most[1] && other.least[0] <= most[0] &&
+             other.least[1] <= most[1];
+    }
   };
   std::vector<Bounds> bounds_;  // bounds of each group of edges
-  std::vector<double>
-      along_;  // distance of each vertex from vertex 0 along the contour, then the whole length
-  std::vector<int> layer_of_;  // layer of each edge on one circle, -1 if it does not list the circle
+  /// A group of edges near one circle, and the edges that the circle may touch, as bits, for each layer.
+  struct NearbyGroup {
+    int group;
+    std::array<std::uint8_t, highest_layer + 1> edges{};
+  };
+  std::vector<NearbyGroup> nearby_groups_;
+  // Distance of each vertex from vertex 0 along the contour, followed by the length of the contour.
+  std::vector<double> along_;
+  double longest_edge_ = 0;
   Eigen::ArrayXXd distances_;  // distances of the vertices from the circles nearby, a column for each circle
   Eigen::ArrayXd nearest_;     // distance of each vertex from its nearest circle
   std::vector<std::size_t> item_of_;  // the latest item of each circle
