@@ -194,10 +194,10 @@ void number_tasks(const sweep::Settings& settings, store::SweepFile& table) {
   const sweep::Plan plan(settings);
   std::unordered_map<std::string, std::int64_t> tasks;
   for (std::int64_t task = 0; task < plan.size(); ++task)
-    tasks.emplace(sweep::identity(sweep::describe(plan.task(task))), task);
+    tasks.emplace(sweep::identity_in_any_version(sweep::describe(plan.task(task))), task);
   std::int64_t next = plan.size();
   for (RunRow& row : table.rows) {
-    const auto found = tasks.find(sweep::identity(row));
+    const auto found = tasks.find(sweep::identity_in_any_version(row));
     row.task = found == tasks.end() ? next++ : found->second;
   }
   std::ranges::sort(table.rows, {}, &RunRow::task);

@@ -23,7 +23,7 @@ constexpr std::size_t longest_list = 2500;  // length of a key's text; longer li
 
 std::string identity_without_seed(sweep::RunRow run) {
   run.parameters.seed = 0;
-  return sweep::identity(run);
+  return sweep::identity_in_any_version(std::move(run));
 }
 
 double number_or_infinity(const std::string& text) try {
@@ -118,8 +118,11 @@ void RunList::fill_seeds(std::size_t number) {
 
 bool RunList::add(const sweep::Plan& plan, const sweep::RunRow& row) try {
   if (add_seed(row)) return true;
-  const bool is_of_plan = row.task >= 0 && row.task < plan.size() &&
-                          sweep::identity(sweep::describe(plan.task(row.task))) == sweep::identity(row);
+  const std::string identity = sweep::identity_in_any_version(row);
+  const auto is_the_run = [&](const RunParameters& run) {
+    return sweep::identity_in_any_version(sweep::describe(run)) == identity;
+  };
+  const bool is_of_plan = row.task >= 0 && row.task < plan.size() && is_the_run(plan.task(row.task));
   if (is_of_plan) {
     set_of(plan, row, plan.texts(plan.group_of(row.task))).seeds.insert(row.parameters.seed);
     return true;
@@ -131,7 +134,7 @@ bool RunList::add(const sweep::Plan& plan, const sweep::RunRow& row) try {
   settings.set(seeds_key, std::to_string(row.parameters.seed));
   for (const auto& [name, circles] : plan.circle_files()) settings.attach(name, circles);
   const sweep::Plan one(settings);
-  if (sweep::identity(sweep::describe(one.task(0))) != sweep::identity(row)) return false;
+  if (!is_the_run(one.task(0))) return false;
   set_of(plan, row, std::move(*texts)).seeds.insert(row.parameters.seed);
   return true;
 } catch (const Error&) {  // the row is from a version with other keys or ranges

@@ -27,6 +27,11 @@ std::string identity(const RunRow& row) {
   return bytes;
 }
 
+std::string identity_in_any_version(RunRow row) {
+  row.model_version = 0;
+  return identity(row);
+}
+
 RunRow describe(const RunParameters& run) {
   RunRow row;
   row.parameters = run;

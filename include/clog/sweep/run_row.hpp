@@ -129,6 +129,8 @@ inline double cost_seconds(const RunRow& row) {
 /// The parameters and the seed of a run as bytes. They are equal for equal runs, whatever their task numbers
 /// are.
 std::string identity(const RunRow& row);
+/// The same without the model version, to find the task of a row that another version wrote.
+std::string identity_in_any_version(RunRow row);
 
 /// The columns of parameters. @param run  resolved
 RunRow describe(const RunParameters& run);
