@@ -67,7 +67,7 @@ void record(const RunResult& result, RunRow& row) {
   row.num_gaps = result.hold.geometry.num_gaps;
   row.num_arcs = result.hold.geometry.num_arcs;
   row.mesh_hold = result.hold.geometry.mesh_hold;
-  row.friction_use = result.friction_use;
+  row.friction_use = result.hold.friction_use;
   row.largest_shape_parameter = result.passage.largest_shape_parameter.value;
   row.largest_shape_parameter_at = result.passage.largest_shape_parameter.place;
   row.largest_relative_speed = result.passage.largest_speed.value;

@@ -326,6 +326,7 @@ class Figures(Drawn):
                     self.assertIn(word, told.stderr)
                 for word in absent:
                     self.assertNotIn(word, told.stderr)
+                self.assertEqual("replaces speed.reduced.csv, which pairs line-tension and vertices" in told.stdout, "--points" in absent)
 
     def test_mistakes_get_one_line(self):
         for arguments, words in [

@@ -59,7 +59,7 @@ def with_speeds(shop: Workshop, config: str) -> list[Group]:
     groups = [group for group in shop.sweep(config) if group[STEADY] is not None]
     if not groups:
         raise UserError(f"no group of {shop.sweep_file(config)} has a {STEADY} (version 1.0 did not record it, and it needs three runs beyond 5 sigma/v_t); "
-                        "remove the file and sweep again, or raise max-time")
+                        "give more seeds or a larger max-time, or remove a file of version 1.0")
     return [group | {"capillary_number": group[STEADY] * math.pi / (4 * group["line_tension"])} if group["model"] == "dp" else group for group in groups]
 
 

@@ -94,7 +94,7 @@ class Workshop:
 
     def _points(self, name: str) -> list[str]:
         """The arguments for the points file beside a config, whose parameter sets have different meshes. If --set
-        overrides one of its keys, all values of the others are combined."""
+        overrides one of its keys, all values of the others are combined, and a line says so."""
         file = self.config(name).with_suffix(".csv")
         if not file.exists():
             return []
@@ -103,6 +103,8 @@ class Workshop:
         overridden = {override.key for override in self.overrides if override.config in (None, name)}
         if overridden.isdisjoint(points[0]):
             return ["--points", str(file)]
+        replaced = ", ".join(sorted(overridden & points[0].keys()))
+        print(printable(f"--set {replaced} replaces {file.name}, which pairs {' and '.join(points[0])}"), flush=True)
         return [f"{key}={','.join(point[key] for point in points)}" for key in points[0] if key not in overridden and all(point[key] for point in points)]
 
     def keys(self, name: str) -> dict[str, str]:

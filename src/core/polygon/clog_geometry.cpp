@@ -107,9 +107,8 @@ class Contacts {
     }
     if (!is_touched) return;
     for (const Surroundings::Layer& layer : layers) {
-      if (std::ranges::none_of(post.circles, [&](const Obstacle& circle) {
-            return std::hypot(circle.x - layer.circle.x, circle.y - layer.circle.y) < same_centre;
-          }))
+      if (std::ranges::none_of(post.circles,
+                               [&](const Obstacle& circle) { return share_centre(circle, layer.circle); }))
         continue;
       const auto [overlap, push] = overlap_with(polygon, layer.circle, layer.edge);
       if (overlap <= 0) continue;
@@ -146,7 +145,6 @@ class Contacts {
   const std::vector<int>& of_edge() const { return of_edge_; }
 
  private:
-  static constexpr double same_centre = 1e-6;  // rounding errors of one centre in two lists [sigma]
   double range_;
   std::vector<Touched> touched_;
   std::vector<int> of_edge_;

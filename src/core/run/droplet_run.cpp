@@ -343,7 +343,6 @@ RunResult DropletRun::result() const {
           .sag = scene.finding == Finding::sag ? sag(last) : Sag(),
           .neck = neck_,
           .healed_crossings = droplet_->state().num_healed,
-          .friction_use = hold.friction_use,
           .release = scene.place_in_file ? scene.place_in_file(run_, start_frame_.global(start_))
                                          : RunResult().release,
           .steps = droplet_->num_integrated_steps(),

@@ -3,8 +3,8 @@
 #include <limits>
 #include <vector>
 
+#include "clog/core/parameters/circles.hpp"
 #include "clog/core/tools/words.hpp"
-#include "clog/core/world/obstacle_array.hpp"
 
 namespace clog {
 

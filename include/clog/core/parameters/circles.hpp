@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -17,6 +18,13 @@ struct Obstacle {
 
   bool operator==(const Obstacle&) const = default;
 };
+
+/// Whether two circles are around one centre. Two lists may give one centre with different rounding errors;
+/// the centres of different obstacles differ by much more.
+inline bool share_centre(const Obstacle& one, const Obstacle& other) {
+  constexpr double rounding = 1e-6;  // [sigma]
+  return std::abs(one.x - other.x) < rounding && std::abs(one.y - other.y) < rounding;
+}
 
 /// User-supplied circles, distinguished by their values, not by the name of a file. A result row contains
 /// only their checksum.

@@ -88,8 +88,6 @@ struct RunResult {
   ThinnestNeck neck;
   /// Number of times that a vertex of the interface passed through another part of it and was pushed back.
   std::int64_t healed_crossings = 0;
-  /// For a clogged droplet that hangs over posts with friction, see WallFriction::use(); otherwise NaN.
-  double friction_use = std::numeric_limits<double>::quiet_NaN();
   /// Where the centre of mass was released, in the coordinates of user-supplied circles; NaN elsewhere
   /// [sigma].
   Eigen::Array2d release{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};

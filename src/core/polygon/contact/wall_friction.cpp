@@ -34,11 +34,10 @@ double WallFriction::energy(const DropletState& state) const {
 
 double WallFriction::use(const DropletState& state, std::span<const WallTouch> touches,
                          std::span<const Obstacle> circles) const {
-  constexpr double same_centre = 1e-6;  // rounding errors of one centre in two lists [sigma]
   double most = std::numeric_limits<double>::quiet_NaN();
   for (const Obstacle& circle : circles) {
     const auto is_on = [&](const WallPlace& wall) {
-      return wall.wedge < 0 && std::hypot(wall.x - circle.x, wall.y - circle.y) < same_centre;
+      return wall.wedge < 0 && share_centre({wall.x, wall.y, wall.radius}, circle);
     };
     double carried = 0, bearable = 0;
     for (const WallTouch& touch : touches)

@@ -3,8 +3,8 @@
 #include <span>
 
 #include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/parameters/circles.hpp"
 #include "clog/core/polygon/contact/wall_touches.hpp"
-#include "clog/core/world/obstacle_array.hpp"
 #include "clog/core/world/wedge.hpp"
 
 namespace clog {
