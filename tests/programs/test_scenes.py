@@ -454,6 +454,29 @@ class RandomDevices(ProgramTest):
                     self.check_sweep(f"{model}{number}-entrance.h5", [*keys, *entrance_keys])
         self.assertGreater(self.num_across_border, 3)
 
+    def test_no_droplet_starts_within_the_outline_of_a_post(self):
+        # A ring and a square of circles in rows, wide enough for a droplet, and a ring that is open.
+        for model, more in self.KEYS.items():
+            places = self.random.permutation([(3, 3), (3, 9), (9, 6)])
+            ring, square, open_ring = places + self.random.uniform(-0.5, 0.5, 2)
+            radius, half = self.random.uniform(0.9, 1.7, 2)
+            angles = np.arange(0, 2 * np.pi, 0.08 / radius)
+            arc = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+            side = np.stack(np.broadcast_arrays(np.arange(-half, half, 0.08), -half), axis=1)
+            next_side = side[:, ::-1] * [-1, 1]
+            sides = np.concatenate([side, next_side, -side, -next_side])
+            circles = np.concatenate([ring + arc, square + sides, open_ring + arc[angles < 4]]) % 12
+            self.write(f"{model}.csv", "x,y,diameter\n" + "".join(f"{x},{y},0.2\n" for x, y in circles))
+            releases = ["release=anywhere seeds=1..6", "release=centre seeds=1"]
+            releases += [f"release=entrance entrance={post[0] % 12} exit=11.9 seeds=1..6" for post in (ring, square)]
+            for number, release in enumerate(releases):
+                with self.subTest(model=model, release=release):
+                    keys = [f"obstacles={model}.csv", "box=12", *more, "max-time=20", *release.split()]
+                    rows = self.check_sweep(f"{model}{number}.h5", keys)
+                    ways = [(rows[["release_x", "release_y"]] - post + 6) % 12 - 6 for post in (ring, square)]
+                    self.assertGreater(np.hypot(*ways[0].to_numpy().T).min(), radius)
+                    self.assertGreater(ways[1].abs().max(axis=1).min(), half)
+
     def test_droplets_that_start_across_the_border_are_inside(self):
         # Only the corners of these boxes have room for a droplet.
         self.write("one.csv", "x,y,diameter\n2.5,2.5,2\n")

@@ -13,9 +13,11 @@
 
 namespace clog {
 
-Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
+namespace {
+
+/// Climbs to a local maximum of clearance().
+Eigen::Array2d climb(const ObstacleArray& obstacles, Eigen::Array2d place) {
   const double enough = 2 * units::droplet_diameter;
-  Eigen::Array2d place{obstacles.period().along() / 2, obstacles.period().across() / 2};
   double room = clearance(obstacles, place[0], place[1], enough);
   for (double step = 0.1; step > 1e-4 && room < enough;) {
     bool climbed = false;
@@ -31,6 +33,29 @@ Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
       }
     }
     if (!climbed) step /= 2;
+  }
+  return place;
+}
+
+}  // namespace
+
+Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
+  const Period& period = obstacles.period();
+  const Eigen::Array2d centre{period.along() / 2, period.across() / 2};
+  Eigen::Array2d place = climb(obstacles, centre);
+  // Within a post, looks for places in circles about the centre.
+  constexpr double apart = 0.25;  // sigma
+  for (int ring = 1; obstacles.is_within_post(place); ++ring) {
+    if (ring * apart > std::max(period.along(), period.across()))
+      refuse_release("every void is within a post, a closed row of circles", "open rows of circles");
+    for (int k = 0; k < 8 * ring; ++k) {
+      const double angle = k * std::numbers::pi / (4 * ring);
+      const Eigen::Array2d trial =
+          centre + ring * apart * Eigen::Array2d(portable::cos(angle), portable::sin(angle));
+      if (clearance(obstacles, trial[0], trial[1], apart) <= 0 || obstacles.is_within_post(trial)) continue;
+      place = climb(obstacles, trial);
+      break;
+    }
   }
   return place;
 }

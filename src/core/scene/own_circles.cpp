@@ -276,9 +276,11 @@ ObstacleArray shifted_device(const RunParameters& run) {
 /// otherwise in the nearest void.
 DropletState release_in_device(const RunParameters& run, const ObstacleArray& device) {
   const Period& period = device.period();
-  const bool starts_free = run.obstacles.release == Release::entrance &&
-                           clearance(device, period.along() / 2, period.across() / 2,
-                                     2 * units::droplet_diameter) > model_of(run).reach(run);
+  const Eigen::Array2d centre{period.along() / 2, period.across() / 2};
+  const bool starts_free =
+      run.obstacles.release == Release::entrance &&
+      clearance(device, centre[0], centre[1], 2 * units::droplet_diameter) > model_of(run).reach(run) &&
+      !device.is_within_post(centre);
   return release_in_void(run, starts_free ? ObstacleArray(period, {}) : device);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
@@ -51,6 +52,15 @@ CellAxis rows_of(const Period& period) {
 /// they are a mistake, or a circle and its own image.
 bool share_a_post(double apart, double first_radius, double second_radius) {
   return apart > 0 && apart < std::max(first_radius, second_radius);
+}
+
+/// How often a straight way crosses the positive x axis, upwards minus downwards. The sum over a closed way
+/// is the number of its turns about the origin.
+int crossings_of_axis(const Eigen::Array2d& from, const Eigen::Array2d& to) {
+  if ((from[1] < 0) == (to[1] < 0)) return 0;
+  const double x = from[0] - from[1] * (to[0] - from[0]) / (to[1] - from[1]);
+  if (x <= 0) return 0;
+  return to[1] < 0 ? -1 : 1;
 }
 
 }  // namespace
@@ -170,6 +180,64 @@ std::vector<std::uint32_t> ObstacleArray::posts() const {
   }
   for (std::uint32_t circle = 0; circle < post.size(); ++circle) post[circle] = root_of(circle);
   return post;
+}
+
+bool ObstacleArray::is_within_post(const Eigen::Array2d& place) const {
+  // Follows each post from circle to circle, and from circles to walls. Where two ways meet that together
+  // make a turn about the place, the post surrounds it.
+  constexpr double same = 1e-6;  // sigma, between two places of one circle
+  struct Reached {
+    std::uint32_t circle;
+    Eigen::Array2d centre;  // relative to the place
+    int turns;              // crossings of the way to this circle
+  };
+  std::vector<std::vector<Reached>> reached(binned_.obstacles.size());
+  std::vector<Reached> open;
+  std::vector<std::optional<Reached>> at_wall(wedges_.size());
+  const auto known = [&](std::uint32_t circle, const Eigen::Array2d& centre) -> const Reached* {
+    for (const Reached& one : reached[circle])
+      if ((one.centre - centre).abs().maxCoeff() < same) return &one;
+    return nullptr;
+  };
+  const auto reach = [&](const Reached& one) {
+    reached[one.circle].push_back(one);
+    open.push_back(one);
+  };
+  bool surrounds = false;
+  const auto look_around = [&](const Reached& from) {
+    const auto& [origin_x, origin_y, radius] = binned_.obstacles[from.circle];
+    visit_window(
+        {origin_x, origin_y, 0, 0, 0, 0, radius}, [&, r = radius](std::uint32_t k, double x, double y) {
+          if (!share_a_post(std::hypot(x, y), r, binned_.obstacles[k].radius)) return;
+          const Eigen::Array2d centre = from.centre + Eigen::Array2d(x, y);
+          const int turns = from.turns + crossings_of_axis(from.centre, centre);
+          if (const Reached* const before = known(k, centre))
+            surrounds |= before->turns != turns;
+          else if (std::abs(centre[0]) <= period().along() && std::abs(centre[1]) <= period().across())
+            reach({k, centre, turns});
+        });
+    for (std::size_t w = 0; w < wedges_.size(); ++w) {
+      const auto [distance, normal] = distance_to(wedges_[w], place + from.centre - wedges_[w].centre());
+      if (distance > radius) continue;
+      const Eigen::Array2d foot = from.centre - distance * normal;
+      const int turns = from.turns + crossings_of_axis(from.centre, foot);
+      if (!at_wall[w]) at_wall[w] = {from.circle, foot, turns};
+      surrounds |= at_wall[w]->turns + crossings_of_axis(at_wall[w]->centre, foot) != turns;
+    }
+  };
+  // A post that surrounds the place lies on the positive x axis.
+  visit_window({place[0], place[1], 0, period().along(), 0, 0, 0},
+               [&](std::uint32_t first, double x, double y) {
+                 if (surrounds || known(first, {x, y}) != nullptr) return;
+                 std::ranges::fill(at_wall, std::nullopt);
+                 reach({first, {x, y}, 0});
+                 while (!open.empty() && !surrounds) {
+                   const Reached next = open.back();
+                   open.pop_back();
+                   look_around(next);
+                 }
+               });
+  return surrounds;
 }
 
 std::vector<int> posts_among(std::span<const Obstacle> circles) {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "clog/core/droplet/release.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 
@@ -359,6 +360,49 @@ TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
                   .smallest_gap(),
               1.75, 1e-12);
   EXPECT_NEAR(ObstacleArray(2, {{0.4, 1, 0.3}, {0.6, 1, 0.3}, {0.8, 1, 0.3}}).smallest_gap(), 1, 1e-12);
+}
+
+/// Circles in a row along an arc.
+void add_arc(std::vector<Obstacle>& circles, const Eigen::Array2d& centre, double radius, double from,
+             double to) {
+  constexpr double thickness = 0.1;
+  for (double angle = from; angle < to; angle += thickness / radius)
+    circles.push_back(
+        {centre[0] + radius * std::cos(angle), centre[1] + radius * std::sin(angle), thickness});
+}
+
+TEST(ObstacleArray, FindsPlacesWithinAPost) {
+  constexpr double pi = std::numbers::pi;
+  std::vector<Obstacle> circles;
+  const Eigen::Array2d ring{9, 1}, open{4, 6}, half{3, 0};
+  add_arc(circles, ring, 2, 0, 2 * pi);      // across two borders of the period
+  add_arc(circles, open, 1.5, 0.2, 2 * pi);  // with an opening
+  add_arc(circles, half, 1, -0.05, pi);      // on the lower wall, if there is one
+  for (double x = 0; x < 10; x += 0.15) circles.push_back({x, 8.5, 0.1});  // from border to border
+  const ObstacleArray periodic(10, circles);
+  Period beside_walls(10);
+  beside_walls.beside = 3;
+  const ObstacleArray between_walls(beside_walls, circles,
+                                    {{.tip = {0, 0}, .axis = {0, -1}}, {.tip = {0, 10}, .axis = {0, 1}}});
+  const auto is_in_ring = [&](const Eigen::Array2d& place, double period) {
+    const Eigen::Array2d way = place - ring;
+    return std::hypot(std::remainder(way[0], 10), period > 0 ? std::remainder(way[1], period) : way[1]) < 2;
+  };
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> along(0, 10);
+  int num_tried = 0, num_within = 0;
+  while (num_tried < 500) {
+    const Eigen::Array2d place{along(random), along(random)};
+    if (clearance(periodic, place[0], place[1], 1) <= 0) continue;
+    ++num_tried;
+    ASSERT_EQ(periodic.is_within_post(place), is_in_ring(place, 10)) << place.transpose();
+    if (clearance(between_walls, place[0], place[1], 1) <= 0) continue;
+    const bool is_in_pocket = (place - half).matrix().norm() < 1;
+    // The wall closes the ring, which it cuts.
+    ASSERT_EQ(between_walls.is_within_post(place), is_in_ring(place, 0) || is_in_pocket) << place.transpose();
+    num_within += is_in_ring(place, 0) || is_in_pocket;
+  }
+  EXPECT_GT(num_within, 20);
 }
 
 TEST(ObstacleArray, FindsPostsAmongAFewCircles) {

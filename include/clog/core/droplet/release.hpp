@@ -7,7 +7,8 @@
 
 namespace clog {
 
-/// A local maximum of clearance(), found by a climb from the centre of the period [sigma].
+/// A local maximum of clearance(), found by a climb from the centre of the period, and not within a post
+/// [sigma]. @throws Error if every void is within a post
 Eigen::Array2d nearest_void(const ObstacleArray& obstacles);
 
 /// Distance from a point of the first period to the nearest surface of an obstacle or a wedge, at most

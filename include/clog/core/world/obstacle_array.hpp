@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -59,6 +60,9 @@ class ObstacleArray {
   /// post has the outline of the union of its circles. Circles with exactly the same centre form separate
   /// posts.
   std::vector<std::uint32_t> posts() const;
+  /// Whether a post surrounds this place, alone or with a wall that it touches: rows of circles draw the
+  /// outline of a post, and its inside is solid. Posts that are wider than a period surround nothing.
+  bool is_within_post(const Eigen::Array2d& place) const;
   /// The two posts with the smallest gap. Periodic images count, except those beyond side walls. The gap is
   /// infinite if no pair is nearer than a box.
   Pair closest_pair() const;

@@ -148,6 +148,7 @@ void WallContacts::find_layers(const Obstacle& circle, const Eigen::ArrayXd& pos
                                const Eigen::ArrayXd& fine) {
   constexpr double rounding = 1e-12;
   const int n = static_cast<int>(num_points_);
+  const auto refined = [&](Eigen::Index k) -> Eigen::Array2d { return {fine[k], fine[fine.size() / 2 + k]}; };
   const Eigen::Array2d centre{circle.x, circle.y};
   const double lowest = circle.radius + range_;  // distance of layer 0 from the centre
   const double far = (lowest + highest_layer * film_ + skin_) * (1 + rounding);
@@ -161,12 +162,10 @@ void WallContacts::find_layers(const Obstacle& circle, const Eigen::ArrayXd& pos
     if (bounds_[one.group].distance2(centre) > far * far) continue;
     const int first = one.group * edges_per_group;
     for (int i = first; i < std::min(first + edges_per_group, n); ++i) {
-      const int end = 2 * i + 2 < 2 * n ? 2 * i + 2 : 0;
-      const Eigen::Array2d begin{fine[2 * i], fine[2 * n + 2 * i]};
-      const Eigen::Array2d middle{fine[2 * i + 1], fine[2 * n + 2 * i + 1]};
+      const Eigen::Array2d begin = refined(2 * i), middle = refined(2 * i + 1),
+                           end = refined(2 * ((i + 1) % n));
       const double nearest =
-          std::min(distance_to_segment(centre, begin, middle),
-                   distance_to_segment(centre, middle, Eigen::Array2d(fine[end], fine[2 * n + end])));
+          std::min(distance_to_segment(centre, begin, middle), distance_to_segment(centre, middle, end));
       int layer = 0;
       if (film_ > 0 && nearest > lowest + (1 - layer_tolerance) * film_ && nearest <= far) {
         const double fit = (nearest - lowest) / film_ + layer_tolerance;
