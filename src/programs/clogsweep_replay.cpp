@@ -1,5 +1,6 @@
 #include <fmt/ostream.h>
 
+#include <cmath>
 #include <iostream>
 #include <string>
 
@@ -11,6 +12,15 @@
 #include "file_command.hpp"
 
 namespace clog::programs {
+namespace {
+
+/// A run that diverged went an unknown distance.
+std::string outcome(const sweep::RunRow& row) {
+  const std::string status(name(row.status));
+  return std::isfinite(row.distance) ? fmt::format("{}, distance {:.17g}", status, row.distance) : status;
+}
+
+}  // namespace
 
 int clogsweep_replay(int argc, const char* const* argv) {
   cli::CommandLine line(
@@ -28,14 +38,16 @@ row's instruction set; a run that was resumed with another instruction set canno
   const store::SweepFile file = results::read_with_caution(path);
   const sweep::RunRow row = results::replayable_row(file, task);
   const auto [again, differing] = results::repeat(row);
-  fmt::print(std::cout, "task {}: {}, distance {:.17g}, {:.3g} s\n", task, name(again.status), again.distance,
-             again.wall_seconds);
+  fmt::print(std::cout, "task {}: {}, {:.3g} s\n", task, outcome(again), again.wall_seconds);
   if (differing.empty()) {
     std::cout << "the same bits as the row's\n";
     return console::exit_success;
   }
-  fmt::print(std::cout, "differs from the row in: {}\nthe row has {}, distance {:.17g}\n",
-             joined(differing, " "), name(row.status), row.distance);
+  if (sweep::may_succeed_later(row) && again.status != RunStatus::failed)
+    fmt::print(std::cout, "the row's run did not come to its end: {}\n", row.message);
+  else
+    fmt::print(std::cout, "differs from the row in: {}\nthe row has {}\n", joined(differing, " "),
+               outcome(row));
   return console::exit_internal_fault;
 }
 

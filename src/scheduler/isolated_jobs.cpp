@@ -252,9 +252,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
   std::vector<std::byte> snapshot() const override { return last_.snapshot; }
 
  private:
-  static constexpr const char* without_helper =
-      "the helper process of its rank was killed or stopped; the rank continues without one, and now a crash "
-      "of a task ends the sweep";
+  static constexpr const char* without_helper = "the helper process of its rank was killed or stopped";
 
   Processes& processes_;
   std::int64_t number_;

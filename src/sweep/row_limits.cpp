@@ -33,7 +33,7 @@ struct SoundPreset {
   std::string_view name;
   double smallest_tension;
 };
-constexpr SoundPreset sound_presets[] = {{"robust", 0.05}, {"heavy-interface", 0.07}, {"elastic", 0.04}};
+constexpr SoundPreset sound_presets[] = {{"robust", 0.05}, {"heavy-interface", 0.1}, {"elastic", 0.04}};
 
 std::string untested_tension(const std::string& preset_name, const DpParameters& dp) {
   const auto* preset = std::find_if(std::begin(sound_presets), std::end(sound_presets),

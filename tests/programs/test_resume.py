@@ -163,10 +163,10 @@ class Resumed(SweepTest):
         self.assertNotIn("\x1b", watched)  # The output is no terminal, so the screen must not be cleared.
 
     def test_status_counts_unfinished_runs_as_not_clogged(self):
-        self.stop_with_unfinished_runs(SWEEP)
+        unfinished = self.stop_with_unfinished_runs(SWEEP)
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
         self.assertFalse(status["alive"])
-        self.assertEqual(status["unfinished"], 1)
+        self.assertEqual(status["unfinished"], len(unfinished))
         rows = table(self.folder / "s.h5")
         for group in status["groups"]:
             members = rows[(rows.line_tension == group["line_tension"]) & (rows.obstacle_gap == group["obstacle_gap"])]
@@ -178,8 +178,7 @@ class Resumed(SweepTest):
 
     def test_a_smaller_sweep_keeps_the_unfinished_runs_of_a_larger_one(self):
         unfinished = self.stop_with_unfinished_runs(FEW_LONG)
-        self.assertEqual(len(unfinished), 1)
-        other = {0.05: "0.5", 0.5: "0.05"}[unfinished.line_tension.iloc[0]]
+        other = {0.05: "0.5", 0.5: "0.05"}[unfinished.line_tension[unfinished.steps.idxmax()]]
         smaller = [*SWEEP[:2], "obstacle-gap=0.5", f"line-tension={other}", "max-time=4000", "seeds=1", "--output", "s.h5"]
         self.succeed("clogsweep", *smaller)
         self.assertTrue((self.folder / "s.h5.journal").exists(), "a snapshot is still needed")
@@ -291,8 +290,15 @@ class Resumed(SweepTest):
         def edit(rows):
             rows["distance"][2] = np.nextafter(rows["distance"][2], 1)
             rows["time"][3] = -1
+            for task, cause in ((0, b"crash"), (1, b"divergence")):
+                rows["status"][task], rows["failed_by"][task], rows["message"][task] = b"failed", cause, b"by " + cause
+                rows["distance"][task] = np.nan
 
         stored_rows.change(self.folder / "s.h5", edit)
+        crashed, diverged = (self.run_program("clogsweep", "replay", "s.h5", task) for task in (0, 1))
+        self.assertEqual((crashed.returncode, diverged.returncode), (1, 1))
+        self.assertIn("s\nthe row's run did not come to its end: by crash\n", crashed.stdout)
+        self.assertRegex(diverged.stdout, r"differs from the row in: .*\nthe row has failed\n$")
         other = self.run_program("clogsweep", "replay", "s.h5", 2)
         self.assertEqual(other.returncode, 1, other.stdout)
         self.assertIn("differs from the row in: distance\n", other.stdout)

@@ -60,10 +60,11 @@ void check_place(const Obstacle& circle, const ObstacleParameters& obstacles) {
   if (!(circle.x >= 0 && circle.x < period.along() && circle.y >= 0 && circle.y < period.box))
     refuse_circles(
         *obstacles.own,
-        fmt::format("the one at {} lies outside the array) x runs from 0 to {}={}, y from 0 to box={}; other "
-                    "units than droplet diameters need a first line such as # units=um droplet=200um",
-                    place_of(circle), obstacles.length > 0 ? "length" : "boxes*box", shortest(period.along()),
-                    shortest(period.box)));
+        fmt::format(
+            "the one at {} lies outside the array) x is at least 0 and less than {}={}, y than box={}; other "
+            "units than droplet diameters need a first line such as # units=um droplet=200um",
+            place_of(circle), obstacles.length > 0 ? "length" : "boxes*box", shortest(period.along()),
+            shortest(period.box)));
   if (2 * circle.radius >= std::min(period.along(), period.across()))
     refuse_circles(*obstacles.own, fmt::format("the one at {} meets its own periodic image) use a box larger "
                                                "than its diameter",
