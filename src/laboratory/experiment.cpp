@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::laboratory {
@@ -61,6 +62,11 @@ double to_si(const std::string& text, const std::string& units) {
     throw Error("'" + text + "' has no unit; write for example " + (end == 0 ? "3.5" : text.substr(0, end)) +
                 " " + usual_unit(units));
   return sweep::to_number(text.substr(0, end)) * si_factor(text.substr(unit), units);
+}
+
+std::string in_usual_unit(double value, const std::string& units) {
+  const std::string& unit = usual_unit(units);
+  return shortest(twelve_digits(value / known_units(units).at(unit))) + ' ' + unit;
 }
 
 double Experiment::gravity() const {

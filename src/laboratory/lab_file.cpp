@@ -14,6 +14,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/core/tools/split.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -78,6 +79,13 @@ double value_of(const Entries& entries, const std::string& key, double otherwise
   }
 }
 
+/// A key's value in the usual unit, so that 1000 um and 1.0 mm describe the same laboratory.
+std::string usual_text(const Entries& entries, const std::string& key) {
+  const double value = value_of(entries, key, 0);
+  const std::string& units = known_keys().at(key);
+  return units.empty() ? shortest(value) : in_usual_unit(value, units);
+}
+
 constexpr const char* scaling_keys[] = {"speed-diameter", "speed-angle", "speed-exponent"};
 
 bool scales_speed(const Entries& entries) {
@@ -126,8 +134,8 @@ Laboratory laboratory_of(const Entries& entries) {
     throw Error(
         fmt::format("invalid speed={} (V_t = {:.3g}, of such a droplet, is above {}; is the unit right?)",
                     entries.at("speed"), speed, fastest));
-  for (const auto& [key, value] : entries)
-    lab.text += fmt::format("{}{} = {}", lab.text.empty() ? "" : "; ", key, value);
+  for (const auto& [key, given] : entries)
+    lab.text += fmt::format("{}{} = {}", lab.text.empty() ? "" : "; ", key, usual_text(entries, key));
   return lab;
 }
 

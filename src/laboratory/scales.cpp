@@ -106,16 +106,15 @@ Scales scales_of(const Laboratory& lab) {
   return scales;
 }
 
-Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings) {
+Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, const std::string& model) {
   const Scales scales = scales_of(lab);
   Texts texts = {{"laboratory", lab.text}};
   const auto set = [&](const char* key, double value) {
     if (std::isfinite(value) && !settings.is_given(key)) texts[key] = fmt::format("{:.4g}", value);
   };
   set("terminal-speed", scales.terminal_speed);
-  const std::vector<std::string>& models = settings.values("model");
-  if (models == std::vector<std::string>{"dp"}) set("line-tension", scales.line_tension);
-  if (models == std::vector<std::string>{"sp"}) set("wall-stiffness", scales.wall_stiffness);
+  if (model == "dp") set("line-tension", scales.line_tension);
+  if (model == "sp") set("wall-stiffness", scales.wall_stiffness);
   return texts;
 }
 

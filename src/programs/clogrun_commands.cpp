@@ -35,13 +35,8 @@ int report(const cli::CommandLine& line, const single_run::RecordedRun& watched)
   const laboratory::Scales scales = laboratory::scales_of(laboratory::read_laboratory(line.get("lab")));
   constexpr double milli = 1e-3;
   const RunResult result = watched.result();
-  // Motion is overdamped, so times scale with the ratio of the terminal speeds.
-  const double model_speed = watched.run().parameters().drag.terminal_speed;
-  const double seconds = std::isfinite(scales.speed)
-                             ? result.time * model_speed * scales.length / scales.speed
-                             : result.time * scales.time;
   fmt::print(std::cout, "in the laboratory: r = {:.4g} mm, t = {:.4g} s\n",
-             result.distance * scales.length / milli, seconds);
+             result.distance * scales.length / milli, result.time * scales.time);
   return exit_code;
 }
 

@@ -16,6 +16,7 @@
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/core/tools/split.hpp"
 #include "clog/laboratory/lab_file.hpp"
 #include "clog/laboratory/scales.hpp"
@@ -34,6 +35,21 @@ void say_replaced(const cli::CommandLine& line) {
   console::say(fmt::format("clogfit: {} replaces the laboratory stored with the rows", line.get("lab")));
 }
 
+/// Says once if runs have another terminal speed than the laboratory's droplet: speeds and times in units of
+/// the laboratory are those of the runs.
+void say_other_speed(const std::vector<results::Group>& groups) {
+  constexpr double rounding = 1e-3;
+  for (const results::Group& group : groups) {
+    const double of_runs = results::terminal_speed_in_laboratory(group);
+    if (!group.laboratory || !(std::abs(of_runs / group.laboratory->speed - 1) > rounding)) continue;
+    console::say(fmt::format(
+        "clogfit: speeds and times in mm/s and s are those of runs with a terminal speed of {:.4g} "
+        "mm/s; the laboratory's droplet has {:.4g} mm/s",
+        of_runs, group.laboratory->speed));
+    return;
+  }
+}
+
 results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
   constexpr double milli = 1e-3;
   const laboratory::Scales scales = laboratory::scales_of(lab);
@@ -41,7 +57,7 @@ results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
           .time = scales.time,
           .speed = scales.speed / milli,
           .tension = scales.tension / milli,
-          .tilt = results::short_number(lab.experiment.tilt / (std::numbers::pi / 180))};
+          .tilt = twelve_digits(lab.experiment.tilt / (std::numbers::pi / 180))};
 }
 
 /// The droplets of a laboratory file, one or several.
@@ -154,11 +170,12 @@ laboratory::Texts converted(const laboratory::Texts& given, const laboratory::La
   return texts;
 }
 
-/// Texts of the keys that no point sets.
+/// Texts of the keys that no point sets. @param model  empty if points set it
 laboratory::Texts texts_of(const laboratory::Laboratory& lab, const Droplets& droplets,
-                           const laboratory::Texts& given, const sweep::Settings& settings) {
+                           const laboratory::Texts& given, const sweep::Settings& settings,
+                           const std::string& model) {
   laboratory::Texts texts = converted(given, lab, laboratory::scales_of(lab), droplets);
-  texts.merge(laboratory::droplet_texts(lab, settings));
+  texts.merge(laboratory::droplet_texts(lab, settings, model));
   return texts;
 }
 
@@ -171,7 +188,7 @@ std::set<std::string> cells_of(const sweep::Points& points, const std::string& k
   return cells;
 }
 
-/// A parameter set for each droplet and each point; there may be no points.
+/// A parameter set for each droplet, point and model; there may be no points.
 sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
                         const laboratory::Texts& given, sweep::Points points) {
   if (points.rows.empty()) points.rows.emplace_back();
@@ -179,17 +196,21 @@ sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
   std::set<std::string> keys;
   for (const laboratory::Laboratory& lab : droplets.all) {
     const laboratory::Scales scales = laboratory::scales_of(lab);
-    const laboratory::Texts of_all = texts_of(lab, droplets, given, line.settings());
     for (const std::vector<std::string>& row : points.rows) {
       laboratory::Texts own;
       for (std::size_t i = 0; i < row.size(); ++i)
         if (!row[i].empty()) own[points.keys[i]] = row[i];
-      laboratory::Texts set = converted(own, lab, scales, droplets);
-      set.insert(of_all.begin(), of_all.end());
+      const laboratory::Texts own_set = converted(own, lab, scales, droplets);
+      const std::vector<std::string> models =
+          own.contains("model") ? split_at_commas(own["model"]) : line.settings().values("model");
       own.insert(given.begin(), given.end());
       if (droplets.have_several_sizes) refuse_lengths_without_unit(line, own);
-      for (const auto& [key, text] : set) keys.insert(key);
-      sets.push_back(std::move(set));
+      for (const std::string& model : models) {
+        laboratory::Texts& set = sets.emplace_back(own_set);
+        if (models.size() > 1) set["model"] = model;
+        set.merge(texts_of(lab, droplets, given, line.settings(), model));
+        for (const auto& [key, text] : set) keys.insert(key);
+      }
     }
   }
   sweep::Points expanded{.keys = {keys.begin(), keys.end()}, .rows = {}};
@@ -219,9 +240,11 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
         if (const auto drawn_for = cli::read_circles(name).droplet()) droplets.note_size(*drawn_for);
   if (!line.has("quiet")) say_law_of_speed(line, droplets);
   if (droplets.have_several_sizes && points.empty()) refuse_lengths_without_unit(line, given);
-  const laboratory::Texts base = texts_of(droplets.all.front(), droplets, given, settings);
-  if (droplets.all.size() > 1 || !points.empty())
-    points = points_of(line, droplets, given, std::move(points));
+  const std::vector<std::string> models = settings.values("model");
+  const bool have_points = droplets.all.size() > 1 || models.size() > 1 || !points.empty();
+  const laboratory::Texts base =
+      texts_of(droplets.all.front(), droplets, given, settings, have_points ? "" : models.front());
+  if (have_points) points = points_of(line, droplets, given, std::move(points));
   for (const auto& [key, text] : base) settings.set(key, text);
   const sweep::CircleFiles before = settings.circle_files();
   for (const auto& [file, circles] : before) settings.detach(file);
@@ -282,6 +305,7 @@ void set_scales(const cli::CommandLine& line, std::vector<results::Group>& group
     }
   }
   if (replaces) say_replaced(line);
+  say_other_speed(groups);
 }
 
 }  // namespace clog::programs

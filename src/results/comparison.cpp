@@ -15,6 +15,7 @@
 #include "clog/console/rounded.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/results/selection.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/results/usual_parameters.hpp"
@@ -169,7 +170,7 @@ void name_droplets(Comparisons& comparisons,
   for (std::size_t i = 0; i < comparisons.all.size(); ++i) {
     Comparison& one = comparisons.all[i];
     const LaboratoryScale& scale = scale_of(rows[i]);
-    std::vector<Value> common = {short_number(scale.length), scale.tilt};
+    std::vector<Value> common = {twelve_digits(scale.length), scale.tilt};
     for (const std::size_t place : kept) common.push_back(one.common[place]);
     one.common = std::move(common);
     for (fit::CloggingLength* length : {&one.length_here, &one.length_there}) {

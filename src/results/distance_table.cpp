@@ -16,6 +16,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/results/usual_parameters.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -122,7 +123,7 @@ class Cells {
     std::string number = cell;
     if (!console::may_have_thousands(cell)) std::ranges::replace(number, ',', '.');
     try {
-      return factor == 1 ? sweep::to_number(number) : short_number(factor * sweep::to_number(number));
+      return factor == 1 ? sweep::to_number(number) : twelve_digits(factor * sweep::to_number(number));
     } catch (const Error&) {
       return cell.empty() ? Value() : Value(console::printable(cell));
     }
@@ -285,7 +286,7 @@ DistanceTable distances_of(const Side& side, const Scales& scales, const std::ve
     for (const sweep::Column* column : varying) labels.push_back(column->get(*row));
     if (is_in_mm) {
       const LaboratoryScale& scale = scales.at(row->parameters.laboratory->check_sum());
-      labels.insert(labels.end(), {short_number(scale.length), scale.tilt});
+      labels.insert(labels.end(), {twelve_digits(scale.length), scale.tilt});
       run->distance *= scale.length;
     }
     runs[std::move(labels)].push_back(*run);

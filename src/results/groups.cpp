@@ -350,7 +350,10 @@ std::map<std::vector<Value>, Runs> members_of_groups(std::span<const sweep::RunR
   for (const sweep::RunRow& row : rows) {
     std::vector<Value> values = parameter_values(row);
     for (std::size_t i = 0; i < values.size(); ++i)
-      if (std::ranges::find(pooled, group_columns()[i]) != pooled.end()) values[i] = Value();
+      if (std::ranges::find(pooled, group_columns()[i]) != pooled.end())
+        values[i] = Value();
+      else if (double* const number = std::get_if<double>(&values[i]))
+        *number = twelve_digits(*number);
     members[std::move(values)].push_back(&row);
   }
   return members;
@@ -361,6 +364,12 @@ std::map<std::vector<Value>, Runs> members_of_groups(std::span<const sweep::RunR
 const DoubtText& text_of(Doubt doubt) {
   return *std::find_if(std::begin(doubt_texts), std::end(doubt_texts),
                        [=](const DoubtText& text) { return text.doubt == doubt; });
+}
+
+double terminal_speed_in_laboratory(const Group& group) {
+  const LaboratoryScale scale = group.laboratory.value_or(LaboratoryScale());
+  if (!std::isfinite(scale.speed)) return scale.speed;
+  return group.first_row.parameters.drag.terminal_speed * scale.length / scale.time;
 }
 
 bool is_device(const RunParameters& run) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "clog/console/rounded.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "result_columns.hpp"
 #include "value_json.hpp"
 
@@ -14,11 +15,19 @@ namespace {
 
 LaboratoryScale scale_of(const Group& group) { return group.laboratory.value_or(LaboratoryScale()); }
 
+/// The mean speed of all runs [mm/s].
+fit::MeanSpeed speed_in_mm_per_s(const Group& group) {
+  const double terminal_speed = terminal_speed_in_laboratory(group);
+  fit::MeanSpeed speed = group.relative_speed_all;
+  speed.mean *= terminal_speed;
+  speed.standard_error *= terminal_speed;
+  return speed;
+}
+
 /// Mean time until a clog [s]: lambda divided by the speed of all runs, both in units of the laboratory.
 double time_to_clog(const Group& group) {
-  const LaboratoryScale scale = scale_of(group);
   if (group.clogging.num_clogs == 0) return std::numeric_limits<double>::quiet_NaN();
-  return group.clogging.length * scale.length / (group.relative_speed_all.mean * scale.speed);
+  return group.clogging.length * scale_of(group).length / speed_in_mm_per_s(group).mean;
 }
 
 /// The interfacial tension of a polygon [mN/m]; NaN for the soft disk.
@@ -43,10 +52,6 @@ bool is_constant(const ResultColumn& column, const std::vector<Group>& groups) {
 
 }  // namespace
 
-double short_number(double value) {
-  return std::isfinite(value) ? std::stod(fmt::format("{:.12g}", value)) : value;
-}
-
 bool have_laboratory(const std::vector<Group>& groups) {
   return has_clogging_length(groups.front().first_row) &&
          std::ranges::any_of(groups, [](const Group& group) { return group.laboratory.has_value(); });
@@ -55,14 +60,14 @@ bool have_laboratory(const std::vector<Group>& groups) {
 std::vector<Field> laboratory_fields(const Group& group) {
   const LaboratoryScale scale = scale_of(group);
   const fit::CloggingLength clogging = clogging_in_mm(group);
-  return {{"diameter_mm", finite_value(short_number(scale.length))},
+  return {{"diameter_mm", finite_value(twelve_digits(scale.length))},
           {"angle_degrees", finite_value(scale.tilt)},
           {"tension_mN_per_m", finite_value(tension_of(group))},
           {"clogging_length_mm", finite_value(clogging.length)},
           {"clogging_length_lower_mm", finite_value(clogging.interval.lower)},
           {"clogging_length_upper_mm", finite_value(clogging.interval.upper)},
-          {"speed_mm_per_s", finite_value(group.relative_speed_all.mean * scale.speed)},
-          {"speed_error_mm_per_s", finite_value(group.relative_speed_all.standard_error * scale.speed)},
+          {"speed_mm_per_s", finite_value(speed_in_mm_per_s(group).mean)},
+          {"speed_error_mm_per_s", finite_value(speed_in_mm_per_s(group).standard_error)},
           {"time_to_clog_s", finite_value(time_to_clog(group))}};
 }
 
@@ -82,16 +87,13 @@ std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups, d
   if (have_several_droplets)
     columns.push_back({fmt::format("{:g} %", 100 * confidence),
                        [](const Group& group) { return interval_text(clogging_in_mm(group)); }});
-  columns.insert(
-      columns.end(),
-      {{"all runs/(mm/s)",
-        [](const Group& group) {
-          const LaboratoryScale scale = scale_of(group);
-          return console::with_error(group.relative_speed_all.mean * scale.speed,
-                                     group.relative_speed_all.standard_error * scale.speed)
-              .value;
-        }},
-       {"time to clog/s", [](const Group& group) { return console::plain(time_to_clog(group)); }}});
+  columns.insert(columns.end(), {{"all runs/(mm/s)",
+                                  [](const Group& group) {
+                                    const fit::MeanSpeed speed = speed_in_mm_per_s(group);
+                                    return console::with_error(speed.mean, speed.standard_error).value;
+                                  }},
+                                 {"time to clog/s",
+                                  [](const Group& group) { return console::plain(time_to_clog(group)); }}});
   const ResultColumn tension = {"tension/(mN/m)",
                                 [](const Group& group) { return console::plain(tension_of(group)); }};
   const bool has_polygons = std::ranges::any_of(

@@ -112,14 +112,14 @@ Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
   Stored stored;
   stored.sample.source = "in " + path;
   if (path.empty() || !std::filesystem::exists(path)) return stored;
-  std::unordered_map<std::string, sweep::RunRow> rows;
+  std::unordered_multimap<std::string, sweep::RunRow> rows;
   for (const sweep::RunRow& row : read_with_caution(path).rows)
-    if (sweep::fault_of(row).empty()) rows.emplace(sweep::identity(row), row);
+    if (sweep::fault_of(row).empty()) rows.emplace(sweep::identity_in_any_laboratory(row), row);
   for (std::int64_t set = 0; set < plan.num_groups(); ++set)
     stored.waiting.push_back({set, plan.num_seeds(set), longest_work(plan.group(set))});
   for (std::int64_t task = 0; task < plan.size() && !rows.empty(); ++task) {
     const RunParameters run = plan.task(task);
-    const auto found = rows.extract(sweep::identity(sweep::describe(run)));
+    const auto found = rows.extract(sweep::identity_in_any_laboratory(sweep::describe(run)));
     if (found.empty()) continue;
     const sweep::RunRow& row = found.mapped();
     const std::int64_t set = plan.group_of(task);

@@ -113,18 +113,55 @@ void SweepState::keep_circles(const store::SweepFile& file) {
       circles_.push_back({"", one.circles});
 }
 
-void SweepState::find_tasks(Known known) {
+/// Gives tasks their runs, and those that have none the run of another laboratory, on which runs do not
+/// depend. A row that no task of its own laboratory needs changes its laboratory; others are copied.
+void SweepState::find_runs(Known& known, std::int64_t num_tasks) {
+  std::unordered_map<std::string, std::string> others;  // identities of runs by those in any laboratory
+  std::vector<std::int64_t> without;
+  std::unordered_map<std::string, const Entry*> in_plan;
+  const auto task_row = [&](std::int64_t task) { return sweep::describe(plan_->task(task)); };
+  for (std::int64_t task = 0; task < num_tasks; ++task) {
+    const sweep::RunRow row = task_row(task);
+    if (auto found = known.extract(sweep::identity(row)); !found.empty())
+      place_of(task) = std::move(found.mapped());
+    const Entry* const run = entry(task);
+    if (row.parameters.laboratory && !run) without.push_back(task);
+    if (row.parameters.laboratory && run && is_over(run->row))
+      in_plan.emplace(sweep::identity_in_any_laboratory(row), run);
+  }
+  if (without.empty()) return;
+  for (const auto& [run, entry] : known) others.emplace(sweep::identity_in_any_laboratory(entry->row), run);
+  for (const std::int64_t task : without) {
+    const sweep::RunRow row = task_row(task);
+    const std::string run = sweep::identity_in_any_laboratory(row);
+    std::unique_ptr<Entry> found;
+    if (const auto other = others.find(run); other != others.end() && known.contains(other->second))
+      found = std::move(known.extract(other->second).mapped());
+    else if (const auto shared = in_plan.find(run); shared != in_plan.end())
+      found = std::make_unique<Entry>(*shared->second);
+    else
+      continue;
+    found->row.parameters.laboratory = row.parameters.laboratory;
+    in_plan.try_emplace(run, found.get());
+    place_of(task) = std::move(found);
+  }
+}
+
+/// The number of tasks, from the start of the plan, that may have begun.
+std::int64_t SweepState::num_tasks_known(const Known& known) const {
   std::int64_t last_seed = -1;
   for (const auto& [run, entry] : known)
     last_seed = std::max(last_seed, std::int64_t{entry->row.parameters.seed});
-  for (std::int64_t task = 0; task < plan_->size(); ++task) {
-    // Seeds that may be added later follow in increasing order: no later seed has begun yet.
-    if (task >= std::max(num_wanted_, std::ssize(runs_)) &&
-        (known.empty() || plan_->task(task).seed > last_seed))
-      break;
-    if (!known.empty())
-      if (auto found = known.extract(sweep::identity(sweep::describe(plan_->task(task)))); !found.empty())
-        place_of(task) = std::move(found.mapped());
+  std::int64_t number = std::min(plan_->size(), std::max(num_wanted_, std::ssize(runs_)));
+  // Seeds that may be added later follow in increasing order: no later seed has begun yet.
+  while (!known.empty() && number < plan_->size() && plan_->task(number).seed <= last_seed) ++number;
+  return number;
+}
+
+void SweepState::find_tasks(Known known) {
+  const std::int64_t num_tasks = num_tasks_known(known);
+  if (!known.empty() || (num_tasks > 0 && plan_->task(0).laboratory)) find_runs(known, num_tasks);
+  for (std::int64_t task = 0; task < num_tasks; ++task) {
     if (Entry* const run = entry(task)) {
       run->row.task = task;
       if (is_over(run->row)) continue;

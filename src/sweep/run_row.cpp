@@ -1,9 +1,11 @@
 #include "clog/sweep/run_row.hpp"
 
 #include <cassert>
+#include <cstring>
 
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/instruction_set.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/sweep/columns.hpp"
 #include "clog/sweep/keys.hpp"
 
@@ -22,9 +24,20 @@ std::string identity(const RunRow& row) {
   for (const Column& column : columns()) {
     if (column.role != ColumnRole::parameter) continue;
     bytes.resize(bytes.size() + column.size);
-    column.pack(row, reinterpret_cast<std::byte*>(bytes.data() + bytes.size() - column.size));
+    char* const place = bytes.data() + bytes.size() - column.size;
+    column.pack(row, reinterpret_cast<std::byte*>(place));
+    if (column.kind != ValueKind::number) continue;
+    double number = 0;
+    std::memcpy(&number, place, sizeof number);
+    number = twelve_digits(number);
+    std::memcpy(place, &number, sizeof number);
   }
   return bytes;
+}
+
+std::string identity_in_any_laboratory(RunRow row) {
+  row.parameters.laboratory.reset();
+  return identity(row);
 }
 
 std::string identity_in_any_version(RunRow row) {

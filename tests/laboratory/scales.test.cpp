@@ -61,7 +61,7 @@ TEST(InModelUnits, ConvertsEachNumberThatHasAUnit) {
 
 TEST(Laboratory, KeepsItsLinesWithoutComments) {
   const Laboratory lab = parse_laboratory("# mine\nangle = 90 deg # upright\n\ndiameter=200um\n", "text");
-  EXPECT_EQ(lab.text, "angle = 90 deg; diameter = 200um");
+  EXPECT_EQ(lab.text, "angle = 90 deg; diameter = 0.2 mm");
   EXPECT_EQ(parse_laboratory(lab.text, "text").text, lab.text);
   EXPECT_THROW(parse_laboratory("angle = 90 deg\n", "text"), Error);
 }

@@ -185,6 +185,46 @@ class Sizes(ProgramTest):
         self.assertEqual((len(rows), rows.laboratory.nunique()), (12, 6))
         self.assertEqual(set(before.laboratory) - set(rows.laboratory), set())
 
+    def test_a_laboratory_in_other_words_runs_nothing_again(self):
+        self.sweep()
+        before = table(self.folder / "s.h5")
+        for changed in ({"angle": "20.0 deg, 45deg"}, {"diameter": "800 um, 0.16 cm"}, {"speed": "0.1 cm/s"}):
+            self.assertIn("nothing left to do", self.sweep(**changed).stderr, changed)
+        pandas.testing.assert_frame_equal(table(self.folder / "s.h5"), before)
+        self.refuse("clogsweep", "--quiet", "--lab", self.lab(diameter="0.8 mm, 800 um"), *ARRAY, "--output", "x.h5", words=["mean the same run"])
+
+    def test_runs_of_a_laboratory_that_says_more_are_adopted(self):
+        self.sweep()
+        before = table(self.folder / "s.h5")
+        self.assertIn("nothing left to do", self.sweep(thickness="0.3 mm").stderr)
+        rows = table(self.folder / "s.h5")
+        self.assertTrue((rows.laboratory != before.laboratory).all())
+        same = [name for name in rows if name != "laboratory"]
+        pandas.testing.assert_frame_equal(rows[same], before[same])
+        self.assertEqual(len(self.fit("s.h5")["groups"]), len(SETS))
+
+    def test_laboratories_with_the_same_runs_share_them(self):
+        # Tilts differ, but no run depends on them.
+        keys = ["line-tension=0.5", "terminal-speed=0.03", "obstacle-gap=0.4sigma", "vertices=64", "box=20sigma", "max-time=40", "seeds=1..2"]
+        self.sweep(*keys, diameter="0.8 mm", angle="20 deg")
+        before = table(self.folder / "s.h5")
+        self.sweep(*keys, diameter="0.8 mm", angle="20 deg, 45 deg")
+        rows = table(self.folder / "s.h5")
+        self.assertEqual((len(rows), rows.laboratory.nunique(), rows.wall_seconds.nunique()), (4, 2, 2))
+        self.assertEqual(set(rows.distance), set(before.distance))
+        self.assertEqual({group["angle_degrees"] for group in self.fit("s.h5")["groups"]}, {20, 45})
+
+    def test_a_pitch_and_the_same_gap_are_one_parameter_set(self):
+        keys = ["obstacle-layout=lattice", "obstacle-diameter=0.3", "vertices=64", "max-time=20", "box=6"]
+        self.succeed("clogsweep", "pitch=1.2", *keys, "seeds=1..2", "--output", "p.h5")
+        by_pitch = table(self.folder / "p.h5")
+        self.assertNotEqual(by_pitch.obstacle_gap[0], 0.9, "the case is tested")
+        self.succeed("clogsweep", "obstacle-gap=0.9", *keys, "seeds=3", "--output", "g.h5")
+        self.succeed("clogsweep", "merge", "p.h5", "g.h5", "--output", "all.h5")
+        self.assertEqual([group["runs"] for group in self.fit("all.h5")["groups"]], [3])
+        self.assertIn("nothing left to do", self.succeed("clogsweep", "obstacle-gap=0.9", *keys, "seeds=1..2", "--output", "p.h5").stderr)
+        pandas.testing.assert_frame_equal(table(self.folder / "p.h5"), by_pitch)
+
     def test_points_and_shards_and_more_seeds_meet_droplets(self):
         self.write("points.csv", "obstacle-gap,max-time\n0.4mm,40\n0.5mm,\n")
         keys = [word for word in ARRAY if not word.startswith(("obstacle-gap", "max-time"))]

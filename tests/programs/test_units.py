@@ -138,7 +138,7 @@ class Units(ProgramTest):
         self.assertAlmostEqual(fit["laboratory"]["length_mm"], 3.5)
         self.assertAlmostEqual(group["clogging_length_lower_mm"], 3.5 * group["clogging_length_lower"])
         if group["relative_speed_all"] is not None:
-            self.assertAlmostEqual(group["speed_mm_per_s"], 7 * group["relative_speed_all"])
+            self.assertAlmostEqual(group["speed_mm_per_s"] / (7 * group["relative_speed_all"]), 1, places=3)
         self.assertEqual(fit["units"]["clogging_length_mm"], "mm")
         self.assertIn("lambda/mm", self.succeed("clogfit", "s.h5").stdout)
         self.copy_sweep("plain.h5", *FEW)
@@ -146,11 +146,40 @@ class Units(ProgramTest):
         self.assertIn("lambda/mm", self.succeed("clogfit", "plain.h5", "--lab", lab).stdout)
 
     def test_a_comment_in_a_laboratory_of_an_older_file_says_nothing(self):
-        self.succeed("clogsweep", *QUICK, "seeds=1..2", "--output", "s.h5")
+        speed = self.units(self.lab())["terminal_speed"]
+        self.succeed("clogsweep", *QUICK, f"terminal-speed={speed}", "seeds=1..2", "--output", "s.h5")
         before = json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lab", self.lab()).stdout)
         stored_rows.change_attribute(self.folder / "s.h5", "laboratory", (self.folder / "lab.cfg").read_text() + "# measured in May\n")
         done = self.succeed("clogfit", "s.h5", "--format", "json")
         self.assertEqual((json.loads(done.stdout)["laboratory"], done.stderr), (before["laboratory"], ""))
+
+    def test_speeds_are_those_of_the_runs(self):
+        # The laboratory's droplet falls at 30 mm/s; the runs have another speed.
+        self.lab(speed="30 mm/s")
+        for keys, speed in ((["--lab", "lab.cfg", "terminal-speed=1mm/s"], 1), ([], 0.03 * 3.5 / self.units("lab.cfg")["time_s"])):
+            self.succeed("clogsweep", *keys, "line-tension=5", "obstacle-gap=1", "vertices=64", "box=20", "max-time=600", "seeds=1..4", "--output", f"{len(keys)}.h5")
+            told = self.succeed("clogfit", f"{len(keys)}.h5", "--lab", "lab.cfg", "--format", "json")
+            group, = json.loads(told.stdout)["groups"]
+            for name, model in (("speed_mm_per_s", "relative_speed_all"), ("speed_error_mm_per_s", "relative_speed_all_error")):
+                self.assertAlmostEqual(group[name] / (speed * group[model]), 1, places=3)
+            self.assertIn("those of runs with a terminal speed of", told.stderr)
+            self.assertIn("the laboratory's droplet has 30 mm/s", told.stderr)
+        run = self.succeed("clogrun", "array", "--lab", "lab.cfg", "terminal-speed=1mm/s", *QUICK, "seeds=1", "--output", "r.h5").stdout
+        time, = re.findall(r"t = ([-0-9.e]+) t0", run)
+        long, = re.findall(r"t = ([-0-9.e]+) s", run)
+        self.assertAlmostEqual(float(long) / (float(time) * self.units("lab.cfg")["time_s"]), 1, places=2)
+
+    def test_each_model_gets_the_value_of_its_droplet(self):
+        known = self.units(self.lab())
+        self.succeed("clogsweep", "--lab", "lab.cfg", "model=dp,sp", "box=20", "max-time=20", "seeds=1", "--output", "s.h5")
+        rows = table(self.folder / "s.h5").set_index("model")
+        self.assertAlmostEqual(rows.line_tension["dp"] / known["line_tension"], 1, places=3)
+        self.assertAlmostEqual(rows.wall_stiffness["sp"] / known["wall_stiffness"], 1, places=3)
+        self.write("p.csv", "model,obstacle-gap,vertices\ndp,0.4,64\nsp,0.5,\n")
+        self.succeed("clogsweep", "--lab", "lab.cfg", "--points", "p.csv", "box=20", "max-time=20", "seeds=1", "--output", "p.h5")
+        pointed = table(self.folder / "p.h5").set_index("model")
+        for name, model in (("line_tension", "dp"), ("wall_stiffness", "sp")):
+            self.assertEqual(pointed[name][model], rows[name][model])
 
     def sweeps_of_two_droplets(self):
         """Files of sweeps with droplets of 0.8 and 1.2 mm in the same cell. Both droplets have the same interfacial

@@ -9,6 +9,8 @@ namespace clog::laboratory {
 /// "angle" (in radians)
 /// @throws Error naming the units that are understood
 double to_si(const std::string& text, const std::string& units);
+/// The inverse of to_si(): twelve digits and the usual unit, e.g. "3.5 mm".
+std::string in_usual_unit(double value, const std::string& units);
 
 /// A droplet between two plates that are tilted, driven by buoyancy; all in SI units.
 struct Experiment {

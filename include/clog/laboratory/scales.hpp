@@ -30,7 +30,8 @@ Scales scales_of(const Laboratory& lab);
 using Texts = std::map<std::string, std::string>;
 /// The laboratory's description, and two properties of its droplet unless the user has set them: the terminal
 /// speed, and the line tension or, for soft disks, the wall stiffness.
-Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings);
+/// @param model  empty for keys of all models
+Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, const std::string& model);
 /// A key's text with its numbers in the model's units: `0.2mm,0.3mm` is `0.1,0.15` with a droplet of 2 mm.
 /// @param text  numbers without a unit, and those in sigma, keep their values
 /// @throws Error that names the key, if one of its numbers has another unit than the key can have

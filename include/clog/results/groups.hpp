@@ -105,9 +105,6 @@ struct LaboratoryScale {
   double tilt = std::numeric_limits<double>::quiet_NaN();  ///< tilt of the plates [degrees]
 };
 
-/// Twelve digits, without the round-off of conversions between units.
-double short_number(double value);
-
 /// The droplets of a device, and a line across the flow that they may have passed.
 struct Passage {
   double x;  ///< x of the line, in the coordinates of the circles [sigma]
@@ -180,6 +177,10 @@ struct Group {
   std::vector<Doubt> doubts;
   std::optional<LaboratoryScale> laboratory = {};  ///< units in which results are also given
 };
+
+/// Terminal speed of the group's runs [mm/s], which may differ from that of the laboratory's droplet; NaN if
+/// the laboratory does not know the latter.
+double terminal_speed_in_laboratory(const Group& group);
 
 /// Number of failures divided by the distance of the runs that count for the clogging length; NaN if they
 /// went nowhere [1/sigma].

@@ -134,6 +134,8 @@ class SweepState {
   Known recognise(std::vector<sweep::RunRow> rows, std::vector<Entry> records,
                   const sweep::Settings& settings);
   void refuse_foreign(const sweep::RunRow& record, const FixedValues& fixed) const;
+  std::int64_t num_tasks_known(const Known& known) const;
+  void find_runs(Known& known, std::int64_t num_tasks);
   void find_tasks(Known known);
   double seconds_so_far() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
   sweep::RunRow published(const sweep::RunRow& row) const;

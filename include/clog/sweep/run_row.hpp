@@ -127,8 +127,10 @@ inline double cost_seconds(const RunRow& row) {
 }
 
 /// The parameters and the seed of a run as bytes. They are equal for equal runs, whatever their task numbers
-/// are.
+/// are. Numbers count with twelve digits, so that a gap and the same gap given by a pitch are equal.
 std::string identity(const RunRow& row);
+/// The same without the laboratory, on which runs do not depend.
+std::string identity_in_any_laboratory(RunRow row);
 /// The same without the model version, to find the task of a row that another version wrote.
 std::string identity_in_any_version(RunRow row);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -21,15 +22,19 @@ inline std::string shortest(double value) {
   return text;
 }
 
-/// A share as people write it: 0.125 is `12.5%`. Twelve digits avoid 28.999999999999996%.
-inline std::string share_text(double share) {
+/// The number rounded to twelve digits, so without the round-off of a calculation or of a conversion between
+/// units: 1.2 - 0.3 is 0.8999999999999999 and becomes 0.9.
+inline double twelve_digits(double value) {
+  if (!std::isfinite(value) || value == std::trunc(value)) return value;
   char digits[32];
   const char* const end =
-      std::to_chars(digits, digits + sizeof digits, 100 * share, std::chars_format::general, 12).ptr;
-  double percent = 0;
-  std::from_chars(digits, end, percent);
-  return shortest(percent) + '%';
+      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 12).ptr;
+  std::from_chars(digits, end, value);
+  return value;
 }
+
+/// A share as people write it: 0.125 is `12.5%`.
+inline std::string share_text(double share) { return shortest(twelve_digits(100 * share)) + '%'; }
 /// The share that a text like `12.5%` gives; NaN unless the text is a number and a `%`.
 inline double share_of(std::string_view text) {
   double percent = 0;
