@@ -63,6 +63,8 @@ store::SweepFile SweepState::read_table() {
   if (place_.stamp() != stamp_ || store::OutputPath::resolve(path_).stamp() != stamp_)
     throw Error("cannot resume " + path_ +
                 " (it was replaced or moved while it was read); try again when it stays in place");
+  store::refuse_foreign_objects(path_, file);
+  store::refuse_foreign_objects(path_, file);
   return file;
 }
 

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "check_sum.hpp"
@@ -97,6 +98,15 @@ std::string text_as_written(hid_t file, const std::string& name,
 std::string intact_text(hid_t file, const std::string& name) {
   std::string text = read_attribute(file, name);
   return listed_check_sum(file, name) == check_sum(text) ? text : "";
+}
+
+std::vector<std::string> unlisted_attributes(hid_t file) {
+  std::vector<std::string> names = attributes_of(file);
+  std::set<std::string> known = {list_name};
+  for (const auto& listed : read_list(file))
+    if (listed) known.insert(listed->first);
+  std::erase_if(names, [&](const std::string& name) { return known.contains(name); });
+  return names;
 }
 
 void compare_attributes(hid_t file, const NamedCheckSum& table, Provenance& whole,

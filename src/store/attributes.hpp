@@ -31,4 +31,7 @@ std::string intact_text(hid_t file, const std::string& name);
 void compare_attributes(hid_t file, const NamedCheckSum& table, Provenance& whole,
                         std::vector<std::string>& damage);
 
+/// Names of the attributes that are not in the list of checksums, so another program has added them.
+std::vector<std::string> unlisted_attributes(hid_t file);
+
 }  // namespace clog::store

@@ -7,8 +7,6 @@
 namespace clog::store {
 namespace {
 
-constexpr const char* group_name = "obstacles";
-
 Type circle_type() {
   Type type(H5Tcreate(H5T_COMPOUND, sizeof(Obstacle)));
   H5Tinsert(type, "x", offsetof(Obstacle, x), H5T_NATIVE_DOUBLE);
@@ -48,14 +46,14 @@ std::optional<CircleFile> read_one(hid_t group, const std::string& name) {
 
 void write_circles(hid_t file, std::span<const CircleFile> circles) {
   if (circles.empty()) return;
-  const Group group(H5Gcreate2(file, group_name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  const Group group(H5Gcreate2(file, circles_name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   if (!group.valid()) throw LibraryError("create the obstacles");
   for (const CircleFile& one : circles) write_one(group, one);
 }
 
 void read_circles(hid_t file, std::vector<CircleFile>& whole, std::vector<std::string>& damage) {
-  if (H5Lexists(file, group_name, H5P_DEFAULT) <= 0) return;
-  const Group group(H5Gopen2(file, group_name, H5P_DEFAULT));
+  if (H5Lexists(file, circles_name, H5P_DEFAULT) <= 0) return;
+  const Group group(H5Gopen2(file, circles_name, H5P_DEFAULT));
   if (!group.valid()) {
     damage.emplace_back("its obstacles cannot be opened");
     return;

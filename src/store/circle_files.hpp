@@ -11,6 +11,9 @@
 /// with the columns x, y and radius. The name of the table is the checksum of the circles.
 namespace clog::store {
 
+/// Group of the circles.
+inline constexpr const char* circles_name = "obstacles";
+
 /// @throws LibraryError
 void write_circles(hid_t file, std::span<const CircleFile> circles);
 

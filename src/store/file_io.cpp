@@ -25,6 +25,10 @@ std::string file_fault(FileAction action, const std::string& path, std::error_co
   if (is_written && reason == std::errc::no_such_file_or_directory && !folder.empty() &&
       !fs::exists(folder, none))
     return what + " (no folder " + folder.string() + "); make it first";
+  if (reason == std::errc::filename_too_long)
+    return what + " (" + reason.message() +
+           "; while it is written, other files have its name with up to 20 more letters); give a shorter "
+           "name";
   return what + " (" + reason.message() + "); check the disk and the permissions";
 }
 

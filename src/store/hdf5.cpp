@@ -177,6 +177,18 @@ std::vector<std::string> names_in(hid_t group) {
   return names;
 }
 
+std::vector<std::string> attributes_of(hid_t object) {
+  std::vector<std::string> names;
+  H5Aiterate2(
+      object, H5_INDEX_NAME, H5_ITER_INC, nullptr,
+      [](hid_t, const char* name, const H5A_info_t*, void* all) {
+        static_cast<std::vector<std::string>*>(all)->emplace_back(name);
+        return herr_t{0};
+      },
+      &names);
+  return names;
+}
+
 std::string member_name(hid_t type, unsigned index) {
   char* name = H5Tget_member_name(type, index);
   if (!name) return {};

@@ -92,6 +92,8 @@ bool can_hold(hid_t dataset, hsize_t number, std::size_t bytes_each);
 Type text_type(std::size_t length);
 /// Names of the objects in a group.
 std::vector<std::string> names_in(hid_t group);
+/// Names of the attributes of an object.
+std::vector<std::string> attributes_of(hid_t object);
 /// Name of a member of a compound type; empty if there is none.
 std::string member_name(hid_t type, unsigned index);
 /// @throws LibraryError

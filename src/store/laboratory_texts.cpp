@@ -9,8 +9,6 @@
 namespace clog::store {
 namespace {
 
-constexpr const char* laboratories_name = "laboratories";
-
 /// Reads a text; empty if it is not a text of fixed length.
 std::string read_text(hid_t group, const std::string& name) {
   const Dataset dataset(H5Dopen2(group, name.c_str(), H5P_DEFAULT));

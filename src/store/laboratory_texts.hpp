@@ -10,6 +10,9 @@
 
 namespace clog::store {
 
+/// Group of the laboratories.
+inline constexpr const char* laboratories_name = "laboratories";
+
 /// Descriptions of laboratories in a file of runs: the group /laboratories has a text for each. The name of a
 /// text is its checksum, to which rows refer.
 /// @throws LibraryError

@@ -18,6 +18,7 @@
 #include "check_sum.hpp"
 #include "circle_files.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "hdf5.hpp"
 #include "laboratory_texts.hpp"
@@ -247,6 +248,34 @@ bool is_refused(hid_t file, const char* name) {
   return refused;
 }
 
+/// Attributes of the object that are not among the known ones, as in "attribute note of /runs".
+void add_attributes(hid_t object, const std::string& name, const std::set<std::string>& known,
+                    std::vector<std::string>& foreign) {
+  for (const std::string& attribute : attributes_of(object))
+    if (!known.contains(attribute)) foreign.push_back(fmt::format("attribute {} of {}", attribute, name));
+}
+
+/// Objects and attributes that other programs have added. Those in the groups of circles and laboratories are
+/// damage.
+std::vector<std::string> foreign_objects(hid_t file) {
+  const std::set<std::string> known = {runs_name, sums_name, circles_name, laboratories_name};
+  std::vector<std::string> foreign;
+  for (const std::string& name : names_in(file))
+    if (!known.contains(name)) foreign.push_back('/' + name);
+  for (const std::string& name : unlisted_attributes(file))
+    foreign.push_back(fmt::format("attribute {} of /", name));
+  const Dataset runs(H5Dopen2(file, runs_name, H5P_DEFAULT)), sums(H5Dopen2(file, sums_name, H5P_DEFAULT));
+  const Type row(H5Dget_type(runs));
+  std::set<std::string> columns;
+  for (int i = 0; i < H5Tget_nmembers(row); ++i) columns.insert(member_name(row, static_cast<unsigned>(i)));
+  add_attributes(runs, "/runs", columns, foreign);
+  add_attributes(sums, "/row_checksums", {"meaning"}, foreign);
+  for (const char* name : {circles_name, laboratories_name})
+    if (H5Lexists(file, name, H5P_DEFAULT) > 0)
+      add_attributes(Group(H5Gopen2(file, name, H5P_DEFAULT)), std::string("/") + name, {}, foreign);
+  return foreign;
+}
+
 Examination examine(std::vector<std::byte>& image, Seal seal, const std::string& path) try {
   const File file = open_image(image, path);
   require_sweep(file, path);
@@ -259,6 +288,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
   if (seal != Seal::whole)
     found.is_refused_by_others = is_refused(file, runs_name) || is_refused(file, sums_name);
   adopt_laboratory_of_all(found.whole);
+  if (seal != Seal::whole) found.whole.foreign = foreign_objects(file);
   for (const char* ours : {"kind", "format_version", num_columns_name})
     std::erase_if(found.whole.provenance, [&](const auto& attribute) { return attribute.first == ours; });
   if (seal == Seal::broken && found.damage.empty())
@@ -302,6 +332,19 @@ SweepFile read_sweep(const std::string& path) {
       "cannot trust {} (damaged: {}{}); `clogsweep verify` names all, `clogsweep salvage` copies "
       "undamaged rows",
       path, found.damage.front(), num_others > 0 ? fmt::format(", and {} more", num_others) : ""));
+}
+
+void refuse_foreign_objects(const std::string& path, const SweepFile& file) {
+  if (file.foreign.empty()) return;
+  constexpr std::size_t most_named = 5;
+  std::vector<std::string> named = file.foreign;
+  const std::size_t num_others = named.size() - std::min(named.size(), most_named);
+  named.resize(named.size() - num_others);
+  throw Error(
+      fmt::format("cannot resume {0} (it has objects of another program, which would be lost: {1}{2}); copy "
+                  "the sweep without "
+                  "them by clogsweep salvage {0} --output NEW.h5, and resume NEW.h5",
+                  path, joined(named), num_others > 0 ? fmt::format(", and {} more", num_others) : ""));
 }
 
 std::string caution(const std::string& path, const SweepFile& file) {

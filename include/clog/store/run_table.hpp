@@ -46,6 +46,8 @@ struct SweepFile {
   Provenance provenance;
   std::vector<CircleFile> circles;  ///< the circles that the rows refer to
   Checked checked = Checked::everything;
+  /// Objects and attributes that other programs have added; a file that replaces this one lacks them.
+  std::vector<std::string> foreign = {};
 };
 
 /// The rows that a new file gets. Each row is requested once, in the order of `i`, so the rows need not be in
@@ -82,6 +84,9 @@ SweepFile read_sweep(const std::string& path);
 void try_before_mpi(const std::string& path);
 /// A warning for readers of this file; empty if all of it was verified.
 std::string caution(const std::string& path, const SweepFile& file);
+
+/// Call this before the file is replaced. @throws Error if it has foreign objects, which would be lost
+void refuse_foreign_objects(const std::string& path, const SweepFile& file);
 
 /// A file that may be damaged: the intact rows and attributes, and a list of the damage.
 struct Examination {
