@@ -364,6 +364,100 @@ class Drawings(Analysis):
         library.write_gds(str(self.folder / "device.gds"))
         self.assert_posts(self.circles("device.gds"), 2e-3)
 
+    def gdsii(self, **cells):
+        """@param cells  the polygons of each top cell"""
+        import gdspy
+
+        library = gdspy.GdsLibrary()
+        for name, polygons in cells.items():
+            library.add(gdspy.Cell(name, exclude_from_current=True).add(polygons))
+        library.write_gds(str(self.folder / "device.gds"))
+
+    @staticmethod
+    def rounds(layer=1, datatype=0):
+        import gdspy
+
+        return [gdspy.Round((200 * x, 200 * y), 50, number_of_points=64, layer=layer, datatype=datatype) for x, y in ROW]
+
+    def refused(self, *options, words, drawing="device.gds"):
+        self.refuse_analysis("circles", drawing, "--droplet", "200um", "--output", "posts", *options, words=words)
+        self.assertFalse((self.folder / "posts.csv").exists())
+
+    def test_gdsii_layers_with_their_datatypes(self):
+        import gdspy
+
+        edge = gdspy.Rectangle((0, 0), (3600, 1200), layer=1, datatype=5)
+        marks = [gdspy.Rectangle((300 + 40 * i, 20), (320 + 40 * i, 40), layer=1, datatype=7) for i in range(3)]
+        self.gdsii(DEVICE=[*self.rounds(), *marks])
+        self.refused("--layer", "2", words=["layer 2", f"1/0 with {len(ROW)} objects", "1/7 with 3 objects"])
+        self.gdsii(DEVICE=[*self.rounds(), edge])
+        for layer in ("1", None):
+            self.assert_posts(self.circles("device.gds", *(["--layer", layer] if layer else [])), 2e-3)
+            (self.folder / "posts.csv").unlink()
+
+    def test_posts_that_cross_the_rim_of_a_reservoir_do_not_vanish(self):
+        import gdspy
+
+        reservoir = gdspy.Round((0, 600), 2000, number_of_points=400, layer=3)  # its rim crosses posts
+        edge = gdspy.Rectangle((-2100, -1500), (3600, 2700), layer=5)
+        self.gdsii(DEVICE=[*self.rounds(), reservoir, edge])
+        for options in ([], ["--as-circles"], ["--as-rows"]):
+            with self.subTest(options=options):
+                done = self.analyse("circles", "device.gds", "--droplet", "200um", "--output", "posts", *options)
+                self.assertEqual(done.returncode, 2, done.stdout)
+                self.assertFalse((self.folder / "posts.csv").exists())
+        self.refused("--as-circles", words=["4 round posts would vanish", f"1/0 with {len(ROW)} objects", "3/0 with"])
+
+    def test_one_of_several_top_cells(self):
+        import gdspy
+
+        edge = gdspy.Rectangle((0, 0), (3600, 1200), layer=5)
+        self.gdsii(CHIP=[*self.rounds(), edge], TEST=gdspy.Rectangle((0, 5000), (100, 5100)))
+        self.assert_posts(self.circles("device.gds", "--cell", "CHIP"), 2e-3)
+        (self.folder / "posts.csv").unlink()
+        self.refused("--cell", "NONE", words=["no cell NONE", "CHIP, TEST"])
+
+    def test_posts_that_are_holes(self):
+        import ezdxf
+        import gdspy
+
+        area = gdspy.Rectangle((0, 0), (3600, 1200), layer=1)
+        # A polygon with a slit to each hole, and the same cut into pieces.
+        for most_points in (10000, 60):
+            self.gdsii(DEVICE=gdspy.boolean(area, self.rounds(), "not", max_points=most_points))
+            with self.subTest(most_points=most_points):
+                self.assert_posts(self.circles("device.gds", "--holes"), 2e-3)
+                (self.folder / "posts.csv").unlink()
+                if most_points > 60:
+                    self.refused(words=["round hole", "--holes"])
+        drawing = ezdxf.new("R2010")
+        drawing.header["$INSUNITS"] = 13
+        hatch = drawing.modelspace().add_hatch()
+        hatch.paths.add_polyline_path([(0, 0), (3600, 0), (3600, 1200), (0, 1200)], is_closed=True, flags=1)
+        for x, y in ROW:
+            hatch.paths.add_edge_path(flags=16).add_arc((200 * x, 200 * y), 50, 0, 360)
+        drawing.saveas(self.folder / "device.dxf")
+        self.refused(words=["round hole", "--holes"], drawing="device.dxf")
+        self.assert_posts(self.circles("device.dxf", "--holes"), 2e-3)
+        (self.folder / "posts.csv").unlink()
+        self.gdsii(DEVICE=self.rounds())
+        self.refused("--holes", words=["no holes", "leave out --holes"])
+
+    def test_small_lengths_keep_six_digits(self):
+        # Two posts with a gap of 26.79 nm.
+        import ezdxf
+
+        gap, drawing = 0.02679, ezdxf.new("R2010")
+        drawing.header["$INSUNITS"] = 13
+        for x, y in ((1, 1), (1.3 + gap, 1), (1, 2.2)):
+            drawing.modelspace().add_circle((x, y), 0.15)
+        drawing.saveas(self.folder / "device.dxf")
+        self.draw("circles", "device.dxf", "--droplet", "1um", "--output", "posts")
+        rows = np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)
+        ways = rows[:, None, :2] - rows[None, :, :2]
+        gaps = np.hypot(*ways.T) - rows[:, 2]
+        self.assertAlmostEqual(gaps[~np.eye(len(rows), dtype=bool)].min() / gap, 1, places=5)
+
     def test_svg(self):
         self.write("device.svg", SVG.format("".join(f'<circle cx="{200 * x}" cy="{1200 - 200 * y}" r="50"/>' for x, y in ROW)))
         self.assert_posts(self.circles("device.svg"), 2e-3)

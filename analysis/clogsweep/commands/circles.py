@@ -40,7 +40,9 @@ def options() -> argparse.Namespace:
     scale = parser.add_mutually_exclusive_group()
     scale.add_argument("--unit", choices=shapes.METRES, help="unit of a drawing that contains none")
     scale.add_argument("--pixel", help="size of a pixel of a picture with its unit, such as 2.5um")
-    parser.add_argument("--layer", help="use only this layer of a DXF or GDSII file (all layers)")
+    parser.add_argument("--layer", help="use only this layer of a DXF or GDSII file, in GDSII also with its datatype, such as 1/0 (all layers)")
+    parser.add_argument("--cell", help="use this cell of a GDSII file, with all cells to which it refers (the top cells)")
+    parser.add_argument("--holes", action="store_true", help="the posts are holes in the drawn areas, whose outer edge is that of the device")
     parser.add_argument("--posts", choices=("dark", "bright"), help="brightness of the posts in a picture (dark, unless its border and most of its area are dark)")
     parser.add_argument("--region", type=region_of, help="x0,y0,x1,y1: use only this rectangle, in the unit and coordinates that the drawing program shows")
     parser.add_argument("--flow", choices=TURNS, default="right", help="direction of the flow in the drawing (right)")
@@ -123,6 +125,8 @@ def told(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> list[
 def summary(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> str:
     """One line: what was read, joined, united, ignored, skipped and scaled."""
     words = [f"read {rounded.counted(drawing.objects, 'object')}", *drawing.notes]
+    if len(drawing.layers) > 1:
+        words.append("layers " + ", ".join(f"{name} ({count})" for name, count in sorted(drawing.layers.items())))
     for (number, result), verb in ((drawing.joined, "closed"), (drawing.united, "that touch united")):
         what = rounded.counted(number, "line" if verb == "closed" else "outline")
         words += [f"{what} {verb} into {rounded.counted(result, 'outline')}"] if number else []
@@ -161,9 +165,11 @@ def body() -> int:
     table = pathlib.Path(f"{arguments.output}.csv")
     outputs.refuse_unwritable_picture(arguments.output, arguments.drawing)
     outputs.refuse_unwritable(table, "csv", arguments.drawing)
-    drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts)
+    drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts, arguments.cell)
+    if arguments.holes and drawing.is_picture:
+        raise UserError("no place for --holes (the drawing is a picture); --posts bright or dark chooses the posts of a picture")
     lines.join(drawing)
-    areas.tidy(drawing, arguments.region, arguments.tolerance)
+    areas.tidy(drawing, arguments.region, arguments.tolerance, arguments.holes)
     metres = metres_of(arguments, drawing)
     device = shapes.understood(drawing, metres, droplet, arguments.tolerance, TURNS[arguments.flow])
     shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), metres, remedy_of_unit(arguments), drawing.is_picture)
@@ -171,6 +177,7 @@ def body() -> int:
     if arguments.as_rows and device.others:
         device, made = in_rows(device, arguments.corner)
     if arguments.as_circles:
+        shapes.refuse_swallowed(drawing, [outline for outline, _ in drawing.swallowing])
         device = shapes.as_circles(device)
     picture = Picture(device_plan.understood(device, arguments.drawing.name), f"python3 -m clogsweep circles {arguments.drawing}")
     command_line.tell(f"{picture.save(arguments.output)} (and .pdf)")

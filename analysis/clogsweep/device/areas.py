@@ -11,6 +11,7 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from .libraries import library
 from .shapes import Drawing, fitted_circle, holds
+from . import walls
 from .walls import SHARE, is_rectangle
 
 # Outlines touch if the gap between them is at most this fraction of the size of all outlines. A small gap can come from
@@ -19,13 +20,18 @@ NEAR = 1e-6
 SAME = 1e-8  # Corners are the same if they differ by at most this fraction of the largest coordinate.
 
 
-def tidy(drawing: Drawing, region: Numbers | None, tolerance: float) -> None:
+def tidy(drawing: Drawing, region: Numbers | None, tolerance: float, are_holes_posts: bool = False) -> None:
     """Drops duplicates, unites outlines that touch, and cuts out a region.
+    @param are_holes_posts  whether the holes in outlines are the posts, see posts_of_holes()
     @param region  two opposite corners in the coordinates that a drawing program shows, or None
     @param tolerance  as in fitted_circle()"""
     if not drawing.is_picture:
         drop_duplicates(drawing)
-        unite(drawing)
+        find_slits(drawing)
+        if are_holes_posts:
+            posts_of_holes(drawing)
+        else:
+            unite(drawing, tolerance)
     if region is not None:
         corners = drawing.from_own(region)
         (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
@@ -77,9 +83,48 @@ def drop_duplicates(drawing: Drawing) -> None:
     drawing.outlines = list(kept.values())
 
 
-def unite(drawing: Drawing) -> None:
+def find_slits(drawing: Drawing) -> None:
+    """Replaces outlines with slits by their edges and their holes. Files without holes, such as GDSII, draw a hole as a
+    slit that leads from the edge to the hole, around it, and back."""
+    for index, outline in enumerate(drawing.outlines):
+        if len(outline) > 5 and has_slit(outline):
+            area = library("shapely.geometry", "python3-shapely").Polygon(outline).buffer(0)
+            if area.geom_type == "Polygon" and area.interiors:
+                drawing.outlines[index] = np.asarray(area.exterior.coords)[:-1]
+                drawing.holes += [np.asarray(ring.coords)[:-1] for ring in area.interiors]
+
+
+def has_slit(outline: Numbers) -> bool:
+    """Whether an outline passes through two corners twice."""
+    step = SAME * float(np.abs(outline).max()) or 1.0
+    _, counts = np.unique(np.round(outline / step).astype(np.int64), axis=0, return_counts=True)
+    return int((counts > 1).sum()) >= 2
+
+
+def posts_of_holes(drawing: Drawing) -> None:
+    """Makes the holes of the drawn areas the posts, and the outer edge of the areas the device's edge. Areas are united
+    first, because programs cut areas with holes into pieces. Outlines within holes fill them.
+    @throws UserError  if there are no holes"""
+    geometry, ops = (library(f"shapely.{name}", "python3-shapely") for name in ("geometry", "ops"))
+    tolerance = NEAR * float(np.ptp(np.vstack([*drawing.outlines, np.zeros((0, 2))]), axis=0).max()) if drawing.outlines else 0.0
+    circles = [geometry.Point(x, y).buffer(diameter / 2, 64) for x, y, diameter in drawing.circles]
+    shapes = [*(geometry.Polygon(outline).buffer(0) for outline in drawing.outlines), *circles]
+    holes = [geometry.Polygon(hole).buffer(0) for hole in drawing.holes]
+    inside = [shape for shape in shapes if any(hole.contains(shape) for hole in holes)]
+    outside = [shape for shape in shapes if not walls.is_one_of(shape, inside)]
+    area = union(outside, tolerance).difference(ops.unary_union(holes)).union(ops.unary_union(inside)) if outside else geometry.Polygon()
+    parts = [part for part in getattr(area, "geoms", [area]) if part.geom_type == "Polygon"]
+    if not any(part.interiors for part in parts):
+        raise UserError(f"the drawing has no holes; leave out --holes{drawing.layers_in_words()}")
+    drawing.circles, drawing.outlines, drawing.holes = [], [], []
+    for part in parts:
+        drawing.outlines += [np.asarray(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
+
+
+def unite(drawing: Drawing, circle_tolerance: float) -> None:
     """Unites outlines that touch, because programs that write GDSII cut circles into slices. Some outlines are never
-    united: outlines within others, the edge of the device, and walls."""
+    united: outlines within others, the edge of the device, and walls.
+    @param circle_tolerance  as in fitted_circle()"""
     outlines = drawing.outlines
     pairs = meeting(outlines)
     if not pairs:
@@ -104,7 +149,11 @@ def unite(drawing: Drawing) -> None:
     touching = [members for members in groups.values() if len(members) > 1]
     drawing.outlines = [outlines[members[0]] for members in groups.values() if len(members) == 1]
     for members in touching:
+        first = len(drawing.outlines)
         add(drawing, union([shapes[i] for i in members], tolerance))
+        posts = sum(fitted_circle(outlines[i], True, circle_tolerance) is not None for i in members)
+        if 0 < posts < len(members):
+            drawing.swallowing += [(outline, posts) for outline in drawing.outlines[first:]]
     drawing.united = sum(map(len, touching)), len(touching)
 
 

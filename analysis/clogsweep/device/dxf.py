@@ -31,6 +31,7 @@ def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
     document = ezdxf.readfile(path)
     found = Drawing([], [], metres_of(document, path), skipped=collections.Counter())
     for entity, on_layer in visible(document.modelspace(), document.layers, None, found.skipped):
+        found.layers[on_layer] = found.layers.get(on_layer, 0) + 1
         if layer is not None and on_layer.lower() != layer.lower():
             found.skipped[f"{entity.dxftype()} on layer {on_layer}"] += 1
             continue

@@ -17,13 +17,15 @@ from .shapes import Drawing
 CORNERS_OF_DISC = 128
 
 
-def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
-    """Reads the polygons of the top cells, and those of all cells to which they refer."""
+def read_gds(path: pathlib.Path, layer: str | None, cell: str | None = None) -> Drawing:
+    """Reads the polygons of the top cells, and those of all cells to which they refer.
+    @param layer  the only layer to be read, such as 1, or 1/0 with its datatype
+    @param cell  the only cell to be read, in place of the top cells"""
     gdspy = library("gdspy", "python3-gdspy")
     try:
-        with warnings.catch_warnings():
+        with path.open("rb") as stream, warnings.catch_warnings():  # gdspy does not close a file that it cannot read
             warnings.simplefilter("error", UserWarning)  # gdspy only prints a warning about records that it ignores
-            content = exact_library(gdspy)(infile=str(path), units="import")
+            content = exact_library(gdspy)(infile=stream, units="import")
     except UserWarning as warning:
         raise UserError(f"cannot read {path} ({warning}); convert everything to polygons in the layout program") from warning
     references = [part for cell in content.cell_dict.values() for part in cell.references]
@@ -33,17 +35,23 @@ def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
     # A gdspy that leaves a CellArray here does not call _create_array().
     if any(isinstance(part, gdspy.CellArray) for part in references):
         raise UserError(f"cannot read {path} (gdspy {gdspy.__version__} may misplace its arrays of cells); flatten them in the layout program")
-    cells = content.top_level()
-    drawn = [item for cell in cells for item in cell.get_polygons(by_spec=True).items()]
-    texts = sum(len(cell.get_labels()) for cell in cells)
+    if cell is not None and cell not in content.cell_dict:
+        raise UserError(f"{path} has no cell {cell}; its cells are {', '.join(sorted(content.cell_dict))}")
+    cells = content.top_level() if cell is None else [content.cell_dict[cell]]
+    drawn = [item for one in cells for item in one.get_polygons(by_spec=True).items()]
+    texts = sum(len(one.get_labels()) for one in cells)
     found = Drawing([], [], float(f"{content.unit:.12g}"), skipped=collections.Counter({"text": texts} if texts else {}))
     if len(cells) > 1:
-        found.notes.append(f"{len(cells)} top cells, drawn together: {', '.join(cell.name for cell in cells)}")
-    for (of_layer, _), polygons in drawn:
-        if layer is not None and str(of_layer) != layer:
-            found.skipped[f"polygons on layer {of_layer}"] += len(polygons)
+        found.notes.append(f"{len(cells)} top cells, drawn together (--cell chooses one): {', '.join(one.name for one in cells)}")
+    layers: collections.Counter[str] = collections.Counter()
+    for (of_layer, datatype), polygons in drawn:
+        name = f"{of_layer}/{datatype}"
+        layers[name] += len(polygons)
+        if layer is not None and layer not in (str(of_layer), name):
+            found.skipped[f"polygons on layer {name}"] += len(polygons)
         else:
             found.outlines += [np.asarray(polygon, dtype=float) for polygon in polygons]
+    found.layers = layers
     return found
 
 

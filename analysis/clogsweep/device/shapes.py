@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import math
 import re
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from ..tools import rounded
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from . import walls
@@ -45,6 +47,9 @@ class Drawing:
     duplicates: int = 0  # Number of outlines and circles that were drawn twice.
     unit_hint: str = ""  # Words that name a unit that the drawing may mean.
     notes: list[str] = dataclasses.field(default_factory=list)  # Messages about how the drawing was read.
+    layers: dict[str, int] = dataclasses.field(default_factory=dict)  # Number of objects on each layer, chosen or not.
+    # Outlines that came from round posts and something else, which touched, and the number of these posts.
+    swallowing: list[tuple[Numbers, int]] = dataclasses.field(default_factory=list)
     outside: int = 0  # Number of outlines, circles and lines outside the region that the user gave.
     can_join: bool = True
     unit_in_words: str | None = None  # Name of the unit, if this is not the usual name of a length of `metres`.
@@ -56,6 +61,11 @@ class Drawing:
     @property
     def unit(self) -> str:
         return self.unit_in_words or unit_name(self.metres or 0.0)
+
+    def layers_in_words(self) -> str:
+        """The layers and their numbers of objects, such as "; it has layer 1/0 with 55 objects, 2/0 with 1 object"."""
+        named = ", ".join(f"{name} with {rounded.counted(count, 'object')}" for name, count in sorted(self.layers.items()))
+        return f"; its layers are {named}" if named else ""
 
 
 @dataclasses.dataclass
@@ -243,16 +253,41 @@ def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float
     edge: Numbers | None = None
     if not drawing.is_picture:
         edge, outlines = edges_among(outlines, drawing.holes, np.reshape([circle[:2] for circle in found], (-1, 2)))
+        refuse_swallowed(drawing, [] if edge is None else [edge])
+        refuse_round_holes(drawing, edge, tolerance)
     for outline in outlines:
         is_closed = not drawing.is_picture or bool(np.allclose(outline[0], outline[-1]))
         circle = fitted_circle(outline, is_closed, tolerance)
         found.append(circle) if circle else others.append(outline)
     if not found and not others:
-        raise UserError("the drawing holds no posts; choose another --layer or --region, or close the outlines")
+        raise UserError(f"the drawing holds no posts; choose another --layer or --region, or close the outlines{drawing.layers_in_words()}")
     circles = distinct(np.reshape(found, (-1, 3))) if found else np.empty((0, 3))
     drawing.duplicates += len(found) - len(circles)
     frame = drawing.frame if edge is None else (*edge.min(axis=0), *edge.max(axis=0))
     return placed(drawing, circles, others, frame, metres / droplet, droplet, turns)
+
+
+def refuse_swallowed(drawing: Drawing, outlines: list[Numbers]) -> None:
+    """@param outlines  that will not become posts as they are. @throws UserError  if round posts became part of them"""
+    number = sum(posts for outline, posts in drawing.swallowing if walls.is_one_of(outline, outlines))
+    if number:
+        raise UserError(f"{rounded.counted(number, 'round post')} would vanish, because posts cross a larger outline, such as the rim of a reservoir, and were united with it; "
+                        f"choose the layer of the posts by --layer, or a part of the drawing by --region{drawing.layers_in_words()}")
+
+
+def round_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> int:
+    """The number of round holes that are neither the device's edge nor within a round post."""
+    posts = [*drawing.circles, *filter(None, (fitted_circle(outline, True, tolerance) for outline in drawing.outlines))]
+    places = np.reshape(posts, (-1, 3))
+    found = [fitted_circle(hole, True, tolerance) for hole in drawing.holes if hole is not edge]
+    return sum(not (np.hypot(places[:, 0] - x, places[:, 1] - y) <= places[:, 2] / 2).any() for x, y, _ in filter(None, found))
+
+
+def refuse_round_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> None:
+    """@throws UserError  if posts may be drawn as holes"""
+    if number := round_holes(drawing, edge, tolerance):
+        raise UserError(f"the drawing has {rounded.counted(number, 'round hole')}, which would not be posts; --holes reads holes as posts, and --layer or --region leave them out"
+                        f"{drawing.layers_in_words()}")
 
 
 def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tuple[float, ...] | None, scale: float, droplet: float, turns: int) -> Device:
@@ -300,8 +335,11 @@ def as_circles(device: Device) -> Device:
 
 
 def csv_of(device: Device, source: str) -> str:
-    """A CSV file of circles for clogsweep, in micrometres, rounded to a nanometre."""
+    """A CSV file of circles for clogsweep, in micrometres. Lengths are rounded to a nanometre, or to six digits of the
+    smallest diameter or gap if this is finer."""
     unit = device.droplet_micrometres
     lines = [f"# circles of {source}", f"# units=um droplet={unit:.10g}um", f"# the device is {device.length * unit:.10g} long and {device.width * unit:.10g} wide", "x,y,diameter"]
-    lines += [",".join(f"{round(value * unit, 3):.12g}" for value in circle) for circle in device.circles]
+    smallest = unit * min(float(device.circles[:, 2].min(initial=np.inf)), device.smallest_gap())
+    decimals = max(3, 5 - math.floor(math.log10(smallest))) if 0 < smallest < np.inf else 3
+    lines += [",".join(f"{round(value * unit, decimals):.15g}" for value in circle) for circle in device.circles]
     return "\n".join(lines) + "\n"

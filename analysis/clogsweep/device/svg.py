@@ -40,7 +40,7 @@ def read_svg(path: pathlib.Path) -> Drawing:
     has_unit = width.endswith(LENGTHS)
     found = Drawing([], [], METRES_IN_PIXEL if has_unit else None, skipped=collections.Counter())
     found.unit_in_words = width.lstrip("0123456789.eE+- ") if has_unit else "px"
-    found.unit_hint = "" if has_unit else f" (--pixel {METRES_IN_PIXEL * 1e3:.7g}mm, if 96 of them are an inch)"
+    found.unit_hint = "" if has_unit else f" (--pixel {METRES_IN_PIXEL * 1e3:.7g}mm, if 96 of them are an inch; Inkscape before 0.92 had 90, --pixel {25.4 / 90:.7g}mm)"
     viewport = svgelements.Matrix(content.viewbox_transform) if content.viewbox else svgelements.Matrix()
     found.from_own = applied(viewport)
     widest = 0.0
