@@ -55,16 +55,29 @@ struct Scale {
   }
 };
 
+/// The comment with `units = um` written as `units=um`.
+std::string without_blanks_around_equals(std::string comment) {
+  for (auto at = comment.find('='); at != std::string::npos; at = comment.find('=', at + 1)) {
+    while (at + 1 < comment.size() && comment[at + 1] == ' ') comment.erase(at + 1, 1);
+    while (at > 0 && comment[at - 1] == ' ') comment.erase(--at, 1);
+  }
+  return comment;
+}
+
 /// Reads `units=um droplet=200um` from a comment; anything else in a comment is skipped. @throws Error
-void read_scale(const std::string& comment, Scale& scale) {
-  std::istringstream words(comment);
+/// @param are_below_circles  whether circles precede the comment
+void read_scale(const std::string& comment, Scale& scale, bool are_below_circles) {
+  std::istringstream words(without_blanks_around_equals(comment));
   std::optional<std::string> unit, droplet;
   for (std::string word; words >> word;) {
     word.erase(word.find_last_not_of(";,\"") + 1);  // drops empty cells that a spreadsheet adds
-    if (word.starts_with("units=")) unit = word.substr(6);
-    if (word.starts_with("droplet=")) droplet = word.substr(8);
+    word.erase(0, word.find_first_not_of("#\""));
+    const std::string name = console::in_lower_case(word.substr(0, word.find('=') + 1));
+    if (name == "units=" || name == "unit=") unit = word.substr(name.size());
+    if (name == "droplet=") droplet = word.substr(name.size());
   }
   if (!unit && !droplet) return;
+  if (unit == droplet_diameters && !droplet && scale.unit.empty()) return;
   if (!unit || !droplet)
     throw Error("units and the droplet's diameter belong together, as in '# units=um droplet=200um'");
   const std::size_t begin_of_unit = droplet->find_first_not_of("0123456789.eE+-");
@@ -72,7 +85,13 @@ void read_scale(const std::string& comment, Scale& scale) {
   const std::string unit_of_droplet =
       begin_of_unit == std::string::npos ? *unit : droplet->substr(begin_of_unit);
   metres_in(*unit);
-  scale = {.unit = *unit, .droplet_metres = diameter * metres_in(unit_of_droplet)};
+  const Scale earlier = std::exchange(scale, {*unit, diameter * metres_in(unit_of_droplet)});
+  const bool are_known = !earlier.unit.empty() && is_same_unit(earlier.unit, scale.unit) &&
+                         earlier.droplet_metres == scale.droplet_metres;
+  if (are_below_circles && !are_known)
+    throw Error("units stand below circles, whose units they are not; move this line above all circles");
+  if (!earlier.unit.empty() && !are_known)
+    throw Error("units contradict those of an earlier line; delete one of the two");
   if (!(scale.droplet_metres > 0) || !std::isfinite(scale.droplet_metres))
     throw Error("droplet must be a diameter above 0, as in '# units=um droplet=200um'");
 }
@@ -263,17 +282,19 @@ OwnCircles read_circles(const std::string& name) {
   Scale scale;
   Numbers numbers;
   bool is_first = true;
+  const auto scale_to = [&scale](const std::optional<double>& other_droplet) {
+    return other_droplet ? Scale{scale.unit, *other_droplet} : scale;
+  };
   console::read_table(
       path,
       [&](const console::TableLine& line) {
         if (std::exchange(is_first, false) && is_header(line.cells))
           columns = columns_named(line.cells);
         else
-          circles.push_back(parse_circle(line, columns, scale, numbers));
+          circles.push_back(parse_circle(line, columns, scale_to(droplet), numbers));
       },
       [&](const std::string& comment) {
-        read_scale(comment, scale);
-        if (droplet) scale.droplet_metres = *droplet;
+        read_scale(comment, scale, !circles.empty());
         if (is_first) columns = columns_in(comment).value_or(columns);
       });
   numbers.check(path);
@@ -283,7 +304,7 @@ OwnCircles read_circles(const std::string& name) {
                 " is in droplet diameters and cannot be scaled to another droplet; put a line such as "
                 "'# units=um droplet=200um' above its circles");
   return OwnCircles(std::move(circles), name,
-                    scale.unit.empty() ? std::nullopt : std::optional(scale.droplet_metres));
+                    scale.unit.empty() ? std::nullopt : std::optional(scale_to(droplet).droplet_metres));
 }
 
 void write_obstacles(const std::string& path, std::span<const Obstacle> obstacles) {

@@ -42,13 +42,17 @@ std::string value_of(const sweep::Key& key, const std::string& cell, char separa
   const bool may_be_decimal = separator != ',' && commas == 1 && key.name != "seeds";
   if (is_integer && (cell.ends_with(".0") || (may_be_decimal && cell.ends_with(",0"))))
     return cell.substr(0, cell.size() - 2);
-  const bool is_plain = cell.find_first_not_of("0123456789+-.,eE%") == std::string::npos;
-  if (commas == 0 || !is_plain || !(is_number || (is_integer && cell.ends_with(",0")))) return cell;
+  const std::size_t end = std::min(cell.find_first_not_of("0123456789+-.,eE% "), cell.size());
+  const std::string number = console::trimmed(cell.substr(0, end)), unit = cell.substr(end);
+  const bool is_one_number =
+      unit.find_first_of(",()") == std::string::npos;  // 0,4mm; not lin(1,2,3), 1mm,2mm
+  if (commas == 0 || number.empty() || !is_one_number || !(is_number || (is_integer && cell.ends_with(",0"))))
+    return cell;
   if (is_integer || separator == ',' || commas > 1 || cell.find('.') != std::string::npos)
     throw Error(fmt::format(
         "{}: '{}' may be a list or have a decimal comma; write decimal points, and a line for each value",
         key.name, cell));
-  return decimal_commas.with_point(cell);
+  return decimal_commas.with_point(number) + unit;
 }
 
 /// @param num_columns  number of columns of the first line. @throws Error  if a value is invalid

@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <sstream>
 
@@ -114,6 +116,53 @@ class Splitter {
   }
 };
 
+/// Error words of spreadsheets that end neither with ! nor with ?, in lower case. Most of them mean that a
+/// value is not available, in the languages of Excel and LibreOffice.
+constexpr std::string_view other_error_words[] = {"#n/a", "#na",  "#nv",  "#n/d",      "#n/b",
+                                                  "#i/t", "#Н/Д", "#yok", "#hiÁnyzik", "#getting_data"};
+
+/// Cells that Excel shows as ### because their column is too narrow, if other cells follow.
+bool is_row_of_hashes(std::string_view cell) {
+  constexpr std::size_t fewest = 2;
+  return cell.size() >= fewest && cell.find_first_not_of('#') == std::string_view::npos;
+}
+
+/// The first cell of a line that begins with #, without its quote.
+/// @param separator  of the table; '\0' if no line of the table precedes this line
+std::string_view first_cell(std::string_view comment, char separator) {
+  const bool is_quoted = comment.starts_with('"');
+  if (is_quoted) comment.remove_prefix(1);
+  const std::string_view ends = is_quoted           ? "\""
+                                : separator == '\0' ? ",;\t"
+                                : separator == ' '  ? blanks
+                                                    : "";
+  return comment.substr(0, ends.empty() ? comment.find(separator) : comment.find_first_of(ends));
+}
+
+/// @param place  of the cell in its line, from 0. @throws Error
+[[noreturn]] void refuse_error_word(std::string_view cell, std::size_t place) {
+  throw Error(fmt::format(
+      "column {} is '{}', an error of a spreadsheet; correct this cell, or begin comments with '# '",
+      place + 1, cell));
+}
+
+/// @throws Error  if a cell of a line of the table is an error of a spreadsheet
+void refuse_error_words(const std::vector<std::string>& cells) {
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (is_error_word(cells[i]) || is_row_of_hashes(cells[i])) refuse_error_word(cells[i], i);
+}
+
+/// @throws Error  if a line that begins with # is a line of the table whose first cell is an error of a
+/// spreadsheet
+void refuse_lost_line(std::string_view comment, char separator) {
+  const std::string cell = trimmed(first_cell(comment, separator));
+  const bool may_be_separated_by_blanks = separator == ' ' || separator == '\0';
+  for (const std::string& word :
+       {cell, may_be_separated_by_blanks ? cell.substr(0, cell.find_first_of(blanks)) : ""})
+    if (is_error_word(word)) refuse_error_word(word, 0);
+  if (separator != ' ' && is_row_of_hashes(cell) && cell.size() < comment.size()) refuse_error_word(cell, 0);
+}
+
 /// Calls `call`, and adds file and line to an Error that it throws. @param number  of the line
 void name_place(const std::string& path, int number, const std::function<void()>& call) {
   try {
@@ -121,6 +170,12 @@ void name_place(const std::string& path, int number, const std::function<void()>
   } catch (const Error& error) {
     throw Error(fmt::format("{} line {}: {}", path, number, error.what()));
   }
+}
+
+/// Calls each() for blank lines of a table of one column, where an empty cell is a blank line.
+void give_empty_cells(const std::vector<int>& numbers,
+                      const std::function<void(const TableLine& line)>& each) {
+  for (const int number : numbers) each({.number = number, .cells = {""}, .separator = ' '});
 }
 
 std::string read_table_text(const std::string& path) {
@@ -145,6 +200,23 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
+bool is_error_word(std::string_view cell) {
+  const std::string word = in_lower_case(std::string(cell));
+  if (std::ranges::find(other_error_words, word) != std::end(other_error_words)) return true;
+  for (const std::string_view error :
+       {"err:", "fehler:", "erreur:"})  // LibreOffice numbers its errors: Err:502
+    if (word.starts_with(error) && word.size() > error.size() &&
+        word.find_first_not_of("0123456789", error.size()) == std::string::npos)
+      return true;
+  constexpr std::size_t shortest = 4;  // #AD?
+  const bool has_lower_case =
+      std::ranges::any_of(cell, [](char letter) { return letter >= 'a' && letter <= 'z'; });
+  if (has_lower_case || cell.size() < shortest || !cell.starts_with('#') || is_blank(cell[1])) return false;
+  if (!cell.ends_with('!') && !cell.ends_with('?')) return false;
+  const std::string without_mark = trimmed(cell.substr(0, cell.size() - 1));  // French: #NOM ?
+  return without_mark.find_first_of(blanks) == std::string::npos;
+}
+
 ColumnHead column_head(const std::string& cell) {
   constexpr const char* around_unit = " [(/_,";
   const auto end = cell.find_first_of(around_unit);
@@ -167,10 +239,15 @@ void read_table(const std::string& path, const std::function<void(const TableLin
                 const std::function<void(const std::string& text)>& comment) {
   std::istringstream file(read_table_text(path));
   TableLine row{.number = 0, .cells = {}, .separator = '\0'};
+  bool has_one_column = false;
+  std::vector<int> blank_lines;  // numbers of those since the last line of the table
   for (std::string line; std::getline(file, line);) {
     ++row.number;
     const std::string text = trimmed(line);
-    if (text.empty()) continue;
+    if (text.empty()) {
+      blank_lines.push_back(row.number);
+      continue;
+    }
     const bool is_first = row.separator == '\0';
     if (is_first && line.starts_with("sep=") && line.size() > 4) {
       row.separator = line[4];
@@ -178,11 +255,16 @@ void read_table(const std::string& path, const std::function<void(const TableLin
     }
     name_place(path, row.number, [&] {
       if (text.starts_with('#') || text.starts_with("\"#")) {
+        refuse_lost_line(text, row.separator);
         if (comment) comment(text);
         return;
       }
       if (is_first) row.separator = separator_of(line);
       row.cells = Splitter(line, row.separator).cells();
+      refuse_error_words(row.cells);
+      if (is_first) has_one_column = row.cells.size() == 1;
+      if (has_one_column && !is_first) give_empty_cells(blank_lines, each);
+      blank_lines.clear();
       each(row);
     });
   }

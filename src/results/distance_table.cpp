@@ -97,8 +97,10 @@ Head head_of(std::vector<std::string> cells, DistanceTable& table) {
 
 bool is_clogged(const std::string& cell) {
   const std::string word = console::in_lower_case(cell);
-  if (word == "1" || word == "yes" || word == "true") return true;
-  if (word == "0" || word == "no" || word == "false") return false;
+  static const std::set<std::string> yes = {"1", "1.0", "1,0", "yes", "y", "true", "t"};
+  static const std::set<std::string> no = {"0", "0.0", "0,0", "no", "n", "false", "f"};
+  if (yes.contains(word)) return true;
+  if (no.contains(word)) return false;
   throw Error(
       fmt::format("clogged is '{}'; write 1 for a droplet that clogged and 0 for one that was last "
                   "seen moving there (censored)",

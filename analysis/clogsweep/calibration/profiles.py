@@ -1,16 +1,12 @@
 """Reads measured and simulated passages through a channel, and speeds along a wall."""
 
-import contextlib
-import csv
 import math
-import os
-import pathlib
-import stat
 from typing import NamedTuple
 
 import numpy as np
 
 from ..reading import passages
+from ..tools import tables
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
@@ -49,21 +45,6 @@ class Channel(NamedTuple):
     terminal_speed: float
 
 
-def read_text(path: str) -> str:
-    """Reads a text in UTF-8, UTF-16 or Latin-1. @throws UserError"""
-    try:
-        mode = os.stat(path).st_mode
-        if not stat.S_ISREG(mode) and not stat.S_ISFIFO(mode):
-            raise UserError(f"cannot read {path} (a folder, device or socket, neither a file nor a pipe); give another name")
-        content = pathlib.Path(path).read_bytes()
-    except OSError as error:
-        raise UserError(f"cannot read {path} ({(error.strerror or str(error)).lower()}); check name and permissions") from error
-    for encoding in ("utf-16",) if content.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "latin-1"):
-        with contextlib.suppress(UnicodeDecodeError):
-            return content.decode(encoding)
-    raise UserError(f"cannot read {path} (damaged UTF-16); give a text file")
-
-
 def factor(header: str, reduced: str, scale: float, option: str) -> float:
     """The factor that converts a column to reduced units. @param header  of the column, such as h [mm]; @param reduced
     the reduced unit: sigma or v_t"""
@@ -80,16 +61,6 @@ def factor(header: str, reduced: str, scale: float, option: str) -> float:
     return known[unit] / scale
 
 
-def number(cell: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise UserError(f"'{cell}' is not a finite number")
-    return value
-
-
 def read_table(path: str, length: str, scales: Scales) -> Numbers:
     """Reads the columns `length`, v and A of a text file as spreadsheets write it (docs/how-to/own-obstacles.md), and
     converts them to reduced units.
@@ -97,18 +68,11 @@ def read_table(path: str, length: str, scales: Scales) -> Numbers:
     @return shape (3, lines). A is NaN where its cell is empty, and everywhere if the file has no column A.
     @throws UserError  that names file and line
     """
-    separator, rows = "", []
+    found = []
+    numbers = tables.Numbers()
     columns: dict[str, int] = {}
-    for line_number, line in enumerate(read_text(path).replace("\xa0", " ").splitlines(), 1):
-        if not line.strip() or line.lstrip().startswith(("#", '"#')):
-            continue
-        if not separator and line.startswith("sep="):
-            separator = line[4:5]
-            continue
-        separator = separator or next((letter for letter in ";\t," if letter in line), " ")
+    for line_number, cells in tables.rows(path):
         try:
-            words = " ".join(line.split()) if separator == " " else line
-            cells = [cell.strip() for cell in next(csv.reader([words], delimiter=separator, skipinitialspace=True, strict=True))]
             if not columns:
                 columns = {cell.partition("[")[0].strip(): index for index, cell in enumerate(cells)}
                 if not {length, "v"} <= columns.keys():
@@ -118,10 +82,11 @@ def read_table(path: str, length: str, scales: Scales) -> Numbers:
             if len(cells) <= max(columns[length], columns["v"]):
                 raise UserError("has too few columns")
             shape = (cells + [""])[min(columns.get("A", len(cells)), len(cells))]
-            rows.append([number(cells[columns[length]]) * factors[0], number(cells[columns["v"]]) * factors[1], number(shape) if shape else math.nan])
-        except (UserError, csv.Error) as error:
+            found.append([numbers.read(cells[columns[length]]) * factors[0], numbers.read(cells[columns["v"]]) * factors[1], numbers.read(shape) if shape else math.nan])
+        except UserError as error:
             raise UserError(f"{path} line {line_number}: {error}") from error
-    return np.array(rows).reshape(-1, 3).T
+    numbers.check(path)
+    return np.array(found).reshape(-1, 3).T
 
 
 def read_run(path: str) -> tuple[Profile, np.void]:

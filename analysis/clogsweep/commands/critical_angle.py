@@ -21,7 +21,7 @@ from .. import style
 from ..drawing import critical_angles
 from ..reading import fits, programs, stored
 from ..refinement import critical_angle
-from ..tools import rounded
+from ..tools import rounded, tables
 from ..tools.errors import UserError
 from . import command_line
 
@@ -32,6 +32,7 @@ def add_format(parser: argparse.ArgumentParser) -> None:
 
 def read_angles(path: pathlib.Path, columns: Container[str]) -> pandas.DataFrame:
     """@throws UserError"""
+    tables.refuse_spreadsheet_errors(path)
     try:
         table = pandas.read_csv(path, comment="#")
         table = table.astype(dict.fromkeys(critical_angles.FOUND, float))

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..reading import programs, replays, stored
 from ..reading.trajectory import Trajectory
-from ..tools import outputs
+from ..tools import outputs, tables
 from ..tools.errors import NotThere, UserError
 from ..tools.hints import Column, Group
 from ..tools.texts import printable
@@ -247,6 +247,8 @@ def measured(path: pathlib.Path) -> pandas.DataFrame:
     are only displayed."""
     import pandas  # pandas is slow to load, and seldom needed here.
 
+    if path.is_file():
+        tables.refuse_spreadsheet_errors(path)
     try:
         table = pandas.read_csv(path, comment="#", skipinitialspace=True)
     except FileNotFoundError as error:

@@ -22,6 +22,10 @@ ColumnHead column_head(const std::string& cell);
 /// Number of metres in one unit of length that a table may use, such as mm; nullopt for any other word.
 std::optional<double> metres_of(const std::string& unit);
 
+/// Whether a cell is an error of a spreadsheet: #N/A, #DIV/0!, #REF!, #WERT!, Err:502, and the like in other
+/// languages. All of them consist of upper case; most begin with # and end with ! or ?.
+bool is_error_word(std::string_view cell);
+
 /// A line of a table.
 struct TableLine {
   int number;                      ///< number of the line, from 1
@@ -32,10 +36,11 @@ struct TableLine {
 /// Reads a table line by line. Supports files of spreadsheets, pandas, R and ImageJ: the first line shows
 /// whether semicolons, tabs, commas or blanks separate the cells, unless `sep=;` precedes it; cells may be
 /// quoted. Text that is not UTF-8 is read as Latin-1. Non-breaking blanks count as blanks. Blank lines and
-/// those that begin with # are ignored.
+/// those that begin with # are ignored, except that a blank line between the lines of a table of one column
+/// is an empty cell.
 /// @param each  called with each line; path and line number are added to an Error that it throws
 /// @param comment  called with lines that begin with #
-/// @throws Error as read_text(), or for a quote without an end
+/// @throws Error as read_text(), for a quote without an end, or for a cell that is an error of a spreadsheet
 void read_table(const std::string& path, const std::function<void(const TableLine& line)>& each,
                 const std::function<void(const std::string& text)>& comment = {});
 

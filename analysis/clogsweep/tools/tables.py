@@ -1,0 +1,115 @@
+"""Reads tables of spreadsheets, line by line. The programs read tables by the same rules (src/console/csv.cpp)."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import math
+import os
+import pathlib
+import re
+import stat
+from collections.abc import Iterator
+
+from .errors import UserError
+
+# Errors that spreadsheets write instead of a value: #N/A, #DIV/0!, #REF!, #WERT!, Err:502, and those of other languages.
+ERROR_WORD = re.compile(r"#[^\sa-z]{2,}\s*[!?]|(?i:#(n/a|na|nv|n/d|n/b|i/t|н/д|yok|hiányzik|getting_data))|(?i:(err|fehler|erreur):[0-9]+)")
+HASHES = re.compile("##+")  # Excel's cells in a column that is too narrow.
+
+
+def read_text(path: str) -> str:
+    """Reads a text in UTF-8, UTF-16 or Latin-1. @throws UserError"""
+    try:
+        mode = os.stat(path).st_mode
+        if not stat.S_ISREG(mode) and not stat.S_ISFIFO(mode):
+            raise UserError(f"cannot read {path} (a folder, device or socket, neither a file nor a pipe); give another name")
+        content = pathlib.Path(path).read_bytes()
+    except OSError as error:
+        raise UserError(f"cannot read {path} ({(error.strerror or str(error)).lower()}); check name and permissions") from error
+    for encoding in ("utf-16",) if content.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "latin-1"):
+        with contextlib.suppress(UnicodeDecodeError):
+            return content.decode(encoding)
+    raise UserError(f"cannot read {path} (damaged UTF-16); give a text file")
+
+
+def cells_of(line: str, separator: str) -> list[str]:
+    """The cells of a line, without quotes and blanks around them. @throws csv.Error"""
+    words = " ".join(line.split()) if separator == " " else line
+    return [cell.strip() for cell in next(csv.reader([words], delimiter=separator, skipinitialspace=True, strict=True))]
+
+
+def refuse(cell: str, number: int) -> None:
+    """@param number  of the cell in its line, from 1. @throws UserError"""
+    raise UserError(f"column {number} is '{cell}', an error of a spreadsheet; correct this cell, or begin comments with '# '")
+
+
+def refuse_lost_line(comment: str, separator: str) -> None:
+    """@param separator  of the table, or "" if no line of the table precedes this line
+    @throws UserError  if a line that begins with # is a line of the table whose first cell is an error of a spreadsheet"""
+    ends = '"' if comment.startswith('"') else {"": "[,;\t]", " ": "\\s"}.get(separator, re.escape(separator))
+    cell = re.split(ends, comment.removeprefix('"'))[0].strip()
+    for word in [cell, *(cell.split()[:1] if separator in ("", " ") else [])]:
+        if ERROR_WORD.fullmatch(word):
+            refuse(word, 1)
+    if separator != " " and HASHES.fullmatch(cell) and cell != comment:
+        refuse(cell, 1)
+
+
+class Numbers:
+    """Reads the numbers of one table, whose cells may have decimal commas unless commas separate them."""
+
+    def __init__(self) -> None:
+        self._are_decimal = False
+        self._ambiguous = ""  # The first number whose comma may separate thousands, such as 1,350.
+
+    def read(self, cell: str) -> float:
+        """@throws UserError"""
+        if "," in cell:
+            is_ambiguous = re.fullmatch(r"[+-]?[1-9]\d{0,2}(,\d{3})+", cell)
+            self._are_decimal = self._are_decimal or not is_ambiguous
+            self._ambiguous = self._ambiguous or (cell if is_ambiguous else "")
+        try:
+            value = float(cell.replace(",", ".", 1))
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise UserError(f"'{cell}' is not a finite number")
+        return value
+
+    def check(self, path: str) -> None:
+        """Call this after the last line. @throws UserError  if each comma may separate thousands"""
+        if self._ambiguous and not self._are_decimal:
+            raise UserError(f"{path}: '{self._ambiguous}' may have a decimal comma or separated thousands; write all numbers with decimal points and without commas")
+
+
+def rows(path: str) -> Iterator[tuple[int, list[str]]]:
+    """Yields the number and the cells of each line, apart from blank lines and those that begin with #.
+    @throws UserError  that names file and line, also for a cell that is an error of a spreadsheet"""
+    separator = ""
+    for number, line in enumerate(read_text(path).replace("\xa0", " ").splitlines(), 1):
+        text = line.strip()
+        if not text:
+            continue
+        if not separator and line.startswith("sep="):
+            separator = line[4:5]
+            continue
+        try:
+            if text.startswith(("#", '"#')):
+                refuse_lost_line(text, separator)
+                continue
+            separator = separator or next((letter for letter in ";\t," if letter in line), " ")
+            cells = cells_of(line, separator)
+            for place, cell in enumerate(cells, 1):
+                if ERROR_WORD.fullmatch(cell) or HASHES.fullmatch(cell):
+                    refuse(cell, place)
+        except (UserError, csv.Error) as error:
+            raise UserError(f"{path} line {number}: {error}") from error
+        yield number, cells
+
+
+def refuse_spreadsheet_errors(path: str | os.PathLike[str]) -> None:
+    """Call this before another library reads the table: pandas takes such cells for comments or missing values.
+    @throws UserError"""
+    for _ in rows(os.fspath(path)):
+        pass

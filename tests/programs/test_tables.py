@@ -1,0 +1,136 @@
+"""Tests that no line of a user's table is lost or misread in silence. The properties hold for each program that reads
+tables."""
+
+import unittest
+
+import numpy as np
+
+from drawing import Analysis
+from support import QUICK, ProgramTest
+
+# Errors that Excel and LibreOffice write in some languages.
+ERRORS = ["#N/A", "#DIV/0!", "#REF!", "#VALUE!", "#NAME?", "#NUM!", "#NULL!", "#SPILL!", "#WERT!", "#NV", "#BEZUG!", "#VALEUR!", "#NOM ?", "#¡REF!", "#N/D",
+          "#AD?", "#ДЕЛ/0!", "#NA", "Err:502", "####"]
+SEPARATORS = [",", ";", "\t", " "]
+OWN = ["box=10", "vertices=64", "max-time=60", "--dry-run"]
+
+
+def without_costs(told):
+    return [line for line in told.splitlines() if "core-hours" not in line]
+
+
+class Tables(Analysis):
+    # For each reader: the command, the columns, and three lines of cells.
+    READERS = {"distances": (["clogfit", "lengths", "t.csv"], ["distance[mm]", "clogged", "wall"], [["9", "1", "a"], ["13", "0", "a"], ["18", "1", "b"]]),
+               "points": (["clogsweep", *QUICK, "--points", "t.csv", "--dry-run"], ["line-tension", "obstacle-gap", "seeds"], [["1", "0.4", "1"], ["2", "0.4", "2"], ["3", "0.5", "3"]]),
+               "circles": (["clogsweep", "obstacles=t.csv", *OWN], ["x", "y", "diameter"], [["2", "2", "1"], ["5", "5", "1"], ["8", "8", "1"]]),
+               "profile": (["deviation", "t.csv", "good.csv"], ["h[sigma]", "v[v_t]", "A"], [["-1", "1", "1"], ["0", "1", "1"], ["1", "1", "1"]]),
+               "speeds": (["drag", "t.csv"], ["d[sigma]", "v[v_t]", "A"], [["0.6", "0.5", "1"], ["1", "0.7", "1"], ["2", "0.9", "1"]]),
+               "angles": (["critical-angle", "t.csv"], ["line_tension", "lower", "upper", "runs"], [["1", "5", "6", "9"], ["2", "6", "7", "9"], ["3", "7", "8", "9"]]),
+               "passage": (["figures", "2", "--profile", "t.csv", "--output", "here"], ["h [sigma]", "v [v_t]", "A"], [["-1", "1", "1"], ["0", "1", "1"], ["1", "1", "1"]])}
+
+    def call(self, arguments):
+        return self.run_program(*arguments) if arguments[0].startswith("clog") else self.analyse(*arguments)
+
+    def table(self, separator, lines):
+        return self.write("t.csv", "".join(separator.join(line) + "\n" for line in lines))
+
+    def setUp(self):
+        super().setUp()
+        self.write("good.csv", "h [sigma],v [v_t],A\n-1,1,1\n0,1,1\n1,1,1\n")
+
+    def test_errors_of_spreadsheets_are_refused_with_line_and_column(self):
+        for name, (command, head, lines) in self.READERS.items():
+            # Readers in Python take longer to start, so each of them has a part of the errors.
+            for number, error in enumerate(ERRORS if command[0].startswith("clog") else ERRORS[len(name) % 3::3]):
+                separator = SEPARATORS[number % len(SEPARATORS)] if name not in ("angles", "passage") else ","
+                if separator == " " and (" " in error or error == "####"):
+                    separator = ";"
+                # The first cell is the most dangerous one: lines that begin with # are comments.
+                for column in {0, number % len(head)}:
+                    broken = [list(line) for line in lines]
+                    row = number % len(lines)
+                    broken[row][column] = error
+                    self.table(separator, [head, *broken])
+                    with self.subTest(reader=name, error=error, separator=separator, column=column):
+                        done = self.call(command)
+                        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                        self.assertIn(f"t.csv line {row + 2}: column {column + 1} is '{error}'", done.stderr)
+
+    def test_the_first_line_and_quoted_cells_are_no_exceptions(self):
+        for text in ("#N/A,2,1\n5,5,1\n", '"#N/A",2,1\n5,5,1\n', "#N/A 2 1\n5 5 1\n", "#REF!;2;1\n5;5;1\n", '5,5,1\n"#DIV/0!",2,1\n'):
+            self.refuse("clogsweep", f"obstacles={self.write('t.csv', text)}", *OWN, words=["t.csv line", "column 1 is '#"])
+
+    def test_comments_remain_comments(self):
+        comments = ["# 55 posts, measured!", "#a, b", "## A section", "#", "######", "# is this right?", "#x,y,diameter", '"# quoted, with a comma"', "# #N/A", "#1"]
+        for name, (command, head, lines) in self.READERS.items():
+            if name in ("angles", "passage", "points"):
+                continue
+            for separator in SEPARATORS:
+                self.table(separator, [head, *lines])
+                expected = self.call(command)
+                self.table(separator, [*([comment] for comment in comments), head, lines[0], *([comment] for comment in comments), *lines[1:]])
+                told = self.call(command)
+                with self.subTest(reader=name, separator=separator):
+                    self.assertEqual((told.returncode, without_costs(told.stdout)), (expected.returncode, without_costs(expected.stdout)), told.stderr)
+
+
+class Units(ProgramTest):
+    CIRCLES = "2,2,1\n5,5,1\n8,8,1\n"
+
+    def circles(self, text):
+        """The circles of a file, in droplet diameters."""
+        self.write("posts.csv", text)
+        self.succeed("clogrun", "array", "obstacles=posts.csv", "box=10", "vertices=64", "max-time=0.1", "--output", "run.h5", "--write-obstacles", "read.csv")
+        found = np.loadtxt(self.folder / "read.csv", delimiter=",", skiprows=1, comments="#")
+        for name in ("run.h5", "read.csv"):
+            (self.folder / name).unlink()
+        return sorted(map(tuple, found))
+
+    def test_units_apply_to_all_circles_or_are_refused(self):
+        units = "# units=um droplet=2um\n"
+        lines = self.CIRCLES.splitlines(keepends=True)
+        half = [(1, 1, 0.5), (2.5, 2.5, 0.5), (4, 4, 0.5)]
+        for place in range(len(lines) + 1):
+            text = "".join([*lines[:place], units, *lines[place:]])
+            with self.subTest(place=place):
+                if place == 0:
+                    self.assertEqual(self.circles(text), half)
+                else:
+                    self.refuse("clogsweep", f"obstacles={self.write('posts.csv', text)}", *OWN, words=[f"posts.csv line {place + 1}", "below circles", "above all circles"])
+        # Concatenated files have the same line twice.
+        self.assertEqual(self.circles(units + lines[0] + units + lines[1] + units + lines[2]), half)
+        self.refuse("clogsweep", f"obstacles={self.write('posts.csv', units + '# units=um droplet=3um' + chr(10) + self.CIRCLES)}", *OWN, words=["line 2", "contradict"])
+
+    def test_units_are_read_in_other_spellings(self):
+        for units in ("# units = um, droplet = 2um", "# Units=um; Droplet=2", "#unit= um droplet =0.002mm", "# units=um droplet=2um;;"):
+            with self.subTest(units):
+                self.assertEqual(self.circles(f"{units}\n{self.CIRCLES}"), [(1, 1, 0.5), (2.5, 2.5, 0.5), (4, 4, 0.5)])
+        self.assertEqual(self.circles(f"# units=um droplet=4um\n{self.CIRCLES}"), [(0.5, 0.5, 0.25), (1.25, 1.25, 0.25), (2, 2, 0.25)])
+
+
+class Points(ProgramTest):
+    def test_a_blank_line_of_one_column_is_an_empty_cell(self):
+        head, cells = "line-tension", ["0.5", "", "2", "", "3"]
+        for ending in ("\n", "\r\n"):
+            blank = self.succeed("clogsweep", *QUICK, "seeds=1", "--points", self.write("p.csv", ending.join([head, "0.5", "", "2", "3", "", ""])), "--dry-run").stdout
+            quoted = self.succeed("clogsweep", *QUICK, "seeds=1", "--points", self.write("p.csv", ending.join([head, "0.5", '""', "2", "3"])), "--dry-run").stdout
+            self.assertIn("# 4 tasks: 4 parameter sets", blank)
+            self.assertEqual([line for line in blank.splitlines() if not line.startswith("#")], [line for line in quoted.splitlines() if not line.startswith("#")])
+        # Two missing values are the same run twice.
+        self.refuse("clogsweep", *QUICK, "seeds=1", "--points", self.write("p.csv", "\n".join([head, *cells]) + "\n"), "--dry-run", words=["point 2 and point 4", "the same run"])
+        # In a table of several columns, a blank line is no row.
+        self.assertIn("# 2 tasks", self.succeed("clogsweep", *QUICK, "--points", self.write("p.csv", "line-tension,seeds\n1,1\n\n2,1\n"), "--dry-run").stdout)
+
+    def test_decimal_commas_with_units_are_those_of_decimal_points(self):
+        self.write("lab.cfg", "diameter = 2 mm\nangle = 20 deg\nspeed = 7 mm/s\n")
+        told = {}
+        for name, text in (("point", "obstacle-diameter;seeds\n0.4mm;1\n0.8 mm;2\n1.5e3um;3\n"), ("comma", "obstacle-diameter;seeds\n0,4mm;1\n0,8 mm;2\n1,5e3um;3\n")):
+            self.write("p.csv", text)
+            told[name] = self.succeed("clogsweep", "box=20", "obstacle-gap=0.4", "vertices=64", "max-time=1", "--lab", "lab.cfg", "--points", "p.csv", "--dry-run").stdout.splitlines()[:4]
+        self.assertEqual(told["comma"], told["point"])
+        self.refuse("clogsweep", "box=20", "obstacle-gap=0.4", "--lab", "lab.cfg", "--points", self.write("p.csv", "obstacle-diameter;seeds\n1,350mm;1\n"), "--dry-run", words=["'1,350'", "thousands"])
+
+
+if __name__ == "__main__":
+    unittest.main()
