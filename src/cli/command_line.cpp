@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include "clog/cli/obstacle_file.hpp"
+#include "clog/cli/python_command.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <span>
 #include <sstream>
 #include <string_view>
@@ -51,6 +53,18 @@ bool is_assignment(const std::string& word) {
 bool begins_like_key(const std::string& word) {
   const auto equals = word.find('=');
   return equals != std::string::npos && equals > 0 && word.find_first_of("./ ") > equals;
+}
+
+/// The command of another program that has this name; empty if there is none.
+std::string command_elsewhere(const std::string& word) {
+  static const std::map<std::string_view, std::string_view> programs = {
+      {"compare", "clogfit"},   {"curve", "clogfit"},     {"lengths", "clogfit"},  {"units", "clogfit"},
+      {"calibrate", "clogfit"}, {"deviation", "clogfit"}, {"drag", "clogfit"},     {"report", "clogfit"},
+      {"merge", "clogsweep"},   {"select", "clogsweep"},  {"status", "clogsweep"}, {"verify", "clogsweep"},
+      {"salvage", "clogsweep"}, {"replay", "clogsweep"},  {"doctor", "clogsweep"}};
+  if (const auto known = programs.find(word); known != programs.end())
+    return fmt::format("{} {}", known->second, word);
+  return is_python_command(word) ? "python3 -m clogsweep " + word : "";
 }
 
 }  // namespace
@@ -160,6 +174,8 @@ void CommandLine::refuse_misspelt_command(const std::string& word) const {
   if (is_command || word.starts_with('-') || std::filesystem::exists(word, none)) return;
   if (const std::string near = sweep::did_you_mean(excerpt(word), commands_); !near.empty())
     throw Error(fmt::format("unknown command '{}'; did you mean {} {}?", word, program_, near));
+  if (const std::string command = commands_.empty() ? "" : command_elsewhere(word); !command.empty())
+    throw Error(fmt::format("unknown command '{}'; did you mean {}?", word, command));
 }
 
 void CommandLine::refuse_surplus_words() const {

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -56,6 +57,16 @@ std::string python_command(const std::filesystem::path& module, const std::vecto
       python_path + "=" + module.parent_path().string() + " " + CLOG_PYTHON_COMMAND + " -m clogsweep";
   for (const std::string& argument : arguments) command += " " + argument;
   return command;
+}
+
+bool is_python_command(const std::string& name) {
+  if (name.empty() || name.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") != std::string::npos)
+    return false;
+  std::string module = name;
+  std::ranges::replace(module, '-', '_');
+  std::error_code none;
+  return std::filesystem::exists(
+      own_folder() / CLOG_PYTHON_FOLDER / "clogsweep" / "commands" / (module + ".py"), none);
 }
 
 bool is_installed(const std::string& program) {

@@ -84,14 +84,52 @@ std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
 
 std::vector<std::string> expand_range(std::string_view item, std::size_t dots) {
   const long long first = to_integer(trimmed(item.substr(0, dots)));
-  const long long last = to_integer(trimmed(item.substr(dots + 2)));
+  const std::size_t colon = std::min(item.find(':', dots), item.size());
+  const long long last = to_integer(trimmed(item.substr(dots + 2, colon - dots - 2)));
+  const long long step = colon == item.size() ? 1 : to_integer(trimmed(item.substr(colon + 1)));
+  if (step < 1) refuse(item, "needs a step of 1 or more");
   if (last < first) refuse(item, "has no values");
   // The type is unsigned, so that the difference of any two integers fits.
-  const auto steps = static_cast<unsigned long long>(last) - static_cast<unsigned long long>(first);
+  const auto steps = (static_cast<unsigned long long>(last) - static_cast<unsigned long long>(first)) /
+                     static_cast<unsigned long long>(step);
   check_length(item, static_cast<long long>(std::min<unsigned long long>(steps, longest_list)) + 1);
   std::vector<std::string> values;
-  for (long long value = first; value <= last; ++value) values.push_back(std::to_string(value));
+  for (unsigned long long i = 0; i <= steps; ++i)
+    values.push_back(std::to_string(first + static_cast<long long>(i) * step));
   return values;
+}
+
+/// Refuses other ways to write several integers, or one, with the way that is accepted.
+void refuse_other_notations(std::string_view item) {
+  constexpr std::string_view digits = "0123456789";
+  constexpr auto none = std::string_view::npos;
+  if (const auto dash = item.find('-', 1); dash != none)
+    if (const std::string range =
+            fmt::format("{}..{}", trimmed(item.substr(0, dash)), trimmed(item.substr(dash + 1)));
+        range.find_first_not_of("0123456789.") == none)
+      refuse(item, fmt::format("is not an integer; a range has two points, {}", range));
+  const auto colon = item.find(':');
+  if (colon != none && item.find_first_not_of("0123456789: ") == none) {
+    const std::string_view first = trimmed(item.substr(0, colon)), last = trimmed(item.substr(colon + 1));
+    const bool is_range = last.find(':') == none;
+    refuse(item, is_range ? fmt::format("is not an integer; a range has two points, {}..{}", first, last)
+                          : std::string(
+                                "is not an integer; a range with a step is FIRST..LAST:STEP, as in 1..10:2"));
+  }
+  if (item.find_first_of("; ") != none && item.find_first_not_of("0123456789; ") == none) {
+    std::string list;
+    for (const char letter : item) {
+      const bool is_digit = digits.find(letter) != none;
+      if (is_digit || !list.ends_with(',')) list += is_digit ? letter : ',';
+    }
+    refuse(item, fmt::format("is not an integer; commas separate values, {}", list));
+  }
+  double value = 0;
+  const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), value);
+  constexpr double largest = 1e15;
+  if (error == std::errc() && end == item.data() + item.size() && item.find_first_not_of(digits, 1) != none &&
+      value == std::round(value) && std::abs(value) < largest)
+    refuse(item, fmt::format("is not written as an integer; did you mean {:.0f}?", value));
 }
 
 std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
@@ -110,11 +148,7 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
                      "is a range of integers, but the key takes any number; give how many, e.g. lin({},{},5)",
                      item.substr(0, dots), item.substr(dots + 2)));
   }
-  if (const auto dash = item.find('-', 1); dash != std::string_view::npos && kind == ValueKind::integer)
-    if (const std::string range =
-            fmt::format("{}..{}", trimmed(item.substr(0, dash)), trimmed(item.substr(dash + 1)));
-        range.find_first_not_of("0123456789.") == std::string::npos)
-      refuse(item, fmt::format("is not an integer; a range has two points, {}", range));
+  if (kind == ValueKind::integer) refuse_other_notations(item);
   if (kind == ValueKind::integer) return {std::to_string(to_integer(item))};
   if (kind == ValueKind::number_or_share && item.ends_with('%'))
     return {shortest(to_number(item.substr(0, item.size() - 1))) + '%'};
@@ -123,7 +157,7 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
 
 /// @param rest  what follows the number at the beginning of the text
 [[noreturn]] void refuse_number(std::string_view text, std::string_view rest, const std::string& why) {
-  constexpr std::string_view no_unit = ".+-*/0123456789";
+  constexpr std::string_view no_unit = ".+-*/0123456789:;,()=";
   rest = trimmed(rest);
   const bool is_per_area = rest.starts_with('/') && rest.ends_with("^2");
   const bool has_unit = rest.size() < text.size() && !rest.empty() &&

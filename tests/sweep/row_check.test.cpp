@@ -296,9 +296,10 @@ TEST(FaultOf, NamesEveryNumberThatIsNone) {
 
 TEST(FaultOf, NamesIntegersThatNoParameterHolds) {
   for (const char* name : {"seed", "boxes", "vertices"})
-    EXPECT_EQ(fault_with(column(name), std::int64_t{1} << 40),
-              std::string(name) + "=1099511627776 is out of range");
-  EXPECT_EQ(fault_with(column("seed"), std::int64_t{-5}), "seed=-5 is out of range");
+    EXPECT_TRUE(fault_with(column(name), std::int64_t{1} << 40)
+                    .starts_with(std::string(name) + "=1099511627776 is out of range, "))
+        << name;
+  EXPECT_EQ(fault_with(column("seed"), std::int64_t{-5}), "seed=-5 is out of range, 0 to 4294967295");
 }
 
 TEST(FaultOf, NamesWhatContradictsTheRest) {

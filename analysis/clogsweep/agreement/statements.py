@@ -124,19 +124,19 @@ def judge(shop: Workshop, one: Statement) -> Judged:
     return Judged(one, Finding(NOT_RUN, f"python3 -m clogsweep figures {' '.join(one.figures)}") if found.verdict == NOT_RUN else found)
 
 
-def judge_all(shop: Workshop) -> tuple[list[Judged], int]:
+def judge_all(shop: Workshop) -> tuple[list[Judged], int | None]:
     """Judges all statements.
     @param shop  a workshop that runs nothing
-    @return the judged statements, and the model version of the sweeps
+    @return the judged statements, and the model version of the sweeps, None without sweeps
     @throws UserError  if the sweeps have several model versions"""
     return [judge(shop, one) for one in STATEMENTS], the_version(shop.model_versions())
 
 
-def the_version(versions: Mapping[str, Iterable[int]]) -> int:
-    """The common model version of all sweeps.
+def the_version(versions: Mapping[str, Iterable[int]]) -> int | None:
+    """The common model version of all sweeps; None without sweeps.
     @param versions  model versions in the rows of each sweep
     @throws UserError  if the sweeps have several model versions"""
-    newest = max((version for of_sweep in versions.values() for version in of_sweep), default=0)
+    newest = max((version for of_sweep in versions.values() for version in of_sweep), default=None)
     older = sorted(name for name, of_sweep in versions.items() if set(of_sweep) - {newest})
     if older:
         raise UserError(f"sweeps are of several model versions; remove and rerun those older than {newest}: {', '.join(older)}")

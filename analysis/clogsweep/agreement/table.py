@@ -28,10 +28,11 @@ def shortened(value: str) -> str:
     return f"{parts[0]}; ...; {parts[-1]}" if len(parts) > 2 else value
 
 
-def markdown(judged: Sequence[Judged], version: int) -> str:
+def markdown(judged: Sequence[Judged], version: int | None) -> str:
     """A table for each section of the article. Of several results it shows the first and the last. For variants it
     shows only the verdicts."""
-    lines = [textwrap.fill(f"The verdicts on the article's {len(judged)} statements are {counts(judged)}. All rows have model version {version}.", 118)]
+    rows = "No sweep has been run" if version is None else f"All rows have model version {version}"
+    lines = [textwrap.fill(f"The verdicts on the article's {len(judged)} statements are {counts(judged)}. {rows}.", 118)]
     place_of = {id(one): one.statement.where.partition(", ") for one in judged}
     for section in dict.fromkeys(place[0] for place in place_of.values()):
         members = [one for one in judged if place_of[id(one)][0] == section]
@@ -45,10 +46,10 @@ def markdown(judged: Sequence[Judged], version: int) -> str:
     return "\n".join(lines) + "\n"
 
 
-def comma_separated(judged: Sequence[Judged], _: int) -> str:
+def comma_separated(judged: Sequence[Judged], _: int | None) -> str:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows([COLUMNS, *map(cells, judged)])
     return text.getvalue()
 
 
-WRITERS: dict[str, Callable[[Sequence[Judged], int], str]] = {"markdown": markdown, "csv": comma_separated}
+WRITERS: dict[str, Callable[[Sequence[Judged], int | None], str]] = {"markdown": markdown, "csv": comma_separated}

@@ -230,8 +230,19 @@ def _whole_output() -> Iterator[None]:
                 raise UserError("cannot write the output; the disk may be full") from error
 
 
+def use_own_settings_of_pictures() -> None:
+    """Makes pictures independent of the user's settings of matplotlib, which may name a program to show windows that is
+    not installed here (MPLBACKEND in a notebook), or let LaTeX set the text where there is none. The module `style`
+    applies the settings when it is loaded."""
+    os.environ["MPLBACKEND"] = "agg"
+    outputs.are_of_command = True
+    if "matplotlib" in sys.modules:
+        sys.modules["matplotlib"].rcdefaults()
+
+
 def run(body: Callable[[], int]) -> int:
     """@param body  the command, which returns its exit code. @return the exit code"""
+    use_own_settings_of_pictures()
     try:
         with _whole_output():
             return body()

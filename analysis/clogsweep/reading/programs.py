@@ -66,8 +66,15 @@ def warnings_of(program: str | os.PathLike[str], *arguments: object) -> str:
     return _outputs(program, *arguments)[1]
 
 
+def word_of(argument: object) -> str:
+    """An argument as a word of a command line. Paths of Python drop the ./ of ./-dash.h5, which would be taken for an option
+    without it."""
+    word = str(argument)
+    return f"./{word}" if isinstance(argument, pathlib.PurePath) and word.startswith("-") else word
+
+
 def _outputs(program: str | os.PathLike[str], *arguments: object, ranks: int = 1) -> tuple[str, str]:
-    command = [str(program), *map(str, arguments)]
+    command = [str(program), *map(word_of, arguments)]
     environment = dict(os.environ)
     if ranks == 1:
         # clogsweep would refuse to run on one rank if it saw this variable of an allocation.

@@ -65,7 +65,7 @@ class Fit:
         """P(r) of a group: the probability that a droplet travels farther than r without a clog. The argument is the
         index of the group in `groups`.
 
-        The first row is for r = 0, with P = 1. One row follows for each `distance` r at which droplets clogged [sigma].
+        The first row is for r = 0, with P = 1, or for the first clog if droplets clogged upstream of their release. One row follows for each `distance` r at which droplets clogged [sigma].
         If runs went beyond the last clog, the last row is for the longest distance. `at_risk` is the number of runs
         that reached r, and `clogs` the number of them that clogged there. `probability` is P just beyond r, with its
         `standard_error` (Greenwood) and the ends of its interval, `lower` and `upper`. The error and both ends are NaN
@@ -78,7 +78,8 @@ class Fit:
             raise UserError(f"no group {group}; there are {len(self.told['groups'])}, the first is 0")
         self.known.with_lengths()
         told = self.told["groups"][group]
-        start = {"distance": 0.0, "at_risk": told["runs"], "clogs": 0, "probability": 1.0, "standard_error": 0.0, "lower": 1.0, "upper": 1.0}
+        first = min((step["distance"] for step in told["survival"]), default=0.0)
+        start = {"distance": min(0.0, first), "at_risk": told["runs"], "clogs": 0, "probability": 1.0, "standard_error": 0.0, "lower": 1.0, "upper": 1.0}
         steps = [start, *told["survival"]]
         beyond = [distance for distance in told["censored_distances"] if distance > steps[-1]["distance"]]
         if beyond:

@@ -33,6 +33,9 @@ from ..tools.texts import printable
 from . import journal
 from .journal import NOTES, fitting as fitting, in_lines as in_lines
 
+if outputs.are_of_command:
+    matplotlib.rcdefaults()
+
 # The palette of Okabe and Ito, which is safe for colour-blind readers. Every curve has a different marker.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 MARKERS = ["o", "s", "D", "v", "P", "X", "*"]

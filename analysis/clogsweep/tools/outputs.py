@@ -9,6 +9,9 @@ from collections.abc import Iterator
 
 from .errors import UserError
 
+# Whether this process is a command, whose pictures do not depend on the user's settings of matplotlib.
+are_of_command = False
+
 # The first bytes of the files that commands make.
 BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-", "vtk": b"<?xml", "csv": b"# circles of ", "text": b""}
 

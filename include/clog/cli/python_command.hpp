@@ -21,6 +21,9 @@ std::filesystem::path find_python_module();
 /// The command as a user types it.
 std::string python_command(const std::filesystem::path& module, const std::vector<std::string>& arguments);
 
+/// Whether python3 -m clogsweep has this command.
+bool is_python_command(const std::string& name);
+
 /// Whether PATH has a program of this name.
 bool is_installed(const std::string& program);
 

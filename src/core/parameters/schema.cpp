@@ -68,7 +68,9 @@ struct Outside<Integer> {
   static ParameterValue get(Integer value) { return std::int64_t{value}; }
   static Integer set(const ParameterValue& value) {
     const auto integer = std::get<std::int64_t>(value);
-    if (!std::in_range<Integer>(integer)) throw Error("is out of range");
+    if (!std::in_range<Integer>(integer))
+      throw Error("is out of range, " + std::to_string(std::numeric_limits<Integer>::min()) + " to " +
+                  std::to_string(std::numeric_limits<Integer>::max()));
     return static_cast<Integer>(integer);
   }
 };
