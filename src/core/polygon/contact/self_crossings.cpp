@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -16,16 +15,7 @@ constexpr int beside = 2;
 /// Number of edges on each side of a crossing's edge that the vertex's own edges may cross.
 constexpr int far = 8;
 
-double cross(const Eigen::Array2d& a, const Eigen::Array2d& b) { return a[0] * b[1] - a[1] * b[0]; }
-
-Eigen::Array2d place(const Contour& contour, int vertex) { return {contour.x[vertex], contour.y[vertex]}; }
-
-SelfContacts::Pair pair_of(const SelfCrossing& crossing) {
-  return {static_cast<int>(crossing.vertex), static_cast<int>(crossing.edge)};
-}
-
-/// `v` turned by 90 degrees to the left.
-Eigen::Array2d turned(const Eigen::Array2d& v) { return {-v[1], v[0]}; }
+double cross_product(const Eigen::Array2d& a, const Eigen::Array2d& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// Whether the vertex passed through the edge during the drift. All vertices moved in straight lines, so the
 /// area that vertex and edge span is a quadratic function of time; the vertex is on the edge's line where
@@ -36,15 +26,15 @@ bool passes_through(const SelfContacts::Pair& pair, const Contour& contour,
   const auto moved = [&](int vertex) -> Eigen::Array2d {
     return drift.time * Eigen::Array2d(drift.velocity_x[vertex], drift.velocity_y[vertex]);
   };
-  const Eigen::Array2d edge_after = place(contour, end) - place(contour, pair.edge);
-  const Eigen::Array2d way_after = place(contour, pair.vertex) - place(contour, pair.edge);
+  const Eigen::Array2d edge_after = contour.place(end) - contour.place(pair.edge);
+  const Eigen::Array2d way_after = contour.place(pair.vertex) - contour.place(pair.edge);
   const Eigen::Array2d edge_change = moved(end) - moved(pair.edge);
   const Eigen::Array2d way_change = moved(pair.vertex) - moved(pair.edge);
   const Eigen::Array2d edge = edge_after - edge_change, way = way_after - way_change;
-  const double before = cross(edge, way), after = cross(edge_after, way_after);
+  const double before = cross_product(edge, way), after = cross_product(edge_after, way_after);
   if ((before > 0) == (after > 0)) return false;
   // The root of before + linear t + square t^2 between 0 and 1, in the form that does not cancel.
-  const double square = cross(edge_change, way_change), linear = after - before - square;
+  const double square = cross_product(edge_change, way_change), linear = after - before - square;
   const double root = std::sqrt(std::max(0.0, linear * linear - 4 * square * before));
   const double sum = linear + std::copysign(root, linear);
   const double one = sum != 0 ? -2 * before / sum : 0, other = square != 0 ? -sum / (2 * square) : one;
@@ -71,7 +61,7 @@ std::optional<int> next_edge(const Contour& contour, Eigen::Index vertex, int ed
   const int n = contour.size, next = (edge + step + n) % n;
   if (next == vertex || (next + 1) % n == vertex) return std::nullopt;
   const auto along = [&](int one) -> Eigen::Array2d {
-    return place(contour, (one + 1) % n) - place(contour, one);
+    return contour.place((one + 1) % n) - contour.place(one);
   };
   if (!bends && (along(edge) * along(next)).sum() < 0) return std::nullopt;
   return next;
@@ -81,132 +71,14 @@ std::optional<int> next_edge(const Contour& contour, Eigen::Index vertex, int ed
 bool cross_each_other(const Contour& contour, const std::array<int, 2>& one,
                       const std::array<int, 2>& other) {
   const auto separates = [&](const std::array<int, 2>& line, const std::array<int, 2>& ends) {
-    const Eigen::Array2d begin = place(contour, line[0]), way = place(contour, line[1]) - begin;
-    return (cross(way, place(contour, ends[0]) - begin) > 0) !=
-           (cross(way, place(contour, ends[1]) - begin) > 0);
+    const Eigen::Array2d begin = contour.place(line[0]), way = contour.place(line[1]) - begin;
+    return (cross_product(way, contour.place(ends[0]) - begin) > 0) !=
+           (cross_product(way, contour.place(ends[1]) - begin) > 0);
   };
   return separates(one, other) && separates(other, one);
 }
 
 }  // namespace
-
-/// How far a crossed vertex is behind the interface, and where it would be without the crossing.
-class SelfCrossings::Depth {
- public:
-  Depth(const Contour& contour, const Known& known)
-      : vertex_(static_cast<int>(known.crossing.vertex)),
-        begin_(static_cast<int>(known.crossing.edge)),
-        end_((begin_ + 1) % contour.size) {
-    const Eigen::Array2d from = place(contour, begin_), way = place(contour, end_) - from;
-    length_ = way.matrix().norm();
-    tangent_ = way / length_;
-    const Eigen::Array2d to_vertex = place(contour, vertex_) - from;
-    const double along = (to_vertex * tangent_).sum() / length_;
-    fraction_ = std::clamp(along, 0.0, 1.0);
-    is_beside_ = fraction_ == along;
-    to_edge_ = fraction_ * way - to_vertex;
-    distance_ = to_edge_.matrix().norm();
-    for (const int end : known.ends)
-      if (end >= 0) limit_by(contour, end, known.own);
-  }
-
-  int vertex() const { return vertex_; }
-  double size() const { return is_limited() ? slip_.distance : distance_; }
-  /// Moves the vertex to where muted contacts find it.
-  Eigen::Array2d shift() const { return is_limited() ? slip_.distance / distance_ * to_edge_ : to_edge_; }
-
-  /// Adds `factor` times the derivative of size().
-  template <class Add>
-  void add_derivative(double factor, Add add) const {
-    is_limited() ? add_derivative_of_slip(factor, add) : add_derivative_of_distance(factor, add);
-  }
-  /// Adds the sum of the derivatives of the components of shift(), multiplied by those of `factor`.
-  template <class Add>
-  void add_derivative_of_shift(const Eigen::Array2d& factor, Add add) const {
-    if (!is_limited()) {
-      add_derivative_to_edge(factor, add);
-      return;
-    }
-    const double share = slip_.distance / distance_, part = (factor * to_edge_).sum() / distance_;
-    add_derivative_to_edge(share * factor, add);
-    add_derivative_of_slip(part, add);
-    add_derivative_of_distance(-part * share, add);
-  }
-
- private:
-  /// Distance of the end of the edges from an own edge of the vertex that crosses them.
-  struct Slip {
-    double distance = std::numeric_limits<double>::infinity();
-    int end = 0, own_begin = 0, own_end = 0;
-    double fraction = 0;
-    Eigen::Array2d direction{0, 0};
-  };
-  int vertex_, begin_, end_;
-  double length_, fraction_, distance_;
-  Eigen::Array2d tangent_, to_edge_;
-  bool is_beside_;
-  Slip slip_;
-
-  bool is_limited() const { return slip_.distance < distance_; }
-
-  /// The vertex comes out at this end when both of its own edges have slipped off.
-  void limit_by(const Contour& contour, int end, const std::array<OwnEdge, 2>& own) {
-    Slip last{.distance = 0};
-    for (const OwnEdge& edge : own) {
-      if (!edge.crosses) continue;
-      const Eigen::Array2d from = place(contour, edge.begin), way = place(contour, edge.end) - from;
-      const Eigen::Array2d to_end = place(contour, end) - from, normal = turned(way) / way.matrix().norm();
-      const double off = (to_end * normal).sum();
-      if (std::abs(off) > last.distance)
-        last = {std::abs(off),
-                end,
-                edge.begin,
-                edge.end,
-                (to_end * way).sum() / way.square().sum(),
-                off > 0 ? normal : -normal};
-    }
-    if (last.distance < slip_.distance) slip_ = last;
-  }
-
-  template <class Add>
-  void add_derivative_of_slip(double factor, Add add) const {
-    add(slip_.end, factor * slip_.direction);
-    add(slip_.own_begin, (slip_.fraction - 1) * factor * slip_.direction);
-    add(slip_.own_end, -slip_.fraction * factor * slip_.direction);
-  }
-  template <class Add>
-  void add_derivative_of_distance(double factor, Add add) const {
-    if (distance_ == 0) return;
-    const Eigen::Array2d outward = -factor / distance_ * to_edge_;
-    add(vertex_, outward);
-    add(begin_, (fraction_ - 1) * outward);
-    add(end_, -fraction_ * outward);
-  }
-  /// Of the vector from the vertex to the nearest point of the edge.
-  template <class Add>
-  void add_derivative_to_edge(const Eigen::Array2d& factor, Add add) const {
-    add(vertex_, -factor);
-    if (!is_beside_) {
-      add(fraction_ > 0 ? end_ : begin_, factor);
-      return;
-    }
-    const Eigen::Array2d normal = turned(tangent_);
-    const double along = (factor * tangent_).sum(), across = (factor * normal).sum();
-    const double height = -(to_edge_ * normal).sum();
-    const double on_end = fraction_ * across + along * height / length_;
-    add(vertex_, along * tangent_);
-    add(begin_, (across - on_end) * normal);
-    add(end_, on_end * normal);
-  }
-};
-
-/// A muted contact, with the crossed vertex where it would be without the crossing.
-struct SelfCrossings::Contact {
-  std::array<int, 3> points{};  // vertex, begin and end of the edge
-  double overlap = 0;           // by which the contact is nearer than the range
-  double fraction = 0;
-  Eigen::Array2d direction{0, 0};  // from the edge to the vertex
-};
 
 bool SelfCrossings::is_muted(const SelfContacts::Pair& pair) const {
   return std::ranges::any_of(
@@ -240,14 +112,14 @@ int SelfCrossings::end_of_edges(const Contour& contour, const SelfCrossing& cros
 
 /// Finds whether and how the interface still crosses itself here. Neighbours that have passed through, too,
 /// form a run; the edges at both ends of the run then cross the crossing's edges.
-SelfCrossings::Known SelfCrossings::look_at(const Contour& contour, const SelfCrossing& crossing,
-                                            const std::vector<SelfCrossing>& all) {
+CrossingPlace SelfCrossings::look_at(const Contour& contour, const SelfCrossing& crossing,
+                                     const std::vector<SelfCrossing>& all) {
   const int n = contour.size;
   const auto is_crossed = [&](int vertex) {
     return std::ranges::any_of(all, [&](const SelfCrossing& one) { return one.vertex == vertex; });
   };
   find_chain(contour, crossing, far, true);
-  const auto own_edge = [&](int step) -> OwnEdge {
+  const auto own_edge = [&](int step) -> CrossingPlace::OwnEdge {
     auto last = static_cast<int>(crossing.vertex);
     while (is_crossed((last + step) % n) && (last + step) % n != crossing.vertex) last = (last + step) % n;
     const int next = (last + step) % n;
@@ -258,7 +130,8 @@ SelfCrossings::Known SelfCrossings::look_at(const Contour& contour, const SelfCr
     });
     return {last, next, crosses};
   };
-  return {.crossing = crossing,
+  return {.vertex = static_cast<int>(crossing.vertex),
+          .edge = static_cast<int>(crossing.edge),
           .ends = {end_of_edges(contour, crossing, 1), end_of_edges(contour, crossing, -1)},
           .own = {own_edge(1), own_edge(n - 1)}};
 }
@@ -280,23 +153,23 @@ bool SelfCrossings::heals(const Contour& contour, const Drift& drift, SelfCrossi
 }
 
 void SelfCrossings::renew(const Contour& contour, std::vector<SelfCrossing>& crossings) {
-  known_.clear();
+  places_.clear();
   muted_.clear();
   if (crossings.empty()) return;
   const int n = contour.size;
   const std::vector<SelfCrossing> all = crossings;
   crossings.clear();
   for (const SelfCrossing& crossing : all) {
-    const Known known = look_at(contour, crossing, all);
-    if (!known.own[0].crosses && !known.own[1].crosses) continue;
-    const auto vertex = static_cast<int>(crossing.vertex), number = static_cast<int>(known_.size());
+    const CrossingPlace place = look_at(contour, crossing, all);
+    if (!place.own[0].crosses && !place.own[1].crosses) continue;
+    const int vertex = place.vertex, number = static_cast<int>(places_.size());
     find_chain(contour, crossing, beside, false);
     for (const int edge : chain_) {
       muted_.push_back({{vertex, edge}, number});
       for (const int end : {edge, (edge + 1) % n})
         for (const int own : {vertex, (vertex + n - 1) % n}) muted_.push_back({{end, own}, number});
     }
-    known_.push_back(known);
+    places_.push_back(place);
     crossings.push_back(crossing);
   }
   const auto pair = [](const Muted& one) { return std::pair(one.pair.vertex, one.pair.edge); };
@@ -328,69 +201,63 @@ bool SelfCrossings::follow(const Contour& contour, const Drift& drift, const Sel
   return true;
 }
 
-std::vector<SelfCrossings::Depth> SelfCrossings::depths(const Contour& contour) const {
-  std::vector<Depth> depths;
-  depths.reserve(known_.size());
-  for (const Known& one : known_) depths.emplace_back(contour, one);
-  return depths;
-}
-
-/// Calls visit() for every muted contact that is closer than the range.
-template <class Visit>
-void SelfCrossings::visit_contacts(const Contour& contour, const SelfContacts& contacts,
-                                   const std::vector<Depth>& depths, Visit visit) const {
-  for (const auto& [pair, crossing] : muted_) {
-    if (are_neighbours(contacts, pair, contour.size)) continue;
-    const Depth& depth = depths[crossing];
-    Contact contact{.points = {pair.vertex, pair.edge, (pair.edge + 1) % contour.size}};
-    std::array<Eigen::Array2d, 3> places;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      places[k] = place(contour, contact.points[k]);
-      if (contact.points[k] == depth.vertex()) places[k] += depth.shift();
-    }
-    const Eigen::Array2d edge = places[2] - places[1], to_vertex = places[0] - places[1];
-    const double length2 = edge.square().sum();
-    contact.fraction = length2 > 0 ? std::clamp((to_vertex * edge).sum() / length2, 0.0, 1.0) : 0;
-    const Eigen::Array2d away = to_vertex - contact.fraction * edge;
-    const double distance = away.matrix().norm();
-    contact.overlap = contacts.range() - distance;
-    if (contact.overlap <= 0) continue;
-    // A vertex on the edge is not pushed to either side.
-    constexpr double round_off = 1e-9;
-    contact.direction = distance > round_off * contacts.range() ? away / distance : Eigen::Array2d(0, 0);
-    visit(contact, depth);
-  }
-}
-
-double SelfCrossings::energy(const Contour& contour, const SelfContacts& contacts) const {
-  const std::vector<Depth> depths = this->depths(contour);
+double SelfCrossings::find_pushes(const Contour& contour, const SelfContacts& contacts) {
+  pushes_.clear();
+  depths_.clear();
   double energy = 0;
-  for (std::size_t k = 0; k < depths.size(); ++k) {
-    const double range = range_of(contacts, pair_of(known_[k].crossing), contour.size);
-    energy += (range + depths[k].size() / 2) * depths[k].size();
+  for (const CrossingPlace& place : places_) {
+    const CrossingDepth depth(contour, place);
+    const double range = range_of(contacts, {place.vertex, place.edge}, contour.size);
+    energy += (range + depth.size() / 2) * depth.size();
+    depth.add_gradient(-range - depth.size(), pushes_);
+    depths_.push_back(depth);
   }
-  visit_contacts(contour, contacts, depths,
-                 [&](const Contact& one, const Depth&) { energy += one.overlap * one.overlap / 2; });
+  for (const Muted& muted : muted_)
+    if (!are_neighbours(contacts, muted.pair, contour.size))
+      energy += push_off(contour, muted, contacts.range());
   return energy;
 }
 
-const std::vector<SelfCrossings::Push>& SelfCrossings::find_pushes(const Contour& contour,
-                                                                   const SelfContacts& contacts) {
-  pushes_.clear();
-  const auto add = [&](int vertex, const Eigen::Array2d& force) { pushes_.push_back({vertex, force}); };
-  const std::vector<Depth> depths = this->depths(contour);
-  for (std::size_t k = 0; k < depths.size(); ++k)
-    depths[k].add_derivative(
-        -range_of(contacts, pair_of(known_[k].crossing), contour.size) - depths[k].size(), add);
-  visit_contacts(contour, contacts, depths, [&](const Contact& one, const Depth& depth) {
-    const std::array<double, 3> shares = {1, one.fraction - 1, -one.fraction};
-    for (std::size_t k = 0; k < shares.size(); ++k) {
-      const Eigen::Array2d force = shares[k] * one.overlap * one.direction;
-      add(one.points[k], force);
-      if (one.points[k] == depth.vertex()) depth.add_derivative_of_shift(force, add);
+/// The crossing of this vertex that moves it in contacts that a crossing mutes; null if there is none. A
+/// neighbour of the crossed vertex may have passed through nearby edges, too.
+const CrossingDepth* SelfCrossings::depth_of(int vertex, int crossing, int num_vertices) const {
+  const CrossingPlace& muting = places_[crossing];
+  if (vertex == muting.vertex) return &depths_[crossing];
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    const int apart = std::abs(places_[k].edge - muting.edge);
+    if (places_[k].vertex == vertex && std::min(apart, num_vertices - apart) <= beside) return &depths_[k];
+  }
+  return nullptr;
+}
+
+/// Adds the pushes of a muted contact, with crossed vertices where they would be without the crossing.
+/// Returns its energy.
+double SelfCrossings::push_off(const Contour& contour, const Muted& muted, double range) {
+  const std::array<int, 3> vertices = {muted.pair.vertex, muted.pair.edge,
+                                       (muted.pair.edge + 1) % contour.size};
+  std::array<const CrossingDepth*, 3> depths{};
+  std::array<Eigen::Array2d, 3> places;
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    depths[k] = depth_of(vertices[k], muted.crossing, contour.size);
+    places[k] = contour.place(vertices[k]);
+    if (depths[k] != nullptr) places[k] += depths[k]->shift();
+  }
+  const Eigen::Array2d edge = places[2] - places[1], to_vertex = places[0] - places[1];
+  const double length2 = edge.square().sum();
+  const double fraction = length2 > 0 ? std::clamp((to_vertex * edge).sum() / length2, 0.0, 1.0) : 0;
+  const Eigen::Array2d away = to_vertex - fraction * edge;
+  const double distance = away.matrix().norm(), overlap = range - distance;
+  if (overlap <= 0) return 0;
+  constexpr double round_off = 1e-9;
+  if (distance > round_off * range) {  // otherwise it is on the edge, and pushed to neither side
+    const std::array<double, 3> shares = {1, fraction - 1, -fraction};
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      const Eigen::Array2d force = shares[k] * overlap / distance * away;
+      pushes_.push_back({vertices[k], force});
+      if (depths[k] != nullptr) depths[k]->add_gradient_of_shift(force, pushes_);
     }
-  });
-  return pushes_;
+  }
+  return overlap * overlap / 2;
 }
 
 }  // namespace clog

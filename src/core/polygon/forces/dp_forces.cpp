@@ -113,7 +113,7 @@ double DpForces::self_contact_energy(const Contour& contour, const DropletState&
   SelfCrossings crossings;
   std::vector<SelfCrossing> crossed = state.crossings;
   crossings.renew(contour, crossed);
-  double energy = contact_stiffness_ * crossings.energy(contour, self_);
+  double energy = contact_stiffness_ * crossings.find_pushes(contour, self_);
   for (const SelfContacts::Pair& pair : self_.pairs()) {
     if (crossings.is_muted(pair)) continue;
     const double overlap =

@@ -249,7 +249,8 @@ bool DpStepper::follow_crossings(DropletState& state, double nearest_pair) {
 
 void DpStepper::push_back_crossed(const kernel::Contact& touching) {
   const kernel::ContourPair& push = memory_.arrays().push;
-  for (const auto& [vertex, force] : crossings_.find_pushes(contour(), forces_->self_contacts())) {
+  crossings_.find_pushes(contour(), forces_->self_contacts());
+  for (const auto& [vertex, force] : crossings_.pushes()) {
     push.x[vertex] += touching.stiffness * force[0];
     push.y[vertex] += touching.stiffness * force[1];
   }

@@ -166,7 +166,8 @@ Eigen::ArrayXd forces_of_step(const RunParameters& given, const DropletState& st
   run.time_step = 1e-6;  // so short that nothing moves
   DpDroplet droplet(run, nothing, state);
   droplet.advance(1);
-  return droplet.state().velocity * (units::droplet_mass / static_cast<double>(state.size()) / *run.time_step);
+  return droplet.state().velocity *
+         (units::droplet_mass / static_cast<double>(state.size()) / *run.time_step);
 }
 
 TEST(SelfCrossings, PushInTheStepWithTheSlopeOfTheirEnergy) {
@@ -192,6 +193,43 @@ TEST(SelfCrossings, PushInTheStepWithTheSlopeOfTheirEnergy) {
     }
   }
   EXPECT_GE(num_crossed, 4);
+}
+
+TEST(SelfCrossings, PushWithTheSlopeOfTheirEnergyWhereSeveralNeighboursPassed) {
+  const Neck neck(256, 3);
+  DpDroplet droplet(neck.run, nothing, neck.state);
+  SelfContacts contacts(neck.run.dp.self_contact_range, units::regular_edge_length(256));
+  std::size_t most = 0;
+  for (int step = 0; step < 400; ++step) {
+    droplet.advance(1);
+    DropletState state = droplet.state();
+    if (state.crossings.empty()) continue;
+    most = std::max(most, state.crossings.size());
+    const auto n = static_cast<int>(state.size());
+    const double* const places = state.position.data();
+    const Contour contour{n, places, places + n};
+    contacts.renew(state, {});
+    SelfCrossings crossings;
+    crossings.renew(contour, state.crossings);
+    crossings.find_pushes(contour, contacts);
+    Eigen::ArrayXd force = Eigen::ArrayXd::Zero(2 * n), slope = force;
+    for (const auto& [vertex, push] : crossings.pushes()) {
+      force[vertex] += push[0];
+      force[n + vertex] += push[1];
+    }
+    for (Eigen::Index k = 0; k < 2 * n; ++k) {
+      constexpr double small = 1e-8;
+      double& coordinate = state.position[k];
+      const double there = coordinate;
+      coordinate = there + small;
+      const double above = crossings.find_pushes(contour, contacts);
+      coordinate = there - small;
+      slope[k] = (above - crossings.find_pushes(contour, contacts)) / (2 * small);
+      coordinate = there;
+    }
+    EXPECT_LT((force + slope).abs().maxCoeff(), 1e-5 * force.abs().maxCoeff()) << step;
+  }
+  EXPECT_GT(most, 2U);
 }
 
 TEST(SelfCrossings, PushWithRangePlusDepth) {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/polygon/contact/crossing_depth.hpp"
 #include "clog/core/polygon/contact/self_contacts.hpp"
 #include "clog/core/polygon/contact/wall_touch.hpp"
 
@@ -37,7 +37,7 @@ class SelfCrossings {
   /// Finds the muted contacts of these crossings, and forgets crossings that the contour does not have.
   void renew(const Contour& contour, std::vector<SelfCrossing>& crossings);
 
-  /// A contact for which energy() and find_pushes() stand in, and the number of the crossing that mutes it.
+  /// A contact that find_pushes() includes, and the number of the crossing that mutes it.
   struct Muted {
     SelfContacts::Pair pair;
     int crossing;
@@ -45,43 +45,26 @@ class SelfCrossings {
   const std::vector<Muted>& muted() const { return muted_; }
   bool is_muted(const SelfContacts::Pair& pair) const;
 
-  /// Energy of the crossings of the last renew(), with their muted contacts, divided by the stiffness
-  /// [sigma^2].
-  double energy(const Contour& contour, const SelfContacts& contacts) const;
-  struct Push {
-    int vertex;
-    Eigen::Array2d force;  ///< divided by the stiffness [sigma]
-  };
-  /// The negative gradient of energy(). @return valid until the next call
-  const std::vector<Push>& find_pushes(const Contour& contour, const SelfContacts& contacts);
+  /// Finds pushes() of the crossings of the last renew(), with their muted contacts.
+  /// @return the energy of which they are the negative gradient, divided by the stiffness [sigma^2]
+  double find_pushes(const Contour& contour, const SelfContacts& contacts);
+  const std::vector<VertexPush>& pushes() const { return pushes_; }
 
  private:
-  /// An edge that leads from the crossed vertex, or from the last of its crossed neighbours, to a vertex that
-  /// has not passed through.
-  struct OwnEdge {
-    int begin, end;
-    bool crosses;  // whether it crosses the interface near the crossing's edge
-  };
-  struct Known {
-    SelfCrossing crossing;
-    std::array<int, 2> ends;  // vertices where the edges end on both sides, -1: not nearby
-    std::array<OwnEdge, 2> own;
-  };
-  class Depth;
-  struct Contact;
-  std::vector<Known> known_;
+  std::vector<CrossingPlace> places_;
   std::vector<Muted> muted_;  // sorted by pair
-  std::vector<int> chain_;    // working memory
-  std::vector<Push> pushes_;
+  std::vector<VertexPush> pushes_;
+  // working memory
+  std::vector<int> chain_;
+  std::vector<CrossingDepth> depths_;
 
   void find_chain(const Contour& contour, const SelfCrossing& crossing, int most, bool bends);
   static int end_of_edges(const Contour& contour, const SelfCrossing& crossing, int step);
   bool heals(const Contour& contour, const Drift& drift, SelfCrossing& crossing);
-  Known look_at(const Contour& contour, const SelfCrossing& crossing, const std::vector<SelfCrossing>& all);
-  std::vector<Depth> depths(const Contour& contour) const;
-  template <class Visit>
-  void visit_contacts(const Contour& contour, const SelfContacts& contacts, const std::vector<Depth>& depths,
-                      Visit visit) const;
+  CrossingPlace look_at(const Contour& contour, const SelfCrossing& crossing,
+                        const std::vector<SelfCrossing>& all);
+  const CrossingDepth* depth_of(int vertex, int crossing, int num_vertices) const;
+  double push_off(const Contour& contour, const Muted& muted, double range);
 };
 
 }  // namespace clog
