@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <utility>
 
 namespace clog {
@@ -12,14 +12,10 @@ namespace {
 /// Number of edges on each side of a crossing's edge to which the vertex may have slid in a step. Edges
 /// further along the contour, or behind a sharp corner, may belong to the other side of a finger.
 constexpr int beside = 2;
+/// Number of edges on each side of a crossing's edge that the vertex's own edges may cross.
+constexpr int far = 8;
 
-double cross(const Eigen::Array2d& a, const Eigen::Array2d& b) { return a[0] * b[1] - a[1] * b[0]; }
-
-Eigen::Array2d place(const Contour& contour, int vertex) { return {contour.x[vertex], contour.y[vertex]}; }
-
-SelfContacts::Pair pair_of(const SelfCrossing& crossing) {
-  return {static_cast<int>(crossing.vertex), static_cast<int>(crossing.edge)};
-}
+double cross_product(const Eigen::Array2d& a, const Eigen::Array2d& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// Whether the vertex passed through the edge during the drift. All vertices moved in straight lines, so the
 /// area that vertex and edge span is a quadratic function of time; the vertex is on the edge's line where
@@ -30,15 +26,15 @@ bool passes_through(const SelfContacts::Pair& pair, const Contour& contour,
   const auto moved = [&](int vertex) -> Eigen::Array2d {
     return drift.time * Eigen::Array2d(drift.velocity_x[vertex], drift.velocity_y[vertex]);
   };
-  const Eigen::Array2d edge_after = place(contour, end) - place(contour, pair.edge);
-  const Eigen::Array2d way_after = place(contour, pair.vertex) - place(contour, pair.edge);
+  const Eigen::Array2d edge_after = contour.place(end) - contour.place(pair.edge);
+  const Eigen::Array2d way_after = contour.place(pair.vertex) - contour.place(pair.edge);
   const Eigen::Array2d edge_change = moved(end) - moved(pair.edge);
   const Eigen::Array2d way_change = moved(pair.vertex) - moved(pair.edge);
   const Eigen::Array2d edge = edge_after - edge_change, way = way_after - way_change;
-  const double before = cross(edge, way), after = cross(edge_after, way_after);
+  const double before = cross_product(edge, way), after = cross_product(edge_after, way_after);
   if ((before > 0) == (after > 0)) return false;
   // The root of before + linear t + square t^2 between 0 and 1, in the form that does not cancel.
-  const double square = cross(edge_change, way_change), linear = after - before - square;
+  const double square = cross_product(edge_change, way_change), linear = after - before - square;
   const double root = std::sqrt(std::max(0.0, linear * linear - 4 * square * before));
   const double sum = linear + std::copysign(root, linear);
   const double one = sum != 0 ? -2 * before / sum : 0, other = square != 0 ? -sum / (2 * square) : one;
@@ -59,61 +55,85 @@ double range_of(const SelfContacts& contacts, const SelfContacts::Pair& pair, in
   return are_neighbours(contacts, pair, num_vertices) ? 0 : contacts.range();
 }
 
+/// The edge after `edge` in this direction, 1 or -1, if a vertex can slide on to it. @param bends  whether
+/// the edges continue beyond corners of more than 90 degrees
+std::optional<int> next_edge(const Contour& contour, Eigen::Index vertex, int edge, int step, bool bends) {
+  const int n = contour.size, next = (edge + step + n) % n;
+  if (next == vertex || (next + 1) % n == vertex) return std::nullopt;
+  const auto along = [&](int one) -> Eigen::Array2d {
+    return contour.place((one + 1) % n) - contour.place(one);
+  };
+  if (!bends && (along(edge) * along(next)).sum() < 0) return std::nullopt;
+  return next;
+}
+
+/// Whether two pieces of the contour cross each other.
+bool cross_each_other(const Contour& contour, const std::array<int, 2>& one,
+                      const std::array<int, 2>& other) {
+  const auto separates = [&](const std::array<int, 2>& line, const std::array<int, 2>& ends) {
+    const Eigen::Array2d begin = contour.place(line[0]), way = contour.place(line[1]) - begin;
+    return (cross_product(way, contour.place(ends[0]) - begin) > 0) !=
+           (cross_product(way, contour.place(ends[1]) - begin) > 0);
+  };
+  return separates(one, other) && separates(other, one);
+}
+
 }  // namespace
 
 bool SelfCrossings::is_muted(const SelfContacts::Pair& pair) const {
-  return std::ranges::any_of(muted_, [&](const SelfContacts::Pair& one) {
-    return one.vertex == pair.vertex && one.edge == pair.edge;
-  });
+  return std::ranges::any_of(
+      muted_, [&](const Muted& one) { return one.pair.vertex == pair.vertex && one.pair.edge == pair.edge; });
 }
 
-/// Fills chain_ with the crossing's edge and up to `most` edges on each side of it. @param bends  whether the
-/// chain continues beyond corners of more than 90 degrees
+/// Fills chain_ with the crossing's edge and up to `most` edges on each side of it. @param bends  see
+/// next_edge()
 void SelfCrossings::find_chain(const Contour& contour, const SelfCrossing& crossing, int most, bool bends) {
-  const int n = contour.size;
-  const auto turns_back = [&](int one, int other) {
-    return ((place(contour, (one + 1) % n) - place(contour, one)) *
-            (place(contour, (other + 1) % n) - place(contour, other)))
-               .sum() < 0;
-  };
-  const auto is_own = [&](int edge) { return edge == crossing.vertex || (edge + 1) % n == crossing.vertex; };
-  chain_.clear();
   const auto edge = static_cast<int>(crossing.edge);
-  chain_.push_back(edge);
-  for (const int step : {1, n - 1})
-    for (int k = 1, last = edge; k <= most; ++k) {
-      const int next = (last + step) % n;
-      if (is_own(next) || (!bends && turns_back(last, next))) break;
-      chain_.push_back(last = next);
+  chain_.assign(1, edge);
+  for (const int step : {1, -1}) {
+    std::optional<int> next = next_edge(contour, crossing.vertex, edge, step, bends);
+    for (int k = 0; next && k < most; ++k) {
+      chain_.push_back(*next);
+      next = next_edge(contour, crossing.vertex, *next, step, bends);
     }
+  }
 }
 
-/// Whether the interface still crosses itself here. Neighbours that have passed through, too, form a run; the
-/// edges at both ends of the run then cross the chain.
-bool SelfCrossings::is_real(const Contour& contour, const SelfCrossing& crossing,
-                            const std::vector<SelfCrossing>& all) {
-  constexpr int far = 8;  // edges of the chain
+/// The vertex at which the edges end in this direction, -1 if they go on for `far` edges.
+int SelfCrossings::end_of_edges(const Contour& contour, const SelfCrossing& crossing, int step) {
+  auto edge = static_cast<int>(crossing.edge);
+  for (int k = 0; k < far; ++k) {
+    const std::optional<int> next = next_edge(contour, crossing.vertex, edge, step, false);
+    if (!next) return step > 0 ? (edge + 1) % contour.size : edge;
+    edge = *next;
+  }
+  return -1;
+}
+
+/// Finds whether and how the interface still crosses itself here. Neighbours that have passed through, too,
+/// form a run; the edges at both ends of the run then cross the crossing's edges.
+CrossingPlace SelfCrossings::look_at(const Contour& contour, const SelfCrossing& crossing,
+                                     const std::vector<SelfCrossing>& all) {
   const int n = contour.size;
   const auto is_crossed = [&](int vertex) {
     return std::ranges::any_of(all, [&](const SelfCrossing& one) { return one.vertex == vertex; });
   };
   find_chain(contour, crossing, far, true);
-  const auto separates = [&](int begin, int end, int one, int other) {
-    const Eigen::Array2d edge = place(contour, end) - place(contour, begin);
-    return (cross(edge, place(contour, one) - place(contour, begin)) > 0) !=
-           (cross(edge, place(contour, other) - place(contour, begin)) > 0);
-  };
-  for (const int step : {1, n - 1}) {
+  const auto own_edge = [&](int step) -> CrossingPlace::OwnEdge {
     auto last = static_cast<int>(crossing.vertex);
     while (is_crossed((last + step) % n) && (last + step) % n != crossing.vertex) last = (last + step) % n;
     const int next = (last + step) % n;
-    for (const int edge : chain_) {
+    const bool crosses = std::ranges::any_of(chain_, [&](int edge) {
       const int end = (edge + 1) % n;
-      if (edge == last || end == last || edge == next || end == next) continue;
-      if (separates(edge, end, last, next) && separates(last, next, edge, end)) return true;
-    }
-  }
-  return false;
+      return edge != last && end != last && edge != next && end != next &&
+             cross_each_other(contour, {edge, end}, {last, next});
+    });
+    return {last, next, crosses};
+  };
+  return {.vertex = static_cast<int>(crossing.vertex),
+          .edge = static_cast<int>(crossing.edge),
+          .ends = {end_of_edges(contour, crossing, 1), end_of_edges(contour, crossing, -1)},
+          .own = {own_edge(1), own_edge(n - 1)}};
 }
 
 /// Whether the vertex has passed back. Otherwise sets the crossing's edge to the nearest one of its
@@ -128,25 +148,34 @@ bool SelfCrossings::heals(const Contour& contour, const Drift& drift, SelfCrossi
   const auto distance = [&](int edge) {
     return nearest_point({vertex, edge}, contour.x, contour.y, contour.size).distance;
   };
-  if (!chain_.empty()) crossing.edge = *std::ranges::min_element(chain_, {}, distance);
+  crossing.edge = *std::ranges::min_element(chain_, {}, distance);
   return false;
 }
 
 void SelfCrossings::renew(const Contour& contour, std::vector<SelfCrossing>& crossings) {
+  places_.clear();
   muted_.clear();
+  if (crossings.empty()) return;
   const int n = contour.size;
   const std::vector<SelfCrossing> all = crossings;
-  std::erase_if(crossings, [&](const SelfCrossing& crossing) {
-    if (!is_real(contour, crossing, all)) return true;
+  crossings.clear();
+  for (const SelfCrossing& crossing : all) {
+    const CrossingPlace place = look_at(contour, crossing, all);
+    if (!place.own[0].crosses && !place.own[1].crosses) continue;
+    const int vertex = place.vertex, number = static_cast<int>(places_.size());
     find_chain(contour, crossing, beside, false);
-    const auto vertex = static_cast<int>(crossing.vertex);
     for (const int edge : chain_) {
-      muted_.push_back({vertex, edge});
+      muted_.push_back({{vertex, edge}, number});
       for (const int end : {edge, (edge + 1) % n})
-        for (const int own : {vertex, (vertex + n - 1) % n}) muted_.push_back({end, own});
+        for (const int own : {vertex, (vertex + n - 1) % n}) muted_.push_back({{end, own}, number});
     }
-    return false;
-  });
+    places_.push_back(place);
+    crossings.push_back(crossing);
+  }
+  const auto pair = [](const Muted& one) { return std::pair(one.pair.vertex, one.pair.edge); };
+  std::ranges::stable_sort(muted_, {}, pair);
+  const auto repeated = std::ranges::unique(muted_, {}, pair);
+  muted_.erase(repeated.begin(), repeated.end());
 }
 
 bool SelfCrossings::follow(const Contour& contour, const Drift& drift, const SelfContacts& contacts,
@@ -172,22 +201,63 @@ bool SelfCrossings::follow(const Contour& contour, const Drift& drift, const Sel
   return true;
 }
 
-SelfCrossings::Push SelfCrossings::push_back(const SelfCrossing& crossing, const Contour& contour,
-                                             const SelfContacts& contacts) {
-  const SelfContacts::Pair pair = pair_of(crossing);
-  const EdgeContact nearest = nearest_point(pair, contour.x, contour.y, contour.size);
-  Eigen::Array2d direction{-nearest.dx, -nearest.dy};
-  if (nearest.distance > 0) direction /= nearest.distance;
-  return {crossing.vertex, crossing.edge,
-          (range_of(contacts, pair, contour.size) + nearest.distance) * direction, nearest.fraction};
+double SelfCrossings::find_pushes(const Contour& contour, const SelfContacts& contacts) {
+  pushes_.clear();
+  depths_.clear();
+  double energy = 0;
+  for (const CrossingPlace& place : places_) {
+    const CrossingDepth depth(contour, place);
+    const double range = range_of(contacts, {place.vertex, place.edge}, contour.size);
+    energy += (range + depth.size() / 2) * depth.size();
+    depth.add_gradient(-range - depth.size(), pushes_);
+    depths_.push_back(depth);
+  }
+  for (const Muted& muted : muted_)
+    if (!are_neighbours(contacts, muted.pair, contour.size))
+      energy += push_off(contour, muted, contacts.range());
+  return energy;
 }
 
-double SelfCrossings::energy(const SelfCrossing& crossing, const Contour& contour,
-                             const SelfContacts& contacts) {
-  const SelfContacts::Pair pair = pair_of(crossing);
-  const double reach = range_of(contacts, pair, contour.size) +
-                       nearest_point(pair, contour.x, contour.y, contour.size).distance;
-  return reach * reach / 2;
+/// The crossing of this vertex that moves it in contacts that a crossing mutes; null if there is none. A
+/// neighbour of the crossed vertex may have passed through nearby edges, too.
+const CrossingDepth* SelfCrossings::depth_of(int vertex, int crossing, int num_vertices) const {
+  const CrossingPlace& muting = places_[crossing];
+  if (vertex == muting.vertex) return &depths_[crossing];
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    const int apart = std::abs(places_[k].edge - muting.edge);
+    if (places_[k].vertex == vertex && std::min(apart, num_vertices - apart) <= beside) return &depths_[k];
+  }
+  return nullptr;
+}
+
+/// Adds the pushes of a muted contact, with crossed vertices where they would be without the crossing.
+/// Returns its energy.
+double SelfCrossings::push_off(const Contour& contour, const Muted& muted, double range) {
+  const std::array<int, 3> vertices = {muted.pair.vertex, muted.pair.edge,
+                                       (muted.pair.edge + 1) % contour.size};
+  std::array<const CrossingDepth*, 3> depths{};
+  std::array<Eigen::Array2d, 3> places;
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    depths[k] = depth_of(vertices[k], muted.crossing, contour.size);
+    places[k] = contour.place(vertices[k]);
+    if (depths[k] != nullptr) places[k] += depths[k]->shift();
+  }
+  const Eigen::Array2d edge = places[2] - places[1], to_vertex = places[0] - places[1];
+  const double length2 = edge.square().sum();
+  const double fraction = length2 > 0 ? std::clamp((to_vertex * edge).sum() / length2, 0.0, 1.0) : 0;
+  const Eigen::Array2d away = to_vertex - fraction * edge;
+  const double distance = away.matrix().norm(), overlap = range - distance;
+  if (overlap <= 0) return 0;
+  constexpr double round_off = 1e-9;
+  if (distance > round_off * range) {  // otherwise it is on the edge, and pushed to neither side
+    const std::array<double, 3> shares = {1, fraction - 1, -fraction};
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      const Eigen::Array2d force = shares[k] * overlap / distance * away;
+      pushes_.push_back({vertices[k], force});
+      if (depths[k] != nullptr) depths[k]->add_gradient_of_shift(force, pushes_);
+    }
+  }
+  return overlap * overlap / 2;
 }
 
 }  // namespace clog

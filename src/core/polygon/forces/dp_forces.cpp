@@ -110,18 +110,16 @@ double DpForces::deepest_overlap(const DropletState& state) const {
 }
 
 double DpForces::self_contact_energy(const Contour& contour, const DropletState& state) const {
-  double energy = 0;
   SelfCrossings crossings;
   std::vector<SelfCrossing> crossed = state.crossings;
   crossings.renew(contour, crossed);
+  double energy = contact_stiffness_ * crossings.find_pushes(contour, self_);
   for (const SelfContacts::Pair& pair : self_.pairs()) {
     if (crossings.is_muted(pair)) continue;
     const double overlap =
         std::max(0.0, self_.range() - nearest_point(pair, contour.x, contour.y, contour.size).distance);
     energy += 0.5 * contact_stiffness_ * overlap * overlap;
   }
-  for (const SelfCrossing& crossing : crossed)
-    energy += contact_stiffness_ * SelfCrossings::energy(crossing, contour, self_);
   return energy;
 }
 

@@ -247,17 +247,12 @@ bool DpStepper::follow_crossings(DropletState& state, double nearest_pair) {
                            forces_->self_contacts(), state);
 }
 
-void DpStepper::push_back_crossed(const DropletState& state, const kernel::Contact& touching) {
+void DpStepper::push_back_crossed(const kernel::Contact& touching) {
   const kernel::ContourPair& push = memory_.arrays().push;
-  for (const SelfCrossing& crossing : state.crossings) {
-    const SelfCrossings::Push back = SelfCrossings::push_back(crossing, contour(), forces_->self_contacts());
-    const auto add = [&](Eigen::Index vertex, double share) {
-      push.x[vertex] += share * touching.stiffness * back.force[0];
-      push.y[vertex] += share * touching.stiffness * back.force[1];
-    };
-    add(back.vertex, 1);
-    add(back.edge, back.fraction - 1);
-    add((back.edge + 1) % n_, -back.fraction);
+  crossings_.find_pushes(contour(), forces_->self_contacts());
+  for (const auto& [vertex, force] : crossings_.pushes()) {
+    push.x[vertex] += touching.stiffness * force[0];
+    push.y[vertex] += touching.stiffness * force[1];
   }
 }
 
@@ -277,7 +272,7 @@ void DpStepper::push_off_everything(DropletState& state, const kernel::KickCoeff
     kernel_.clear_pushes(n_, memory_.arrays());
     push_off_circles(touching, impulse, work);
   }
-  push_back_crossed(state, touching);
+  if (!state.crossings.empty()) push_back_crossed(touching);
   kernel_.push_off_wedges(n_, wedges.data(), wedges.size(), forces_->walls().range(), touching.stiffness,
                           memory_.arrays());
   if (forces_->wetted_walls().is_on()) add_wetting(state, impulse, work);

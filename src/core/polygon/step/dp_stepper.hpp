@@ -98,7 +98,7 @@ class DpStepper {
   int parts_of_fast_step(double way) const;
   void keep_near_contacts();
   bool follow_crossings(DropletState& state, double nearest_pair);
-  void push_back_crossed(const DropletState& state, const kernel::Contact& touching);
+  void push_back_crossed(const kernel::Contact& touching);
   Contour contour() const;
   void push_off_everything(DropletState& state, const kernel::KickCoefficients& coefficients, double impulse,
                            Droplet::Work* work);

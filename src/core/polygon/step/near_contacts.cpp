@@ -33,9 +33,9 @@ void NearContacts::keep(const kernel::StepKernel& kernel, const DpForces& forces
     if (self_gaps_[k] <= self_way) self_.push_back(self[k]);
 }
 
-void NearContacts::mute(std::span<const SelfContacts::Pair> pairs, int num_vertices) {
+void NearContacts::mute(std::span<const SelfCrossings::Muted> contacts, int num_vertices) {
   for (SelfContacts::Item& item : self_)
-    for (const SelfContacts::Pair& pair : pairs) {
+    for (const auto& [pair, crossing] : contacts) {
       const int bit = pair.edge - item.edges;
       if (bit < 0 || bit >= kernel::edges_per_group) continue;
       const int vertex = item.vertices + (item.backwards ? kernel::edges_per_group - 1 - bit : bit);

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "clog/core/polygon/contact/self_crossings.hpp"
 #include "clog/core/polygon/forces/dp_forces.hpp"
 #include "dp_step_kernel.hpp"
 
@@ -17,8 +18,8 @@ class NearContacts {
   /// Keeps the entries that measure() found within these distances from contact [sigma].
   void keep(const kernel::StepKernel& kernel, const DpForces& forces, double wall_way, double self_way);
 
-  /// Removes these pairs until the next keep(). @param num_vertices  number of the droplet's vertices
-  void mute(std::span<const SelfContacts::Pair> pairs, int num_vertices);
+  /// Removes these contacts until the next keep(). @param num_vertices  number of the droplet's vertices
+  void mute(std::span<const SelfCrossings::Muted> contacts, int num_vertices);
 
   const std::vector<WallContacts::Item>& walls() const { return walls_; }
   const std::vector<SelfContacts::Item>& self() const { return self_; }

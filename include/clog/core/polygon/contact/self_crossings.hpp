@@ -1,9 +1,9 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/polygon/contact/crossing_depth.hpp"
 #include "clog/core/polygon/contact/self_contacts.hpp"
 #include "clog/core/polygon/contact/wall_touch.hpp"
 
@@ -16,10 +16,14 @@ namespace clog {
 /// vertex is. Both sides are possible: if the outside of the droplet is between the two, there is a film of
 /// water, and if the inside is, a thread of oil. So a vertex whose kinetic energy exceeds the barrier
 /// k_c d_s^2/2 would pass through the edge and then be pushed onward. To prevent this, a vertex whose path
-/// passes through the inside of an edge is recorded (SelfCrossing). It then is at the distance -d from the
-/// edge, or from a neighbour of this edge to which it slides, and the edge pushes it back with the force k_c
-/// (d_s + d). Until then, other contacts between the vertex or its edges and these edges are muted, because
-/// they do not know the side. A crossing has healed when the vertex's path leads back through the edge.
+/// passes through the inside of an edge is recorded (SelfCrossing). Until its path leads back through the
+/// edge, or through a neighbour of this edge to which it has slid, it has the energy
+///   k_c [(d_s + D)^2 - d_s^2]/2.
+/// Its depth D is its distance d from the edge. Where the edges end, at a sharp corner or at the vertex's own
+/// edges, the vertex also comes out if its own edges slip off this end, so there D is at most the distance of
+/// the end from them. Other contacts between the vertex or its edges and these edges are computed as if the
+/// vertex were by D/d nearer to the edge, mostly on it, because unsigned distances do not know the side. So
+/// the energy is continuous where a vertex passes through an edge, comes back, or slips off an end.
 class SelfCrossings {
  public:
   /// What moved the vertices to their present places: these velocities, for this time.
@@ -32,27 +36,35 @@ class SelfCrossings {
   bool follow(const Contour& contour, const Drift& drift, const SelfContacts& contacts, DropletState& state);
   /// Finds the muted contacts of these crossings, and forgets crossings that the contour does not have.
   void renew(const Contour& contour, std::vector<SelfCrossing>& crossings);
-  /// Contacts that do not act.
-  std::span<const SelfContacts::Pair> muted() const { return muted_; }
+
+  /// A contact that find_pushes() includes, and the number of the crossing that mutes it.
+  struct Muted {
+    SelfContacts::Pair pair;
+    int crossing;
+  };
+  const std::vector<Muted>& muted() const { return muted_; }
   bool is_muted(const SelfContacts::Pair& pair) const;
 
-  /// The force of an edge on a crossed vertex.
-  struct Push {
-    Eigen::Index vertex, edge;
-    Eigen::Array2d force;  ///< on the vertex, in units of the stiffness
-    double fraction;  ///< of the reaction; the edge's second vertex takes it, the first one takes the rest
-  };
-  static Push push_back(const SelfCrossing& crossing, const Contour& contour, const SelfContacts& contacts);
-  /// Energy of a crossed vertex, divided by the stiffness [sigma^2].
-  static double energy(const SelfCrossing& crossing, const Contour& contour, const SelfContacts& contacts);
+  /// Finds pushes() of the crossings of the last renew(), with their muted contacts.
+  /// @return the energy of which they are the negative gradient, divided by the stiffness [sigma^2]
+  double find_pushes(const Contour& contour, const SelfContacts& contacts);
+  const std::vector<VertexPush>& pushes() const { return pushes_; }
 
  private:
-  std::vector<SelfContacts::Pair> muted_;
-  std::vector<int> chain_;  // working memory
+  std::vector<CrossingPlace> places_;
+  std::vector<Muted> muted_;  // sorted by pair
+  std::vector<VertexPush> pushes_;
+  // working memory
+  std::vector<int> chain_;
+  std::vector<CrossingDepth> depths_;
 
   void find_chain(const Contour& contour, const SelfCrossing& crossing, int most, bool bends);
+  static int end_of_edges(const Contour& contour, const SelfCrossing& crossing, int step);
   bool heals(const Contour& contour, const Drift& drift, SelfCrossing& crossing);
-  bool is_real(const Contour& contour, const SelfCrossing& crossing, const std::vector<SelfCrossing>& all);
+  CrossingPlace look_at(const Contour& contour, const SelfCrossing& crossing,
+                        const std::vector<SelfCrossing>& all);
+  const CrossingDepth* depth_of(int vertex, int crossing, int num_vertices) const;
+  double push_off(const Contour& contour, const Muted& muted, double range);
 };
 
 }  // namespace clog

@@ -31,6 +31,7 @@ struct WallTouch {
 struct Contour {
   int size;
   const double *x, *y;
+  Eigen::Array2d place(int vertex) const { return {x[vertex], y[vertex]}; }
 };
 
 }  // namespace clog

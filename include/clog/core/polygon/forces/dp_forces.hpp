@@ -97,9 +97,9 @@ class DpForces {
   SelfContacts self_;
   WallFriction friction_;
 
+  double self_contact_energy(const Contour& contour, const DropletState& state) const;
   /// Calls visit(overlap) for every half edge (or vertex) with every listed circle, and for every vertex with
   /// every wedge. The overlap [sigma] is negative where the two do not touch.
-  double self_contact_energy(const Contour& contour, const DropletState& state) const;
   template <class Visit>
   void visit_overlaps(const DropletState& state, Visit visit) const;
 };
