@@ -52,9 +52,8 @@ struct LogWays {
   std::vector<double> log_x;  ///< log x of every run
   double total = 0;           ///< sum of all x
   double clog_logs = 0;       ///< sum of log x over clogs
-  bool clogs_differ = false;  ///< whether clogs occur at more than one distance
 };
-/// Empty if no run has moved, or a distance is not finite.
+/// No log_x if no run has moved, or a distance is not finite.
 LogWays log_ways(std::span<const Observation> runs) {
   LogWays ways;
   for (const Observation& run : runs) ways.longest = std::max(ways.longest, run.distance);
@@ -62,15 +61,11 @@ LogWays log_ways(std::span<const Observation> runs) {
   double sum = 0;
   for (const Observation& run : runs) sum += std::max(0.0, run.distance / ways.longest);
   const double shortest = shortest_share * sum / static_cast<double>(runs.size());
-  std::optional<double> some_clog;
   for (const Observation& run : runs) {
     const double x = std::max(run.distance / ways.longest, shortest);
     ways.log_x.push_back(std::log(x));
     ways.total += x;
-    if (!run.clogged) continue;
-    ways.clog_logs += ways.log_x.back();
-    ways.clogs_differ = ways.clogs_differ || (some_clog && *some_clog != ways.log_x.back());
-    some_clog = ways.log_x.back();
+    if (run.clogged) ways.clog_logs += ways.log_x.back();
   }
   return ways;
 }
@@ -121,9 +116,17 @@ WeibullTest test_exponentiality(std::span<const Observation> runs) {
   test.num_clogs = static_cast<int>(
       std::count_if(runs.begin(), runs.end(), [](const Observation& run) { return run.clogged; }));
   const LogWays ways = log_ways(runs);
-  if (!ways.clogs_differ) return test;
+  if (test.num_clogs < 2 || ways.log_x.empty()) return test;
 
   const auto d = static_cast<double>(test.num_clogs);
+  const double log_longest = std::log(ways.longest);
+  test.exponential_likelihood = -d * (std::log(ways.total / d) + log_longest) - d;
+  if (ways.clog_logs == 0) {  // all clogs are at the longest distance
+    test.shape = test.weibull_likelihood = test.likelihood_ratio = std::numeric_limits<double>::infinity();
+    test.scale = ways.longest;
+    test.p_value = 0;
+    return test;
+  }
   // The derivative of the profile likelihood by the shape; it falls from +infinity to a negative number.
   const auto score = [&](double shape) {
     const PowerSums sums = power_sums(ways.log_x, shape);
@@ -137,8 +140,6 @@ WeibullTest test_exponentiality(std::span<const Observation> runs) {
   test.shape = (root.first + root.second) / 2;
   const double scale_power = power_sums(ways.log_x, test.shape).power / d;  // (scale/longest)^shape
   test.scale = ways.longest * std::pow(scale_power, 1 / test.shape);
-  const double log_longest = std::log(ways.longest);
-  test.exponential_likelihood = -d * (std::log(ways.total / d) + log_longest) - d;
   test.weibull_likelihood = d * (std::log(test.shape) - std::log(scale_power) - log_longest) +
                             (test.shape - 1) * ways.clog_logs - d;
   test.likelihood_ratio = std::max(0.0, 2 * (test.weibull_likelihood - test.exponential_likelihood));
@@ -160,6 +161,17 @@ std::vector<bool> are_not_exponential(std::span<const WeibullTest> groups) {
     are_not[tested[i].second] = true;
   }
   return are_not;
+}
+
+bool are_mostly_equal(std::vector<double> distances) {
+  std::erase_if(distances, [](double distance) { return std::isnan(distance); });
+  std::ranges::sort(distances);
+  std::size_t num_equal = 0;
+  for (std::size_t begin = 0, end = 0; begin < distances.size(); begin = end) {
+    while (end < distances.size() && distances[end] == distances[begin]) ++end;
+    if (end - begin > 1) num_equal += end - begin;
+  }
+  return num_equal > 0 && 2 * num_equal >= distances.size();
 }
 
 }  // namespace clog::fit

@@ -40,8 +40,13 @@ std::vector<Lengths> lengths_of(const DistanceTable& table, double confidence) {
     tests.push_back(one.weibull);
   }
   const std::vector<bool> are_not = fit::are_not_exponential(tests);
-  for (std::size_t i = 0; i < all.size(); ++i)
+  for (std::size_t i = 0; i < all.size(); ++i) {
     if (are_not[i]) all[i].doubts.push_back(Doubt::not_exponential);
+    std::vector<double> clogs;
+    for (const fit::Observation& run : table.groups[i].runs)
+      if (run.clogged) clogs.push_back(run.distance);
+    if (fit::are_mostly_equal(std::move(clogs))) all[i].doubts.push_back(Doubt::equal_distances);
+  }
   return all;
 }
 

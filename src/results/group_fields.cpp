@@ -7,6 +7,7 @@
 #include "clog/core/tools/units.hpp"
 #include "clog/core/world/lattice.hpp"
 #include "clog/results/groups.hpp"
+#include "value_json.hpp"
 
 namespace clog::results {
 namespace {
@@ -142,7 +143,7 @@ std::vector<Field> result_fields(const Group& group) {
             {"clogging_length_met", value_of(group.clogging_met.length)},
             {"clogging_length_met_lower", value_of(group.clogging_met.interval.lower)},
             {"clogging_length_met_upper", value_of(group.clogging_met.interval.upper)},
-            {"weibull_shape", value_of(group.weibull.shape)},
+            {"weibull_shape", finite_value(group.weibull.shape)},
             {"weibull_p_value", value_of(group.weibull.p_value)},
             {"relative_speed", value_of(group.relative_speed.mean)},
             {"relative_speed_error", value_of(group.relative_speed.standard_error)},

@@ -5,6 +5,7 @@
 #include "clog/console/build_info.hpp"
 #include "clog/console/json_text.hpp"
 #include "clog/console/printable.hpp"
+#include "clog/core/world/jamming.hpp"
 #include "clog/results/group_table.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/results/usual_parameters.hpp"
@@ -65,6 +66,9 @@ Json group_json(const Group& group, bool with_laboratory) {
   for (const sweep::Column* column : group_columns())
     if (separating_value(*column, group.first_row) == Value() && column->get(group.first_row) != Value())
       entry["automatic"].push_back(column->name);
+  const ObstacleParameters& obstacles = group.first_row.parameters.obstacles;
+  if (const auto share = share_of_saturated(obstacles); share && obstacles.layout == ObstacleLayout::random)
+    entry["share_of_saturated"] = *share;
   if (group.laboratory) entry["laboratory_scale"] = scale_json(*group.laboratory);
   entry["survival"] = Json::array();
   for (const fit::SurvivalStep& step : group.survival)

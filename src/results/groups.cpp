@@ -58,6 +58,7 @@ std::vector<Doubt> doubts_about(const Group& group) {
   const bool wets_walls = run.model == Model::dp && (wall_tension(run.dp) < 1 || has_hysteresis(run.dp));
   const std::pair<Doubt, bool> all[] = {
       {Doubt::few_clogs, has_length && lacks_clogs},
+      {Doubt::equal_distances, has_length && group.are_runs_equal},
       {Doubt::censored_by_time, has_length && group.num_flowing > 0},
       {Doubt::incomplete, group.num_interrupted > 0 || group.num_failed_somewhere > 0},
       {Doubt::damaged, group.num_damaged > 0},
@@ -280,6 +281,9 @@ void keep_longest(std::vector<const sweep::RunRow*>& runs) {
 /// Results of the intact runs of a group.
 struct Tally {
   std::vector<Ending> endings;  ///< runs that count for the clogging length
+  std::vector<double> clogs;    ///< distances of the clogs [sigma]
+  /// Distances of runs that did not clog, but met an obstacle: those that sank freely go equally far [sigma].
+  std::vector<double> others;
   std::vector<Arrival> arrivals;
   Meetings meetings;
   std::vector<double> speeds;
@@ -302,6 +306,8 @@ void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Ta
   if (!is_too_short) tally.meetings.count(run, from_release, from_distance);
   if (is_too_short || !ending) return;
   tally.endings.push_back(*ending);
+  if (ending->is_clog || run.contacts.value_or(0) > 0)
+    (ending->is_clog ? tally.clogs : tally.others).push_back(ending->distance);
   group.seeds.push_back(run.parameters.seed);
   group.num_on_mesh += sweep::may_hang_on_mesh(run);
   group.num_stability_unknown += run.stability == Stability::unknown;
@@ -428,6 +434,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     const RunParameters& run = group.first_row.parameters;
     const Tally tally = tally_of(runs, from_distance, group);
     fit_clogging(group, tally.endings, confidence, from_distance);
+    group.are_runs_equal = fit::are_mostly_equal(tally.clogs.empty() ? tally.others : tally.clogs);
     fit_meetings(group, tally.meetings, confidence);
     if (is_device(run)) group.passages = passages_of(run, tally.arrivals, lines, confidence);
     group.relative_speed = of_enough_runs(fit::fit_mean_speed(tally.speeds));

@@ -1,5 +1,8 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <set>
+
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
@@ -12,6 +15,20 @@ namespace {
 /// Whether the key is given with another text than its default.
 bool is_changed(const Settings& settings, const std::string& key) {
   return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
+}
+
+/// Whether the line of the entrance is a point, for some of the values.
+bool has_point_of_entrance(const Settings& settings) {
+  RunParameters run;
+  std::set<double> from;
+  for (const std::string& value : settings.values("entrance-from")) {
+    find_key("entrance-from").apply(run, value);
+    from.insert(run.obstacles.entrance_from);
+  }
+  return std::ranges::any_of(settings.values("entrance-to"), [&](const std::string& value) {
+    find_key("entrance-to").apply(run, value);
+    return run.obstacles.entrance_to > 0 && from.contains(run.obstacles.entrance_to);
+  });
 }
 
 /// Refuses keys of the interface that have no effect because of another key.
@@ -64,6 +81,12 @@ void refuse_contradictions(const Settings& settings) {
     throw Error(
         fmt::format("invalid seeds={} (the droplet starts at the centre of your circles, whatever the seed) "
                     "add release=anywhere or release=entrance, or give one seed",
+                    settings.text("seeds")));
+  if (settings.values("seeds").size() > 1 && settings.text("release") == "entrance" &&
+      has_point_of_entrance(settings))
+    throw Error(
+        fmt::format("invalid seeds={} (entrance-from and entrance-to are equal: the droplet starts there, "
+                    "whatever the seed) give an entrance of some width, or one seed",
                     settings.text("seeds")));
 }
 

@@ -121,7 +121,7 @@ TEST(Exponentiality, SeesClogsAtRelease) {
 TEST(Exponentiality, OfAbsurdDistancesIsTestedOrNotKnown) {
   for (const std::vector<Observation>& runs : absurd_runs()) {
     const WeibullTest test = test_exponentiality(runs);
-    EXPECT_TRUE(is_length_or_unknown(test.shape)) << runs.front().distance;
+    EXPECT_TRUE(is_length_or_unknown(test.shape) || test.p_value == 0) << runs.front().distance;
     EXPECT_TRUE(std::isnan(test.p_value) || (test.p_value >= 0 && test.p_value <= 1));
   }
 }
@@ -137,10 +137,39 @@ TEST(SurvivalCurve, OfAbsurdDistancesFallsFromOneToZero) {
   }
 }
 
+TEST(Exponentiality, OfClogsAtOneDistanceIsTested) {
+  // From survreg() in R's survival package, with a Weibull and an exponential law.
+  std::vector<Observation> runs(10, {5, true});
+  runs.insert(runs.end(), 2, {8, false});
+  const WeibullTest seen_beyond = test_exponentiality(runs);
+  EXPECT_NEAR(seen_beyond.shape, 3.86072191591, 1e-7);
+  EXPECT_NEAR(seen_beyond.scale, 6.15275738509, 1e-7);
+  EXPECT_NEAR(seen_beyond.likelihood_ratio, 16.55062399204, 1e-7);
+  // If no droplet went farther, the likelihood has no bound: Weibull's law becomes a step.
+  for (const double censored : {0.0, 3.0, 5.0}) {
+    std::vector<Observation> step(10, {5, true});
+    step.push_back({censored, false});
+    const WeibullTest test = test_exponentiality(step);
+    EXPECT_TRUE(std::isinf(test.shape));
+    EXPECT_EQ(test.scale, 5);
+    EXPECT_EQ(test.p_value, 0);
+  }
+}
+
+TEST(EqualDistances, AreHalfOfTheDistancesOrMore) {
+  EXPECT_FALSE(are_mostly_equal({}));
+  EXPECT_FALSE(are_mostly_equal({1}));
+  EXPECT_TRUE(are_mostly_equal({1, 1}));
+  EXPECT_TRUE(are_mostly_equal({4, 1, 3, 1}));
+  EXPECT_FALSE(are_mostly_equal({4, 1, 3, 1, 5}));
+  EXPECT_TRUE(are_mostly_equal({2, 1, 2, 1, 5}));
+  EXPECT_FALSE(are_mostly_equal({std::nan(""), std::nan("")}));
+}
+
 TEST(Exponentiality, SurvivesDegenerateData) {
   for (const std::vector<Observation>& runs : {std::vector<Observation>{},
                                                {{3, true}},
-                                               {{3, true}, {3, true}},
+                                               {{0, true}, {0, true}},
                                                {{0, true}, {-1, true}},
                                                {{4, false}}}) {
     EXPECT_TRUE(std::isnan(test_exponentiality(runs).shape));

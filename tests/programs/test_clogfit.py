@@ -233,7 +233,7 @@ class Fit(ProgramTest):
     def test_it_says_what_spoils_a_length(self):
         self.sweep("seeds=1..24", *FAR)
         # These distances are far from exponential.
-        self.change(distance=[5.0] * 12 + [5.1] * 12, status=[b"clogged"] * 24)
+        self.change(distance=np.linspace(5, 5.1, 24), status=[b"clogged"] * 24)
         fit = self.fit()
         group, = fit["groups"]
         self.assertEqual(group["doubts"], "not_exponential")
@@ -246,6 +246,21 @@ class Fit(ProgramTest):
         self.assertIn("few_clogs", group["doubts"])
         self.assertIn("incomplete", group["doubts"])
         self.assertIn("f: fewer than 5 clogs", self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_equal_runs_are_doubted(self):
+        self.sweep("seeds=1..12", *FAR)
+        apart = np.linspace(1, 9, 12)
+        met = {"contacts": 1, "first_contact_at": 0.5}
+        for clogs, distance, are_met, is_doubtful in [(12, apart, met, False), (12, np.repeat(apart[:6], 2), met, True), (6, np.repeat(apart[:6], 2), met, True),
+                                                      (6, np.repeat(apart[:6], 2), {"contacts": 0, "first_contact_at": np.nan}, True),
+                                                      (12, np.repeat(apart[:3], [3, 2, 7]), met, True), (12, np.append(apart[:7], [9] * 5), met, False),
+                                                      (6, np.append(apart[:6], [9] * 6), met, False),  # droplets that were still moving
+                                                      (0, np.repeat(apart[:6], 2), met, True), (0, apart, met, False), (12, np.zeros(12), met, True),
+                                                      # Droplets that sink freely all go as far.
+                                                      (0, [9.0] * 12, {"contacts": 0, "first_contact_at": np.nan}, False)]:
+            self.change(distance=distance, status=[b"clogged"] * clogs + [b"flowing"] * (12 - clogs), **are_met)
+            doubts = (self.fit()["groups"][0]["doubts"] or "").split()
+            self.assertEqual("equal_distances" in doubts, is_doubtful, (clogs, distance))
 
     def test_runs_that_went_farther_than_the_box_are_counted_and_doubted(self):
         self.sweep("seeds=1..6", *FAR)

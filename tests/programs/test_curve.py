@@ -28,7 +28,9 @@ PEAKED = [*FAR, "line-tension=" + ",".join(map(str, TENSIONS))]
 class Curve(ProgramTest):
     def sweep(self, *settings, lengths=None):
         """Makes a sweep. @param lengths  clogging lengths by line tension; all other runs keep their results"""
-        table = pandas.read_hdf(self.copy_sweep("sweep.h5", *SMALL, *settings), "runs")
+        given = {setting.split("=")[0] for setting in settings}
+        small = [setting for setting in SMALL if setting.split("=")[0] not in given]
+        table = pandas.read_hdf(self.copy_sweep("sweep.h5", *small, *settings), "runs")
         if lengths is not None:
             way = np.array([lengths[row.line_tension] * EXPONENTIAL[row.seed - 1] for row in table.itertuples()])
             stored_rows.change_columns(self.folder / "sweep.h5", distance=way, status=np.array([b"clogged"] * len(table)),
@@ -144,6 +146,35 @@ class Curve(ProgramTest):
         self.assertEqual([curve["common_obstacles"] for curve in self.curve("--key=line-tension")["curves"]], [True, True])
         self.assertIn(words, self.succeed("clogfit", "curve", "sweep.h5", "--key=line-tension").stdout)
         # Keys that change the array, and points with different seeds, are tested in test_fitted_curves.py.
+
+    def test_densities_are_printed_as_they_are_and_shares_as_shares(self):
+        one_length = {1.0: 1.0}
+        gaps = "obstacle-gap=0.3,0.4,0.5,0.6"
+        several = ["line-tension=1", *FAR, "obstacle-density=20%,40%"]
+        self.sweep(*several, gaps, lengths=one_length)
+        self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-gap")["curves"]], [{"share_of_saturated": 0.2}, {"share_of_saturated": 0.4}])
+        self.sweep(*several, "obstacle-diameter-spread=0.1,0.2,0.3,0.4", lengths=one_length)
+        self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-diameter-spread")["curves"]], [{"share_of_saturated": 0.2}, {"share_of_saturated": 0.4}])
+        tensions = dict.fromkeys((0.1, 0.3, 1.0, 3.0), 1.0)
+        rows = self.sweep("line-tension=0.1,0.3,1,3", *FAR, "obstacle-density=20%,40%", lengths=tensions)
+        curves = self.curve("--key=line-tension")["curves"]
+        self.assertEqual([curve["shared"] for curve in curves], [{"obstacle_density": density} for density in sorted(set(rows.obstacle_density))])
+        rows = self.sweep("line-tension=0.1,0.3,1,3", *FAR, "obstacle-density=20%", "obstacle-gap=0.3,0.4", lengths=tensions)
+        self.assertEqual([curve["shared"] for curve in self.curve("--key=line-tension")["curves"]], [{"obstacle_gap": 0.3}, {"obstacle_gap": 0.4}])
+        # Densities that are the same for all gaps are no shares.
+        rows = self.sweep("line-tension=1", *FAR, gaps, "obstacle-density=0.1,0.2", lengths=one_length)
+        self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-gap")["curves"]], [{"obstacle_density": 0.1}, {"obstacle_density": 0.2}])
+
+    def test_points_give_the_curves_of_the_same_sweep(self):
+        self.sweep("line-tension=1", *FAR, "obstacle-density=20%", "obstacle-gap=0.3,0.4,0.5,0.6", lengths={1.0: 1.0})
+        expected = self.curve()["curves"]
+        self.write("points.csv", "obstacle-gap,obstacle-density\n" + "".join(f"{gap},20%\n" for gap in (0.3, 0.4, 0.5, 0.6)))
+        self.succeed("clogsweep", "vertices=64", "box=20", "line-tension=1", *FAR, "--points", "points.csv", "--output", "points.h5")
+        rows = pandas.read_hdf(self.folder / "points.h5", "runs")
+        stored_rows.change_columns(self.folder / "points.h5", distance=[EXPONENTIAL[seed - 1] for seed in rows.seed], status=np.array([b"clogged"] * len(rows)),
+                                   clogged_by=b"certified", mechanism=b"wrapped")
+        (self.folder / "points.h5").replace(self.folder / "sweep.h5")
+        self.assertEqual(self.curve("--key=obstacle-gap")["curves"], expected)
 
     def test_several_files_are_one_sweep(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))

@@ -223,6 +223,15 @@ class Devices(Walls):
         for command, output in [("clogging-length", "c"), ("poster", "poster"), ("report", "both.html")]:
             self.draw(command, "both.h5", "--output", output, "--programs", BIN)
 
+    def test_droplets_that_all_start_at_one_place_are_one_droplet(self):
+        self.write("posts.csv", "x,y,diameter\n2,5,0.5\n4,5,0.5\n")
+        device = ["obstacles=posts.csv", "box=6", "release=entrance", "entrance=1", "exit=6", "line-tension=1", "vertices=64", "max-time=20", "--dry-run"]
+        for places in (["entrance-from=3.2", "entrance-to=3.2"], ["entrance-from=3,3.2", "entrance-to=3.20,4"]):
+            self.refuse("clogsweep", *device, *places, "seeds=1..2", words=["invalid seeds=1..2", "entrance-from", "whatever the seed"])
+            self.succeed("clogsweep", *device, *places, "seeds=3")
+        self.succeed("clogsweep", *device, "entrance-from=3.2", "entrance-to=3.3", "seeds=1..2")
+        self.succeed("clogsweep", *device, "seeds=1..2")
+
     def test_each_line_tension_has_a_panel(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())
         self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-3], "line-tension=0.5,1,1.5,2,3,4,5", "max-time=150", "seeds=1", "--output", "s.h5")

@@ -88,6 +88,32 @@ class Lengths(ProgramTest):
         row, = csv.DictReader(io.StringIO(self.succeed("clogfit", "lengths", "own.csv", "--format", "csv").stdout))
         self.assertEqual((row["clogging_length"], row["runs"]), ("15", "2"))
 
+    def test_tables_of_equal_droplets_have_a_doubt(self):
+        random = np.random.default_rng(67)
+        tables = {}
+        for copies in range(2, 7):
+            for droplets in range(1, 13):
+                apart = [(way, way < 16) for way in random.exponential(8, size=droplets)]
+                coarse = [(8 * round(way / 8), True) for way in random.exponential(8, size=5 * droplets)]
+                for name, table in [("copies", apart * copies), ("coarse", coarse), ("zeros", [(0.0, True)] * copies * droplets),
+                                    ("one place", [(5.0, True)] * copies * droplets + [(3.0, False)] * droplets),
+                                    ("sound", [(way, True) for way in random.exponential(8, size=5 + droplets)])]:
+                    tables[f"{name} {copies} {droplets}"] = table
+        self.write("own.csv", "table,distance [mm],clogged\n" + "".join(f"{name},{way!r},{int(clogged)}\n" for name, table in tables.items() for way, clogged in table))
+        groups = self.lengths("own.csv")["groups"]
+        self.assertEqual(len(groups), len(tables))
+        for group in groups:
+            doubts = {"few_clogs", "equal_distances"} & set((group["doubts"] or "").split())
+            self.assertEqual(bool(doubts), not group["table"].startswith("sound"), group["table"])
+
+    def test_equal_droplets_are_not_exponential_either(self):
+        self.write("own.csv", "distance [mm],clogged\n" + "5,1\n" * 12)
+        group, = self.lengths("own.csv")["groups"]
+        self.assertEqual((group["doubts"], group["weibull_p_value"], group["weibull_shape"]), ("not_exponential equal_distances", 0, None))
+        text = self.succeed("clogfit", "lengths", "own.csv").stdout
+        self.assertRegex(text, r"9\.68 +xe")
+        self.assertIn("\ne: half of the clogs or more", text)
+
     def test_mistakes_get_one_line_and_exit_code_2(self):
         for text, words in [("distance,clogged\n1,1\n", ["no unit", "distance [mm]"]), ("distance [ft],clogged\n1,1\n", ["'ft'"]),
                             ("distance [mm],wall\n1,2\n", ["no column clogged"]), ("way [mm],clogged\n1,1\n", ["no column distance"]),

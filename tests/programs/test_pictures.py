@@ -1,6 +1,7 @@
 """Tests the commands of the Python module, and the texts of their pictures and pages."""
 
 import json
+import math
 import os
 import unittest
 import unittest.mock
@@ -69,6 +70,15 @@ class Calls(Analysis):
         for text in ("", "a,b\n1,2\n", "lower,upper,runs\nx,y,z\n", "lower,upper,runs,colour\n1,2,3,4\n", "\0\xff", "lower,upper,runs\n1,2,3\n"):
             self.write("rubbish.csv", text)
             self.refuse_analysis("critical-angle", "rubbish.csv", "--programs", BIN, words=["cannot"])
+
+    def test_critical_angles_of_negative_angles_are_those_of_their_mirror_images(self):
+        keys = ["obstacle-layout=lattice", "pitch=3", "obstacle-diameter=1", "line-tension=3", "terminal-speed=0.1", "vertices=64", "box=200", "max-time=1000", "seeds=1"]
+        for name, angles in [("negative", "-15,-18.5,-20.7,-25"), ("both", "-15,18.5,-20.7,25")]:
+            self.succeed("clogsweep", *keys, f"lattice-angle={angles}", "--output", f"{name}.h5")
+            printed = self.draw("critical-angle", f"{name}.h5", "--format", "csv", "--programs", BIN).stdout
+            lower, upper, runs = map(float, printed.splitlines()[1].split(","))
+            # The critical angle of a rigid disk is arcsin(1/3).
+            self.assertTrue(18 < lower < math.degrees(math.asin(1 / 3)) < upper < 21.1 and runs == 4, printed)
 
     def test_an_output_may_be_left_out_or_have_its_ending(self):
         self.copy_sweep("s.h5", *FEW)

@@ -6,7 +6,8 @@
 
 The sweep has several angles for every set of parameters, for instance from refine lattice-angle --until
 critical-angle=0.5. The table has a line for each set: the parameters that vary, the largest angle at which droplets
-follow the rows, the smallest at which some leave them, and the number of runs. Failed runs do not count.
+follow the rows, the smallest at which some leave them, and the number of runs. Failed and unfinished runs do not
+count. A lattice with a negative angle counts as its mirror image.
 """
 
 import argparse
@@ -21,6 +22,7 @@ from .. import style
 from ..drawing import critical_angles
 from ..reading import fits, programs, stored
 from ..refinement import critical_angle
+from ..refinement.driver import UNFINISHED
 from ..tools import rounded, tables
 from ..tools.errors import UserError
 from . import command_line
@@ -64,8 +66,9 @@ def body() -> int:
                 rows[name] = rows["laboratory"].map({group["laboratory"]: group[name] for group in groups})
             parameters = [*fits.DROPLETS, *parameters]
         table = critical_angle.table_of(rows, parameters)
-        if num_failed := (rows["status"] == "failed").sum():
-            print(f"{num_failed} of {rounded.counted(len(rows), 'run')} failed and do not count", file=sys.stderr)
+        for words, statuses in [("failed", ["failed"]), ("are unfinished", UNFINISHED)]:
+            if number := rows["status"].isin(statuses).sum():
+                print(f"{number} of {rounded.counted(len(rows), 'run')} {words} and do not count", file=sys.stderr)
         spans = " within max-time=" + " to ".join(f"{span:.4g}" for span in sorted({rows["max_time"].min(), rows["max_time"].max()}))
     if arguments.format == "csv":
         print(table.to_csv(index=False, float_format="%.6g"), end="")

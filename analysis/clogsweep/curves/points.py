@@ -97,16 +97,32 @@ def refuse_key(name: str, fit: Fit) -> Column:
     raise UserError(f"invalid --key={name} (is not a number of the physics that the sweep gives)")
 
 
-def physics_of(fit: Fit, group: Group, keys: Collection[Column]) -> dict[str, Any]:
-    """The values of the physical parameters, except for the keys and for parameters that follow from others."""
+def are_shares(groups: Iterable[Group]) -> bool:
+    """Whether the sweep varies the density of random arrays as a share of the saturated density, so that the density
+    depends on gap and diameter. There are then fewer shares than densities."""
+    given = [group for group in groups if group["obstacle_filling"] == "density"]
+    return len({_share(group) for group in given}) < len({_rounded(group["obstacle_density"]) for group in given})
+
+
+def _share(group: Group) -> float | None:
+    return None if group.get("share_of_saturated") is None else _rounded(group["share_of_saturated"])
+
+
+def _rounded(density: float) -> float:
+    return float(f"{density:.{SAME_SHARE}g}")
+
+
+def physics_of(fit: Fit, group: Group, keys: Collection[Column], with_share: bool) -> dict[str, Any]:
+    """The values of the physical parameters, except for the keys and for parameters that follow from others.
+    @param with_share  whether the density of a random array is given as its share of the saturated density"""
     values = {column["name"]: group[column["name"]] for column in fit["columns"]
               if column not in keys and column["name"] != "preset" and column.get("parameter_role", "physics") == "physics"
               and not is_automatic(fit, column, group)}
     if group["obstacle_filling"] != "density":
         values.pop("obstacle_density", None)  # The density follows from gap and diameter.
-    elif stored.settings(fit.get("sweep", {}).get("config", "")).get("obstacle-density", "").endswith("%"):
-        spacing = group["obstacle_gap"] + group["obstacle_diameter"]
-        values["obstacle_density"] = float(f"{group['obstacle_density'] * spacing**2:.{SAME_SHARE}g}")
+    elif with_share:
+        del values["obstacle_density"]
+        values["share_of_saturated"] = _share(group)
     return values
 
 
@@ -123,9 +139,10 @@ def crossed_numerics(fit: Fit, groups: Iterable[int], keys: Collection[Column]) 
     """Names of the numerical parameters that vary among groups that have the same physics and the same values of the
     keys."""
     seen: dict[tuple[Any, ...], dict[str, set[Any]]] = {}
+    with_share = are_shares(fit["groups"])
     for index in groups:
         group = fit["groups"][index]
-        values = seen.setdefault((_key(physics_of(fit, group, keys)), *place_of(group, keys)), {})
+        values = seen.setdefault((_key(physics_of(fit, group, keys, with_share)), *place_of(group, keys)), {})
         for name, value in numerics_of(fit, group).items():
             values.setdefault(name, set()).add(value)
     return {name for values in seen.values() for name, several in values.items() if len(several) > 1}
@@ -166,10 +183,11 @@ def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Exclude
         else:
             useful.append(index)
     crossed = crossed_numerics(fit, useful, keys)
+    with_share = are_shares(fit["groups"])
     sets: dict[tuple[Any, ...], Members] = {}
     for index in useful:
         group = fit["groups"][index]
-        shared = physics_of(fit, group, keys) | {name: value for name, value in numerics_of(fit, group).items() if name in crossed}
+        shared = physics_of(fit, group, keys, with_share) | {name: value for name, value in numerics_of(fit, group).items() if name in crossed}
         sets.setdefault(_key(shared), Members(shared, [])).groups.append(index)
     differ = {name for members in sets.values() for name in members.shared
               if len({str(other.shared.get(name)) for other in sets.values()}) > 1}

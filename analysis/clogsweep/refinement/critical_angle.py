@@ -27,15 +27,15 @@ FEWEST_ROWS = 2.0
 
 def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
     """For each angle, whether some droplets leave the rows, and whether droplets follow the rows. The angles
-    increase."""
-    angle = np.radians(runs["lattice_angle"])
+    increase; a negative angle counts as its mirror image. Failed and unfinished runs do not count."""
+    angle, side = np.radians(abs(runs["lattice_angle"])), np.where(runs["lattice_angle"] < 0, -1, 1)
     of_pitch = np.select([runs["obstacle_filling"] == "triangular", runs["obstacle_filling"] == "rhombic"], [math.sqrt(3) / 2, np.cos(angle)], 1)
     spacing = (runs["obstacle_gap"] + runs["obstacle_diameter"]) * of_pitch  # spacing of the rows
-    along, across = runs["distance"], runs["lateral_displacement"]
-    counts = runs["status"] != "failed"
+    along, across = runs["distance"], side * runs["lateral_displacement"]
+    counts = ~runs["status"].isin(["failed", *UNFINISHED])
     leaves = counts & (abs(across * np.cos(angle) - along * np.sin(angle)) > MOST_ROWS_OFF * spacing)
     is_long = counts & (along * np.sin(angle) >= FEWEST_ROWS * spacing)
-    found = pandas.DataFrame({"angle": runs["lattice_angle"], "leaves": leaves, "follows": is_long & ~leaves})
+    found = pandas.DataFrame({"angle": abs(runs["lattice_angle"]), "leaves": leaves, "follows": is_long & ~leaves})
     found = found.groupby("angle").any()
     return found.assign(follows=found["follows"] & ~found["leaves"])
 
@@ -51,7 +51,7 @@ def bracket(angles: pandas.DataFrame) -> tuple[float, float]:
 
 def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFrame:
     """For every set of parameters: the parameters that vary, the ends of the bracket, `lower` and `upper`, and the
-    number of `runs` that count. Failed runs do not count.
+    number of `runs` that count. Failed and unfinished runs do not count.
     @param parameters  names of columns; a column is left out if its values follow from the columns before it
     @throws UserError"""
     lattices = rows[rows["lattice_angle"].notna()]
@@ -65,7 +65,7 @@ def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFr
     lines = []
     for _, runs in lattices.groupby(varying, dropna=False) if varying else [((), lattices)]:
         lower, upper = bracket(tried_angles(runs))
-        lines.append([*(runs[name].iloc[0] for name in varying), lower, upper, (runs["status"] != "failed").sum()])
+        lines.append([*(runs[name].iloc[0] for name in varying), lower, upper, (~runs["status"].isin(["failed", *UNFINISHED])).sum()])
     return pandas.DataFrame(lines, columns=[*varying, "lower", "upper", "runs"])
 
 

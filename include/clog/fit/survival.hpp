@@ -35,8 +35,10 @@ std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs, doub
 /// occurs in 5, 6.5 and 11 % of exponential samples of 50, 10 and 5 clogs.
 struct WeibullTest {
   int num_clogs = 0;
-  double shape = 0;  ///< NaN for fewer than two clogs at different distances, or infinite ones
-  double scale = 0;  ///< [sigma]
+  /// NaN for fewer than two clogs, if nothing moved, or for infinite distances. Infinite if all clogs are at
+  /// the longest distance: then the likelihood is infinite, too, and p is 0.
+  double shape = 0;
+  double scale = 0;                   ///< [sigma]
   double exponential_likelihood = 0;  ///< maximum of the log-likelihood
   double weibull_likelihood = 0;      ///< maximum of the log-likelihood
   double likelihood_ratio = 0;        ///< twice the difference, chi-squared with one degree of freedom
@@ -49,5 +51,9 @@ WeibullTest test_exponentiality(std::span<const Observation> runs);
 /// marks any group, however many groups it has. Groups with fewer clogs are not tested, because p would be
 /// too small.
 std::vector<bool> are_not_exponential(std::span<const WeibullTest> groups);
+
+/// Whether half of the distances or more are equal to another one. Distances of independent droplets are not,
+/// unless they were rounded coarsely.
+bool are_mostly_equal(std::vector<double> distances);
 
 }  // namespace clog::fit

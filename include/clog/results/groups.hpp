@@ -24,6 +24,7 @@ inline constexpr int enough_clogs = 5;  ///< with fewer clogs, the interval is w
 enum class Doubt {
   few_clogs,
   not_exponential,
+  equal_distances,
   censored_by_time,
   incomplete,
   damaged,
@@ -48,6 +49,9 @@ inline constexpr DoubtText doubt_texts[] = {
     {Doubt::not_exponential, 'x', "not_exponential",
      "P(r) is not exponential (p < 0.05, Holm's test of all groups of ten clogs or more): one length does "
      "not describe these runs"},
+    {Doubt::equal_distances, 'e', "equal_distances",
+     "half of the clogs or more are at the distance of another one: copies of a droplet count as independent "
+     "droplets, so the interval is too narrow (distances may also have been rounded coarsely)"},
     {Doubt::censored_by_time, 't', "censored_by_time",
      "runs ended by max-time: lambda is right only if slow droplets clog as often per distance as fast ones"},
     {Doubt::incomplete, 'i', "incomplete",
@@ -170,8 +174,11 @@ struct Group {
   int num_on_mesh = 0;  ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
   int num_stability_unknown = 0;    ///< clogs whose stability is unknown (column stability)
   int num_near_friction_limit = 0;  ///< clogs with almost all friction used (sweep::is_near_friction_limit)
-  int num_free = 0;                 ///< runs that met no obstacle
-  int num_repeating = 0;            ///< runs that went farther than their array's period
+  /// Whether half of the clogs or more are as far as another one. If no run clogged, this concerns the runs
+  /// that met an obstacle.
+  bool are_runs_equal = false;
+  int num_free = 0;       ///< runs that met no obstacle
+  int num_repeating = 0;  ///< runs that went farther than their array's period
   /// Passages through a device, in downstream order; the last one is the exit.
   std::vector<Passage> passages;
   std::vector<Doubt> doubts;

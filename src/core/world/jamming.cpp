@@ -59,6 +59,11 @@ std::optional<double> wanted_density(const ObstacleParameters& obstacles) {
   return density.share ? *density.share * mean_density(spacings_of(obstacles)) : density.per_area;
 }
 
+std::optional<double> share_of_saturated(const ObstacleParameters& obstacles) {
+  const std::optional<double> density = wanted_density(obstacles);
+  return density ? std::optional(*density / mean_density(spacings_of(obstacles))) : std::nullopt;
+}
+
 double largest_density(const ObstacleParameters& obstacles) {
   const Spacings spacings = spacings_of(obstacles);
   return std::max(covering_density(spacings), mean_density(spacings) - 8 * standard_deviation(spacings));

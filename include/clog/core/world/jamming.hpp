@@ -16,6 +16,10 @@ double saturated_density(double diameter, double gap);
 /// any box.
 std::optional<double> wanted_density(const ObstacleParameters& obstacles);
 
+/// The density of a random array divided by the mean density of saturated arrays of these diameters and this
+/// gap; nullopt if as many obstacles as possible are wanted.
+std::optional<double> share_of_saturated(const ObstacleParameters& obstacles);
+
 /// The largest density of a random array that every seed can reach [1/sigma^2]. It is eight standard
 /// deviations below the mean of saturated arrays of this box. In small boxes, where that would be almost
 /// zero, it is the smallest possible density of a saturated array.
