@@ -108,7 +108,7 @@ struct LaboratoryScale {
 /// Twelve digits, without the round-off of conversions between units.
 double short_number(double value);
 
-/// The droplets of a device, and a line across the flow that they may have passed.
+/// The droplets of a device that were released upstream of a line across the flow, and may have passed it.
 struct Passage {
   double x;  ///< x of the line, in the coordinates of the circles [sigma]
   int num_passed;
@@ -174,7 +174,9 @@ struct Group {
   int num_stability_unknown = 0;    ///< clogs whose stability is unknown (column stability)
   int num_near_friction_limit = 0;  ///< clogs with almost all friction used (sweep::is_near_friction_limit)
   int num_free = 0;                 ///< runs that met no obstacle
-  int num_repeating = 0;            ///< runs that went farther than their array's period
+  /// The x of the droplets of a device that were released beside their place on the entrance [sigma].
+  std::vector<double> displaced;
+  int num_repeating = 0;  ///< runs that went farther than their array's period
   /// Passages through a device, in downstream order; the last one is the exit.
   std::vector<Passage> passages;
   std::vector<Doubt> doubts;
