@@ -139,6 +139,7 @@ std::vector<Field> result_fields(const Group& group) {
             {"clogging_length_profile_upper", value_of(group.clogging.profile.upper)},
             {"clogging_length_least_squares", value_of(group.least_squares_length)},
             {"met_none", value_of(group.num_free)},
+            {"displaced", value_of(static_cast<int>(group.displaced.size()))},
             {"contacts_per_length", value_of(group.contacts_per_length)},
             {"clogging_length_met", value_of(group.clogging_met.length)},
             {"clogging_length_met_lower", value_of(group.clogging_met.interval.lower)},

@@ -128,6 +128,20 @@ std::string note_of_rest(const std::vector<Group>& groups) {
   return text + '\n';
 }
 
+/// Names droplets that were not released on the entrance.
+std::string note_of_displaced(const std::vector<Group>& groups) {
+  std::vector<double> places;
+  for (const Group& group : groups)
+    places.insert(places.end(), group.displaced.begin(), group.displaced.end());
+  if (places.empty()) return "";
+  const auto [first, last] = std::ranges::minmax(places);
+  return fmt::format(
+      "   {} released in the nearest void, from x = {:.4g} to {:.4g}, because posts are at their place on "
+      "the "
+      "entrance; they count only at lines downstream of their release\n",
+      places.size() == 1 ? "1 droplet was" : fmt::format("{} droplets were", places.size()), first, last);
+}
+
 /// Counts the runs that are missing from the table, or from some of its columns.
 std::string left_out(const std::vector<Group>& groups) {
   const auto sum = [&](int Group::*number) {
@@ -400,7 +414,8 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
   std::vector<std::vector<std::string>> lines = {heads(columns)};
   for (const Group& group : groups) lines.push_back(cells(group, columns));
   return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, parameters.first(), confidence) +
-         legend(groups) + column_notes(groups) + note_of_rest(groups) + left_out(groups);
+         legend(groups) + column_notes(groups) + note_of_rest(groups) + note_of_displaced(groups) +
+         left_out(groups);
 }
 
 }  // namespace clog::results

@@ -297,10 +297,12 @@ void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Ta
   if (run.steps > 0) group.dwells_known_from = later(group.dwells_known_from, run.dwells.known_from);
   const std::optional<Ending> ending = counted(run, from_release);
   group.num_interrupted += sweep::is_unfinished(run.status) && !from_release.is_clog;
-  if (is_device(run.parameters))
+  if (is_device(run.parameters)) {
+    const double begin = beginning_of_way(run.parameters.obstacles, run.release_x);
     tally.arrivals.push_back(
-        {beginning_of_way(run.parameters.obstacles, run.release_x) + from_release.distance,
-         from_release.is_clog || from_release.cause.has_value()});
+        {begin, begin + from_release.distance, from_release.is_clog || from_release.cause.has_value()});
+    if (is_displaced(run.parameters, run.release_x, run.release_y)) group.displaced.push_back(begin);
+  }
   const bool is_too_short = ending && std::max(ending->distance, 0.0) < from_distance;
   group.num_left_out += is_too_short;
   if (!is_too_short) tally.meetings.count(run, from_release, from_distance);

@@ -8,27 +8,30 @@
 namespace clog::results {
 namespace {
 
+constexpr double round_off = 1e-6;  // [sigma]
+
 /// The x of the rows of posts between entrance and exit: every x at which a post has its centre.
 std::vector<double> rows_of_posts(const ObstacleParameters& obstacles) {
-  constexpr double same_row = 1e-6;  // [sigma]
   std::vector<double> rows;
   if (!obstacles.own || !obstacles.own->are_known()) return rows;
   for (const Obstacle& circle : obstacles.own->circles())
     if (circle.x > obstacles.entrance && (obstacles.exit == 0 || circle.x < obstacles.exit))
       rows.push_back(circle.x);
   std::ranges::sort(rows);
-  const auto is_same_row = [](double one, double other) { return other - one < same_row; };
+  const auto is_same_row = [](double one, double other) { return other - one < round_off; };
   rows.erase(std::unique(rows.begin(), rows.end(), is_same_row), rows.end());
   return rows;
 }
 
 Passage passage_at(double x, std::span<const Arrival> arrivals, double confidence) {
   Passage passage{.x = x, .num_passed = 0, .num_stopped = 0, .share = {}};
-  for (const Arrival& arrival : arrivals)
+  for (const Arrival& arrival : arrivals) {
+    if (arrival.begin > x + round_off) continue;
     if (arrival.x >= x)
       ++passage.num_passed;
     else if (arrival.is_final)
       ++passage.num_stopped;
+  }
   passage.share =
       fit::share_interval(passage.num_passed, passage.num_passed + passage.num_stopped, confidence);
   return passage;

@@ -7,13 +7,16 @@
 
 namespace clog::results {
 
-/// The position that a droplet of a device reached, in the coordinates of its circles [sigma].
+/// The x where a droplet of a device was released, and the x that it reached, in the coordinates of its
+/// circles [sigma].
 struct Arrival {
+  double begin;
   double x;
   bool is_final;  ///< false: the droplet was still moving
 };
 
-/// The fractions of droplets that passed the rows of posts downstream of the entrance, and the exit.
+/// The fractions of droplets that passed the rows of posts downstream of the entrance, and the exit. A
+/// droplet counts only at lines downstream of its release.
 /// @param lines  x of lines to use instead of the rows of posts; the x of a row is the x of its centres
 std::vector<Passage> passages_of(const RunParameters& device, std::span<const Arrival> arrivals,
                                  std::span<const double> lines, double confidence);

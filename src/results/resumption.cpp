@@ -64,7 +64,6 @@ store::SweepFile SweepState::read_table() {
     throw Error("cannot resume " + path_ +
                 " (it was replaced or moved while it was read); try again when it stays in place");
   store::refuse_foreign_objects(path_, file);
-  store::refuse_foreign_objects(path_, file);
   return file;
 }
 

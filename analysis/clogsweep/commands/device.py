@@ -5,8 +5,9 @@
 
 Each parameter set, such as each line tension, has a panel. There are at most six panels; to draw other parameter sets,
 make a sweep of them with clogsweep select. The lines are paths of replayed runs (clogrun), from the shortest to the
-longest. The colour of a place shows in which fraction of the replayed runs the droplet passed over it. The strip below
-shows the fraction of the droplets that passed each place along the flow. All lengths are in droplet diameters;
+longest. The colour of a place shows in which fraction of the replayed runs the droplet passed over it. A number counts
+the clogs at a place. The strip below shows the fraction of the droplets that passed each place along the flow, with the
+counts of clogfit --lines. All lengths are in droplet diameters, or in millimetres for droplets of several sizes;
 coordinates are those of the file of circles.
 """
 

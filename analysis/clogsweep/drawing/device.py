@@ -21,12 +21,14 @@ from ..tools import progress, rounded
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Group, Numbers, Records
 from ..tools.texts import literal
-from . import device_plan
+from . import device_plan, surroundings
 
 T = TypeVar("T")
+OVER = [b"clogged", b"flowing", b"passed", b"broken", b"failed"]
 MOST_PANELS = 6
 # Width of the colour bar, or of the legend without its text, and width of a letter of this text [inches].
 BESIDE, OF_LETTER = 0.9, 0.055
+SITE = 0.25  # Clogs that are nearer to each other are at one place [sigma].
 STEP = 0.1  # Distance between two points of the path of a free droplet [sigma].
 CELL = 0.1  # Side of a cell of the map of passages [sigma].
 
@@ -42,6 +44,25 @@ class Place:
     has_walls: bool
     exit: float  # distance of the exit from the entrance, or 0 if there is no exit
     rows: Records
+    droplet: float = 1.0  # diameter of the droplet in the unit of all lengths
+    unit: str = ""  # unit of all lengths, if it is not the diameter of the droplet
+
+    def coordinate(self, name: str) -> str:
+        """The label of an axis."""
+        return f"${name}$ [{self.unit}]" if self.unit else rf"${name}/\sigma$"
+
+    def scaled(self, droplet_mm: float) -> Place:
+        """The same device with lengths in millimetres."""
+        rows = self.rows.copy()
+        for name in ("release_x", "release_y", "distance", "sound_distance", "lateral_displacement"):
+            rows[name] *= droplet_mm
+        lengths = {name: getattr(self, name) * droplet_mm for name in ("circles", "length", "width", "exit")}
+        return dataclasses.replace(self, name=self.name.rpartition("@")[0] or self.name, rows=rows, droplet=droplet_mm, unit="mm", **lengths)
+
+    def is_same_device(self, other: Place) -> bool:
+        """Whether posts, edges and exit of both devices have the same places. Stored lengths are rounded."""
+        return len(self.circles) == len(other.circles) and self.has_walls == other.has_walls and all(
+            np.allclose(getattr(self, name), getattr(other, name), rtol=1e-5, atol=1e-5 * self.droplet) for name in ("circles", "length", "width", "exit"))
 
     def wrapped(self, points: Numbers) -> Numbers:
         """Maps positions (n, 2) back into the device in each direction in which the device is periodic."""
@@ -49,14 +70,15 @@ class Place:
         return np.column_stack([x if self.exit > 0 else x % self.length, y if self.has_walls else y % self.width])
 
     def parts(self, groups: Groups) -> list[Part]:
-        """The runs of each parameter set, in the order of clogfit's table."""
+        """The runs of each parameter set with ended runs, in the order of clogfit's table."""
         found = []
         for member in groups.members:
             is_of_group = np.ones(len(self.rows), dtype=bool)
             for name, value in groups.row_values(member).items():
                 is_of_group &= self.rows[name] == (value.encode() if isinstance(value, str) else value)
-            if is_of_group.any():
-                found.append(Part(panel_label(groups, member), dataclasses.replace(self, rows=self.rows[is_of_group])))
+            if np.isin(self.rows["status"][is_of_group], OVER).any():
+                found.append(Part(panel_label(groups, member), dataclasses.replace(self, rows=self.rows[is_of_group]),
+                                  member["displaced"], member.get("diameter_mm")))
         return found
 
     @property
@@ -72,7 +94,7 @@ class Place:
 
 def panel_label(groups: Groups, member: Group) -> str:
     """The parameters that distinguish a group. If the laboratory is known, they include the interfacial tension."""
-    tension = member.get("tension_mN_per_m") if groups.varies("line_tension") else None
+    tension = member.get("tension_mN_per_m") if "line_tension" in groups.distinguishing() else None
     return groups.label_of(member) + (f" ({rounded.plain(tension)} mN/m)" if tension else "")
 
 
@@ -82,8 +104,14 @@ class Part:
 
     label: str
     place: Place
+    num_displaced: int = 0  # Droplets that were released beside their place on the entrance.
+    droplet_mm: float | None = None  # Diameter of the droplet, if it is known.
     lines: Sequence[Numbers] = ()  # Paths of droplet centres that are drawn as lines (n, 2).
     mapped: Sequence[Numbers] = ()  # Paths of droplet centres that make up the map of passages (n, 2).
+    shares: Numbers | None = None  # The map of passages.
+
+    def scaled(self, droplet_mm: float) -> Part:
+        return dataclasses.replace(self, place=self.place.scaled(droplet_mm), lines=[line * droplet_mm for line in self.lines])
 
 
 DEVICE_COLUMNS = ["obstacles", "obstacle_diameter", "box", "boxes", "length", "side_walls", "exit"]
@@ -121,19 +149,33 @@ def places(path: AnyPath, folder: AnyPath | None = None) -> list[Place]:
     return found
 
 
-def the_place(path: AnyPath, folder: AnyPath | None = None) -> Place:
-    """The only device of a sweep. @throws UserError  as places(), and if there are several devices"""
-    found = places(path, folder)
-    if len(found) > 1:
+def pictures(found: Sequence[Place], groups: Groups) -> list[list[Part]]:
+    """The parameter sets of each device. Posts that droplets of several sizes met are one device in millimetres, but
+    several in droplet diameters; they are in one picture."""
+    every = [place.parts(groups) for place in found]
+    # In the order of clogfit's table
+    labels = [panel_label(groups, member) for member in groups.members]
+    joined = sorted((part for parts in every for part in parts), key=lambda part: labels.index(part.label))
+    if len(found) > 1 and joined and all(part.droplet_mm for part in joined):
+        in_mm = [part.place.scaled(part.droplet_mm or 1) for part in joined]
+        if all(in_mm[0].is_same_device(other) for other in in_mm):
+            return [joined]
+    return every
+
+
+def the_picture(found: Sequence[Place], groups: Groups, path: AnyPath) -> list[Part]:
+    """The parameter sets of the only device of a sweep. @throws UserError  if there are several devices"""
+    drawn = pictures(found, groups)
+    if len(drawn) > 1:
         names = ", ".join(sorted({f"{place.name}: {stored.text(place.rows[0]['obstacles'])}" for place in found}))
         raise UserError(f"cannot draw {len(found)} devices as one; clogsweep select {path} obstacles=SUM --output one.h5 takes one of them ({names})")
-    return found[0]
+    return drawn[0]
 
 
 def chosen(rows: Records, number: int) -> list[np.void]:
     """Chooses the runs whose paths are shown. The runs that are over are sorted by distance, and evenly spaced ones are
     taken."""
-    over = np.sort(rows[np.isin(rows["status"], [b"clogged", b"flowing", b"passed", b"broken"])], order=["distance", "task"])
+    over = np.sort(rows[np.isin(rows["status"], OVER) & (rows["status"] != b"failed")], order=["distance", "task"])
     return evenly(list(over), number)
 
 
@@ -156,22 +198,29 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
             for row, run in zip(rows, runs)]
 
 
-def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> tuple[list[Part], int]:
+def shown_parts(every: Sequence[Part], sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> tuple[list[Part], int]:
     """The parameter sets that have a panel, with their paths, and the number of all parameter sets. Prints a line if
     some parameter sets are left out.
     @param num_lines  number of runs of each panel whose paths are drawn as lines
     @param num_mapped  number of runs in the map of each panel
     @throws UserError  if no run has ended"""
-    every = place.parts(groups)
     if not every:
-        raise UserError(f"no run among the circles of {place.name} has ended; let the sweep finish some first")
-    shown = evenly(every, MOST_PANELS)
+        raise UserError("no run among the circles has ended; let the sweep finish some first")
+    shown = evenly(list(every), MOST_PANELS)
     if len(shown) < len(every):
-        print(f"{place.name}: {len(shown)} of {len(every)} parameter sets are drawn; clogsweep select makes a sweep of the others", file=sys.stderr)
+        print(f"{shown[0].place.name}: {len(shown)} of {len(every)} parameter sets are drawn; clogsweep select makes a sweep of the others", file=sys.stderr)
     for part in progress.shown(shown, "replayed panel", len(shown)):
         ways = ways_of(part.place, sweep, clogrun, max(num_lines, num_mapped), jobs)
         part.lines, part.mapped = evenly(ways, num_lines), evenly(ways, num_mapped)
-    return shown, len(every)
+        part.shares = passages(part.place, part.mapped) if part.mapped else None
+    return in_one_unit(shown), len(every)
+
+
+def in_one_unit(parts: list[Part]) -> list[Part]:
+    """Droplets of several sizes are drawn in millimetres, others in droplet diameters."""
+    if len({part.place.length for part in parts}) == 1:
+        return parts
+    return [part.scaled(part.droplet_mm or 1) for part in parts]
 
 
 def unbroken(points: Numbers, place: Place) -> Numbers:
@@ -201,26 +250,47 @@ def draw_ends(axes: Axes, place: Place) -> None:
         if of_kind.any():
             axes.plot(*ends[of_kind].T, marker, color=style.MECHANISM_COLOURS[mechanism], markersize=6, markeredgecolor="white", linestyle="none",
                       label=f"clogged, {mechanism}: {of_kind.sum()}", zorder=5)
+    for site, count in sites(ends[clogged], SITE * place.droplet):
+        if count > 1:
+            axes.annotate(str(count), site, (4, 3), textcoords="offset points", fontsize=8, zorder=7, path_effects=[surroundings.HALO])
+
+
+def sites(points: Numbers, reach: float) -> list[tuple[Numbers, int]]:
+    """Places, each the mean of points that are near each other, with their numbers of points."""
+    found = []
+    while len(points):
+        near = np.hypot(*(points - points[0]).T) < reach
+        found.append((points[near].mean(axis=0), int(near.sum())))
+        points = points[~near]
+    return found
+
+
+ROUND_OFF = 1e-6  # of the release of a droplet
 
 
 def came_past(place: Place) -> tuple[Numbers, Numbers]:
-    """Places along the flow, and for each place the number of droplets that passed it at least once."""
+    """Places along the flow, and for each place the fraction of droplets that passed it. As in clogfit, a droplet counts
+    only at places downstream of its release, and not if it was still moving towards them. Without entrance and exit, a
+    place is the first of its periodic images downstream of the release.
+    @return the places, and the fractions, which are NaN where no droplet counts"""
     cells = np.linspace(0, place.length, 201)
     middles = (cells[1:] + cells[:-1]) / 2
     if place.exit > 0:
         middles = middles[middles <= place.exit]
-    counts = np.zeros(len(middles))
-    for begin, end in zip(place.releases[:, 0], place.ends[:, 0]):
-        laps = range(int(np.floor(begin / place.length)), int(np.floor(end / place.length)) + 1) if place.exit == 0 else (0,)
-        counts += np.any([(at >= begin) & (at <= end) for at in (middles + lap * place.length for lap in laps)], axis=0)
-    return middles, counts
+    begins, ends = place.releases[:, :1], place.ends[:, :1]
+    is_final = np.isin(place.rows["status"], [b"clogged", b"broken"])[:, None]
+    repeats = (place.rows["release"] != b"entrance")[:, None] & (place.exit == 0)
+    images = middles + np.where(repeats, place.length * np.ceil((begins - middles) / place.length), 0)
+    is_behind = begins <= images + ROUND_OFF
+    passed = (is_behind & (ends >= images)).sum(axis=0)
+    known = passed + (is_behind & (ends < images) & is_final).sum(axis=0)
+    return middles, np.where(known > 0, passed / np.maximum(1, known), np.nan)
 
 
 def draw_passages(axes: Axes, parts: Sequence[Part]) -> None:
-    """Draws the fraction of the released droplets that passed each place along the flow."""
+    """Draws the fraction of the droplets that passed each place along the flow."""
     for number, part in enumerate(parts):
-        middles, counts = came_past(part.place)
-        axes.step(middles, counts / len(part.place.rows), where="mid", color=style.shades(len(parts))[number], linewidth=1.2, label=part.label)
+        axes.step(*came_past(part.place), where="mid", color=style.shades(len(parts))[number], linewidth=1.2, label=part.label)
     axes.set_ylabel("share that\ncame past")
     axes.set_ylim(bottom=0)
     style.grid(axes)
@@ -255,10 +325,9 @@ def along(way: Numbers) -> Numbers:
     return np.column_stack([np.interp(wanted, ways, way[:, axis]) for axis in (0, 1)])
 
 
-def draw_map(axes: Axes, part: Part) -> AxesImage:
+def draw_map(axes: Axes, place: Place, shares: Numbers) -> AxesImage:
     """Draws the map of passages."""
-    shares = passages(part.place, part.mapped)
-    return axes.imshow(np.where(shares > 0, shares, np.nan), extent=(0, part.place.length, 0, part.place.width), origin="lower", cmap=style.PASSAGES,
+    return axes.imshow(np.where(shares > 0, shares, np.nan), extent=(0, place.length, 0, place.width), origin="lower", cmap=style.PASSAGES,
                        vmin=0, vmax=1, interpolation="nearest", aspect="equal", zorder=0)
 
 
@@ -273,14 +342,14 @@ def draw_scale(figure: Figure, panels: Sequence[Axes], drawn: AxesImage, parts: 
 def draw_part(axes: Axes, part: Part, legend_columns: int) -> None:
     place = part.place
     device_plan.draw_posts(axes, place.circles)
-    device_plan.frame(axes, place.length, place.width, "-" if place.has_walls else ":")
-    if part.label:
-        axes.set_ylabel(f"{part.label}\n$y/\\sigma$")
+    device_plan.frame(axes, place.length, place.width, "-" if place.has_walls else ":", droplet=place.droplet)
+    axes.set_ylabel(f"{part.label}\n{place.coordinate('y')}".strip())
     if place.exit > 0:
         axes.axvline(place.exit, color="0.3", linestyle="--", linewidth=0.8)
     for number, way in enumerate(part.lines):
         axes.plot(*unbroken(way, place).T, color=style.COLOURS[number % len(style.COLOURS)], linewidth=1.0, zorder=3)
-    axes.plot(*place.wrapped(place.releases).T, "|", color="#009E73", markersize=7, label=f"released: {len(place.rows)}", zorder=4)
+    axes.plot(*place.wrapped(place.releases).T, "|", color="#009E73", markersize=7, zorder=4,
+              label=f"released: {len(place.rows)}" + (f", displaced: {part.num_displaced}" if part.num_displaced else ""))
     draw_ends(axes, place)
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=legend_columns, fontsize=8, frameon=False, borderaxespad=0.2)
 
@@ -292,19 +361,19 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
     @param droplet_mm  diameter of the droplet [mm], if it is known"""
     place = parts[0].place
     beside = BESIDE + OF_LETTER * max(len(part.label) for part in parts) if len(parts) > 1 else BESIDE if parts[0].mapped else 0
-    figure, (*panels, below) = device_plan.axes_for(place.length, place.width, len(parts), strip=1.5, beside=beside)
+    figure, (*panels, below) = device_plan.axes_for(place.length / place.droplet, place.width / place.droplet, len(parts), strip=1.5, beside=beside)
     is_grid = below.get_gridspec().ncols > 1
-    maps = [draw_map(axes, part) for axes, part in zip(panels, parts) if part.mapped]
+    maps = [draw_map(axes, part.place, part.shares) for axes, part in zip(panels, parts) if part.shares is not None]
     for axes, part in zip(panels, parts):
         draw_part(axes, part, 2 if is_grid else 4)
     if maps:
         draw_scale(figure, panels, maps[0], parts)
     device_plan.draw_flow(panels[-1], 26 if is_grid else 12)
     draw_passages(below, parts)
-    below.set_xlabel(r"$x/\sigma$, along the flow" + (rf"; $\sigma$ = {droplet_mm:.4g} mm" if droplet_mm else ""))
+    below.set_xlabel(f"{place.coordinate('x')}, along the flow" + (rf"; $\sigma$ = {droplet_mm:.4g} mm" if droplet_mm else ""))
     walls = "between walls" if place.has_walls else "periodic across the flow"
     some = f"; {len(parts)} of {num_parts} parameter sets" if len(parts) < num_parts else ""
-    figure.suptitle(f"{literal(place.name)}: {place.length:.4g} x {place.width:.4g} droplet diameters, {walls}{some}", fontsize=9)
+    figure.suptitle(f"{literal(place.name)}: {place.length:.4g} x {place.width:.4g} {place.unit or 'droplet diameters'}, {walls}{some}", fontsize=9)
     if not is_grid:
         align(below, panels[-1])
     return figure

@@ -68,15 +68,16 @@ def rings_among(circles: Numbers) -> list[Numbers]:
     return found
 
 
-def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[Numbers] = ()) -> None:
+def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[Numbers] = (), droplet: float = 1.0) -> None:
     """Draws the edge of the device and its surroundings. @param beside  lines to include in the picture, unless they
-    are farther away than the size of the device"""
+    are farther away than the size of the device
+    @param droplet  diameter of the droplet, in the unit of the axes"""
     axes.add_patch(Rectangle((0, 0), length, width, fill=False, edgecolor="0.3", linestyle=line))
     size = np.array([length, width])
     points = np.clip(np.vstack([np.zeros(2), size, *beside]), -size, 2 * size)
-    margin = 0.02 * max(length, width) + 0.5
+    margin = 0.02 * max(length, width) + 0.5 * droplet
     surroundings.frame_limits(axes, tuple(points.min(axis=0) - margin), tuple(points.max(axis=0) + margin))
-    surroundings.draw_bar(axes)
+    surroundings.draw_bar(axes, droplet)
     axes.set_ylabel(r"$y/\sigma$")
 
 

@@ -47,9 +47,9 @@ def draw_guides(axes: Axes) -> None:
         artist.set_path_effects([HALO])
 
 
-def draw_bar(axes: Axes) -> None:
+def draw_bar(axes: Axes, droplet: float = 1.0) -> None:
     """Draws a bar as long as a droplet is wide."""
-    bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True, frameon=False)
+    bar = AnchoredSizeBar(axes.transData, droplet, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True, frameon=False)
     bar.set_zorder(6)
     axes.add_artist(bar)
     for artist in (bar.size_bar.get_children()[0], *bar.findobj(Text)):

@@ -322,11 +322,11 @@ def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Pa
         return {}
     caption = "releases, clogs, where droplets went, and the share that came past each place"
 
-    def drawn(place: device.Place) -> str:
-        parts = device.shown_parts(place, groups, sweep, clogrun, count, MAPPED if count else 0, 2)
-        return framed(charts.draw(device.draw(*parts, groups.laboratory.get("length_mm")), caption), f"{place.name}: {caption}", "wide")
+    def drawn(every: list[device.Part]) -> str:
+        parts = device.shown_parts(every, sweep, clogrun, count, MAPPED if count else 0, 2)
+        return framed(charts.draw(device.draw(*parts, groups.laboratory.get("length_mm")), caption), f"{parts[0][0].place.name}: {caption}", "wide")
 
-    return {"Devices": "".join(drawn(place) for place in device.places(sweep, clogrun.parent) if place.parts(groups))}
+    return {"Devices": "".join(drawn(parts) for parts in device.pictures(device.places(sweep, clogrun.parent), groups) if parts)}
 
 
 def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:

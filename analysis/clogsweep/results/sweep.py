@@ -123,9 +123,9 @@ class Sweep:
         checked.whole("ways", ways, 0)
         checked.whole("map", map, 0)
         checked.whole("jobs", jobs, 1)
-        place = device.the_place(self.path, self._programs)
+        found = device.places(self.path, self._programs)
         groups = self.fit().known.finished(self.path)
-        parts = device.shown_parts(place, groups, self.path, self._program("clogrun"), ways, map, jobs)
+        parts = device.shown_parts(device.the_picture(found, groups, self.path), self.path, self._program("clogrun"), ways, map, jobs)
         return Picture(device.draw(*parts, groups.laboratory.get("length_mm")), stored.source(self.attributes))
 
     def replay(self, task: int, output: str | os.PathLike[str] | None = None, *, interval: float = 1.0) -> Run:

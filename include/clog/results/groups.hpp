@@ -109,7 +109,7 @@ struct LaboratoryScale {
   double tilt = std::numeric_limits<double>::quiet_NaN();  ///< tilt of the plates [degrees]
 };
 
-/// The droplets of a device, and a line across the flow that they may have passed.
+/// The droplets of a device that were released upstream of a line across the flow, and may have passed it.
 struct Passage {
   double x;  ///< x of the line, in the coordinates of the circles [sigma]
   int num_passed;
@@ -177,7 +177,9 @@ struct Group {
   /// Whether half of the clogs or more are as far as another one. If no run clogged, this concerns the runs
   /// that met an obstacle.
   bool are_runs_equal = false;
-  int num_free = 0;       ///< runs that met no obstacle
+  int num_free = 0;  ///< runs that met no obstacle
+  /// The x of the droplets of a device that were released beside their place on the entrance [sigma].
+  std::vector<double> displaced;
   int num_repeating = 0;  ///< runs that went farther than their array's period
   /// Passages through a device, in downstream order; the last one is the exit.
   std::vector<Passage> passages;

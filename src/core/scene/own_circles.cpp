@@ -318,6 +318,16 @@ double beginning_of_way(const ObstacleParameters& obstacles, double x) {
   return obstacles.entrance + std::remainder(x - obstacles.entrance, obstacles.period().along());
 }
 
+bool is_displaced(const RunParameters& run, double x, double y) {
+  if (run.obstacles.layout != ObstacleLayout::file || run.obstacles.release != Release::entrance)
+    return false;
+  constexpr double tolerated = 0.01;  // of the release in free space [sigma]
+  const Eigen::Array2d drawn = place_on_entrance(run);
+  const double along = beginning_of_way(run.obstacles, x) - drawn[0];
+  const double across = std::remainder(y - drawn[1], run.obstacles.period().across());
+  return std::hypot(along, across) > tolerated;
+}
+
 const Scene own_circles_scene = {.finding = Finding::clogging_length,
                                  .walls_from = WallsFrom::circles,
                                  .is_random = true,

@@ -58,6 +58,10 @@ struct Scene {
 /// images, the one nearest to the entrance is meant then [sigma].
 double beginning_of_way(const ObstacleParameters& obstacles, double x);
 
+/// Whether a droplet was released in the nearest void, because an obstacle was at its place on the entrance.
+/// @param x, y  place of the release, in the coordinates of the file of circles [sigma]
+bool is_displaced(const RunParameters& run, double x, double y);
+
 const Scene& scene_of(ObstacleLayout layout);
 const Scene& scene_of(const RunParameters& run);
 
