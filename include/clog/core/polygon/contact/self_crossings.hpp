@@ -19,11 +19,10 @@ namespace clog {
 /// passes through the inside of an edge is recorded (SelfCrossing). Until its path leads back through the
 /// edge, or through a neighbour of this edge to which it has slid, it has the energy
 ///   k_c [(d_s + D)^2 - d_s^2]/2.
-/// Its depth D is its distance d from the edge. Where the edges end, at a sharp corner or at the vertex's own
-/// edges, the vertex also comes out if its own edges slip off this end, so there D is at most the distance of
-/// the end from them. Other contacts between the vertex or its edges and these edges are computed as if the
-/// vertex were by D/d nearer to the edge, mostly on it, because unsigned distances do not know the side. So
-/// the energy is continuous where a vertex passes through an edge, comes back, or slips off an end.
+/// Its depth D is its distance from the edge, or less near an end of the edges (CrossingDepth). Other
+/// contacts between the vertex or its edges and these edges are muted, because unsigned distances do not know
+/// the side; instead they are computed as if the vertex were by D nearer to the edge, which mostly is on it.
+/// So the energy is continuous where a vertex passes through an edge, comes back, or slips off an end.
 class SelfCrossings {
  public:
   /// What moved the vertices to their present places: these velocities, for this time.
