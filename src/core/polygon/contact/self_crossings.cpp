@@ -174,8 +174,8 @@ void SelfCrossings::renew(const Contour& contour, std::vector<SelfCrossing>& cro
   }
   const auto pair = [](const Muted& one) { return std::pair(one.pair.vertex, one.pair.edge); };
   std::ranges::stable_sort(muted_, {}, pair);
-  const auto repeated = std::ranges::unique(muted_, {}, pair);
-  muted_.erase(repeated.begin(), repeated.end());
+  const auto are_one = [&](const Muted& one, const Muted& other) { return pair(one) == pair(other); };
+  muted_.erase(std::unique(muted_.begin(), muted_.end(), are_one), muted_.end());
 }
 
 bool SelfCrossings::follow(const Contour& contour, const Drift& drift, const SelfContacts& contacts,
