@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import unittest
@@ -363,12 +364,25 @@ class Sizes(ProgramTest):
     def test_each_size_of_a_device_can_be_drawn(self):
         self.write("posts.csv", POSTS)
         self.sweep("obstacles=posts.csv", "box=10.2mm", "release=anywhere", "vertices=64", "max-time=5", "seeds=1")
-        with self.assertRaisesRegex(clogsweep.UserError, "cannot draw 2 devices as one; clogsweep select .*s.h5 obstacles=SUM .*posts.csv@0.8mm: [0-9a-f]{16}, ") as refused:
-            device.the_place(self.folder / "s.h5", BIN)
-        check_sum = str(refused.exception).split("@1.6mm: ")[1].rstrip(")")
+        parts = self.picture_of("s.h5")
+        self.assertEqual(len(parts), len(SETS))
+        for part in device.in_one_unit(parts):
+            self.assertAlmostEqual(part.place.width, 10.2)
+            self.assertEqual(part.place.unit, "mm")
+
+    def test_one_of_several_devices_can_be_drawn(self):
+        self.write("posts.csv", POSTS)
+        self.write("other.csv", POSTS + "5,6,0.2\n")
+        self.sweep("obstacles=posts.csv,other.csv", "box=10.2mm", "release=anywhere", "vertices=64", "max-time=5", "seeds=1", diameter="1 mm", angle="20 deg")
+        with self.assertRaisesRegex(clogsweep.UserError, "cannot draw 2 devices as one; clogsweep select .*s.h5 obstacles=SUM ") as refused:
+            self.picture_of("s.h5")
+        check_sum = re.findall("[0-9a-f]{16}", str(refused.exception))[-1]
         self.succeed("clogsweep", "select", "s.h5", f"obstacles={check_sum}", "--output", "one.h5")
-        place = device.the_place(self.folder / "one.h5", BIN)
-        self.assertAlmostEqual(place.width * 1.6, 10.2)
+        self.assertEqual(len(self.picture_of("one.h5")), 1)
+
+    def picture_of(self, name):
+        path = self.folder / name
+        return device.the_picture(device.places(path, BIN), clogsweep.Sweep(path, BIN).fit().known, path)
 
     def test_critical_angles_are_named_by_the_droplets(self):
         self.sweep("obstacle-layout=lattice", "pitch=2.4mm", "obstacle-diameter=0.8mm", "lattice-angle=15,25", "line-tension=1,3", "vertices=64", "max-time=1", "seeds=1", angle="20 deg")
