@@ -148,7 +148,7 @@ void WallContacts::find_layers(const Obstacle& circle, const Eigen::ArrayXd& pos
                                const Eigen::ArrayXd& fine) {
   constexpr double rounding = 1e-12;
   const int n = static_cast<int>(num_points_);
-  const auto refined = [&](Eigen::Index k) -> Eigen::Array2d { return {fine[k], fine[fine.size() / 2 + k]}; };
+  const auto refined = [&](int k) -> Eigen::Array2d { return {fine[k], fine[fine.size() / 2 + k]}; };
   const Eigen::Array2d centre{circle.x, circle.y};
   const double lowest = circle.radius + range_;  // distance of layer 0 from the centre
   const double far = (lowest + highest_layer * film_ + skin_) * (1 + rounding);
