@@ -108,7 +108,7 @@ results::Comparisons compare_measured(const cli::CommandLine& line, const std::v
   for (std::size_t i = 0; i < paths.size(); ++i)
     if (!results::is_distance_table(paths[i])) {
       const results::Side side = results::sides_of_files({paths[i]}).front();
-      tables[i] = results::distances_of(side, scales_of_rows(line, side.rows), asked);
+      tables[i] = results::distances_of(side, scales_of_rows(line, side.rows), asked, confidence);
       rows.insert(rows.end(), side.rows.begin(), side.rows.end());
     }
   results::Comparisons found = results::compare_distances(tables, confidence, sigma_in_mm(line, rows));

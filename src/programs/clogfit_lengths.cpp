@@ -5,6 +5,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
@@ -33,7 +34,7 @@ The first line of the table names its columns, and each further line is one drop
 
 distance: how far the droplet travelled, in nm, um, mm, cm, m or sigma (droplet diameters); clogged: 1 if the
 droplet clogged, 0 if it left the picture or was still moving (censored). Droplets with the same values in all other
-columns form a group.
+columns form a group. A column diameter [mm] gives lengths in the diameters of each group's own droplets, too.
 )";
 
 }  // namespace
@@ -43,6 +44,10 @@ int clogfit_lengths(int argc, const char* const* argv) {
   line.word("file", "table of distances (CSV)")
       .option("format", "text, csv or json", "text")
       .option("confidence", "confidence level of the intervals", "0.95")
+      .option(
+          "from-distance",
+          "count distances only from this one on; droplets that ended before it are excluded [mm, or sigma "
+          "if the table is in sigma]")
       .option("lab",
               "file that describes the laboratory, see clogfit units; the diameter in this file is sigma");
   if (!cli::parse_command(line, argc, argv)) return console::exit_success;
@@ -51,7 +56,9 @@ int clogfit_lengths(int argc, const char* const* argv) {
   const std::string path = line.require("file");
   if (path.ends_with(".h5"))
     throw Error(fmt::format("cannot read {0} (a table of distances is CSV); clogfit {0} fits a sweep", path));
-  const results::DistanceTable table = results::read_distances(path);
+  results::DistanceTable table = results::read_distances(path);
+  if (line.has("from-distance"))
+    table = results::counted_from(line.get_positive("from-distance"), std::move(table));
   const std::optional<double> sigma_mm = sigma_in_mm(line, {});
   std::cout << (format == "csv"    ? results::lengths_csv(table, confidence, sigma_mm)
                 : format == "json" ? results::lengths_json(table, confidence, sigma_mm)

@@ -22,8 +22,8 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points);
 /// @throws Error
 void set_scales(const cli::CommandLine& line, std::vector<results::Group>& groups);
 
-/// The scale of each laboratory of these rows; empty if some row has no laboratory, or if --lab applies to
-/// all rows. @throws Error
+/// The scale of the laboratory of --lab or, without --lab, of each laboratory of these rows; empty if some
+/// row has no laboratory. @throws Error
 results::Scales scales_of_rows(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
 
 /// The droplet's diameter in mm, from the laboratory of --lab or, without --lab, from the common laboratory

@@ -152,9 +152,7 @@ std::vector<std::string> differing_columns(
 void name_droplets(Comparisons& comparisons,
                    const std::vector<std::pair<const RunRow*, const RunRow*>>& compared,
                    const Scales& scales) {
-  const auto scale_of = [&](const RunRow* row) -> const LaboratoryScale& {
-    return scales.at(row->parameters.laboratory->check_sum());
-  };
+  const auto scale_of = [&](const RunRow* row) -> const LaboratoryScale& { return scale_in(scales, *row); };
   std::vector<const RunRow*> rows;
   for (const auto& [here, there] : compared) {
     if (droplet_of(scale_of(here)) != droplet_of(scale_of(there))) return;
@@ -185,6 +183,18 @@ void name_droplets(Comparisons& comparisons,
 
 }  // namespace
 
+const LaboratoryScale& scale_in(const Scales& scales, const RunRow& row) {
+  const auto of_all = scales.find("");
+  return of_all != scales.end() ? of_all->second : scales.at(row.parameters.laboratory->check_sum());
+}
+
+std::map<std::vector<Value>, Flaws> flaws_by_parameters(const std::vector<RunRow>& rows, double confidence) {
+  std::map<std::vector<Value>, Flaws> all;
+  for (Group& group : group_runs(rows, confidence))
+    all[parameter_values(group.first_row)] = {group.num_failed, std::move(group.doubts)};
+  return all;
+}
+
 bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
                           const Scales& scales) {
   const bool is_scaled = !column.unit.empty() && column.unit != "degrees";
@@ -192,8 +202,7 @@ bool follows_from_droplet(const sweep::Column& column, const std::vector<const s
   std::map<std::pair<double, double>, Value> known;
   return std::ranges::all_of(rows, [&](const RunRow* row) {
     const Value value = separating_value(column, *row);
-    return known.try_emplace(droplet_of(scales.at(row->parameters.laboratory->check_sum())), value)
-               .first->second == value;
+    return known.try_emplace(droplet_of(scale_in(scales, *row)), value).first->second == value;
   });
 }
 
@@ -247,6 +256,7 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
   std::vector<std::pair<const RunRow*, const RunRow*>> compared;
   const Side& there = sides.front();
   const std::vector<ParameterSet> sets_there = sets_of(there.rows);
+  const auto flaws_there = flaws_by_parameters(there.rows, confidence);
   std::vector<std::vector<ParameterSet>> sets_here;
   sets_here.reserve(sides.size());  // `compared` points into them
   for (std::size_t i = 1; i < sides.size(); ++i) {
@@ -261,11 +271,14 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
                       here.name, columns.empty() ? "nothing" : joined(columns), sides[1].name,
                       comparisons.columns.empty() ? "nothing" : joined(comparisons.columns)));
     const ByValues all_there = by_values(sets_there, columns, there);
+    const auto flaws_here = flaws_by_parameters(here.rows, confidence);
     for (const auto& [values, set] : by_values(sets_here.back(), columns, here)) {
       const auto other = all_there.find(values);
       if (other == all_there.end()) continue;
       const double near = within.value_or(sweep::obstacle_spacing(set->first) / 2);
       Comparison one = compare_sets(*set, *other->second, confidence, near);
+      one.flaws_here = flaws_here.at(parameter_values(set->first));
+      one.flaws_there = flaws_there.at(parameter_values(other->second->first));
       one.here = here.name;
       one.there = there.name;
       one.common = values;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -15,15 +16,18 @@
 #include "clog/core/tools/joined.hpp"
 #include "clog/results/comparison.hpp"
 #include "clog/sweep/columns.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "value_json.hpp"
 
 namespace clog::results {
 namespace {
 
 void append_length(const std::string& side, const fit::CloggingLength& length, const Comparisons& all,
-                   std::vector<Field>& fields) {
+                   const Flaws& flaws, std::vector<Field>& fields) {
   fields.emplace_back("runs_" + side, std::int64_t{length.num_runs});
   fields.emplace_back("clogs_" + side, std::int64_t{length.num_clogs});
+  fields.emplace_back("failed_" + side, std::int64_t{flaws.num_failed});
+  fields.emplace_back("doubts_" + side, words_of(flaws.doubts));
   const auto append = [&](const std::string& unit, double factor) {
     const std::string name = "clogging_length_" + side;
     fields.emplace_back(name + unit, finite_value(factor * length.length));
@@ -37,8 +41,8 @@ void append_length(const std::string& side, const fit::CloggingLength& length, c
 std::vector<Field> fields_of(const Comparison& one, const Comparisons& all) {
   std::vector<Field> fields = {{"here", one.here}, {"there", one.there}};
   for (std::size_t i = 0; i < all.columns.size(); ++i) fields.emplace_back(all.columns[i], one.common[i]);
-  append_length("here", one.length_here, all, fields);
-  append_length("there", one.length_there, all, fields);
+  append_length("here", one.length_here, all, one.flaws_here, fields);
+  append_length("there", one.length_there, all, one.flaws_there, fields);
   const fit::LengthRatio& ratio = one.ratio;
   fields.emplace_back("ratio", finite_value(ratio.ratio));
   fields.emplace_back("ratio_lower", finite_value(ratio.interval.lower));
@@ -66,6 +70,29 @@ std::string bounded_length(const fit::CloggingLength& length, double factor) {
 
 std::string clogs_text(const Comparison& one) {
   return fmt::format("{}/{}", one.length_here.num_clogs, one.length_there.num_clogs);
+}
+
+/// The letters of the doubts here and there, as `fx/c`.
+std::string note_of(const Comparison& one) {
+  const auto text = [](const Flaws& flaws) { return flaws.doubts.empty() ? "-" : letters_of(flaws.doubts); };
+  return text(one.flaws_here) + '/' + text(one.flaws_there);
+}
+
+/// All doubts, and the number of failed runs. A reference that is compared several times counts once.
+Flaws all_flaws(const Comparisons& comparisons) {
+  Flaws all;
+  std::map<std::vector<Value>, int> failed;
+  const auto add = [&](std::vector<Value> side, const std::string& name, const Flaws& flaws) {
+    side.emplace_back(name);
+    failed[side] = flaws.num_failed;
+    all.doubts.insert(all.doubts.end(), flaws.doubts.begin(), flaws.doubts.end());
+  };
+  for (const Comparison& one : comparisons.all) {
+    add(one.common, one.here, one.flaws_here);
+    add(one.common, one.there, one.flaws_there);
+  }
+  for (const auto& [side, number] : failed) all.num_failed += number;
+  return all;
 }
 
 /// @param factor  the unit of the lengths divided by the unit shown
@@ -99,13 +126,19 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
   lines[0].insert(lines[0].end(), {"clogs", "lambda/" + unit, "lambda there", "ratio",
                                    fmt::format("{:.4g} %", 100 * confidence)});
   if (have_pairs) lines[0].insert(lines[0].end(), {"paired", "gain", "same place"});
+  const Flaws flaws = all_flaws(comparisons);
+  if (!flaws.doubts.empty()) lines[0].emplace_back("note");
   for (const Comparison& one : comparisons.all) {
     std::vector<std::string>& line = lines.emplace_back(1, one.here);
     for (const Value& value : one.common) line.push_back(short_text(value));
     for (std::string& cell : cells(one, comparisons.sigma_mm.value_or(1), have_pairs))
       line.push_back(std::move(cell));
+    if (!flaws.doubts.empty()) line.push_back(note_of(one));
   }
-  text += "\n\n" + console::aligned(lines);
+  text += "\n\n" + console::aligned(lines) + legend_of(flaws.doubts);
+  if (flaws.num_failed > 0)
+    text += fmt::format("   {} failed, and count{} as not clogged up to sound_distance\n",
+                        sweep::counted(flaws.num_failed, "run"), flaws.num_failed == 1 ? "s" : "");
   if (!have_pairs) return text + "\nno runs have the same seed, so intervals are those of independent runs\n";
   text +=
       "\npaired: the interval is from pairs of the same seed; gain: how many times smaller the error of "

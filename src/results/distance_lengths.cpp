@@ -11,7 +11,6 @@
 #include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/console/table.hpp"
-#include "clog/core/tools/joined.hpp"
 #include "clog/fit/survival.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/groups.hpp"
@@ -29,38 +28,37 @@ struct Lengths {
 };
 
 std::vector<Lengths> lengths_of(const DistanceTable& table, double confidence) {
+  const std::vector<Flaws> flaws = flaws_of(table);
   std::vector<Lengths> all;
-  std::vector<fit::WeibullTest> tests;
-  for (const DistanceGroup& group : table.groups) {
-    Lengths& one = all.emplace_back();
-    one.clogging = fit::fit_clogging_length(group.runs, confidence);
-    one.least_squares = fit::least_squares_length(group.runs);
-    one.weibull = fit::test_exponentiality(group.runs);
-    if (one.clogging.num_clogs < enough_clogs) one.doubts.push_back(Doubt::few_clogs);
-    tests.push_back(one.weibull);
-  }
-  const std::vector<bool> are_not = fit::are_not_exponential(tests);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (are_not[i]) all[i].doubts.push_back(Doubt::not_exponential);
-    std::vector<double> clogs;
-    for (const fit::Observation& run : table.groups[i].runs)
-      if (run.clogged) clogs.push_back(run.distance);
-    if (fit::are_mostly_equal(std::move(clogs))) all[i].doubts.push_back(Doubt::equal_distances);
+  for (std::size_t i = 0; i < table.groups.size(); ++i) {
+    const std::vector<fit::Observation>& runs = table.groups[i].runs;
+    all.push_back({.clogging = fit::fit_clogging_length(runs, confidence),
+                   .least_squares = fit::least_squares_length(runs),
+                   .weibull = fit::test_exponentiality(runs),
+                   .doubts = flaws[i].doubts});
   }
   return all;
 }
 
-/// A unit of lengths: the suffix of names, and the factor from the table's unit.
+/// A unit of lengths: the suffix of names, and the factors from the table's unit for each group; NaN where
+/// the droplet's diameter is unknown.
 struct Unit {
   const char *suffix, *text;
-  double factor;
+  std::vector<double> factors;
 };
 
-/// The table's own unit comes first.
+/// The table's own unit comes first. The other one needs a diameter in some group.
 std::vector<Unit> units_of(const DistanceTable& table, std::optional<double> sigma_mm) {
   const bool is_in_mm = table.unit == "mm";
-  std::vector<Unit> units = {is_in_mm ? Unit{"_mm", "mm", 1} : Unit{"", "sigma", 1}};
-  if (sigma_mm) units.push_back(is_in_mm ? Unit{"", "sigma", 1 / *sigma_mm} : Unit{"_mm", "mm", *sigma_mm});
+  const std::vector<double> ones(table.groups.size(), 1);
+  std::vector<double> factors;
+  for (const DistanceGroup& group : table.groups) {
+    const double sigma = diameter_of(table, group, sigma_mm).value_or(sweep::RunRow::not_known);
+    factors.push_back(is_in_mm ? 1 / sigma : sigma);
+  }
+  std::vector<Unit> units = {is_in_mm ? Unit{"_mm", "mm", ones} : Unit{"", "sigma", ones}};
+  if (!std::ranges::all_of(factors, [](double factor) { return std::isnan(factor); }))
+    units.push_back(is_in_mm ? Unit{"", "sigma", std::move(factors)} : Unit{"_mm", "mm", std::move(factors)});
   return units;
 }
 
@@ -80,23 +78,45 @@ std::vector<Field> fields_of(const DistanceTable& table, std::size_t group, cons
                                        {"clogging_length_profile_lower", clogging.profile.lower},
                                        {"clogging_length_profile_upper", clogging.profile.upper},
                                        {"clogging_length_least_squares", lengths.least_squares}})
-      fields.emplace_back(std::string(name) + unit.suffix, finite_value(unit.factor * length));
+      fields.emplace_back(std::string(name) + unit.suffix, finite_value(unit.factors[group] * length));
   fields.emplace_back("weibull_shape", finite_value(lengths.weibull.shape));
   fields.emplace_back("weibull_p_value", finite_value(lengths.weibull.p_value));
-  std::vector<std::string> words;
-  for (const Doubt doubt : lengths.doubts) words.emplace_back(text_of(doubt).word);
-  fields.emplace_back("doubts", joined(words, " "));
+  fields.emplace_back("doubts", words_of(lengths.doubts));
   return fields;
 }
 
-std::vector<std::string> length_cells(const fit::CloggingLength& clogging, const Unit& unit) {
-  const double lower = unit.factor * clogging.interval.lower, upper = unit.factor * clogging.interval.upper;
+std::vector<std::string> length_cells(const fit::CloggingLength& clogging, double factor) {
+  if (std::isnan(factor) || clogging.num_runs == 0) return {"-", "-"};
+  const double lower = factor * clogging.interval.lower, upper = factor * clogging.interval.upper;
   if (clogging.num_clogs == 0) return {"> " + console::plain(lower), "-"};
-  const auto rounded = console::with_interval(unit.factor * clogging.length, lower, upper);
+  const auto rounded = console::with_interval(factor * clogging.length, lower, upper);
   return {rounded.value, rounded.lower + " .. " + rounded.upper};
 }
 
 }  // namespace
+
+std::vector<Flaws> flaws_of(const DistanceTable& table) {
+  std::vector<Flaws> all;
+  std::vector<fit::WeibullTest> tests;
+  for (const DistanceGroup& group : table.groups) {
+    if (!is_distance_table(table.source)) {
+      all.push_back(group.flaws);
+      continue;
+    }
+    tests.push_back(fit::test_exponentiality(group.runs));
+    Flaws& one = all.emplace_back();
+    if (tests.back().num_clogs < enough_clogs) one.doubts.push_back(Doubt::few_clogs);
+  }
+  const std::vector<bool> are_not = fit::are_not_exponential(tests);
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    if (are_not[i]) all[i].doubts.push_back(Doubt::not_exponential);
+    std::vector<double> clogs;
+    for (const fit::Observation& run : table.groups[i].runs)
+      if (run.clogged) clogs.push_back(run.distance);
+    if (fit::are_mostly_equal(std::move(clogs))) all[i].doubts.push_back(Doubt::equal_distances);
+  }
+  return all;
+}
 
 std::string lengths_text(const DistanceTable& table, double confidence, std::optional<double> sigma_mm) {
   const std::vector<Unit> units = units_of(table, sigma_mm);
@@ -107,24 +127,19 @@ std::string lengths_text(const DistanceTable& table, double confidence, std::opt
     lines[0].insert(lines[0].end(),
                     {fmt::format("lambda/{}", unit.text), fmt::format("{:g} %", 100 * confidence)});
   lines[0].emplace_back("note");
-  std::string legend;
+  std::vector<Doubt> doubts;
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     std::vector<std::string>& line = lines.emplace_back();
     for (const Value& label : table.groups[i].labels) line.push_back(short_text(label));
     line.push_back(std::to_string(lengths[i].clogging.num_runs));
     line.push_back(std::to_string(lengths[i].clogging.num_clogs));
     for (const Unit& unit : units)
-      for (std::string& cell : length_cells(lengths[i].clogging, unit)) line.push_back(std::move(cell));
-    std::string letters;
-    for (const Doubt doubt : lengths[i].doubts) {
-      const DoubtText& text = text_of(doubt);
-      letters += text.letter;
-      const std::string sentence = fmt::format("{}: {}\n", text.letter, text.sentence);
-      if (legend.find(sentence) == std::string::npos) legend += sentence;
-    }
-    line.push_back(std::move(letters));
+      for (std::string& cell : length_cells(lengths[i].clogging, unit.factors[i]))
+        line.push_back(std::move(cell));
+    line.push_back(letters_of(lengths[i].doubts));
+    doubts.insert(doubts.end(), lengths[i].doubts.begin(), lengths[i].doubts.end());
   }
-  return console::aligned(lines) + (legend.empty() ? "" : "\n" + legend);
+  return console::aligned(lines) + legend_of(doubts);
 }
 
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm) {

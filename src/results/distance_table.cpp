@@ -62,6 +62,16 @@ void take_distance(Head& head, std::size_t column, const std::string& unit, Dist
   if (metres) head.factor = *metres / metres_per_mm;
 }
 
+/// @throws Error if the column says where each droplet was first seen
+void refuse_entry(const std::string& cell, const std::string& name, const std::string& unit) {
+  const bool is_length = unit == "sigma" || (!unit.empty() && console::metres_of(unit));
+  if (name == "entry" || (is_length && std::set<std::string>{"start", "begin", "from"}.contains(name)))
+    throw Error(fmt::format(
+        "has a column '{}' (droplets that are first seen on their way are no groups) subtract it from the "
+        "distances, which leaves an exponential law as it is, or give a common one by --from-distance",
+        console::printable(cell)));
+}
+
 /// The factor to the unit of a laboratory's column, mm or degrees; nullopt for any other column.
 std::optional<double> laboratory_factor(const std::string& name, const std::string& unit) {
   if (name == "angle" && std::set<std::string>{"", "deg", "degree", "degrees", "°"}.contains(unit)) return 1;
@@ -82,6 +92,7 @@ Head head_of(std::vector<std::string> cells, DistanceTable& table) {
     } else if (console::in_lower_case(cells[i]) == "clogged") {
       set_once(head.clogged, i, "clogged");
     } else if (!cells[i].empty()) {  // pandas writes its index without a name
+      refuse_entry(cells[i], name, unit);
       const std::optional<double> factor = laboratory_factor(name, unit);
       head.labels.push_back(i);
       head.label_factors.push_back(factor.value_or(1));
@@ -150,6 +161,12 @@ bool are_alike(const Value& one, const Value& other) {
                                 : one == other;
 }
 
+bool has_diameter_like(const DistanceTable& table, double sigma_mm) {
+  return std::ranges::all_of(table.groups, [&](const DistanceGroup& group) {
+    return are_alike(Value(diameter_of(table, group, sigma_mm).value()), Value(sigma_mm));
+  });
+}
+
 /// How the groups of two tables match.
 struct Match {
   std::vector<std::string> columns;  ///< labels of the first table, then those that only the second table has
@@ -179,7 +196,7 @@ Match match_of(const DistanceTable& here, const DistanceTable& there) {
 
 DistanceTable grouped(DistanceTable table,
                       std::map<std::vector<Value>, std::vector<fit::Observation>>&& runs) {
-  for (auto& [labels, own] : runs) table.groups.push_back({labels, std::move(own)});
+  for (auto& [labels, own] : runs) table.groups.push_back({labels, std::move(own), {}});
   return table;
 }
 
@@ -201,6 +218,15 @@ void hint_at_lone_droplets(const DistanceTable& table) {
 }
 
 }  // namespace
+
+std::optional<double> diameter_of(const DistanceTable& table, const DistanceGroup& group,
+                                  std::optional<double> sigma_mm) {
+  const auto place = std::ranges::find(table.labels, "diameter");
+  if (place == table.labels.end()) return sigma_mm;
+  const std::optional<double> own =
+      number_in(group.labels[static_cast<std::size_t>(place - table.labels.begin())]);
+  return own && *own > 0 ? own : sigma_mm;
+}
 
 std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other) {
   std::vector<std::string> unmatched = table.labels;
@@ -259,7 +285,22 @@ DistanceTable read_distances(const std::string& path) {
   return table;
 }
 
-DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked) {
+DistanceTable counted_from(double from, DistanceTable table) {
+  int num_left_out = 0;
+  for (DistanceGroup& group : table.groups) {
+    num_left_out += static_cast<int>(
+        std::erase_if(group.runs, [=](const fit::Observation& run) { return run.distance < from; }));
+    for (fit::Observation& run : group.runs) run.distance -= from;
+  }
+  if (num_left_out > 0)
+    console::say(fmt::format("clogfit lengths: {}: left out, {} that ended before --from-distance={} {}",
+                             table.source, sweep::counted(num_left_out, "droplet"), shortest(from),
+                             table.unit));
+  return table;
+}
+
+DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked,
+                           double confidence) {
   require_lengths(side);
   const bool is_in_mm =
       scales.size() > 1 || (!scales.empty() && (has_label(asked, "diameter") || has_label(asked, "angle")));
@@ -279,28 +320,50 @@ DistanceTable distances_of(const Side& side, const Scales& scales, const std::ve
     });
   for (const sweep::Column* column : varying) table.labels.push_back(column->name);
   if (is_in_mm) table.labels.insert(table.labels.end(), {"diameter", "angle"});
+  const auto labels_of = [&](const sweep::RunRow& row) {
+    std::vector<Value> labels;
+    labels.reserve(varying.size());
+    for (const sweep::Column* column : varying) labels.push_back(column->get(row));
+    if (is_in_mm) {
+      const LaboratoryScale& scale = scale_in(scales, row);
+      labels.insert(labels.end(), {twelve_digits(scale.length), scale.tilt});
+    }
+    return labels;
+  };
   std::map<std::vector<Value>, std::vector<fit::Observation>> runs;
   for (const sweep::RunRow* row : rows) {
     std::optional<fit::Observation> run = observation_of(*row);
     if (!run) continue;
-    std::vector<Value> labels;
-    labels.reserve(varying.size());
-    for (const sweep::Column* column : varying) labels.push_back(column->get(*row));
-    if (is_in_mm) {
-      const LaboratoryScale& scale = scales.at(row->parameters.laboratory->check_sum());
-      labels.insert(labels.end(), {twelve_digits(scale.length), scale.tilt});
-      run->distance *= scale.length;
-    }
-    runs[std::move(labels)].push_back(*run);
+    if (is_in_mm) run->distance *= scale_in(scales, *row).length;
+    runs[labels_of(*row)].push_back(*run);
   }
-  return grouped(std::move(table), std::move(runs));
+  table = grouped(std::move(table), std::move(runs));
+  std::map<std::vector<Value>, Flaws> flaws;
+  for (const Group& group : group_runs(side.rows, confidence)) {
+    Flaws& all = flaws[labels_of(group.first_row)];
+    all.num_failed += group.num_failed;
+    for (const Doubt doubt : group.doubts)
+      if (std::ranges::find(all.doubts, doubt) == all.doubts.end()) all.doubts.push_back(doubt);
+  }
+  for (DistanceGroup& group : table.groups) group.flaws = flaws[group.labels];
+  return table;
 }
 
 Comparisons compare_distances(const std::vector<DistanceTable>& tables, double confidence,
                               std::optional<double> sigma_mm) {
   const DistanceTable& there = tables.front();
+  const std::optional<double> given_sigma = sigma_mm;
+  const bool are_units_equal =
+      std::ranges::all_of(tables, [&](const DistanceTable& table) { return table.unit == there.unit; });
+  // Distances in droplet diameters do not say which of several droplets of a sweep is meant.
+  const auto knows_diameters = [&](const DistanceTable& table) {
+    return is_distance_table(table.source) &&
+           std::ranges::all_of(table.groups, [&](const DistanceGroup& group) {
+             return diameter_of(table, group, sigma_mm).has_value();
+           });
+  };
   for (const DistanceTable& table : tables)
-    if (table.unit != there.unit && !sigma_mm) {
+    if (table.unit != there.unit && !sigma_mm && !knows_diameters(table.unit == "mm" ? table : there)) {
       const bool is_sweep_in_mm = !is_distance_table((table.unit == "mm" ? table : there).source);
       throw Error(fmt::format(
           "cannot compare {} with {} (one is in mm, the other in droplet diameters); {}", table.source,
@@ -308,28 +371,37 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
           is_sweep_in_mm ? "the sweep has several droplets: give distances in mm, and a column diameter"
                          : "give the droplet's diameter by --lab lab.cfg"));
     }
+  if (sigma_mm && !std::ranges::all_of(tables, [&](const DistanceTable& table) {
+        return has_diameter_like(table, *sigma_mm);
+      }))
+    sigma_mm.reset();  // the groups have several sizes
   Comparisons comparisons;
-  comparisons.unit = sigma_mm ? "sigma" : there.unit;
+  comparisons.unit = sigma_mm || !are_units_equal ? "sigma" : there.unit;
   comparisons.sigma_mm = sigma_mm;
   const auto runs_of = [&](const DistanceTable& table, const DistanceGroup& group) {
     std::vector<fit::Observation> runs = group.runs;
     if (table.unit != comparisons.unit)
-      for (fit::Observation& run : runs) run.distance /= *sigma_mm;
+      for (fit::Observation& run : runs) run.distance /= diameter_of(table, group, given_sigma).value();
     return runs;
   };
+  const std::vector<Flaws> flaws_there = flaws_of(there);
   for (std::size_t i = 1; i < tables.size(); ++i) {
     const DistanceTable& here = tables[i];
     const Match match = match_of(here, there);
+    const std::vector<Flaws> flaws_here = flaws_of(here);
     if (i == 1) comparisons.columns = match.columns;
     if (match.columns != comparisons.columns)
       throw Error(
           fmt::format("cannot compare {} (its groups differ in {}, those of {} in {}); compare two "
                       "files at a time",
                       here.source, joined(match.columns), tables[1].source, joined(comparisons.columns)));
-    for (const DistanceGroup& one : here.groups)
-      for (const DistanceGroup& other : there.groups) {
+    for (std::size_t place = 0; place < here.groups.size(); ++place)
+      for (std::size_t other_place = 0; other_place < there.groups.size(); ++other_place) {
+        const DistanceGroup &one = here.groups[place], &other = there.groups[other_place];
         if (!match.have_common_labels(one, other)) continue;
         Comparison comparison{.here = here.source, .there = there.source, .common = one.labels};
+        comparison.flaws_here = flaws_here[place];
+        comparison.flaws_there = flaws_there[other_place];
         for (const std::size_t label : match.only_there) comparison.common.push_back(other.labels[label]);
         const std::vector<fit::Observation> runs = runs_of(here, one), others = runs_of(there, other);
         comparison.length_here = fit::fit_clogging_length(runs, confidence);

@@ -62,21 +62,11 @@ std::string rounded_text(const Group& group, const std::vector<Group>& groups, c
   return short_text(column.get(row));
 }
 
-std::string letters(const std::vector<Doubt>& doubts) {
-  std::string all;
-  for (const Doubt doubt : doubts) all += text_of(doubt).letter;
-  return all;
-}
-
 /// Explains the letters in the last column.
 std::string legend(const std::vector<Group>& groups) {
-  std::string text;
-  for (const DoubtText& doubt : doubt_texts)
-    if (std::any_of(groups.begin(), groups.end(), [&](const Group& group) {
-          return letters(group.doubts).find(doubt.letter) != std::string::npos;
-        }))
-      text += fmt::format("{}{}: {}\n", text.empty() ? "\n" : "", doubt.letter, doubt.sentence);
-  return text;
+  std::vector<Doubt> all;
+  for (const Group& group : groups) all.insert(all.end(), group.doubts.begin(), group.doubts.end());
+  return legend_of(all);
 }
 
 /// Explains columns whose heads are not enough.
@@ -318,7 +308,7 @@ std::vector<ResultColumn> columns_of(const std::vector<Group>& groups, double co
     });
   }
   if (std::ranges::any_of(groups, [](const Group& group) { return !group.doubts.empty(); }))
-    add({{"note", [](const Group& group) { return letters(group.doubts); }}});
+    add({{"note", [](const Group& group) { return letters_of(group.doubts); }}});
   return columns;
 }
 

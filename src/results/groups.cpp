@@ -380,6 +380,26 @@ double terminal_speed_in_laboratory(const Group& group) {
   return group.first_row.parameters.drag.terminal_speed * scale.length / scale.time;
 }
 
+std::string letters_of(const std::vector<Doubt>& doubts) {
+  std::string letters;
+  for (const Doubt doubt : doubts) letters += text_of(doubt).letter;
+  return letters;
+}
+
+std::string words_of(const std::vector<Doubt>& doubts) {
+  std::string words;
+  for (const Doubt doubt : doubts) words += (words.empty() ? "" : " ") + std::string(text_of(doubt).word);
+  return words;
+}
+
+std::string legend_of(const std::vector<Doubt>& doubts) {
+  std::string legend;
+  for (const DoubtText& text : doubt_texts)
+    if (std::ranges::find(doubts, text.doubt) != doubts.end())
+      legend += fmt::format("{}{}: {}\n", legend.empty() ? "\n" : "", text.letter, text.sentence);
+  return legend;
+}
+
 bool is_device(const RunParameters& run) {
   return scene_of(run).walls_from == WallsFrom::circles &&
          (run.obstacles.release == Release::entrance || run.obstacles.exit > 0);

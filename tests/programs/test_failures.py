@@ -105,6 +105,35 @@ class Readers(Analysis):
             self.assertEqual((one["runs_here"], one["clogs_here"]), (12, 7))
             self.assertAlmostEqual(one["clogging_length_here"], self.lengths[tension], places=9)
 
+    def test_comparisons_and_curves_state_failures_and_doubts(self):
+        doubts = {group["line_tension"]: group["doubts"] for group in self.fit("s.h5")["groups"]}
+        self.assertIn("incomplete", doubts[2])
+        for one in self.fit("compare", "s.h5", "--by", "line-tension")["comparisons"]:
+            tension = float(one["here"].split("=")[1])
+            self.assertEqual([one[f"{name}_{side}"] for side in ("here", "there") for name in ("failed", "doubts")], [3, doubts[tension], 3, doubts[0.25]])
+        self.write("own.csv", "distance [sigma],clogged,line-tension\n" + "5,1,2\n" * 12)
+        one, = self.fit("compare", "own.csv", "s.h5")["comparisons"]
+        self.assertEqual([one[name] for name in ("failed_here", "doubts_here", "failed_there", "doubts_there")], [3, doubts[2], 0, "not_exponential equal_distances"])
+        for command in (["s.h5", "--by", "line-tension"], ["own.csv", "s.h5"]):
+            text = self.succeed("clogfit", "compare", *command).stdout
+            self.assertRegex(text, r" note\n")
+            self.assertIn("\ni: some runs are in progress", text)
+            self.assertRegex(text, r"\n   (12|3) runs failed, and count as not clogged up to sound_distance\n")
+        self.assertRegex(text, r"[a-z]*i[a-z]*/xe\n")
+        curve, = self.fit("curve", "s.h5")["curves"]
+        self.assertEqual((curve["failed"], curve["doubts"]["incomplete"]), (12, 4))
+        text = self.succeed("clogfit", "curve", "s.h5").stdout
+        self.assertIn("  (12 of 48 runs failed, and count as not clogged up to sound_distance)\n", text)
+        self.assertIn("  (4 of 4 points: some runs are in progress", text)
+        # A sweep without failures and doubts says nothing of them.
+        rows = table(self.copy_sweep("s.h5", *SWEEP))
+        exponential = -4 * np.log(1 - (rows.seed - 0.5) / 12)
+        stored_rows.change_columns(self.folder / "s.h5", status=b"clogged", clogged_by=b"certified", mechanism=b"squeezed", failed_by=b"none",
+                                   distance=exponential, sound_distance=exponential)
+        text = self.succeed("clogfit", "compare", "s.h5", "--by", "line-tension").stdout + self.succeed("clogfit", "curve", "s.h5").stdout
+        for word in ("note", "failed", "points:"):
+            self.assertNotIn(word, text)
+
     def test_curves_reports_and_the_python_module(self):
         curve, = self.fit("curve", "s.h5")["curves"]
         points = sorted(curve["points"], key=lambda point: point["line_tension"])

@@ -88,6 +88,46 @@ class Lengths(ProgramTest):
         row, = csv.DictReader(io.StringIO(self.succeed("clogfit", "lengths", "own.csv", "--format", "csv").stdout))
         self.assertEqual((row["clogging_length"], row["runs"]), ("15", "2"))
 
+    def test_distances_count_from_a_given_distance_on(self):
+        self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
+        done = self.succeed("clogfit", "lengths", "aml.csv", "--from-distance", "12", "--format", "json")
+        maintained, not_maintained = json.loads(done.stdout)["groups"]
+        # From R: the sum of time - 12 divided by the number of events, for times of 12 or more.
+        for group, runs, clogs, length in [(maintained, 10, 6, 49), (not_maintained, 8, 7, 19)]:
+            self.assertEqual((group["runs"], group["clogs"]), (runs, clogs))
+            self.assertAlmostEqual(group["clogging_length_mm"], length, places=9)
+        # From R's survfit(Surv(rep(12, 10), time, status) ~ 1, conf.type="log-log").
+        step = maintained["survival"][3]
+        self.assertEqual((12 + step["distance"], step["at_risk"], step["clogs"]), (31, 5, 1))
+        for name, expected in [("probability", 0.54), ("standard_error", 0.1731184565550), ("lower", 0.1811653384041), ("upper", 0.800712517334)]:
+            self.assertAlmostEqual(step[name], expected, places=9)
+        self.assertEqual(done.stderr, "clogfit lengths: aml.csv: left out, 5 droplets that ended before --from-distance=12 mm\n")
+        text = self.succeed("clogfit", "lengths", "aml.csv", "--from-distance=50").stdout
+        self.assertRegex(text, r"Nonmaintained +0 +0 +- +- +f")
+
+    def test_a_delayed_entry_is_refused(self):
+        for head in ("entry [mm]", "Entry", "entry_um", "start (mm)", "from [sigma]"):
+            self.write("own.csv", f"distance [mm],clogged,{head}\n10,1,2\n20,1,4\n")
+            self.refuse("clogfit", "lengths", "own.csv", words=["own.csv", head, "subtract", "--from-distance"])
+        self.write("own.csv", "distance [mm],clogged,start\n10,1,left\n20,1,right\n")
+        self.succeed("clogfit", "lengths", "own.csv")
+
+    def test_a_diameter_of_each_group_is_its_sigma(self):
+        self.write("lab.cfg", LAB)
+        rows = [("", 60), (1, 10), (2, 10), (2, 30), (2.5, 50)]
+        for unit, to_mm in (("mm", dict.fromkeys((1, 2, 2.5, ""), 1)), ("sigma", {1: 1, 2: 2, 2.5: 2.5, "": 2})):
+            self.write("own.csv", f"diameter [um],distance [{unit}],clogged\n" + "".join(
+                f"{diameter and 1000 * diameter},{way / to_mm[diameter]!r},1\n" for diameter, way in rows))
+            for lab in ([], ["--lab", "lab.cfg"]):  # The laboratory's droplet of 2 mm serves where the table has none.
+                found = {group["diameter"]: (group["clogging_length_mm"], group["clogging_length"]) for group in self.lengths("own.csv", *lab)["groups"]}
+                unknown = (60, 30) if lab else (60, None) if unit == "mm" else (None, 30)
+                self.assertEqual(found, {None: unknown, 1: (10, 10), 2: (20, 10), 2.5: (50, 20)})
+                text = self.succeed("clogfit", "lengths", "own.csv", *lab).stdout
+                self.assertRegex(text, r"lambda/mm|lambda/sigma")
+        self.write("own.csv", "diameter,distance [mm],clogged\n,5,1\n")
+        group, = self.lengths("own.csv")["groups"]
+        self.assertNotIn("clogging_length", group)
+
     def test_tables_of_equal_droplets_have_a_doubt(self):
         random = np.random.default_rng(67)
         tables = {}
@@ -164,6 +204,29 @@ class Beside(ProgramTest):
         quantile = scipy.stats.f.ppf(0.975, 4, 4)
         self.assertAlmostEqual(one["ratio_lower"], one["ratio"] / quantile, places=6)
         self.assertAlmostEqual(one["ratio_upper"], one["ratio"] * quantile, places=6)
+
+    def test_droplets_of_another_size_are_no_droplets_of_the_sweep(self):
+        self.write("own.csv", "distance [mm],clogged,diameter,line-tension\n6,1,2,1\n10,1,2.004,1\n40,1,4,1\n60,1,4,3\n")
+        done = self.succeed("clogfit", "compare", "own.csv", "sweep.h5", "--lab", "lab.cfg", "--format", "json")
+        found = json.loads(done.stdout)["comparisons"]
+        self.assertEqual([(one["diameter"], round(one["clogging_length_there_mm"], 9)) for one in found], [(2, 6), (2, 10)])
+        self.assertIn("own.csv: left out, 2 of 4 groups match no runs of sweep.h5, such as diameter=4", done.stderr)
+        self.write("angles.csv", "distance [mm],clogged,angle\n6,1,45\n")
+        self.refuse("clogfit", "compare", "angles.csv", "sweep.h5", "--lab", "lab.cfg", words=["no group"])
+        # Two tables have the lengths of their own droplets.
+        self.write("other.csv", "distance [mm],clogged,diameter\n20,1,4\n5,1,2\n")
+        for lab in ([], ["--lab", "lab.cfg"]):
+            for one in self.compare("own.csv", "other.csv", *lab):
+                self.assertNotIn("clogging_length_here", one)
+                self.assertEqual(one["clogging_length_here_mm"], {4: 20}.get(one["diameter"], 5))
+        self.write("other.csv", "distance [sigma],clogged\n10,1\n")
+        self.assertEqual([one["ratio"] for one in self.compare("own.csv", "other.csv")], [10 / 3, 10 / (10 / 2.004), 1, 10 / 15])
+        # The picture leaves these droplets out, too.
+        for options, kept in ((["--lab", self.folder / "lab.cfg"], [(2, 3), (2.004, 10 / 2.004)]), ([], [(2, 3), (2.004, 10 / 2.004), (4, 10), (4, 15)])):
+            with contextlib.redirect_stderr(io.StringIO()) as said:
+                own = measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None, *options).known, None, *options)
+            self.assertEqual([(group["diameter"], group["clogging_length"]) for group in own], kept)
+            self.assertEqual("left out, 2 of 4 groups have other diameters than the droplets of the sweep" in said.getvalue(), bool(options))
 
     def test_columns_that_match_nothing_are_named(self):
         self.write("own.csv", "distance [sigma],clogged,wall,line-tension,vertices\n3,1,glass,1,64\n4,1,glass,3,64\n5,1,steel,1,64\n5,1,steel,1,64\n")

@@ -100,7 +100,7 @@ TEST(Passages, LengthsOfADeviceAreTheSameWhereTheyAreCompared) {
   const Comparison same = compare({side, side}, 0.95, std::nullopt).all.at(0);
   expect_same(same.length_here);
   EXPECT_NEAR(same.ratio.ratio, 1, 1e-12);
-  const DistanceTable table = distances_of(side, {}, {});
+  const DistanceTable table = distances_of(side, {}, {}, 0.95);
   expect_same(compare_distances({table, table}, 0.95, std::nullopt).all.at(0).length_there);
 }
 

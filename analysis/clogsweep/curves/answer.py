@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections
 import math
 import pathlib
 from collections.abc import Sequence
@@ -56,6 +57,7 @@ def of_fit(fit: points.Fit, seeds: Sequence[set[int]], names: Sequence[str] = ()
         "version": fit["version"],
         "git_describe": fit["git_describe"],
         "confidence": fit["confidence"],
+        "doubts": fit.get("doubts", {}),
         "keys": [key["name"] for key in keys],
         "units": {"clogging_length": unit, "total_distance": unit} | {key["name"]: key["unit"] for key in keys if key["unit"]},
         "curves": [_curve(fit, members, keys, crossing) | {
@@ -89,6 +91,8 @@ def _curve(fit: points.Fit, members: points.Members, keys: Sequence[Column], cro
     peak = features.find_peak(fitted, places, confidence)
     return {
         "shared": members.shared,
+        "failed": sum(group.get("failed") or 0 for group in groups),
+        "doubts": dict(collections.Counter(doubt for group in groups for doubt in (group.get("doubts") or "").split())),
         "points": [_point(index, group, keys) for index, group in zip(members.groups, groups)],
         "curve": [_values(place, keys) | {name: float(value) for names, band in bands.items() for name, value in zip(names, band[:, i])}
                   for i, place in enumerate(places)],

@@ -33,9 +33,13 @@ def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None,
     if groups.are_in_mm:
         raise UserError(f"{table} is in droplet diameters and the sweep has several droplets; give distances in mm")
     diameter = groups.laboratory.get("length_mm")
-    if not diameter:
+    sizes = [group.get("diameter") if isinstance(group.get("diameter"), int | float) else diameter for group in members]
+    if None in sizes:
         raise UserError(f"{table} is in mm and the sweep in droplet diameters; give the droplet's diameter by --lab lab.cfg")
-    return [group | {name: None if group[f"{name}_mm"] is None else group[f"{name}_mm"] / diameter for name in LENGTHS} for group in members]
+    if diameter and (others := [size for size in sizes if not are_alike(size, diameter)]):
+        print(f"{table}: left out, {len(others)} of {len(members)} groups have other diameters than the droplets of the sweep, such as {others[0]:g} mm", file=sys.stderr)
+    return [group | {name: None if group[f"{name}_mm"] is None else group[f"{name}_mm"] / size for name in LENGTHS}
+            for group, size in zip(members, sizes) if not diameter or are_alike(size, diameter)]
 
 
 def are_alike(one: Any, other: Any) -> bool:

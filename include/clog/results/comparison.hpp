@@ -21,18 +21,29 @@ struct Side {
 };
 
 /// The model's units in each laboratory. The key of the map is the checksum of the laboratory's description
-/// (the text of `lab.cfg`).
+/// (the text of `lab.cfg`), or "" if one laboratory applies to all runs.
 using Scales = std::map<std::string, LaboratoryScale>;
+const LaboratoryScale& scale_in(const Scales& scales, const sweep::RunRow& row);
 /// Whether the droplet's diameter and tilt fix the value of this column in these runs, each of which has a
 /// laboratory in `scales`. Columns without a unit, such as friction, never follow: they may coincide.
 bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
                           const Scales& scales);
+
+/// What may spoil the length of a side.
+struct Flaws {
+  int num_failed = 0;
+  std::vector<Doubt> doubts;
+};
+/// The flaws of each group of the runs, see group_runs(); the key is parameter_values().
+std::map<std::vector<Value>, Flaws> flaws_by_parameters(const std::vector<sweep::RunRow>& rows,
+                                                        double confidence);
 
 /// A parameter set of one side (`here`), compared with a parameter set of the first side (`there`).
 struct Comparison {
   std::string here, there;    ///< names of the sides
   std::vector<Value> common;  ///< see Comparisons::columns
   fit::CloggingLength length_here{}, length_there{};
+  Flaws flaws_here{}, flaws_there{};
   fit::LengthRatio ratio{};  ///< ratio of the length here to the length there
   int num_both_clogged = 0;  ///< pairs of runs that both clogged
   int num_same_place = 0;    ///< pairs of runs that both clogged, at the same place

@@ -15,6 +15,7 @@ namespace clog::results {
 struct DistanceGroup {
   std::vector<Value> labels;
   std::vector<fit::Observation> runs;
+  Flaws flaws{};  ///< of simulated runs
 };
 /// Distances that droplets travelled, measured or simulated.
 struct DistanceTable {
@@ -24,6 +25,10 @@ struct DistanceTable {
   std::vector<DistanceGroup> groups;
 };
 
+/// The diameter of a group's droplets [mm]: the label `diameter` or, without a number there, `sigma_mm`.
+std::optional<double> diameter_of(const DistanceTable& table, const DistanceGroup& group,
+                                  std::optional<double> sigma_mm);
+
 /// Whether this is the name of a text table, not of a sweep's file.
 bool is_distance_table(const std::string& path);
 /// Reads a table with the columns `distance [UNIT]` and `clogged` (1 or 0, yes or no, true or false). Rows
@@ -31,27 +36,36 @@ bool is_distance_table(const std::string& path);
 /// become the labels `diameter` [mm] and `angle`. Prints a hint if each droplet is a group of its own.
 /// @throws Error that names file and line
 DistanceTable read_distances(const std::string& path);
+/// The table with distances that count from `from` on, in the table's unit; droplets that ended before are
+/// left out, and their number is printed (left truncation, see group_runs()).
+DistanceTable counted_from(double from, DistanceTable table);
 /// The runs of a sweep. Runs with the same values of all parameters that vary or are asked for form a group.
 /// @param scales  units of the laboratories, if any. If there are several, or if `diameter` or `angle` is
 /// asked for, distances are in mm, and the droplet's diameter [mm] and the tilt [degrees] separate groups, in
 /// place of parameters that follow from them.
 /// @param asked  labels of the tables to compare with
 /// @throws Error as require_lengths()
-DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked);
+/// @param confidence  of the intervals to which the doubt of failures refers
+DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked,
+                           double confidence);
+/// What may spoil the length of each group. Of measured distances only few_clogs, not_exponential and
+/// equal_distances are known.
+std::vector<Flaws> flaws_of(const DistanceTable& table);
 /// Labels of a table that the other table lacks.
 std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other);
 /// The groups of a table that match no group of the other table, each as `label=value, label=value`.
 std::vector<std::string> unmatched_groups(const DistanceTable& table, const DistanceTable& other);
 
 /// These functions print lengths, intervals, doubts and survival of each group, estimated as for a sweep.
-/// @param sigma_mm  the droplet's diameter in mm, if it is known: then lengths are given in both units
+/// @param sigma_mm  see diameter_of(); groups with a known diameter have lengths in both units
 std::string lengths_text(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
 std::string lengths_json(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
 
 /// Compares each group of the other tables with each group of the first table that has the same values of the
-/// labels that both tables have. The runs are not paired.
-/// @throws Error if units differ and sigma_mm is unknown, or if no groups can be compared
+/// labels that both tables have. The runs are not paired. Where the tables' units differ, lengths are in the
+/// diameters of each group's own droplets (diameter_of()).
+/// @throws Error if units differ and a diameter is unknown, or if no groups can be compared
 Comparisons compare_distances(const std::vector<DistanceTable>& tables, double confidence,
                               std::optional<double> sigma_mm);
 

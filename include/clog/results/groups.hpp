@@ -82,6 +82,11 @@ inline constexpr DoubtText doubt_texts[] = {
      "line tension, preset, vertices or obstacles are outside the range tested for soundness: droplets may "
      "cross themselves or obstacles (handbook, Which droplets are sound)"}};
 const DoubtText& text_of(Doubt doubt);
+/// The letters, the words with a space between them, and a legend: a blank line and a line for each different
+/// doubt, in the order of doubt_texts; empty without doubts.
+std::string letters_of(const std::vector<Doubt>& doubts);
+std::string words_of(const std::vector<Doubt>& doubts);
+std::string legend_of(const std::vector<Doubt>& doubts);
 
 /// The competing ways in which a run may end: the mechanism that holds a clog (`other`: none of the three),
 /// or the break-up of the droplet.
