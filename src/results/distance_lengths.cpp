@@ -15,6 +15,7 @@
 #include "clog/fit/survival.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/groups.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "value_json.hpp"
 
 namespace clog::results {
@@ -114,12 +115,23 @@ std::string lengths_text(const DistanceTable& table, double confidence, std::opt
     for (const Doubt doubt : lengths[i].doubts) {
       const DoubtText& text = text_of(doubt);
       letters += text.letter;
-      const std::string sentence = fmt::format("{}: {}\n", text.letter, text.sentence);
+      const std::string sentence = fmt::format(
+          "{}: {}\n", text.letter,
+          doubt == Doubt::few_clogs ? "fewer than 5 clogs: more droplets are needed" : text.sentence);
       if (legend.find(sentence) == std::string::npos) legend += sentence;
     }
     line.push_back(std::move(letters));
   }
-  return console::aligned(lines) + (legend.empty() ? "" : "\n" + legend);
+  int num_runs = 0, num_clogs = 0;
+  for (const Lengths& one : lengths) {
+    num_runs += one.clogging.num_runs;
+    num_clogs += one.clogging.num_clogs;
+  }
+  // If a table marks censored droplets instead of clogged ones, these numbers show it.
+  return console::aligned(lines) + "\n" + legend +
+         fmt::format(
+             "read: of {}, {} clogged (clogged = 1) and {} still moved where last seen (clogged = 0)\n",
+             sweep::counted(num_runs, "droplet"), num_clogs, num_runs - num_clogs);
 }
 
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm) {
