@@ -328,6 +328,11 @@ class Devices(Walls):
             self.assertAlmostEqual(shares[np.argmin(np.abs(at - 1.4))], passage["passed"] / (passage["passed"] + passage["stopped"]))
         self.draw("report", "s.h5", "--examples", 0, "--programs", BIN)
         self.assertEqual((self.folder / "s-report.html").read_text().count("posts.csv: releases"), 1)
+        # Exported rows have the diameter of their droplet. The length of the device [sigma] is 2.8 mm.
+        self.draw("export", "s.h5", "rows.csv", "--programs", BIN)
+        exported = pandas.read_csv(self.folder / "rows.csv", float_precision="round_trip")
+        np.testing.assert_allclose(exported["diameter_mm [mm]"] * exported["length [sigma]"], 2.8, rtol=1e-9)
+        self.assertEqual((set(exported["angle_degrees [degrees]"]), exported["distance [sigma]"].tolist()), ({90}, rows["distance"].tolist()))
         # Other devices are no device of several sizes.
         self.write("other.csv", "# units=um droplet=200um\nx,y,diameter\n700,500,100\n")
         self.succeed("clogsweep", "--lab", "lab.cfg", "obstacles=other.csv", *keys[1:], "seeds=1", "--output", "other.h5")
