@@ -253,7 +253,7 @@ class Devices(Analysis):
         rows = table(self.folder / "s.h5")
         for distance in (np.nan, 1e300, -1e300):
             stored_rows.change(self.folder / "s.h5", lambda rows: fail(rows, rows["seed"] > 1, distance, 0.3))
-            place = device.the_place(self.folder / "s.h5", BIN)
+            place, = device.places(self.folder / "s.h5", BIN)
             self.assertEqual(place.ends[1:, 0].tolist(), (rows.release_x + 0.3)[1:].tolist())
             figure, axes = style.subplots(figsize=(4, 4))
             device.draw_ends(axes, place)

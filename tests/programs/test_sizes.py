@@ -323,11 +323,11 @@ class Sizes(ProgramTest):
     def test_each_size_of_a_device_can_be_drawn(self):
         self.write("posts.csv", POSTS)
         self.sweep("obstacles=posts.csv", "box=10.2mm", "release=anywhere", "vertices=64", "max-time=5", "seeds=1")
-        with self.assertRaisesRegex(clogsweep.UserError, "cannot draw 2 devices as one; clogsweep select .*s.h5 obstacles=SUM .*posts.csv@0.8mm: [0-9a-f]{16}, ") as refused:
-            device.the_place(self.folder / "s.h5", BIN)
-        check_sum = str(refused.exception).split("@1.6mm: ")[1].rstrip(")")
+        together = clogsweep.Sweep(self.folder / "s.h5", BIN).device(ways=0, map=0).figure
+        self.assertIn(" x 10.2 mm", together.texts[0].get_text())
+        check_sum = {place.name: place.rows[0]["obstacles"].decode() for place in device.places(self.folder / "s.h5", BIN)}["posts.csv@1.6mm"]
         self.succeed("clogsweep", "select", "s.h5", f"obstacles={check_sum}", "--output", "one.h5")
-        place = device.the_place(self.folder / "one.h5", BIN)
+        place, = device.places(self.folder / "one.h5", BIN)
         self.assertAlmostEqual(place.width * 1.6, 10.2)
 
     def test_critical_angles_are_named_by_the_droplets(self):
