@@ -32,6 +32,7 @@ constexpr const char* compare_usage =
   clogfit compare sweep.h5 --by friction
   clogfit compare robust.h5 elastic.h5 --picture ratio.png
   clogfit compare own.csv sweep.h5 --lab lab.cfg      measured distances (see clogfit lengths) and simulated ones
+  clogfit compare own.csv --by 'surfactant [mM]'      groups of one table of measured distances
 
 Every file is compared with the first file. With --by KEY, every value of KEY is compared with the smallest value. All
 other parameters are the same on both sides of a comparison. Two runs of the same seed form a pair: they met the same
@@ -92,11 +93,21 @@ void say_unmatched(const results::DistanceTable& table, const results::DistanceT
 /// Compares files, at least one of which is a table of measured distances.
 results::Comparisons compare_measured(const cli::CommandLine& line, const std::vector<std::string>& paths,
                                       double confidence) {
-  for (const char* option : {"by", "within", "picture"})
+  for (const char* option : {"within", "picture"})
     if (line.has(option))
       throw Error(
           fmt::format("no place for --{} (measured distances have no seeds to pair); leave it out", option));
-  if (paths.size() < 2) throw Error("nothing to compare this table with; give a sweep or another table");
+  if (line.has("by")) {
+    if (paths.size() > 1)
+      throw Error(
+          "no place for --by (several files of measured distances are compared with each other); give one "
+          "table");
+    return results::compare_distances(
+        results::tables_of_values(results::read_distances(paths[0]), line.get("by")), confidence,
+        std::nullopt);
+  }
+  if (paths.size() < 2)
+    throw Error("nothing to compare this table with; give --by and a column, a sweep, or another table");
   std::vector<results::DistanceTable> tables(paths.size());
   std::vector<std::string> asked;
   for (std::size_t i = 0; i < paths.size(); ++i)

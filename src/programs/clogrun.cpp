@@ -67,7 +67,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
               "largest number of frames of the film (600); the film of a longer run skips frames, or shows "
               "only the end if the droplet would move too far between frames")
       .flag("dry-run", "print the config and an upper bound of the run's duration, run nothing")
-      .option("write-obstacles", "array: write the obstacles as a CSV file");
+      .option("write-obstacles", "array, replay: write the obstacles as a CSV file");
   line.add_commands({"array", "channel", "sag", "replay"});
   line.settings().set("seeds", "1");
   if (!parse_file_command(line, argc, argv)) return false;

@@ -9,6 +9,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/console/streams.hpp"
+#include "clog/core/run/droplet_run.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/laboratory/lab_file.hpp"
 #include "clog/laboratory/scales.hpp"
@@ -26,7 +27,19 @@ void refuse_options(const cli::CommandLine& line, const std::string& system,
 single_run::RecordedRun::Intervals intervals(const cli::CommandLine& line, double time_step) {
   std::optional<double> polygons;
   if (line.has("polygon-interval")) polygons = line.get_positive("polygon-interval");
-  return single_run::RecordedRun::every(line.get_positive("sample-interval"), polygons, time_step);
+  const auto often =
+      single_run::RecordedRun::every(line.get_positive("sample-interval"), polygons, time_step);
+  if (polygons) {
+    constexpr double tolerated = 0.05;
+    const double check = DropletRun::steps_per_check * time_step;
+    const double stored = check * static_cast<double>(often.polygons);
+    if (std::abs(stored - *polygons) > tolerated * *polygons)
+      console::say(fmt::format(
+          "the polygons are {:.4g} t0 apart, not {:.4g} (a whole number of checks of {:.4g} t0 each); a "
+          "smaller time-step has shorter checks",
+          stored, *polygons, check));
+  }
+  return often;
 }
 
 int report(const cli::CommandLine& line, const single_run::RecordedRun& watched) {

@@ -6,6 +6,7 @@
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/run/droplet_run.hpp"
+#include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/world/lattice.hpp"
 #include "clog/results/stored_sweep.hpp"
@@ -37,6 +38,11 @@ int follow_run(const cli::CommandLine& line, const RunParameters& parameters, co
   return report(line, watched);
 }
 
+void write_obstacles(const cli::CommandLine& line, const DropletRun& run) {
+  if (line.has("write-obstacles"))
+    cli::write_obstacles(line.get("write-obstacles"), run.obstacles().obstacles());
+}
+
 void say_what_is_coarse(const RunParameters& run) {
   constexpr int fine = 128;
   if (run.model == Model::dp && *run.dp.vertices < fine)
@@ -64,8 +70,7 @@ int clogrun_array(cli::CommandLine& line) {
                 (scene->finding == Finding::sag ? "sag" : "channel"));
   const RunParameters parameters = sweep::single_run(line.settings());
   return follow_run(line, parameters, line.settings().to_config(), [&](const DropletRun& run) {
-    if (line.has("write-obstacles"))
-      cli::write_obstacles(line.get("write-obstacles"), run.obstacles().obstacles());
+    write_obstacles(line, run);
     warn_of_untested_parameters(sweep::Plan(line.settings()));
   });
 }
@@ -80,14 +85,16 @@ int clogrun_channel(cli::CommandLine& line) {
 }
 
 int clogrun_replay(cli::CommandLine& line) {
-  refuse_options(line, "replay", {"write-obstacles", "seed"});
+  refuse_options(line, "replay", {"seed"});
   refuse_keys(line);
   if (!line.has("file") || !line.has("task"))
     throw Error("missing sweep file or task; try clogrun replay sweep.h5 0 --output run.h5");
   const store::SweepFile file = results::read_with_caution(line.get("file"));
   sweep::RunRow row = results::replayable_row(file, line.get("task"));
   if (line.has("to-rest")) row.parameters.clog_detection = ClogDetection::threshold;
-  return follow_run(line, row.parameters, "", [](const DropletRun&) {});
+  if (scene_of(row.parameters).finding != Finding::clogging_length)
+    refuse_options(line, "replay of a channel or a wall", {"write-obstacles"});
+  return follow_run(line, row.parameters, "", [&](const DropletRun& run) { write_obstacles(line, run); });
 }
 
 }  // namespace clog::programs

@@ -111,6 +111,7 @@ Comparison compare_sets(const ParameterSet& here, const ParameterSet& there, dou
                         double within) {
   Comparison comparison;
   std::vector<fit::Pair> pairs;
+  std::size_t num_identical = 0;
   for (const auto& [seed, row] : here.by_seed) {
     const auto found = there.by_seed.find(seed);
     if (found == there.by_seed.end()) continue;
@@ -123,6 +124,8 @@ Comparison compare_sets(const ParameterSet& here, const ParameterSet& there, dou
                                std::abs(row->lateral_displacement - other.lateral_displacement) <= within;
     comparison.num_both_clogged += have_both;
     comparison.num_same_place += is_same_place;
+    num_identical += pair.here.clogged == pair.there.clogged && row->distance == other.distance &&
+                     row->lateral_displacement == other.lateral_displacement;
     pairs.push_back(pair);
     pairs.back().is_alike = is_same_place || (!pair.here.clogged && !pair.there.clogged);
   }
@@ -130,6 +133,8 @@ Comparison compare_sets(const ParameterSet& here, const ParameterSet& there, dou
   comparison.length_here = fit::fit_clogging_length(all_here, confidence);
   comparison.length_there = fit::fit_clogging_length(all_there, confidence);
   comparison.ratio = fit::fit_length_ratio(all_here, all_there, pairs, confidence);
+  comparison.are_identical =
+      num_identical == all_here.size() && num_identical == all_there.size() && num_identical > 0;
   return comparison;
 }
 

@@ -45,11 +45,14 @@ std::vector<Field> fields_of(const Comparison& one, const Comparisons& all) {
   append_length("there", one.length_there, all, one.flaws_there, fields);
   const fit::LengthRatio& ratio = one.ratio;
   fields.emplace_back("ratio", finite_value(ratio.ratio));
-  fields.emplace_back("ratio_lower", finite_value(ratio.interval.lower));
-  fields.emplace_back("ratio_upper", finite_value(ratio.interval.upper));
-  fields.emplace_back("interval", std::string(ratio.is_paired ? "paired" : "unpaired"));
-  fields.emplace_back("unpaired_lower", finite_value(ratio.unpaired.lower));
-  fields.emplace_back("unpaired_upper", finite_value(ratio.unpaired.upper));
+  const auto bound = [&](double value) { return one.are_identical ? Value() : finite_value(value); };
+  fields.emplace_back("ratio_lower", bound(ratio.interval.lower));
+  fields.emplace_back("ratio_upper", bound(ratio.interval.upper));
+  fields.emplace_back("interval", std::string(one.are_identical ? "identical"
+                                              : ratio.is_paired ? "paired"
+                                                                : "unpaired"));
+  fields.emplace_back("unpaired_lower", bound(ratio.unpaired.lower));
+  fields.emplace_back("unpaired_upper", bound(ratio.unpaired.upper));
   fields.emplace_back("pairs", std::int64_t{ratio.num_pairs});
   fields.emplace_back("unlike_pairs", std::int64_t{ratio.num_unlike});
   fields.emplace_back("paired_ratio", finite_value(ratio.paired_ratio));
@@ -66,10 +69,6 @@ std::string bounded_length(const fit::CloggingLength& length, double factor) {
   const double lower = factor * length.interval.lower, upper = factor * length.interval.upper;
   return length.num_clogs == 0 ? "> " + console::plain(lower)
                                : console::with_interval(factor * length.length, lower, upper).value;
-}
-
-std::string clogs_text(const Comparison& one) {
-  return fmt::format("{}/{}", one.length_here.num_clogs, one.length_there.num_clogs);
 }
 
 /// The letters of the doubts here and there, as `fx/c`.
@@ -98,18 +97,20 @@ Flaws all_flaws(const Comparisons& comparisons) {
 /// @param factor  the unit of the lengths divided by the unit shown
 std::vector<std::string> cells(const Comparison& one, double factor, bool have_pairs) {
   const fit::LengthRatio& ratio = one.ratio;
-  std::vector<std::string> all = {clogs_text(one), bounded_length(one.length_here, factor),
-                                  bounded_length(one.length_there, factor)};
+  std::vector<std::string> all = {
+      std::to_string(one.length_here.num_clogs), bounded_length(one.length_here, factor),
+      std::to_string(one.length_there.num_clogs), bounded_length(one.length_there, factor)};
   if (std::isnan(ratio.interval.lower)) {
     all.insert(all.end(), {"-", "-"});
   } else {
     const auto rounded = console::with_interval(ratio.ratio, ratio.interval.lower, ratio.interval.upper);
-    all.insert(all.end(), {rounded.value, rounded.lower + " .. " + rounded.upper});
+    all.insert(all.end(), {one.are_identical ? "1" : rounded.value,
+                           one.are_identical ? "identical" : rounded.lower + " .. " + rounded.upper});
   }
   if (!have_pairs) return all;
   all.emplace_back(ratio.is_paired ? "yes" : "no");
   all.push_back(std::isnan(ratio.gain) ? "-" : fmt::format("{:.2f}", ratio.gain));
-  all.push_back(fmt::format("{}/{}", one.num_same_place, one.num_both_clogged));
+  all.push_back(fmt::format("{} of {}", one.num_same_place, one.num_both_clogged));
   return all;
 }
 
@@ -123,7 +124,7 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
   const std::string unit = comparisons.sigma_mm ? "mm" : comparisons.unit;
   const bool have_pairs =
       std::ranges::any_of(comparisons.all, [](const Comparison& one) { return one.ratio.num_pairs > 0; });
-  lines[0].insert(lines[0].end(), {"clogs", "lambda/" + unit, "lambda there", "ratio",
+  lines[0].insert(lines[0].end(), {"clogs", "lambda/" + unit, "clogs there", "lambda there", "ratio",
                                    fmt::format("{:.4g} %", 100 * confidence)});
   if (have_pairs) lines[0].insert(lines[0].end(), {"paired", "gain", "same place"});
   const Flaws flaws = all_flaws(comparisons);
@@ -139,6 +140,8 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
   if (flaws.num_failed > 0)
     text += fmt::format("   {} failed, and count{} as not clogged up to sound_distance\n",
                         sweep::counted(flaws.num_failed, "run"), flaws.num_failed == 1 ? "s" : "");
+  if (std::ranges::any_of(comparisons.all, &Comparison::are_identical))
+    text += "\nidentical: all runs end at the same places here and there, as copies of the same runs do\n";
   if (!have_pairs) return text + "\nno runs have the same seed, so intervals are those of independent runs\n";
   text +=
       "\npaired: the interval is from pairs of the same seed; gain: how many times smaller the error of "

@@ -147,7 +147,8 @@ SweepCost cost_with_interval(const Pace& pace, double bound, const Expectation& 
   if (seconds.middle == 0) return cost;
   const double sampling = 1.96 * seconds.relative_error();
   const auto factor = [&](double outlooks) { return std::exp(std::hypot(std::log(outlooks), sampling)); };
-  cost.expected = seconds.middle;
+  // A run of the sample may have taken longer than the mean pace allows.
+  cost.expected = std::min(bound, seconds.middle);
   cost.lower = cost.expected / factor(seconds.middle / seconds.lowest);
   cost.upper = std::min(bound, cost.expected * factor(seconds.highest / seconds.middle));
   return cost;
@@ -201,7 +202,7 @@ SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int6
 }
 
 SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting) {
-  const Pace pace(begun);
+  const Pace pace_of_all(begun);
   const Outlook outlook_of_all(begun);
   std::map<std::int64_t, std::vector<RunCost>> runs_of;
   for (const RunCost& run : begun) runs_of[run.parameter_set].push_back(run);
@@ -209,7 +210,9 @@ SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns>
   double bound = 0;
   Expectation seconds;
   std::map<std::int64_t, Shares> sets;
+  std::map<std::int64_t, Pace> paces;  // with one pace for all sets, a slow set would exceed the bound
   for (const auto& [set, runs] : runs_of) {
+    const Pace& pace = paces.emplace(set, Pace(runs)).first->second;
     const bool has_end =
         std::any_of(runs.begin(), runs.end(), [](const RunCost& run) { return run.is_over; });
     const Shares& shares =
@@ -218,17 +221,18 @@ SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns>
     for (const RunCost& run : runs)
       if (!run.is_over) bound += std::max(0.0, pace.seconds_per_work * run.longest_work - run.seconds);
   }
-  const Shares all(begun, pace, outlook_of_all);
+  const Shares all(begun, pace_of_all, outlook_of_all);
   constexpr double error_of_strangers = 1;
   for (const WaitingRuns& runs : waiting) {
     if (runs.number == 0) continue;
-    const double longest = pace.longest(static_cast<double>(runs.number) * runs.longest_work, runs.number);
     const auto set = sets.find(runs.parameter_set);
+    const Pace& pace = set == sets.end() ? pace_of_all : paces.at(runs.parameter_set);
+    const double longest = pace.longest(static_cast<double>(runs.number) * runs.longest_work, runs.number);
     add(seconds, set == sets.end() ? all.of(longest, error_of_strangers)
                                    : set->second.of(longest, set->second.error_of_others(runs.number)));
     bound += longest;
   }
-  return cost_with_interval(pace, bound, seconds);
+  return cost_with_interval(pace_of_all, bound, seconds);
 }
 
 }  // namespace clog::results

@@ -14,6 +14,7 @@
 #include "clog/fit/survival.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/groups.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "value_json.hpp"
 
 namespace clog::results {
@@ -139,7 +140,16 @@ std::string lengths_text(const DistanceTable& table, double confidence, std::opt
     line.push_back(letters_of(lengths[i].doubts));
     doubts.insert(doubts.end(), lengths[i].doubts.begin(), lengths[i].doubts.end());
   }
-  return console::aligned(lines) + legend_of(doubts);
+  int num_runs = 0, num_clogs = 0;
+  for (const Lengths& one : lengths) {
+    num_runs += one.clogging.num_runs;
+    num_clogs += one.clogging.num_clogs;
+  }
+  // If a table marks censored droplets instead of clogged ones, these numbers show it.
+  return console::aligned(lines) + legend_of(doubts) +
+         fmt::format(
+             "\nread: of {}, {} clogged (clogged = 1) and {} still moved where last seen (clogged = 0)\n",
+             sweep::counted(num_runs, "droplet"), num_clogs, num_runs - num_clogs);
 }
 
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm) {

@@ -102,7 +102,11 @@ Head head_of(std::vector<std::string> cells, DistanceTable& table) {
     }
   }
   if (head.distance < 0 || head.clogged < 0)
-    throw Error(fmt::format("has no column {}; {}", head.distance < 0 ? "distance" : "clogged", example));
+    throw Error(fmt::format(
+        "has no column {}; {}", head.distance < 0 ? "distance" : "clogged",
+        head.clogged < 0 && has_label(table.labels, "censored")
+            ? "clogged is the opposite of censored: give a column clogged with 1 where censored is 0"
+            : example));
   return head;
 }
 
@@ -165,6 +169,17 @@ bool has_diameter_like(const DistanceTable& table, double sigma_mm) {
   return std::ranges::all_of(table.groups, [&](const DistanceGroup& group) {
     return are_alike(Value(diameter_of(table, group, sigma_mm).value()), Value(sigma_mm));
   });
+}
+
+/// Whether both have the same distances, in any order.
+bool are_same(const std::vector<fit::Observation>& here, const std::vector<fit::Observation>& there) {
+  const auto sorted = [](const std::vector<fit::Observation>& runs) {
+    std::vector<std::pair<double, bool>> all;
+    for (const fit::Observation& run : runs) all.emplace_back(run.distance, run.clogged);
+    std::ranges::sort(all);
+    return all;
+  };
+  return sorted(here) == sorted(there);
 }
 
 /// How the groups of two tables match.
@@ -299,6 +314,35 @@ DistanceTable counted_from(double from, DistanceTable table) {
   return table;
 }
 
+std::vector<DistanceTable> tables_of_values(const DistanceTable& table, const std::string& label) {
+  const auto found = std::ranges::find(table.labels, column_name(label), column_name);
+  if (found == table.labels.end())
+    throw Error(
+        fmt::format("invalid --by={} (no column of {}, besides distance and clogged); its columns are {}",
+                    label, table.source, joined(table.labels)));
+  const auto place = found - table.labels.begin();
+  std::map<Value, DistanceTable> tables;
+  for (DistanceGroup group : table.groups) {
+    const Value value = group.labels[static_cast<std::size_t>(place)];
+    DistanceTable& one = tables[value];
+    if (one.groups.empty()) {
+      one = {.source = fmt::format("{}={}", *found, sweep::text_of(value)),
+             .unit = table.unit,
+             .labels = table.labels,
+             .groups = {}};
+      one.labels.erase(one.labels.begin() + place);
+    }
+    group.labels.erase(group.labels.begin() + place);
+    one.groups.push_back(std::move(group));
+  }
+  if (tables.size() < 2)
+    throw Error(fmt::format("invalid --by={} (all droplets have the same) give a column that varies", label));
+  std::vector<DistanceTable> all;
+  all.reserve(tables.size());
+  for (auto& [value, one] : tables) all.push_back(std::move(one));
+  return all;
+}
+
 DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked,
                            double confidence) {
   require_lengths(side);
@@ -407,6 +451,7 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
         comparison.length_here = fit::fit_clogging_length(runs, confidence);
         comparison.length_there = fit::fit_clogging_length(others, confidence);
         comparison.ratio = fit::fit_length_ratio(runs, others, {}, confidence);
+        comparison.are_identical = runs.size() > 1 && are_same(runs, others);
         comparisons.all.push_back(std::move(comparison));
       }
   }

@@ -83,10 +83,9 @@ std::vector<ResultColumn> droplet_columns(const std::vector<Group>& groups) {
 std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups, double confidence) {
   const bool have_several_droplets = !droplet_columns(groups).empty();
   std::vector<ResultColumn> columns = {
-      {"lambda/mm", [](const Group& group) { return length_text(clogging_in_mm(group)); }}};
-  if (have_several_droplets)
-    columns.push_back({fmt::format("{:g} %", 100 * confidence),
-                       [](const Group& group) { return interval_text(clogging_in_mm(group)); }});
+      {"lambda/mm", [](const Group& group) { return length_text(clogging_in_mm(group)); }},
+      {fmt::format("{:g} %", 100 * confidence),
+       [](const Group& group) { return interval_text(clogging_in_mm(group)); }}};
   columns.insert(columns.end(), {{"all runs/(mm/s)",
                                   [](const Group& group) {
                                     const fit::MeanSpeed speed = speed_in_mm_per_s(group);

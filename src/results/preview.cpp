@@ -211,11 +211,12 @@ SweepCost plus(SweepCost cost, double seconds) {
   return cost;
 }
 
-/// Replaces the estimate; the interval keeps its relative width.
-SweepCost with_expected(SweepCost cost, double expected) {
-  cost.lower *= expected / cost.expected;
-  cost.upper *= expected / cost.expected;
-  cost.expected = expected;
+/// Replaces the estimate and its limit; the interval keeps its relative width.
+SweepCost with_expected(SweepCost cost, const SweepCost& other) {
+  cost.bound = other.bound;
+  cost.lower *= other.expected / cost.expected;
+  cost.upper = std::min(cost.bound, cost.upper * other.expected / cost.expected);
+  cost.expected = other.expected;
   return cost;
 }
 
@@ -353,7 +354,7 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRul
   if (!is_done) print_short_lengths(sample);
   if (!is_done) print_expected(plan, sample, cost);
   if (!is_done && stored.seconds > 0) print_left(plan, output, stored, cost);
-  if (rule) print_rounds(*rule, plan.size() / plan.num_groups(), with_expected(alike, cost.expected));
+  if (rule) print_rounds(*rule, plan.size() / plan.num_groups(), with_expected(alike, cost));
   return console::exit_success;
 }
 

@@ -103,6 +103,22 @@ class Run(ProgramTest):
         slope = np.gradient(samples.distance, samples.time)[2:-2]
         self.assertLess(np.median(np.abs(slope - samples.speed[2:-2])), 0.003)
 
+    def test_another_interval_of_polygons_than_asked_for_is_said(self):
+        for asked, is_said in ((0.25, True), (10, False)):
+            done = self.succeed("clogrun", "array", *QUICK, "--polygon-interval", asked, "--output", f"{asked}.h5")
+            with h5py.File(self.folder / f"{asked}.h5", "r") as file:
+                stored = np.diff(file["polygon_times"][:-1]).mean()
+            words = f"the polygons are {stored:.4g} t0 apart, not {asked}"
+            self.assertEqual(words in done.stderr, is_said, done.stderr)
+            self.assertEqual(abs(stored / asked - 1) > 0.05, is_said)
+
+    def test_a_replay_writes_the_obstacles_of_its_run(self):
+        self.succeed("clogsweep", *QUICK, "seeds=2", "--output", "s.h5")
+        self.succeed("clogrun", "replay", "s.h5", 0, "--write-obstacles", "replay.csv", "--output", "r.h5")
+        self.succeed("clogrun", "array", *QUICK, "seeds=2", "--write-obstacles", "array.csv", "--output", "a.h5")
+        circles = [np.loadtxt(self.folder / f"{name}.csv", delimiter=",", comments=("#", "x")) for name in ("replay", "array")]
+        np.testing.assert_array_equal(*circles)
+
     def test_it_writes_polygons_and_the_obstacles_along_the_way(self):
         self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 10, "--output", "run.h5")
         with h5py.File(self.folder / "run.h5", "r") as file:

@@ -187,6 +187,32 @@ class Sweep(ProgramTest):
         told = self.succeed("clogsweep", *sweep, "line-tension=0.5,1", "seeds=1..6", "--dry-run").stdout.splitlines()[-1]
         self.assertIn(f"9 of 12 tasks; 3 to go: expected {3 / 3600:.2g} core-hours more ", told)
 
+    def test_the_expected_cost_is_within_its_interval_and_its_limit(self):
+        sweep = [*QUICK, "--output", "s.h5"]
+        self.succeed("clogsweep", *sweep, "line-tension=0.1", "seeds=1..6")
+        self.succeed("clogsweep", *sweep, "line-tension=1", "seeds=1..2")
+        number = r"(\S+) core-hours"
+        random = np.random.default_rng(1)
+        for factor in (1, 1e4, *random.lognormal(0, 5, 4)):
+            seconds = random.lognormal(0, 0.1, 8)
+
+            def edit(rows):
+                rows["processor_seconds"] = np.where(rows["line_tension"] == 1, factor, 1) * seconds
+
+            stored_rows.change(self.folder / "s.h5", edit)
+            for more in (["line-tension=0.1,1", "seeds=1..6"], ["line-tension=0.1,1,2", "seeds=1..30"],
+                         ["line-tension=0.1,1", "seeds=1..12", "--until-precision=20%", "--most-seeds=40"]):
+                told = self.succeed("clogsweep", *sweep, *more, "--dry-run").stdout
+                bound = float(re.search(f"at most {number}", told)[1])
+                for expected, lower, upper, limit in re.findall(r"expected (\S+) core-hours \(95 %: (\S+) to ([^)]+)\)(?:, at most (\S+))?", told):
+                    # The numbers are printed with two or three digits.
+                    self.assertLessEqual(float(lower), 1.05 * float(expected), told)
+                    self.assertLessEqual(float(expected), 1.05 * float(upper), told)
+                    if limit:
+                        self.assertLessEqual(float(upper), 1.05 * float(limit), told)
+                    elif "all rounds" not in told:
+                        self.assertLessEqual(float(upper), 1.05 * bound, told)
+
     def test_runs_beyond_shorter_lists_stay_and_are_counted_everywhere(self):
         sweep = [*QUICK, "line-tension=0.5,1", "--output", "s.h5"]
         self.assertNotIn("beyond", self.succeed("clogsweep", *sweep, "seeds=1..5").stderr)

@@ -71,12 +71,23 @@ class Compared(Analysis):
             self.sweep(name, "preset=robust")
         for one in self.compare("s.h5", "t.h5")["comparisons"]:
             self.assertEqual((one["ratio"], one["same_place"], one["unlike_pairs"]), (1, one["both_clogged"], 0))
+            self.assertEqual((one["interval"], one["ratio_lower"], one["ratio_upper"], one["unpaired_lower"]), ("identical", None, None, None))
+        text = self.succeed("clogfit", "compare", "s.h5", "t.h5").stdout
+        self.assertRegex(text, r" 1 +identical +no ")
+        self.assertIn("identical: all runs end at the same places here and there", text)
+        self.write("own.csv", "distance [mm],clogged\n41.5,1\n120,0\n7,1\n")
+        self.write("copy.csv", "distance [mm],clogged\n7,1\n41.5,1\n120,0\n")
+        one, = self.compare("own.csv", "copy.csv")["comparisons"]
+        self.assertEqual((one["ratio"], one["interval"], one["ratio_lower"]), (1, "identical", None))
+        # One more run is another sweep.
+        self.sweep("more.h5", "preset=robust", seeds="1..7")
+        self.assertEqual({one["interval"] for one in self.compare("s.h5", "more.h5")["comparisons"]}, {"unpaired"})
 
     def test_text_csv_and_a_picture(self):
         self.sweep("s.h5", "near-wall-drag=0,2", seeds="1..3")
         text = self.succeed("clogfit", "compare", "s.h5", "--by", "near-wall-drag").stdout
         self.assertRegex(text, r"lambda of each over that of near_wall_drag=0")
-        self.assertRegex(text, r"of +line_tension +clogs +lambda/sigma +lambda there +ratio +95 % +paired +gain +same place")
+        self.assertRegex(text, r"of +line_tension +clogs +lambda/sigma +clogs there +lambda there +ratio +95 % +paired +gain +same place")
         self.succeed("clogfit", "compare", "s.h5", "--by", "near_wall_drag", "--format", "csv", "--confidence", "0.9")
         drawn = self.run_program("clogfit", "compare", "s.h5", "--by", "near-wall-drag", "--picture", "ratio.png")
         self.assertEqual(drawn.returncode, 0, drawn.stderr)

@@ -337,6 +337,11 @@ class Devices(Walls):
             self.assertAlmostEqual(shares[np.argmin(np.abs(at - 1.4))], passage["passed"] / (passage["passed"] + passage["stopped"]))
         self.draw("report", "s.h5", "--examples", 0, "--programs", BIN)
         self.assertEqual((self.folder / "s-report.html").read_text().count("posts.csv: releases"), 1)
+        # Exported rows have the diameter of their droplet. The length of the device [sigma] is 2.8 mm.
+        self.draw("export", "s.h5", "rows.csv", "--programs", BIN)
+        exported = pandas.read_csv(self.folder / "rows.csv", float_precision="round_trip")
+        np.testing.assert_allclose(exported["diameter_mm [mm]"] * exported["length [sigma]"], 2.8, rtol=1e-9)
+        self.assertEqual((set(exported["angle_degrees [degrees]"]), exported["distance [sigma]"].tolist()), ({90}, rows["distance"].tolist()))
         # Other devices are no device of several sizes.
         self.write("other.csv", "# units=um droplet=200um\nx,y,diameter\n700,500,100\n")
         self.succeed("clogsweep", "--lab", "lab.cfg", "obstacles=other.csv", *keys[1:], "seeds=1", "--output", "other.h5")
@@ -1115,6 +1120,29 @@ class OtherTools(Analysis):
         self.assertIn("4 outside the region", told)
         self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "500,0,500,9", words=["--region", "x0,y0,x1,y1"])
         self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "2500,300,3100,800", words=["no posts", "--region"])
+
+    def test_a_post_beside_the_edge_of_a_region_is_left_out_and_named(self):
+        # Two posts reach into the region of 500..2000, from the left and from above.
+        self.write("device.svg", SVG.format("".join(f'<circle cx="{x}" cy="{y}" r="50"/>' for x, y in ((480, 600), (800, 600), (1200, 380), (1300, 800), (1990, 700)))))
+        told = self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--region", "500,400,2000,1000").stdout
+        self.assertIn("2 posts left out that reach into the region from outside", told)
+        self.assertIn("3 posts, device 7.5 x 3 droplet diameters (the region)", told)
+        self.assertIn("the border is no wall", told)
+        self.assertTrue(told.endswith("box=3 length=7.5 release=entrance entrance=1 exit=6.5 ...\n"), told)
+
+    def test_the_printed_command_has_walls_only_where_the_drawing_has_an_edge(self):
+        image = Image.new("L", (1800, 600), 230)
+        pen = ImageDraw.Draw(image)
+        for x, y in ROW:
+            pen.ellipse([100 * (x - 0.25), 600 - 100 * (y + 0.25), 100 * (x + 0.25), 600 - 100 * (y - 0.25)], fill=40)
+        image.save(self.folder / "mask.png")
+        self.write("device.svg", SVG.format("".join(f'<circle cx="{200 * x}" cy="{1200 - 200 * y}" r="50"/>' for x, y in ROW)))
+        for drawing, options, walls in (("mask.png", ["--pixel", "2um"], ""), ("device.svg", [], "side-walls=on ")):
+            told = self.draw("circles", drawing, "--droplet", "200um", "--output", "posts", *options).stdout
+            self.assertIn(f"box=6 length=18 {walls}release=entrance entrance=1 exit=17 ...", told)
+        pen.rectangle([1400, 560, 1700, 570], fill=40)  # a scale bar
+        image.save(self.folder / "bar.png")
+        self.refuse_analysis("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "cut", words=["not round", "cut scale bars", "--region"])
 
     def test_a_region_is_given_as_the_program_shows_it(self):
         np.testing.assert_allclose(self.svg('<circle cx="800" cy="300" r="50"/><circle cx="800" cy="900" r="50"/>', region=(700, 200, 1000, 400)), [(100, 100, 100)], atol=0.01)

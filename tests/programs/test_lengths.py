@@ -153,10 +153,31 @@ class Lengths(ProgramTest):
         text = self.succeed("clogfit", "lengths", "own.csv").stdout
         self.assertRegex(text, r"9\.68 +xe")
         self.assertIn("\ne: half of the clogs or more", text)
+    def test_what_was_read_is_said_in_words_for_experiments(self):
+        self.write("own.csv", "distance [mm],clogged\n10,1\n20,0\n30,0\n")
+        told = self.succeed("clogfit", "lengths", "own.csv").stdout
+        self.assertIn("read: of 3 droplets, 1 clogged (clogged = 1) and 2 still moved", told)
+        self.assertIn("more droplets are needed", told)
+
+    def test_groups_of_one_table_are_compared(self):
+        random = np.random.default_rng(3)
+        runs = [(group, wall, random.exponential(length)) for group, length in ((2, 50), (10, 20), (0.5, 90)) for wall in ("a", "b") for _ in range(6)]
+        self.write("own.csv", "surfactant [mM],wall,distance [mm],clogged\n" + "".join(f"{group},{wall},{distance!r},1\n" for group, wall, distance in runs))
+        told = json.loads(self.succeed("clogfit", "compare", "own.csv", "--by", "surfactant [mM]", "--format", "json").stdout)
+        self.assertEqual([(one["here"], one["there"], one["wall"]) for one in told["comparisons"]],
+                         [(f"surfactant [mM]={group}", "surfactant [mM]=0.5", wall) for group in (2, 10) for wall in ("a", "b")])
+        for one in told["comparisons"]:
+            of = {group: sum(distance for g, wall, distance in runs if g == group and wall == one["wall"]) / 6 for group in (0.5, 2, 10)}
+            ratio = of[float(one["here"].partition("=")[2])] / of[0.5]
+            self.assertAlmostEqual(one["ratio"], ratio)
+            # All droplets clogged, so the ratio follows Snedecor's F.
+            self.assertAlmostEqual(one["ratio_upper"], ratio / scipy.stats.f.ppf(0.025, 12, 12))
+        for words, arguments in [(["no column", "wall"], ["--by", "wal"]), (["one table"], ["own.csv", "--by", "wall"])]:
+            self.refuse("clogfit", "compare", "own.csv", *arguments, words=words)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         for text, words in [("distance,clogged\n1,1\n", ["no unit", "distance [mm]"]), ("distance [ft],clogged\n1,1\n", ["'ft'"]),
-                            ("distance [mm],wall\n1,2\n", ["no column clogged"]), ("way [mm],clogged\n1,1\n", ["no column distance"]),
+                            ("distance [mm],wall\n1,2\n", ["no column clogged"]), ("distance [mm],censored\n1,0\n", ["no column clogged", "opposite of censored"]), ("way [mm],clogged\n1,1\n", ["no column distance"]),
                             ("distance [mm],clogged\n-1,1\n", ["line 2", "0 or more"]), ("distance [mm],clogged\n1,2\n", ["line 2", "clogged is '2'"]),
                             ("distance [mm],clogged\nnan,1\n", ["line 2"]), ("distance [mm],clogged\n1\n", ["line 2", "1 cell"]),
                             ("distance [mm],clogged\n", ["holds no distances"]), ("", ["holds no distances"]),
@@ -256,7 +277,7 @@ class Beside(ProgramTest):
         self.write("own.csv", "distance [mm],clogged\n3,1\n")
         self.write("other.csv", "distance [mm],clogged,line-tension\n3,1,7\n")
         for arguments, words in [(["own.csv", "sweep.h5"], ["--lab"]), (["own.csv"], ["nothing to compare"]),
-                                 (["other.csv", "sweep.h5", "--lab", "lab.cfg"], ["no group"]), (["own.csv", "sweep.h5", "--by", "friction"], ["--by"])]:
+                                 (["other.csv", "sweep.h5", "--lab", "lab.cfg"], ["no group"]), (["own.csv", "sweep.h5", "--by", "friction"], ["--by", "one table"])]:
             self.refuse("clogfit", "compare", *arguments, words=words)
 
     def test_the_picture_shows_measured_lengths_in_droplet_diameters(self):

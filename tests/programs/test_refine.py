@@ -305,6 +305,21 @@ class Refine(RefineTest):
                            "obstacle-gap=0.3,0.5", "--until=peak=50%", "--most-seeds=40", "--output", "s.h5")
         self.assertRegex(done.stderr, r"peak=50% is reached; .*highest at obstacle-gap 0\.[45]")
 
+    def test_a_search_over_a_gap_says_what_else_changes_and_which_runs_did_not_clog(self):
+        words = ["box=20", "vertices=64", "max-time=60", "seeds=1..2", "obstacle-gap=0.3,1"]
+        note = "obstacle-density=saturated changes the number of obstacles per area with obstacle-gap"
+        done = self.refine("obstacle-gap", *words, "obstacle-density=saturated", "--until=crossing=20:60%", "--most-seeds=2", "--output", "s.h5", launcher=())
+        self.assertIn(note, done.stderr)
+        rows = table(self.folder / "s.h5")
+        without = rows.groupby("obstacle_gap").filter(lambda of_gap: not (of_gap.status == "clogged").any())
+        self.assertGreater(len(without), 0)
+        share = (without.steps * without.vertices).sum() / (rows.steps * rows.vertices).sum()
+        named = ", ".join(f"obstacle-gap={gap:g}" for gap in sorted(set(without.obstacle_gap)))
+        self.assertIn(f"{len(without)} runs ({100 * share:.0f} % of the computing time) did not clog, at {named}: they only show", done.stderr)
+        self.assertIn("obstacle-density=12.5% changes", self.refine("obstacle-gap", *words, "--budget=1h", "--dry-run", launcher=()).stderr)
+        for more in (["obstacle-density=0.2"], ["obstacle-density=saturated", "--quiet"]):
+            self.assertNotIn("changes the number", self.refine("obstacle-gap", *words, *more, "--budget=1h", "--dry-run", launcher=()).stderr)
+
     def test_a_dry_run_tells_what_the_rounds_may_cost(self):
         told = self.refine("line-tension", *SWEEP, "--until=curve=20%", "--dry-run", launcher=()).stdout
         for words in ("21 tasks: 7 parameter sets, 3 seeds each", "this is the first round", "core-hours in all if every run clogs"):

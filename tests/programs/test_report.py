@@ -127,7 +127,7 @@ class Lengths(Browser):
                 self.assertEqual(shown[name], str(group[name]))
             self.assertEqual(shown["seeds"], "1 to 4")
             # Few runs clogged, so clogfit's sentence about few clogs appears.
-            self.assertIn("more seeds are needed", shown["doubts"])
+            self.assertIn("more droplets are needed", shown["doubts"])
             # Only the curve of this point is bright in the legend.
             bright = first_chart.find_elements(By.CSS_SELECTOR, ".legend.of")
             self.assertEqual(len(bright), 1)

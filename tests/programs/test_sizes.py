@@ -364,6 +364,8 @@ class Sizes(ProgramTest):
     def test_each_size_of_a_device_can_be_drawn(self):
         self.write("posts.csv", POSTS)
         self.sweep("obstacles=posts.csv", "box=10.2mm", "release=anywhere", "vertices=64", "max-time=5", "seeds=1")
+        together = clogsweep.Sweep(self.folder / "s.h5", BIN).device(ways=0, map=0).figure
+        self.assertIn(" x 10.2 mm", together.texts[0].get_text())
         parts = self.picture_of("s.h5")
         self.assertEqual(len(parts), len(SETS))
         for part in device.in_one_unit(parts):

@@ -140,7 +140,7 @@ class Units(ProgramTest):
         if group["relative_speed_all"] is not None:
             self.assertAlmostEqual(group["speed_mm_per_s"] / (7 * group["relative_speed_all"]), 1, places=3)
         self.assertEqual(fit["units"]["clogging_length_mm"], "mm")
-        self.assertIn("lambda/mm", self.succeed("clogfit", "s.h5").stdout)
+        self.assertRegex(self.succeed("clogfit", "s.h5").stdout, r"lambda/mm +95 %")
         self.copy_sweep("plain.h5", *FEW)
         self.assertNotIn("lambda/mm", self.succeed("clogfit", "plain.h5").stdout)
         self.assertIn("lambda/mm", self.succeed("clogfit", "plain.h5", "--lab", lab).stdout)

@@ -98,10 +98,13 @@ def unit_in_words(arguments: argparse.Namespace, drawing: shapes.Drawing) -> str
     return str(arguments.pixel or arguments.unit or drawing.unit)
 
 
-def call_of(device: shapes.Device, output: pathlib.Path) -> str:
-    """The command that starts a sweep of the device."""
-    return (f"clogsweep obstacles={output}.csv box={device.width:.6g} length={device.length:.6g} side-walls=on "
-            f"release=entrance exit={device.length:.6g} ...")
+def call_of(device: shapes.Device, drawing: shapes.Drawing, output: pathlib.Path) -> str:
+    """The command that starts a sweep of the device. The border of a picture or of a region is no wall. Entrance and
+    exit are one droplet diameter inside a device that is long enough, because the posts repeat along the flow."""
+    walls = "" if drawing.frame and len(device.walls) < 2 else "side-walls=on "
+    inset = 1 if device.length >= 4 else 0
+    ends = f"entrance={inset} exit={device.length - inset:.6g}" if inset else f"exit={device.length:.6g}"
+    return f"clogsweep obstacles={output}.csv box={device.width:.6g} length={device.length:.6g} {walls}release=entrance {ends} ..."
 
 
 def told(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> list[str]:
@@ -114,6 +117,8 @@ def told(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> list[
         gaps = [("smallest gap", device.smallest_gap()), ("to a side", device.gap_to_sides() if device.has_frame or device.walls else np.inf)]
         gap = "".join(f", {name} {gap:.4g} ({gap * micrometres:.4g} um)" for name, gap in gaps if np.isfinite(gap))
         words.append(f"diameters of circles {diameters.min():.4g} to {diameters.max():.4g}{gap}, in droplet diameters")
+    if drawing.frame and len(device.walls) < 2:
+        words.append("the border is no wall in the command below, so the posts repeat across the flow; add side-walls=on if there are walls")
     if not device.has_frame and len(device.walls) < 2:
         words.append("no edge is drawn: the device ends half a droplet diameter beyond the posts" + (", or where a wall ends" if device.walls else " on every side; leave out side-walls=on if it has no walls"))
     if number := len(device.walls):
@@ -185,7 +190,7 @@ def body() -> int:
     if device.others:
         light = "; if the picture is lit unevenly, even it out and make it black and white first" if drawing.is_picture else ""
         raise UserError(f"{rounded.counted(len(device.others), 'post')} of {len(device.others) + len(device.circles)} not round, red in the picture; no {table} "
-                        f"was written. Use --as-rows for rows of circles along their outlines, --as-circles for circles of the same area, or a larger --tolerance{light}")
+                        f"was written. Use --as-rows for rows of circles along their outlines, --as-circles for circles of the same area, or a larger --tolerance; cut scale bars and labels away with --region or in the drawing, because these options make posts of them, too{light}")
     if touching := device.overlaps():
         x, y, _ = device.circles[touching[0][0]]
         micrometres = device.droplet_micrometres
@@ -197,5 +202,5 @@ def body() -> int:
         raise UserError(f"{rounded.counted(len(outside), 'post')} with the centre outside the edge of the device; no {table} was written. Draw a wider edge, cut these posts away, or choose another --region")
     with outputs.replaced(table) as fresh:
         fresh.write_text(shapes.csv_of(device, printable(f"{arguments.drawing.name}, by clogsweep")), encoding="utf-8")
-    command_line.tell(f"{table}\n{call_of(device, arguments.output)}")
+    command_line.tell(f"{table}\n{call_of(device, drawing, arguments.output)}")
     return 0

@@ -107,6 +107,15 @@ def search_of(arguments: argparse.Namespace, keys: list[str], config: dict[str, 
     return curve_search.CurveSearch(keys, lists, list(map(int, seeds)), number(config["max-time"]), options)
 
 
+def changing_density(keys: Sequence[str], config: dict[str, str]) -> str:
+    """Says that a density of obstacles changes with a refined key; otherwise returns an empty text."""
+    density, sizes = config["obstacle-density"], [key for key in keys if key in ("obstacle-gap", "obstacle-diameter")]
+    if config["obstacle-layout"] != "random" or not sizes or not math.isnan(number(density)):
+        return ""
+    return (f"obstacle-density={density} changes the number of obstacles per area with {' and '.join(sizes)}, so lambda depends on both; "
+            "a number, such as obstacle-density=0.2, keeps it")
+
+
 def printed_tasks(*command: object) -> str:
     """The tasks that a dry run prints. The dry run is stopped before it estimates their cost. @throws UserError"""
     words = [*map(str, command), "--dry-run"]
@@ -152,6 +161,8 @@ def body() -> int:
     values = stored.settings(config)
     require_keys(keys, values, schema)
     search = search_of(arguments, keys, values)
+    if (note := changing_density(keys, values)) and not arguments.quiet:
+        print(f"python3 -m clogsweep refine: {note}", file=sys.stderr)
 
     with tempfile.TemporaryDirectory(prefix="clogsweep-refine-") as temporary:
         folder = pathlib.Path(temporary)

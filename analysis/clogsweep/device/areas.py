@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..tools import rounded
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from .libraries import library
@@ -172,19 +173,23 @@ def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
 
 def cut(drawing: Drawing, region: tuple[float, float, float, float], tolerance: float) -> None:
     """Keeps the part of the drawing that is in a region. The region becomes the frame. Round posts that cross the
-    region's border stay whole; other outlines and lines are cut at the border.
+    region's border stay whole, or are left out if their centre is outside; other outlines and lines are cut at the
+    border.
     @param region  left, bottom, right, top
     @param tolerance  as in fitted_circle()"""
     geometry = library("shapely.geometry", "python3-shapely")
     box = geometry.box(*region)
     number = len(drawing.circles) + len(drawing.outlines) + len(drawing.lines)
-    drawing.circles = [circle for circle in drawing.circles if box.distance(geometry.Point(circle[:2])) < circle[2] / 2]
-    inside, cuts, around = [], [], 0
+    reaching = [circle for circle in drawing.circles if box.distance(geometry.Point(circle[:2])) < circle[2] / 2]
+    drawing.circles = [circle for circle in reaching if holds_centre(region, circle)]
+    inside, cuts, around, beside = [], [], 0, len(reaching) - len(drawing.circles)
     for outline in drawing.outlines:
         common = box.intersection(polygon(outline)) if is_near(outline, region) else None
         if common is not None and common.area > 0:
-            is_whole = fitted_circle(outline, True, tolerance) or holds(np.reshape(region, (2, 2)), [outline])
-            if is_whole:
+            circle = fitted_circle(outline, True, tolerance)
+            if circle and not holds_centre(region, circle):
+                beside += 1
+            elif circle or holds(np.reshape(region, (2, 2)), [outline]):
                 inside.append(outline)
             elif common.area < (1 - NEAR) * box.area:
                 cuts.append(common)
@@ -196,7 +201,16 @@ def cut(drawing: Drawing, region: tuple[float, float, float, float], tolerance: 
     drawing.outside = number - len(drawing.circles) - len(inside) - len(cuts) - around - sum(line.length > 0 for _, line in lines)
     for common in cuts:
         add(drawing, common)
+    if beside:
+        drawing.notes.append(f"{rounded.counted(beside, 'post')} left out that {'reaches' if beside == 1 else 'reach'} into the region from outside")
     drawing.frame = region
+
+
+def holds_centre(region: tuple[float, float, float, float], circle: tuple[float, float, float]) -> bool:
+    """Whether a region holds the centre of a circle. A centre on the upper or the right border is outside, because the
+    array repeats there."""
+    left, bottom, right, top = region
+    return left <= circle[0] < right and bottom <= circle[1] < top
 
 
 def is_near(outline: Numbers, region: tuple[float, float, float, float]) -> bool:

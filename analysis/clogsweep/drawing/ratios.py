@@ -69,8 +69,11 @@ def note_lines(told: dict[str, Any]) -> list[str]:
     meanings = {"paired": "filled: from pairs of the same seed", "unpaired": "hollow: from numbers of clogs alone"}
     lines += ["; ".join(meaning for kind, meaning in meanings.items() if kind in kinds)]
     unknown = sum(one["ratio_lower"] is None for one in told["comparisons"])
-    if unknown:
-        lines.append(f"{counted(unknown, 'point')} without clogs on one side: no ratio")
+    identical = sum(one["interval"] == "identical" for one in told["comparisons"])
+    if unknown > identical:
+        lines.append(f"{counted(unknown - identical, 'point')} without clogs on one side: no ratio")
+    if identical:
+        lines.append(f"{counted(identical, 'point')} with identical runs on both sides: no interval")
     return lines
 
 
@@ -78,7 +81,7 @@ def draw_on(axes: Axes, told: dict[str, Any]) -> None:
     """Draws the ratios. @param told  the JSON output of clogfit compare. @throws UserError  if there is no ratio"""
     comparisons = told["comparisons"]
     if all(one["ratio_lower"] is None for one in comparisons):
-        raise UserError("no ratio to draw: in every comparison one side has no clogs")
+        raise UserError("no ratio to draw: in every comparison one side has no clogs, or both sides have identical runs")
     abscissa = abscissa_of(told)
     curves = curves_of(told, abscissa)
     values = [one[abscissa] for one in comparisons] if abscissa else []

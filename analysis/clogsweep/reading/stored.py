@@ -102,6 +102,8 @@ def changed_run(path: AnyPath) -> UserError:
 def why_not_open(path: AnyPath, error: OSError) -> str:
     if error.errno:
         return os.strerror(error.errno)
+    if os.fspath(path).endswith((".csv", ".tsv", ".txt", ".dat")):
+        return "not an HDF5 file; clogfit lengths fits measured distances"
     return str(error) if h5py.is_hdf5(path) else "not an HDF5 file"
 
 

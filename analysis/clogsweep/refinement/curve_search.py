@@ -21,6 +21,7 @@ from .membership import Membership, Values
 MOST_VALUES = {1: 100, 2: 13}  # Largest number of values of each key, by the number of keys.
 FIRST_VALUES = {1: 7, 2: 4}
 MOST_COMBINATIONS = 500
+COSTLY = 0.1  # Share of the work on values without clogs that is named.
 SHARE_OF_ROUND = 0.5  # Work of a round, divided by the work of all earlier rounds.
 
 
@@ -130,10 +131,17 @@ class CurveSearch:
             words += [f"it crosses {length:g} sigma at {self.keys[0]} {math.exp(one.place):.3g} "
                       f"({math.exp(one.lower):.3g} to {math.exp(one.upper):.3g})" for one in found]
             words += [] if found else [f"it does not cross {length:g} sigma"]
-        failures = [" ".join(f"{key}={number_text(value)}" for key, value in zip(self.keys, values))
-                    + f" ({one.failed} of {counted(one.runs, 'run')})"
+        without = known.runs[known.runs["clogs"] == 0]
+        share = without["work"].sum() / known.runs["work"].sum()
+        if share > COSTLY:
+            words.append(f"{counted(int(without['runs'].sum()), 'run')} ({100 * share:.0f} % of the computing time) did not clog, at "
+                         f"{', '.join(map(self._named, without.index))}: they only show that lambda is larger")
+        failures = [f"{self._named(values)} ({one.failed} of {counted(one.runs, 'run')})"
                     for values, one in zip(known.runs.index, known.runs.itertuples()) if one.failed]
         return "; ".join([*words, f"failed: {', '.join(failures)}"] if failures else words)
+
+    def _named(self, values: Values) -> str:
+        return " ".join(f"{key}={number_text(value)}" for key, value in zip(self.keys, values))
 
     def costs(self, hours_per_run: float) -> list[str]:
         """States the cost of the rounds, for --dry-run. @param hours_per_run  of the first round, or NaN if unknown"""

@@ -18,6 +18,8 @@ from .fit import Fit
 from .run import Run
 
 if TYPE_CHECKING:
+    import pandas
+
     from ..drawing.clogs import Clogs
     from ..style import Picture
 
@@ -165,11 +167,24 @@ class Sweep:
 
     def export(self, output: str | os.PathLike[str]) -> pathlib.Path:
         """Writes `rows` for other programs, with the units of the columns. A .csv has one table, and a .h5 has a
-        dataset for each column.
+        dataset for each column. If the laboratory is known, diameter and tilt of the droplet are the last columns.
         @return the file. @throws UserError  if the file exists"""
         path = pathlib.Path(output)
-        export.write(self.rows, path, stored.source(self.attributes))
+        export.write(self._rows_with_droplets(), path, stored.source(self.attributes))
         return path
+
+    def _rows_with_droplets(self) -> pandas.DataFrame:
+        """`rows` with the diameter and the tilt of each droplet, if the laboratory is known."""
+        if not self.rows["laboratory"].any():
+            return self.rows
+        told = self.fit().told["groups"]
+        known = {name: {group["laboratory"]: group.get(name) for group in told} for name in fits.DROPLETS}
+        droplets = {name: self.rows["laboratory"].map(of).astype(float) for name, of in known.items() if any(of.values())}
+        table = self.rows.assign(**droplets)
+        for name in droplets:
+            table.attrs["units"] = table.attrs["units"] | {name: fits.DROPLETS[name]["unit"]}
+            table.attrs["meanings"] = table.attrs["meanings"] | {name: f"{fits.DROPLETS[name]['meaning']} [{fits.DROPLETS[name]['unit']}]"}
+        return table
 
     def __repr__(self) -> str:
         """Names the file, or all files if there are several."""

@@ -47,6 +47,9 @@ struct Comparison {
   fit::LengthRatio ratio{};  ///< ratio of the length here to the length there
   int num_both_clogged = 0;  ///< pairs of runs that both clogged
   int num_same_place = 0;    ///< pairs of runs that both clogged, at the same place
+  /// All runs here and there ended alike at the same places, as copies of the same runs do. Their ratio is
+  /// exactly 1 and has no interval.
+  bool are_identical = false;
 };
 struct Comparisons {
   std::vector<std::string> columns;    ///< listed columns with a value that both sides have; the values in

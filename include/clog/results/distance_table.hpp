@@ -39,6 +39,9 @@ DistanceTable read_distances(const std::string& path);
 /// The table with distances that count from `from` on, in the table's unit; droplets that ended before are
 /// left out, and their number is printed (left truncation, see group_runs()).
 DistanceTable counted_from(double from, DistanceTable table);
+/// Splits a table into one table for each value of a label, in the order of the values.
+/// @throws Error if there is no such label, or only one value
+std::vector<DistanceTable> tables_of_values(const DistanceTable& table, const std::string& label);
 /// The runs of a sweep. Runs with the same values of all parameters that vary or are asked for form a group.
 /// @param scales  units of the laboratories, if any. If there are several, or if `diameter` or `angle` is
 /// asked for, distances are in mm, and the droplet's diameter [mm] and the tilt [degrees] separate groups, in

@@ -45,7 +45,7 @@ struct DoubtText {
   const char* sentence;
 };
 inline constexpr DoubtText doubt_texts[] = {
-    {Doubt::few_clogs, 'f', "few_clogs", "fewer than 5 clogs: more seeds are needed"},
+    {Doubt::few_clogs, 'f', "few_clogs", "fewer than 5 clogs: more droplets are needed"},
     {Doubt::not_exponential, 'x', "not_exponential",
      "P(r) is not exponential (p < 0.05, Holm's test of all groups of ten clogs or more): one length does "
      "not describe these runs"},
