@@ -62,6 +62,31 @@ class Names(Analysis):
         self.assertIn(SHOWN, page)
         self.assertNotIn("\x1b", page)
 
+    def test_a_name_that_begins_with_a_dash_is_given_with_its_folder(self):
+        os.rename(self.folder / SWEEP, self.folder / "-dash.h5")
+        for command in (["device"], ["poster"], ["clogging-length"], ["dwell"], ["clogs"], ["compare", "./-dash.h5"], ["report", "--examples", 0], ["export"]):
+            with self.subTest(command):
+                name, *options = command
+                self.draw(name, "./-dash.h5", *options, "--output", f"./-{name}", "--programs", BIN)
+        for name in ("curve", "critical-angle"):  # They refuse this sweep, which has two line tensions and no lattice.
+            with self.subTest(name):
+                self.refuse_analysis(name, "./-dash.h5", "--programs", BIN, words=["-dash.h5"])
+
+    def test_pictures_do_not_depend_on_settings_of_the_user(self):
+        (self.folder / "matplotlibrc").write_text("text.usetex: True\nbackend: GTK4Cairo\nfont.size: 30\naxes.grid: True\n")
+        command = [sys.executable, "-m", "clogsweep", "clogging-length", os.fsencode(SWEEP), "--programs", str(BIN), "--output"]
+        around = {"cwd": self.folder, "capture_output": True, "text": True}
+        usual = {**os.environ, "PYTHONPATH": str(ROOT / "analysis")}
+        pictures = []
+        for name, foreign in (("usual", {}), ("inline", {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}), ("none", {"MPLBACKEND": "inline"}),
+                              ("latex", {"MATPLOTLIBRC": str(self.folder / "matplotlibrc")})):
+            folder = {"cwd": self.folder} if name == "latex" else {"cwd": ROOT}
+            done = subprocess.run([*command[:4], self.folder / SWEEP, *command[5:], self.folder / name], **{**around, **folder}, env={**usual, **foreign}, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            with Image.open(self.folder / f"{name}.png") as picture:
+                pictures.append(picture.tobytes())
+        self.assertEqual(len(set(pictures)), 1)
+
     def test_a_name_is_drawn_as_it_is(self):
         sweep = clogsweep.open(self.folder / SWEEP, BIN)
         for figure in (sweep.device(ways=0, map=0).figure, sweep.fit().curve().figure):

@@ -17,6 +17,7 @@ namespace {
 
 /// Climbs to a local maximum of clearance().
 Eigen::Array2d climb(const ObstacleArray& obstacles, Eigen::Array2d place) {
+  constexpr double round_off = 1e-12;  // sigma
   const double enough = 2 * units::droplet_diameter;
   double room = clearance(obstacles, place[0], place[1], enough);
   for (double step = 0.1; step > 1e-4 && room < enough;) {
@@ -25,7 +26,7 @@ Eigen::Array2d climb(const ObstacleArray& obstacles, Eigen::Array2d place) {
       const double angle = direction * std::numbers::pi / 4;
       const Eigen::Array2d trial = place + step * Eigen::Array2d(portable::cos(angle), portable::sin(angle));
       const double trial_room = clearance(obstacles, trial[0], trial[1], enough);
-      if (trial_room > room) {
+      if (trial_room > room + round_off) {  // along a wall, round-off alone would lead on for ever
         room = trial_room;
         place = trial;
         climbed = true;

@@ -266,9 +266,49 @@ std::vector<int> posts_among(std::span<const Obstacle> circles) {
   return post;
 }
 
+/// The place of each circle in its post, unwrapped by a way from circle to circle. NaN in posts that lead to
+/// their own periodic image, in which there are several such places.
+std::vector<Eigen::Array2d> ObstacleArray::places_in_posts() const {
+  constexpr double nowhere = std::numeric_limits<double>::quiet_NaN(), same = 1e-6;  // sigma
+  std::vector<std::optional<Eigen::Array2d>> places(binned_.obstacles.size());
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t first = 0; first < places.size(); ++first) {
+    if (places[first]) continue;
+    std::vector<std::uint32_t> members;
+    bool repeats = false;
+    const auto reach = [&](std::uint32_t circle, const Eigen::Array2d& place) {
+      if (places[circle]) {
+        repeats |= !((*places[circle] - place).abs().maxCoeff() < same);
+        return;
+      }
+      places[circle] = place;
+      members.push_back(circle);
+      open.push_back(circle);
+    };
+    reach(first, {0, 0});
+    while (!open.empty()) {
+      const std::uint32_t from = open.back();
+      open.pop_back();
+      const auto& [origin_x, origin_y, radius] = binned_.obstacles[from];
+      visit_window({origin_x, origin_y, 0, 0, 0, 0, radius},
+                   [&, r = radius](std::uint32_t k, double x, double y) {
+                     if (share_a_post(std::hypot(x, y), r, binned_.obstacles[k].radius))
+                       reach(k, *places[from] + Eigen::Array2d(x, y));
+                   });
+    }
+    if (repeats)
+      for (const std::uint32_t circle : members) places[circle] = {nowhere, nowhere};
+  }
+  std::vector<Eigen::Array2d> known;
+  known.reserve(places.size());
+  for (const auto& place : places) known.push_back(*place);
+  return known;
+}
+
 ObstacleArray::Pair ObstacleArray::closest_pair() const {
   Pair closest{{}, {}, std::numeric_limits<double>::infinity()};
   const std::vector<std::uint32_t> post = posts();
+  const std::vector<Eigen::Array2d> places = places_in_posts();
   const bool repeats_across = period().beside == 0;
   const double nearest_image =
       repeats_across ? std::min(period().along(), period().across()) : period().along();
@@ -284,8 +324,11 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
                      const double apart = std::hypot(x, y);
                      const double gap = apart - r - binned_.obstacles[second].radius;
                      // Circles with the same centre are a mistake even within a post.
-                     const bool is_one_post = post[second] == post[first] && apart < nearest_image / 2 &&
-                                              (apart > 0 || second == first);
+                     const double off =
+                         (places[second] - places[first] - Eigen::Array2d(x, y)).abs().maxCoeff();
+                     const bool is_same_image = std::isnan(off) ? apart < nearest_image / 2 : off < 1e-6;
+                     const bool is_one_post =
+                         post[second] == post[first] && is_same_image && (apart > 0 || second == first);
                      if (!is_one_post && gap < closest.gap)
                        closest = {binned_.obstacles[first], binned_.obstacles[second], gap};
                    });

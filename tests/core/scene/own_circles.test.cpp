@@ -304,6 +304,25 @@ TEST(OwnCircles, LetDropletsStartWithinTheBoxWhereverTheyAre) {
   EXPECT_GE(num_across_the_border, 10) << "the case is tested";
 }
 
+TEST(OwnCircles, LetDropletsStartBetweenWallsWhateverTheRoundOff) {
+  for (const Model model : {Model::dp, Model::sp})
+    for (const double box : {1.5, 3.0, 6.0, 7.0, 8.0}) {
+      RunParameters run = among({{6, box / 2, 0.15}});
+      run.model = model;
+      run.obstacles.box = box;
+      run.obstacles.length = 14;
+      run.obstacles.side_walls = SideWalls::on;
+      run.obstacles.release = Release::anywhere;
+      run = resolve(run);
+      for (run.seed = 1; run.seed <= 20; ++run.seed) {
+        const DropletState start = scene_of(run).release(run, scene_of(run).walls(run));
+        const double y = scene_of(run).place_in_file(run, start.frame.global(start.centre()))[1];
+        EXPECT_GT(y, 0);
+        EXPECT_LT(y, box);
+      }
+    }
+}
+
 TEST(OwnCircles, HaveTheirDropletStartUpstreamIfTheVoidIsAcrossTheBorder) {
   // The only void is around the corner of the box.
   RunParameters run = among({{5, 5, 4}});

@@ -371,6 +371,17 @@ void add_arc(std::vector<Obstacle>& circles, const Eigen::Array2d& centre, doubl
         {centre[0] + radius * std::cos(angle), centre[1] + radius * std::sin(angle), thickness});
 }
 
+TEST(ObstacleArray, KnowsTheGapOfAWidePostToItsOwnImage) {
+  for (const double radius : {1.0, 2.8, 3.2, 4.0, 5.2, 5.6}) {
+    std::vector<Obstacle> circles;
+    add_arc(circles, {6, 6}, radius, 0, 2 * std::numbers::pi);
+    // The outermost circles need not be on the axes exactly.
+    EXPECT_NEAR(ObstacleArray(12, circles).smallest_gap(), 12 - 2 * (radius + 0.1), 0.01) << radius;
+    for (Obstacle& circle : circles) circle.x += 6;  // across the border
+    EXPECT_NEAR(ObstacleArray(12, circles).smallest_gap(), 12 - 2 * (radius + 0.1), 0.01) << radius;
+  }
+}
+
 TEST(ObstacleArray, FindsPlacesWithinAPost) {
   constexpr double pi = std::numbers::pi;
   std::vector<Obstacle> circles;

@@ -74,6 +74,7 @@ class ObstacleArray {
   std::vector<Wedge> wedges_;
 
   std::uint32_t cell_of(double x, double y) const;
+  std::vector<Eigen::Array2d> places_in_posts() const;
   /// Sorts the obstacles by cell, and returns where each cell starts.
   std::vector<std::uint32_t> bin(std::vector<Obstacle>& obstacles) const;
   /// Calls visit(index, x, y) for every obstacle and image that gather() would return.
