@@ -309,6 +309,7 @@ TEST(OwnCircles, LetDropletsStartBetweenWallsWhateverTheRoundOff) {
     for (const double box : {1.5, 3.0, 6.0, 7.0, 8.0}) {
       RunParameters run = among({{6, box / 2, 0.15}});
       run.model = model;
+      if (model == Model::sp) run.dp = {}, run.wall_stiffness = 1;
       run.obstacles.box = box;
       run.obstacles.length = 14;
       run.obstacles.side_walls = SideWalls::on;
