@@ -175,6 +175,7 @@ bool has_diameter_like(const DistanceTable& table, double sigma_mm) {
 bool are_same(const std::vector<fit::Observation>& here, const std::vector<fit::Observation>& there) {
   const auto sorted = [](const std::vector<fit::Observation>& runs) {
     std::vector<std::pair<double, bool>> all;
+    all.reserve(runs.size());
     for (const fit::Observation& run : runs) all.emplace_back(run.distance, run.clogged);
     std::ranges::sort(all);
     return all;

@@ -348,13 +348,13 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRul
     console::say("clogsweep: no trial run can start; the first one: " + sample.failure);
     return console::exit_internal_fault;
   }
-  const SweepCost alike = tried_cost(plan, sample);
+  const SweepCost of_trials = tried_cost(plan, sample);
   const SweepCost cost =
-      stored.knows_enough() ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : alike;
+      stored.knows_enough() ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : of_trials;
   if (!is_done) print_short_lengths(sample);
   if (!is_done) print_expected(plan, sample, cost);
   if (!is_done && stored.seconds > 0) print_left(plan, output, stored, cost);
-  if (rule) print_rounds(*rule, plan.size() / plan.num_groups(), with_expected(alike, cost));
+  if (rule) print_rounds(*rule, plan.size() / plan.num_groups(), with_expected(of_trials, cost));
   return console::exit_success;
 }
 
