@@ -546,6 +546,63 @@ class Drawings(Analysis):
         self.gdsii(DEVICE=self.rounds())
         self.refused("--holes", words=["no holes", "leave out --holes"])
 
+    def test_holes_that_touch_the_outer_edge_do_not_vanish(self):
+        import gdspy
+
+        def mask(*more, area=gdspy.Rectangle((0, 0), (3600, 1200))):
+            self.gdsii(DEVICE=gdspy.boolean(area, [*self.rounds(), *(gdspy.Round(place, 50, number_of_points=64) for place in more)], "not", max_points=0))
+
+        for places, edges in (([(1000, 1200)], 1), ([(1000, 1180), (2000, 0), (3600, 600)], 3), ([(3600, 1200)], 1)):
+            with self.subTest(places=places):
+                mask(*places)
+                self.refused("--holes", words=[f"the device's edge is no rectangle: it has {edges} indentation", "posts at the edge", "--region"])
+        # Within a region the edge is a rectangle again.
+        mask((0, 600))
+        self.refused("--holes", words=["0.25 droplet diameters", "x=50 um, y=600 um"])
+        self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--holes", "--region", "60,0,3600,1200")
+        self.assertEqual(len(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)), len(ROW))
+        (self.folder / "posts.csv").unlink()
+        # A post that touches the edge in a point is a post.
+        mask((1000, 50))
+        self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--holes")
+        self.assertEqual(len(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)), len(ROW) + 1)
+
+    def test_holes_of_any_form_within_the_edge_do_not_vanish(self):
+        import gdspy
+
+        area, square = gdspy.Rectangle((0, 0), (3600, 1200)), gdspy.Rectangle((800, 200), (900, 300))
+        holed = gdspy.boolean(area, square, "not", max_points=0)
+        for name, posts in (("with posts in the holed area", self.rounds()), ("alone", [])):
+            with self.subTest(name):
+                self.gdsii(DEVICE=[holed, *posts])
+                self.refused("--as-circles", words=["1 hole", "--holes"])
+        # The hole in a hollow post is no post.
+        hollow = gdspy.boolean(gdspy.Rectangle((1800, 1000), (2000, 1150)), gdspy.Rectangle((1850, 1050), (1950, 1100)), "not", max_points=0)
+        self.gdsii(DEVICE=[area, hollow, *self.rounds()])
+        self.assertEqual(len(self.circles("device.gds", "--as-circles")), len(ROW) + 1)
+
+    def test_an_edge_that_is_no_rectangle_is_refused(self):
+        import ezdxf
+
+        posts = [(700 + 600 * i, 600) for i in range(5)]
+        reservoir = [(0, 0), (400, 0), (500, 400), (3600, 400), (3600, 800), (500, 800), (400, 1200), (0, 1200)]
+        slanted = [(0, 0), (3600, 0), (3600, 1200), (1800, 1180), (0, 1200)]
+        chamfered = [(200, 0), (3600, 0), (3600, 1200), (0, 1200), (0, 100)]
+        rounded = [(8, 0), (3600, 0), (3600, 1195), (0, 1200), (0, 8)]
+        for outline, depth in ((reservoir, "2 indentations, the deepest of 2 droplet"), (slanted, "1 indentation, the deepest of 0.1 droplet"),
+                               (chamfered, "1 indentation"), (rounded, None)):
+            drawing = ezdxf.new("R2010")
+            drawing.header["$INSUNITS"] = 13
+            for place in posts:
+                drawing.modelspace().add_circle(place, 50)
+            drawing.modelspace().add_lwpolyline(outline, close=True)
+            drawing.saveas(self.folder / "device.dxf")
+            with self.subTest(depth=depth):
+                if depth is None:
+                    self.assertEqual(len(self.circles("device.dxf")), len(posts))
+                else:
+                    self.refused(words=["the device's edge is no rectangle", depth, "--region"], drawing="device.dxf")
+
     def test_small_lengths_keep_six_digits(self):
         # Two posts with a gap of 26.79 nm.
         import ezdxf
