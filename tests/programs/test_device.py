@@ -4,6 +4,7 @@ devices."""
 import contextlib
 import io
 import json
+import re
 import struct
 import sys
 import unittest
@@ -117,6 +118,7 @@ class Devices(Walls):
                             (um + "x [sigma],y,d\n1,2,3\n", ["line 3", "in sigma", "units=um"]), ("x;y;d\n1;2;0,5\n1.5;2;0,5\n", ["line 3", "x: '1.5'"]),
                             ("x [px],y [px],d [px]\n1,2,3\n", ["line 1", "'px' is no unit"]), ('x,y,d\n"1,234","2,345","0,100"\n', ["line 2", "x: '1,234'", "thousands"]),
                             ("x;y;d\n1,350;6;1\n2,050;3;1\n", ["'1,350'", "thousands"]),
+                            ("# two\nx,y,d\n1,2,0.5\n3,3,0.5\n1.0,2,0.50\n", ["line 5", "the circle of line 3 again", "delete one of the two lines"]),
                             ("x;y;d\num;um;um\n1;2;3\n", ["line 2", "'um' is not a finite number", "#"]),
                             ("x;y;d\n1.5;2.5;0,5\n", ["line 2", "d: '0,5'"]), ("x,y,d\n1,2,\n", ["line 2", "d: is empty"]), ('x,y,d\n1,"2,3\n', ["line 2", "quote"]),
                             ("x y d\n1 2 3 4\n", ["line 2", "has 4 cells", "line of names has 3"]), ("x,y,d\n1,2\n", ["line 2", "has 2 cells"]), ("x,y,d\n1,2m,3\n", ["line 2", "y: '2m'"])]:
@@ -711,7 +713,9 @@ class WrongDrawings(Analysis):
         self.refuse("--as-rows", "--corner", "0.01", words=["circles (at most 200000)", "--corner"])
         self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace('width="3.6mm" height="1.2mm"', ""))
         self.refuse_analysis("circles", "device.svg", "--droplet", "10mm", "--output", "other", "--unit", "um", words=["unit is um"])
-        self.refuse_analysis("circles", "device.svg", "--droplet", "10um", "--output", "other", words=["how long its unit is", "--unit, such as", "--pixel 0.2645833mm"])
+        self.refuse_analysis("circles", "device.svg", "--droplet", "10um", "--output", "other", words=["how long its unit is", "--unit, such as", "--pixel 0.2645833mm", "Inkscape before 0.92 had 90, --pixel 0.2822222mm"])
+        told = self.draw("circles", "device.svg", "--droplet", "200um", "--output", "old", "--pixel", "0.2822222mm").stdout
+        self.assertIn("1 unit is 282.222 um", told)  # 25.4 mm / 90
 
     def test_a_unit_other_than_the_drawing_states(self):
         self.dxf(circles=[(800, 300), (1600, 300)], outlines=[box(0, 0, 3600, 1200)])
@@ -1200,6 +1204,11 @@ class OtherTools(Analysis):
         pen.rectangle([1400, 560, 1700, 570], fill=40)  # a scale bar
         image.save(self.folder / "bar.png")
         self.refuse_analysis("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "cut", words=["not round", "cut scale bars", "--region"])
+        # Whoever follows the message gets the bar as a post, and is told where.
+        told = self.draw("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "barred", "--as-circles").stdout
+        self.assertIn(f"{len(ROW) + 1} posts, device", told)
+        x, y = map(float, re.search(r"1 post is at least three times as long as wide, at x=([0-9.]+) um, y=([0-9.]+) um; if this is a scale bar", told).groups())
+        np.testing.assert_allclose((x, y), (3100, 70), atol=20)
 
     def test_a_region_is_given_as_the_program_shows_it(self):
         np.testing.assert_allclose(self.svg('<circle cx="800" cy="300" r="50"/><circle cx="800" cy="900" r="50"/>', region=(700, 200, 1000, 400)), [(100, 100, 100)], atol=0.01)

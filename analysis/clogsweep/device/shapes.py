@@ -358,6 +358,19 @@ def surroundings(circles: Numbers, others: list[Numbers]) -> Numbers:
     return np.vstack([circles[:, :2] - radii, circles[:, :2] + radii, *others])
 
 
+def slender(outlines: list[Numbers]) -> list[Numbers]:
+    """The outlines that are at least three times as long as wide, as scale bars and labels are."""
+
+    def is_slender(outline: Numbers) -> bool:
+        near = along_edges(outline, True)
+        near = near - near.mean(axis=0)
+        along = near @ np.linalg.svd(near, full_matrices=False)[2].T  # along the principal axes
+        length, width = np.ptp(along, axis=0)
+        return bool(length >= walls.SLENDER * width)
+
+    return [outline for outline in outlines if is_slender(outline)]
+
+
 def as_circles(device: Device) -> Device:
     """The device with a circle in place of each outline that is not round. The circle has the same area as the
     outline."""
