@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -188,7 +190,6 @@ class Numbers {
   void check(const std::string& path) const { commas_.check(path); }
 
  private:
-  bool have_comma_ = false, have_point_ = false;
   console::DecimalCommas commas_;
 
   double number_in(const std::string& cell, char separator) {
@@ -203,11 +204,7 @@ class Numbers {
   }
 
   std::string with_point(const std::string& cell, char separator) {
-    have_point_ = have_point_ || cell.find('.') != std::string::npos;
-    const bool has_comma = cell.find(',') != std::string::npos;
-    have_comma_ = have_comma_ || has_comma;
-    const bool is_ambiguous = has_comma && separator == ',' && console::may_have_thousands(cell);
-    if (is_ambiguous || (have_comma_ && have_point_)) console::DecimalCommas::refuse("", cell);
+    if (separator == ',' && console::may_have_thousands(cell)) console::DecimalCommas::refuse("", cell);
     return commas_.with_point(cell);
   }
 };
@@ -278,6 +275,7 @@ OwnCircles read_circles(const std::string& name) {
   if (drawings.contains(console::in_lower_case(std::filesystem::path(path).extension())))
     throw Error(path + " is a drawing; python3 -m clogsweep circles converts it to a file of circles");
   std::vector<Obstacle> circles;
+  std::map<std::array<double, 3>, int> lines;  // the line of each circle
   Columns columns;
   Scale scale;
   Numbers numbers;
@@ -288,10 +286,17 @@ OwnCircles read_circles(const std::string& name) {
   console::read_table(
       path,
       [&](const console::TableLine& line) {
-        if (std::exchange(is_first, false) && is_header(line.cells))
+        if (std::exchange(is_first, false) && is_header(line.cells)) {
           columns = columns_named(line.cells);
-        else
-          circles.push_back(parse_circle(line, columns, scale_to(droplet), numbers));
+          return;
+        }
+        const Obstacle circle = parse_circle(line, columns, scale_to(droplet), numbers);
+        const auto [known, is_new] =
+            lines.emplace(std::array{circle.x, circle.y, circle.radius}, line.number);
+        if (!is_new)
+          throw Error(
+              fmt::format("lists the circle of line {} again; delete one of the two lines", known->second));
+        circles.push_back(circle);
       },
       [&](const std::string& comment) {
         read_scale(comment, scale, !circles.empty());

@@ -32,7 +32,7 @@ std::vector<std::size_t> columns_of(const std::vector<std::string>& header) {
 
 /// The value of a key in a cell. A comma is a decimal comma unless commas separate the cells. In a column
 /// with an empty cell, pandas writes integers as 64.0 or 64,0. @throws Error if a comma may be decimal or
-/// part of a list
+/// part of a list, or if other numbers have decimal points
 std::string value_of(const sweep::Key& key, const std::string& cell, char separator,
                      console::DecimalCommas& decimal_commas) {
   const bool is_integer = key.kind == ValueKind::integer;
@@ -40,19 +40,27 @@ std::string value_of(const sweep::Key& key, const std::string& cell, char separa
   const auto commas = std::ranges::count(cell, ',');
   // A comma in a list of seeds is never decimal: the list may end with 0.
   const bool may_be_decimal = separator != ',' && commas == 1 && key.name != "seeds";
+  const auto with_point = [&](const std::string& number) {
+    try {
+      return decimal_commas.with_point(number);
+    } catch (const Error& error) {
+      throw Error(key.name + ": " + error.what());
+    }
+  };
   if (is_integer && (cell.ends_with(".0") || (may_be_decimal && cell.ends_with(",0"))))
-    return cell.substr(0, cell.size() - 2);
+    return with_point(cell).substr(0, cell.size() - 2);
   const std::size_t end = std::min(cell.find_first_not_of("0123456789+-.,eE% "), cell.size());
   const std::string number = console::trimmed(cell.substr(0, end)), unit = cell.substr(end);
   const bool is_one_number =
       unit.find_first_of(",()") == std::string::npos;  // 0,4mm; not lin(1,2,3), 1mm,2mm
-  if (commas == 0 || number.empty() || !is_one_number || !(is_number || (is_integer && cell.ends_with(",0"))))
-    return cell;
-  if (is_integer || separator == ',' || commas > 1 || cell.find('.') != std::string::npos)
+  if (number.empty() || !is_one_number || !(is_number || (is_integer && cell.ends_with(",0")))) return cell;
+  const std::string pointed = commas > 1 || separator == ',' ? number : with_point(number);
+  if (commas == 0) return cell;
+  if (is_integer || separator == ',' || commas > 1)
     throw Error(fmt::format(
         "{}: '{}' may be a list or have a decimal comma; write decimal points, and a line for each value",
         key.name, cell));
-  return decimal_commas.with_point(number) + unit;
+  return pointed + unit;
 }
 
 /// @param num_columns  number of columns of the first line. @throws Error  if a value is invalid

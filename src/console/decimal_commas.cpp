@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/excerpt.hpp"
 
 namespace clog::console {
 
@@ -19,7 +20,19 @@ bool may_have_thousands(std::string_view number) {
 }
 
 std::string DecimalCommas::with_point(std::string number) {
-  if (number.find(',') == std::string::npos) return number;
+  const bool has_comma = number.find(',') != std::string::npos;
+  const bool has_point = number.find('.') != std::string::npos;
+  if (has_comma && has_point) refuse("", number);
+  if (has_comma && with_comma_.empty()) with_comma_ = number;
+  if (has_point && with_point_.empty()) with_point_ = number;
+  if (!with_comma_.empty() && !with_point_.empty()) {
+    const std::string& other = has_comma ? with_point_ : with_comma_;
+    throw Error(fmt::format(
+        "'{}' has a {}, but '{}' above has a {}; write all numbers of the file with decimal points, and "
+        "without commas",
+        excerpt(number), has_comma ? "comma" : "point", excerpt(other), has_comma ? "point" : "comma"));
+  }
+  if (!has_comma) return number;
   if (!may_have_thousands(number))
     is_one_decimal_ = true;
   else if (perhaps_thousands_.empty())
@@ -33,11 +46,10 @@ void DecimalCommas::check(const std::string& path) const {
 }
 
 void DecimalCommas::refuse(std::string_view where, const std::string& number) {
-  constexpr std::size_t longest = 80;
   throw Error(
       fmt::format("{}'{}' may have a decimal comma or separated thousands; write all numbers with decimal "
                   "points and without commas",
-                  where, number.substr(0, longest)));
+                  where, excerpt(number)));
 }
 
 }  // namespace clog::console

@@ -106,11 +106,20 @@ Scales scales_of(const Laboratory& lab) {
   return scales;
 }
 
+namespace {
+
+/// Four digits, so that runs do not depend on more digits than a measurement has. Empty if unknown.
+std::string rounded_text(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : ""; }
+
+}  // namespace
+
+std::string line_tension_text(const Scales& scales) { return rounded_text(scales.line_tension); }
+
 Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, const std::string& model) {
   const Scales scales = scales_of(lab);
   Texts texts = {{"laboratory", lab.text}};
   const auto set = [&](const char* key, double value) {
-    if (std::isfinite(value) && !settings.is_given(key)) texts[key] = fmt::format("{:.4g}", value);
+    if (std::isfinite(value) && !settings.is_given(key)) texts[key] = rounded_text(value);
   };
   set("terminal-speed", scales.terminal_speed);
   if (model == "dp") set("line-tension", scales.line_tension);

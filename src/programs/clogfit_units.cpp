@@ -19,6 +19,7 @@
 #include "clog/console/rounded.hpp"
 #include "clog/core/polygon/forces/automatic_values.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/laboratory/scales.hpp"
 
 namespace clog::programs {
@@ -147,6 +148,16 @@ std::string advice_of(const Scales& scales) {
       console::plain(scales.wall_stiffness), console::plain(nearly_rigid_tension));
 }
 
+/// Rounds all numbers, which are results of conversions, to twelve digits: 30, not 29.999999999999996.
+Json rounded(Json document) {
+  for (Json& value : document)
+    if (value.is_structured())
+      value = rounded(value);
+    else if (value.is_number_float())
+      value = twelve_digits(value.get<double>());
+  return document;
+}
+
 Json json_of(const Laboratory& lab, const Scales& scales) {
   const console::BuildInfo build = console::build_info();
   return {{"version", build.version},
@@ -184,7 +195,7 @@ int show_droplets(const std::vector<Laboratory>& all, const std::string& format)
   if (format == "json") {
     Json document = Json::array();
     for (const Laboratory& lab : all) document.push_back(json_of(lab, laboratory::scales_of(lab)));
-    std::cout << console::json_text(document);
+    std::cout << console::json_text(rounded(document));
     return console::exit_success;
   }
   std::vector<Line> lines = {
@@ -231,7 +242,7 @@ int clogfit_units(int argc, const char* const* argv) {
       for (const double model : models) values.push_back(conversion.convert(model));
       if (models.size() == 1) values = Json(values.front());
     }
-    std::cout << console::json_text(document);
+    std::cout << console::json_text(rounded(document));
     return console::exit_success;
   }
   std::vector<Line> lines = lines_of(lab, scales);

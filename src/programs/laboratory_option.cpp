@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "clog/cli/obstacle_file.hpp"
 #include "clog/console/csv.hpp"
@@ -20,6 +22,7 @@
 #include "clog/core/tools/split.hpp"
 #include "clog/laboratory/lab_file.hpp"
 #include "clog/laboratory/scales.hpp"
+#include "clog/sweep/value_list.hpp"
 
 namespace clog::programs {
 namespace {
@@ -35,19 +38,36 @@ void say_replaced(const cli::CommandLine& line) {
   console::say(fmt::format("clogfit: {} replaces the laboratory stored with the rows", line.get("lab")));
 }
 
+/// The smallest and the largest of these speeds, or the only one [mm/s].
+std::string speeds_text(const std::vector<double>& speeds) {
+  const auto [least, most] = std::ranges::minmax(speeds);
+  const std::string first = fmt::format("{:.4g}", least), last = fmt::format("{:.4g}", most);
+  return first == last ? first : first + " to " + last;
+}
+
 /// Says once if runs have another terminal speed than the laboratory's droplet: speeds and times in units of
 /// the laboratory are those of the runs.
 void say_other_speed(const std::vector<results::Group>& groups) {
   constexpr double rounding = 1e-3;
+  std::vector<double> of_runs, of_droplets;
   for (const results::Group& group : groups) {
-    const double of_runs = results::terminal_speed_in_laboratory(group);
-    if (!group.laboratory || !(std::abs(of_runs / group.laboratory->speed - 1) > rounding)) continue;
-    console::say(fmt::format(
-        "clogfit: speeds and times in mm/s and s are those of runs with a terminal speed of {:.4g} "
-        "mm/s; the laboratory's droplet has {:.4g} mm/s",
-        of_runs, group.laboratory->speed));
-    return;
+    const double of_run = results::terminal_speed_in_laboratory(group);
+    if (!group.laboratory || !(std::abs(of_run / group.laboratory->speed - 1) > rounding)) continue;
+    of_runs.push_back(of_run);
+    of_droplets.push_back(group.laboratory->speed);
   }
+  if (of_runs.empty()) return;
+  const std::string speeds = speeds_text(of_droplets);
+  console::say(fmt::format(
+      "clogfit: speeds and times in mm/s and s are those of runs with a terminal speed of {} "
+      "mm/s; the laboratory's {} {} mm/s",
+      speeds_text(of_runs), speeds.find(' ') == std::string::npos ? "droplet has" : "droplets have", speeds));
+}
+
+/// The line tension that a laboratory gives to its runs.
+double given_line_tension(const laboratory::Scales& scales) {
+  const std::string text = laboratory::line_tension_text(scales);
+  return text.empty() ? std::numeric_limits<double>::quiet_NaN() : sweep::to_number(text);
 }
 
 results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
@@ -57,6 +77,8 @@ results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
           .time = scales.time,
           .speed = scales.speed / milli,
           .tension = scales.tension / milli,
+          .line_tension = given_line_tension(scales),
+          .own_tension = twelve_digits(lab.experiment.interfacial_tension / milli),
           .tilt = twelve_digits(lab.experiment.tilt / (std::numbers::pi / 180))};
 }
 

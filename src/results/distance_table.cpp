@@ -128,27 +128,39 @@ class Cells {
   double distance(const std::string& cell, char separator) {
     const bool is_ambiguous = separator == ',' && console::may_have_thousands(cell);
     if (is_ambiguous) console::DecimalCommas::refuse("distance: ", cell);
-    try {
-      const double number = sweep::to_number(commas_.with_point(cell));
-      if (number >= 0) return number;
-    } catch (const Error&) {  // the message below is complete
-    }
-    throw Error(fmt::format("distance is '{}'; write a number of 0 or more", excerpt(cell)));
+    const std::optional<double> number = number_of(with_point(cell, "distance"));
+    if (!number || !(*number >= 0))
+      throw Error(fmt::format("distance is '{}'; write a number of 0 or more", excerpt(cell)));
+    return *number;
   }
-  /// A number times the factor, or the words of a label.
-  static Value label(const std::string& cell, double factor) {
-    std::string number = cell;
-    if (!console::may_have_thousands(cell)) std::ranges::replace(number, ',', '.');
-    try {
-      return factor == 1 ? sweep::to_number(number) : twelve_digits(factor * sweep::to_number(number));
-    } catch (const Error&) {
-      return cell.empty() ? Value() : Value(console::printable(cell));
-    }
+  /// A number times the factor, or the words of a label. @param name  of the label
+  Value label(const std::string& cell, double factor, const std::string& name) {
+    std::string text = cell;
+    if (!console::may_have_thousands(cell)) std::ranges::replace(text, ',', '.');
+    const std::optional<double> number = number_of(text);
+    if (!number) return cell.empty() ? Value() : Value(console::printable(cell));
+    with_point(cell, name);
+    return factor == 1 ? *number : twelve_digits(factor * *number);
   }
   void check(const std::string& path) const { commas_.check(path); }
 
  private:
   console::DecimalCommas commas_;
+
+  static std::optional<double> number_of(const std::string& text) {
+    try {
+      return sweep::to_number(text);
+    } catch (const Error&) {
+      return {};
+    }
+  }
+  std::string with_point(const std::string& cell, const std::string& name) {
+    try {
+      return commas_.with_point(cell);
+    } catch (const Error& error) {
+      throw Error(name + ": " + error.what());
+    }
+  }
 };
 
 std::optional<double> number_in(const Value& value) {
@@ -289,7 +301,7 @@ DistanceTable read_distances(const std::string& path) {
     std::vector<Value> labels;
     labels.reserve(head->labels.size());
     for (std::size_t i = 0; i < head->labels.size(); ++i)
-      labels.push_back(Cells::label(texts[head->labels[i]], head->label_factors[i]));
+      labels.push_back(cells.label(texts[head->labels[i]], head->label_factors[i], table.labels[i]));
     const double distance = cells.distance(texts[static_cast<std::size_t>(head->distance)], line.separator);
     runs[std::move(labels)].push_back(
         {head->factor * distance, is_clogged(texts[static_cast<std::size_t>(head->clogged)])});

@@ -30,11 +30,13 @@ double time_to_clog(const Group& group) {
   return group.clogging.length * scale_of(group).length / speed_in_mm_per_s(group).mean;
 }
 
-/// The interfacial tension of a polygon [mN/m]; NaN for the soft disk.
+/// The interfacial tension of a polygon [mN/m]; NaN for the soft disk. Runs of the laboratory's droplet have
+/// its tension, not that of their rounded Gamma.
 double tension_of(const Group& group) {
   const RunParameters& run = group.first_row.parameters;
-  return run.model == Model::dp ? run.dp.line_tension * scale_of(group).tension
-                                : std::numeric_limits<double>::quiet_NaN();
+  const LaboratoryScale scale = scale_of(group);
+  if (run.model != Model::dp) return std::numeric_limits<double>::quiet_NaN();
+  return run.dp.line_tension == scale.line_tension ? scale.own_tension : run.dp.line_tension * scale.tension;
 }
 
 /// The group's clogging length in millimetres; NaN without a laboratory.

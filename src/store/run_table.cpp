@@ -334,17 +334,39 @@ SweepFile read_sweep(const std::string& path) {
       path, found.damage.front(), num_others > 0 ? fmt::format(", and {} more", num_others) : ""));
 }
 
+namespace {
+
+/// The text as one word of a shell.
+std::string shell_word(const std::string& text) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
+  if (text.find_first_not_of(plain) == std::string::npos) return text;
+  std::string word = "'";
+  for (const char letter : text) word += letter == '\'' ? "'\\''" : std::string(1, letter);
+  return word + "'";
+}
+
+/// The command that copies the first of these objects into another file; empty if all are attributes, for
+/// which HDF5 has no such command.
+std::string copying_command(const std::string& path, const std::vector<std::string>& foreign) {
+  const auto object = std::ranges::find_if(foreign, [](const auto& name) { return name.starts_with('/'); });
+  if (object == foreign.end()) return "";
+  return fmt::format("copy each object out by h5copy -i {0} -o MINE.h5 -s {1} -d {1}, ", shell_word(path),
+                     shell_word(*object));
+}
+
+}  // namespace
+
 void refuse_foreign_objects(const std::string& path, const SweepFile& file) {
   if (file.foreign.empty()) return;
   constexpr std::size_t most_named = 5;
   std::vector<std::string> named = file.foreign;
   const std::size_t num_others = named.size() - std::min(named.size(), most_named);
   named.resize(named.size() - num_others);
-  throw Error(
-      fmt::format("cannot resume {0} (it has objects of another program, which would be lost: {1}{2}); copy "
-                  "the sweep without "
-                  "them by clogsweep salvage {0} --output NEW.h5, and resume NEW.h5",
-                  path, joined(named), num_others > 0 ? fmt::format(", and {} more", num_others) : ""));
+  throw Error(fmt::format(
+      "cannot resume {0} (it has objects of another program, which would be lost: {1}{2}); "
+      "{3}copy the sweep without them by clogsweep salvage {4} --output NEW.h5, and resume NEW.h5",
+      path, joined(named), num_others > 0 ? fmt::format(", and {} more", num_others) : "",
+      copying_command(path, file.foreign), shell_word(path)));
 }
 
 std::string caution(const std::string& path, const SweepFile& file) {

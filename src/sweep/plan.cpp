@@ -23,12 +23,19 @@ namespace {
 
 constexpr std::int64_t largest_sweep = 100'000'000;
 
-/// Why a check refused one value of this key's list: the decimal that may have been meant, or another list.
-std::string hint_at_list(const Settings& branch, const Key& key, const std::string& message) {
+/// Why a check refused a value of this key although the user may have meant something possible: another list,
+/// or a decimal instead of a list. Empty if neither.
+/// @param lists  all lists of the sweep, of which a branch has one value if they are words
+std::string hint_at_list(const Settings& branch, const Settings& lists, const Key& key,
+                         const std::string& message) {
+  const bool is_list = branch.values(key.name).size() > 1;
   for (const Key& other : keys())
     if (other.name != key.name && message.find(other.name + "=") != std::string::npos &&
-        branch.values(other.name).size() > 1)
-      return "; each value of a list meets all of the other; to pair values, see clogsweep --points";
+        lists.values(other.name).size() > 1)
+      return (is_list ? "; each value of a list meets all of the other"
+                      : fmt::format("; it meets each value of {}", other.name)) +
+             "; to pair values, see clogsweep --points";
+  if (!is_list) return "";
   constexpr std::size_t most_digits = 2;  // before a comma that may be a decimal one
   const std::string& list = branch.text(key.name);
   const std::string meant = with_decimal_point(list);
@@ -36,17 +43,18 @@ std::string hint_at_list(const Settings& branch, const Key& key, const std::stri
                                         : "";
 }
 
-/// Calls check() for one branch of the settings, and returns its result. If the check refuses one value of a
-/// list, the message says what may have been meant.
-/// @param where  beginning of the message
+/// Calls check() for one branch of the settings, and returns its result. If a list may be the reason why the
+/// check refuses a value, the message says what may have been meant.
+/// @param lists  as in hint_at_list(); @param where  beginning of the message
 template <class Check>
-auto checked(const Settings& branch, const std::string& where, const Check& check) try {
+auto checked(const Settings& branch, const Settings& lists, const std::string& where,
+             const Check& check) try {
   return check();
 } catch (const Error& error) {
   std::string message = error.what();
   for (const Key& key : keys())
-    if (message.starts_with("invalid " + key.name + "=") && branch.values(key.name).size() > 1)
-      message += hint_at_list(branch, key, message);
+    if (message.starts_with("invalid " + key.name + "="))
+      message += hint_at_list(branch, lists, key, message);
   throw Error(where + message);
 }
 
@@ -89,7 +97,10 @@ class Plan::Builder {
 
   void add_all(const Settings& settings) {
     settings.visit_branches([&](const Settings& branch, std::int64_t point) {
-      add_branch(branch, point < 0 ? "" : fmt::format("point {}", point + 1));
+      if (point < 0)
+        add_branch(branch, settings, "");
+      else
+        add_branch(branch, branch, fmt::format("point {}", point + 1));
     });
     if (!settings.shard().is_whole()) keep(settings.shard());
     number_tasks();
@@ -102,9 +113,10 @@ class Plan::Builder {
   std::int64_t num_runs_ = 0;                            // number of runs of all shards
   Seeds last_seeds_;                                     // shared by branches with the same seeds
 
-  void add_branch(const Settings& branch, const std::string& name) {
+  /// @param lists  as in hint_at_list(); @param name  of the branch, for messages
+  void add_branch(const Settings& branch, const Settings& lists, const std::string& name) {
     const std::string where = name.empty() ? "" : name + ": ";
-    checked(branch, where, [&] { refuse_contradictions(branch); });
+    checked(branch, lists, where, [&] { refuse_contradictions(branch); });
     names_.push_back(name);
     add_product(branch);
     const std::size_t product = plan_.products_.size() - 1;
@@ -114,8 +126,9 @@ class Plan::Builder {
     const std::int64_t num_places = size_of_product(branch);
     if (branch.text("obstacle-layout") == "lattice") refuse_misfitting_angles(product, num_places, where);
     for (std::int64_t place = 0; place < num_places; ++place) {
-      const RunRow run = checked(
-          branch, where, [&] { return describe(plan_.parameters(product, place, last_seeds_->front())); });
+      const RunRow run = checked(branch, lists, where, [&] {
+        return describe(plan_.parameters(product, place, last_seeds_->front()));
+      });
       add_group(run, product, place);
     }
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "clog/core/tools/error.hpp"
 
@@ -29,6 +30,22 @@ TEST(DecimalCommas, AreRefusedWhileEachMaySeparateThousands) {
   }
   EXPECT_EQ(commas.with_point("0,5"), "0.5");
   EXPECT_NO_THROW(commas.check("posts.csv"));
+}
+
+TEST(DecimalCommas, AreRefusedBesideDecimalPoints) {
+  for (const auto& [first, second] : {std::pair{"0,5", "1.5"}, {"1.5", "0,5"}, {"1.5", "1,350"}}) {
+    DecimalCommas commas;
+    commas.with_point(first);
+    EXPECT_EQ(commas.with_point("2e3"), "2e3");
+    try {
+      commas.with_point(second);
+      FAIL() << first << " and " << second;
+    } catch (const Error& error) {
+      const std::string said = error.what();
+      EXPECT_NE(said.find(std::string("'") + first + "' above"), std::string::npos) << said;
+      EXPECT_EQ(said.find(std::string("'") + second + "' has a"), 0U) << said;
+    }
+  }
 }
 
 }  // namespace

@@ -134,6 +134,12 @@ class Table(Analysis):
     def agreement(self, *options):
         return self.draw("agreement", "--output", ".", "--programs", BIN, *options).stdout
 
+    def test_without_sweeps_no_model_version_is_named(self):
+        text = " ".join(self.agreement().split())
+        self.assertIn("No sweep has been run.", text)
+        self.assertNotIn("model version", text)
+        self.assertEqual(text.count(f"**{NOT_RUN}**"), sum(bool(one.figures) for one in statements.STATEMENTS))
+
     def test_the_table_is_made_from_the_sweeps_that_are_there(self):
         self.draw("figures", "7a", "--output", ".", "--programs", BIN, *(word for setting in self.SETTINGS for word in ("--set", setting)))
         rows = list(csv.DictReader(io.StringIO(self.agreement("--format", "csv"))))

@@ -206,6 +206,29 @@ class Drag(unittest.TestCase):
                 drag.fit(np.array(distances), np.array(speeds))
 
 
+class SpeedFiles(unittest.TestCase):
+    def read(self, text):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "speeds.csv"
+            path.write_text(text)
+            return profiles.read_table(str(path), "d", Scales())[:2]
+
+    def test_decimal_commas_are_those_of_decimal_points(self):
+        plain = "d [sigma];v [v_t]\n0.05;0.2\n0.1;0.45\n1.25;0.9\n"
+        distances, speeds = self.read(plain)
+        np.testing.assert_array_equal([distances, speeds], [[0.05, 0.1, 1.25], [0.2, 0.45, 0.9]])
+        for commas in (plain.replace(".", ","), plain.replace(".", ",").replace(";", "\t"), 'd [sigma],v [v_t]\n"0,05","0,2"\n"0,1","0,45"\n"1,25","0,9"\n'):
+            self.assertEqual(drag.fit(*self.read(commas)), drag.fit(distances, speeds))
+
+    def test_ambiguous_commas_are_refused(self):
+        for text, words in (("d [sigma];v [v_t]\n1,350;1\n2,050;1\n", "'1,350' may have a decimal comma or separated thousands"),
+                            ("d [sigma];v [v_t]\n0,5;0.2\n", "line 2: v: '0.2' has a point, but '0,5' above has a comma"),
+                            ("d [sigma];v [v_t]\n1.5;0\n1,5;0\n", "line 3: d: '1,5' has a comma, but '1.5' above has a point"),
+                            ("d [sigma];v [v_t]\n1.350,5;0\n", "line 2: d: '1.350,5' may have")):
+            with self.subTest(text=text), self.assertRaisesRegex(UserError, words):
+                self.read(text)
+
+
 class ProfileFiles(unittest.TestCase):
     def read(self, text, scales=Scales(), encoding="utf-8"):
         with tempfile.TemporaryDirectory() as folder:
@@ -243,7 +266,7 @@ class ProfileFiles(unittest.TestCase):
             ("h,v\n1,1\n", Scales(), "no unit"),
             ("h [furlong],v [v_t]\n", Scales(), r"line 1: unknown unit 'furlong' \(known: sigma, m, cm, mm, um, "),
             ("x,y\n1,1\n", Scales(), "columns h and v"),
-            ("h [sigma],v [v_t]\n1,1\n1,fast\n", Scales(), "line 3: 'fast' is not a finite number"),
+            ("h [sigma],v [v_t]\n1,1\n1,fast\n", Scales(), "line 3: v: 'fast' is not a finite number"),
             ("h [sigma],v [v_t]\n1,1\n1\n", Scales(), "line 3: has too few columns"),
             ('h [sigma],v [v_t]\n1,1\n"1,1\n', Scales(), "line 3: "),
             ("h [sigma],v [v_t]\n1,1\n", Scales(), "fewer than three frames"),

@@ -93,6 +93,11 @@ class Meant(ProgramTest):
         for advancing, end in [("155,180", "; each value of a list meets all of the other; to pair values, see clogsweep --points\n"), ("155", "\n")]:
             done = self.run_program("clogsweep", "receding-angle=140,180", f"advancing-angle={advancing}", "--output", "s.h5")
             self.assertEqual((done.returncode, done.stderr), (2, f"clogsweep: {exchange}{end}"))
+        # The refused key need not be a list itself, and the meant value is no decimal.
+        self.refuse("clogsweep", "model=dp,sp", "vertices=64", "--output", "s.h5", words=["invalid vertices=64", "it meets each value of model; to pair values, see clogsweep --points"])
+        done = self.run_program("clogsweep", "model=dp,sp", "vertices=64,128", "--output", "s.h5")
+        self.assertIn("to pair values, see clogsweep --points", done.stderr)
+        self.assertNotIn("did you mean", done.stderr)
 
     def test_a_list_that_could_be_a_decimal_is_run_with_a_line_about_it(self):
         told = "line-tension=0,5 is a list of 0 and 5; decimals have a point, 0.5\n"

@@ -4,6 +4,7 @@ devices."""
 import contextlib
 import io
 import json
+import re
 import struct
 import sys
 import unittest
@@ -117,6 +118,7 @@ class Devices(Walls):
                             (um + "x [sigma],y,d\n1,2,3\n", ["line 3", "in sigma", "units=um"]), ("x;y;d\n1;2;0,5\n1.5;2;0,5\n", ["line 3", "x: '1.5'"]),
                             ("x [px],y [px],d [px]\n1,2,3\n", ["line 1", "'px' is no unit"]), ('x,y,d\n"1,234","2,345","0,100"\n', ["line 2", "x: '1,234'", "thousands"]),
                             ("x;y;d\n1,350;6;1\n2,050;3;1\n", ["'1,350'", "thousands"]),
+                            ("# two\nx,y,d\n1,2,0.5\n3,3,0.5\n1.0,2,0.50\n", ["line 5", "the circle of line 3 again", "delete one of the two lines"]),
                             ("x;y;d\num;um;um\n1;2;3\n", ["line 2", "'um' is not a finite number", "#"]),
                             ("x;y;d\n1.5;2.5;0,5\n", ["line 2", "d: '0,5'"]), ("x,y,d\n1,2,\n", ["line 2", "d: is empty"]), ('x,y,d\n1,"2,3\n', ["line 2", "quote"]),
                             ("x y d\n1 2 3 4\n", ["line 2", "has 4 cells", "line of names has 3"]), ("x,y,d\n1,2\n", ["line 2", "has 2 cells"]), ("x,y,d\n1,2m,3\n", ["line 2", "y: '2m'"])]:
@@ -546,6 +548,63 @@ class Drawings(Analysis):
         self.gdsii(DEVICE=self.rounds())
         self.refused("--holes", words=["no holes", "leave out --holes"])
 
+    def test_holes_that_touch_the_outer_edge_do_not_vanish(self):
+        import gdspy
+
+        def mask(*more, area=gdspy.Rectangle((0, 0), (3600, 1200))):
+            self.gdsii(DEVICE=gdspy.boolean(area, [*self.rounds(), *(gdspy.Round(place, 50, number_of_points=64) for place in more)], "not", max_points=0))
+
+        for places, edges in (([(1000, 1200)], 1), ([(1000, 1180), (2000, 0), (3600, 600)], 3), ([(3600, 1200)], 1)):
+            with self.subTest(places=places):
+                mask(*places)
+                self.refused("--holes", words=[f"the device's edge is no rectangle: it has {edges} indentation", "posts at the edge", "--region"])
+        # Within a region the edge is a rectangle again.
+        mask((0, 600))
+        self.refused("--holes", words=["0.25 droplet diameters", "x=50 um, y=600 um"])
+        self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--holes", "--region", "60,0,3600,1200")
+        self.assertEqual(len(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)), len(ROW))
+        (self.folder / "posts.csv").unlink()
+        # A post that touches the edge in a point is a post.
+        mask((1000, 50))
+        self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--holes")
+        self.assertEqual(len(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)), len(ROW) + 1)
+
+    def test_holes_of_any_form_within_the_edge_do_not_vanish(self):
+        import gdspy
+
+        area, square = gdspy.Rectangle((0, 0), (3600, 1200)), gdspy.Rectangle((800, 200), (900, 300))
+        holed = gdspy.boolean(area, square, "not", max_points=0)
+        for name, posts in (("with posts in the holed area", self.rounds()), ("alone", [])):
+            with self.subTest(name):
+                self.gdsii(DEVICE=[holed, *posts])
+                self.refused("--as-circles", words=["1 hole", "--holes"])
+        # The hole in a hollow post is no post.
+        hollow = gdspy.boolean(gdspy.Rectangle((1800, 1000), (2000, 1150)), gdspy.Rectangle((1850, 1050), (1950, 1100)), "not", max_points=0)
+        self.gdsii(DEVICE=[area, hollow, *self.rounds()])
+        self.assertEqual(len(self.circles("device.gds", "--as-circles")), len(ROW) + 1)
+
+    def test_an_edge_that_is_no_rectangle_is_refused(self):
+        import ezdxf
+
+        posts = [(700 + 600 * i, 600) for i in range(5)]
+        reservoir = [(0, 0), (400, 0), (500, 400), (3600, 400), (3600, 800), (500, 800), (400, 1200), (0, 1200)]
+        slanted = [(0, 0), (3600, 0), (3600, 1200), (1800, 1180), (0, 1200)]
+        chamfered = [(200, 0), (3600, 0), (3600, 1200), (0, 1200), (0, 100)]
+        rounded = [(8, 0), (3600, 0), (3600, 1195), (0, 1200), (0, 8)]
+        for outline, depth in ((reservoir, "2 indentations, the deepest of 2 droplet"), (slanted, "1 indentation, the deepest of 0.1 droplet"),
+                               (chamfered, "1 indentation"), (rounded, None)):
+            drawing = ezdxf.new("R2010")
+            drawing.header["$INSUNITS"] = 13
+            for place in posts:
+                drawing.modelspace().add_circle(place, 50)
+            drawing.modelspace().add_lwpolyline(outline, close=True)
+            drawing.saveas(self.folder / "device.dxf")
+            with self.subTest(depth=depth):
+                if depth is None:
+                    self.assertEqual(len(self.circles("device.dxf")), len(posts))
+                else:
+                    self.refused(words=["the device's edge is no rectangle", depth, "--region"], drawing="device.dxf")
+
     def test_small_lengths_keep_six_digits(self):
         # Two posts with a gap of 26.79 nm.
         import ezdxf
@@ -654,7 +713,9 @@ class WrongDrawings(Analysis):
         self.refuse("--as-rows", "--corner", "0.01", words=["circles (at most 200000)", "--corner"])
         self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace('width="3.6mm" height="1.2mm"', ""))
         self.refuse_analysis("circles", "device.svg", "--droplet", "10mm", "--output", "other", "--unit", "um", words=["unit is um"])
-        self.refuse_analysis("circles", "device.svg", "--droplet", "10um", "--output", "other", words=["how long its unit is", "--unit, such as", "--pixel 0.2645833mm"])
+        self.refuse_analysis("circles", "device.svg", "--droplet", "10um", "--output", "other", words=["how long its unit is", "--unit, such as", "--pixel 0.2645833mm", "Inkscape before 0.92 had 90, --pixel 0.2822222mm"])
+        told = self.draw("circles", "device.svg", "--droplet", "200um", "--output", "old", "--pixel", "0.2822222mm").stdout
+        self.assertIn("1 unit is 282.222 um", told)  # 25.4 mm / 90
 
     def test_a_unit_other_than_the_drawing_states(self):
         self.dxf(circles=[(800, 300), (1600, 300)], outlines=[box(0, 0, 3600, 1200)])
@@ -1143,6 +1204,11 @@ class OtherTools(Analysis):
         pen.rectangle([1400, 560, 1700, 570], fill=40)  # a scale bar
         image.save(self.folder / "bar.png")
         self.refuse_analysis("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "cut", words=["not round", "cut scale bars", "--region"])
+        # Whoever follows the message gets the bar as a post, and is told where.
+        told = self.draw("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "barred", "--as-circles").stdout
+        self.assertIn(f"{len(ROW) + 1} posts, device", told)
+        x, y = map(float, re.search(r"1 post is at least three times as long as wide, at x=([0-9.]+) um, y=([0-9.]+) um; if this is a scale bar", told).groups())
+        np.testing.assert_allclose((x, y), (3100, 70), atol=20)
 
     def test_a_region_is_given_as_the_program_shows_it(self):
         np.testing.assert_allclose(self.svg('<circle cx="800" cy="300" r="50"/><circle cx="800" cy="900" r="50"/>', region=(700, 200, 1000, 400)), [(100, 100, 100)], atol=0.01)

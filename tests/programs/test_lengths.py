@@ -8,6 +8,7 @@ import subprocess
 import sys
 import types
 import unittest
+import unittest.mock
 
 import numpy as np
 import scipy.stats
@@ -36,6 +37,22 @@ def table(head, separator=",", number=str):
 class Lengths(ProgramTest):
     def lengths(self, *arguments):
         return json.loads(self.succeed("clogfit", "lengths", *arguments, "--format", "json").stdout)
+
+    def test_clogged_is_read_as_programs_write_it(self):
+        answers = [("1", "0"), ("1.0", "0.0"), ("1,0", "0,0"), ("T", "F"), ("TRUE", "FALSE"), ("y", "n"), ("Yes", "No")]
+        self.write("own.csv", "table;distance [mm];clogged\n" + "".join(f"t{i};3;{yes}\nt{i};5;{no}\nt{i};9;{yes}\n" for i, (yes, no) in enumerate(answers)))
+        groups = self.lengths("own.csv")["groups"]
+        self.assertEqual([(group["clogs"] / group["runs"], group["clogging_length_mm"]) for group in groups], len(groups) * [(2 / 3, 17 / 2)])
+        self.assertEqual(len(groups), len(answers))
+        self.refuse("clogfit", "lengths", self.write("own.csv", "distance [mm],clogged\n3,0.5\n"), words=["own.csv line 2", "clogged is '0.5'"])
+
+    def test_droplets_that_were_pushed_back_come_first_in_survival(self):
+        # Two of four droplets clog upstream of their release, so P falls to 3/4 at -2 and to 1/2 at -1.
+        steps = [{"distance": way, "at_risk": 4 - i, "clogs": 1, "probability": (3 - i) / 4, "standard_error": 0.2, "lower": 0.1, "upper": 0.9} for i, way in enumerate((-2.0, -1.0, 3.0))]
+        fitted = unittest.mock.Mock(told={"groups": [{"runs": 4, "survival": steps, "censored_distances": [5.0]}]})
+        table = fit.Fit.survival(fitted, 0)
+        self.assertEqual(table["distance"].tolist(), [-2, -2, -1, 3, 5])
+        self.assertEqual(table["probability"].tolist(), [1, 0.75, 0.5, 0.25, 0.25])
 
     def test_lengths_shapes_and_survival_are_those_of_the_survival_package_of_r(self):
         self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))

@@ -1,16 +1,23 @@
 """Tests that no line of a user's table is lost or misread in silence. The properties hold for each program that reads
 tables."""
 
+import re
 import unittest
 
 import numpy as np
 
 from drawing import Analysis
-from support import QUICK, ProgramTest
+from support import QUICK, ROOT, ProgramTest
 
-# Errors that Excel and LibreOffice write in some languages.
+from clogsweep.calibration import profiles
+from clogsweep.commands import critical_angle
+from clogsweep.paper import workshop
+from clogsweep.tools import tables
+from clogsweep.tools.errors import UserError
+
+# Errors that Excel and LibreOffice write in their languages: all that a reader lists, and some of each form.
 ERRORS = ["#N/A", "#DIV/0!", "#REF!", "#VALUE!", "#NAME?", "#NUM!", "#NULL!", "#SPILL!", "#WERT!", "#NV", "#BEZUG!", "#VALEUR!", "#NOM ?", "#¡REF!", "#N/D",
-          "#AD?", "#ДЕЛ/0!", "#NA", "Err:502", "####"]
+          "#AD?", "#ДЕЛ/0!", "#NA", "#N/B", "#I/T", "#Н/Д", "#YOK", "#HIÁNYZIK", "#GETTING_DATA", "Err:502", "Fehler:502", "Erreur:502", "####"]
 SEPARATORS = [",", ";", "\t", " "]
 OWN = ["box=10", "vertices=64", "max-time=60", "--dry-run"]
 
@@ -39,23 +46,70 @@ class Tables(Analysis):
         super().setUp()
         self.write("good.csv", "h [sigma],v [v_t],A\n-1,1,1\n0,1,1\n1,1,1\n")
 
+    def broken_tables(self, name):
+        """Writes tables with each error of a spreadsheet in the first cell of a line, which is the most dangerous one
+        because lines that begin with # are comments, and in a later cell. @return the beginning of each message"""
+        _, head, lines = self.READERS[name]
+        for number, error in enumerate(ERRORS):
+            separator = SEPARATORS[number % len(SEPARATORS)] if name not in ("angles", "passage") else ","
+            if separator == " " and (" " in error or error == "####"):
+                separator = ";"
+            for column in (0, 1 + number % (len(head) - 1)):
+                row = number % len(lines)
+                broken = [list(line) for line in lines]
+                broken[row][column] = error
+                self.table(separator, [head, *broken])
+                yield f"t.csv line {row + 2}: column {column + 1} is '{error}'"
+
     def test_errors_of_spreadsheets_are_refused_with_line_and_column(self):
+        for name, (command, *_) in self.READERS.items():
+            for message in self.broken_tables(name) if command[0].startswith("clog") else ():
+                done = self.run_program(*command)
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertIn(message, done.stderr)
+
+    def test_readers_in_python_refuse_the_same_errors(self):
+        # In this process, because commands take long to start.
+        path = self.folder / "t.csv"
+        readers = {"profile": lambda: profiles.read_profile(str(path)), "speeds": lambda: profiles.read_table(str(path), "d", profiles.Scales()),
+                   "angles": lambda: critical_angle.read_angles(path, ["line_tension"]), "passage": lambda: workshop.measured(path)}
+        self.assertEqual([name for name, (command, *_) in self.READERS.items() if not command[0].startswith("clog")], list(readers))
+        for name, read in readers.items():
+            command, head, lines = self.READERS[name]
+            self.table(",", [head, *lines])
+            read()
+            for message in self.broken_tables(name):
+                with self.assertRaisesRegex(UserError, re.escape(message)):
+                    read()
+            # The command uses this reader.
+            done = self.analyse(*command)
+            self.assertEqual((done.returncode, message in done.stderr), (2, True), done.stderr)
+
+    def test_both_languages_know_the_same_errors(self):
+        words = re.findall(r'"(#[^"]+)"', (ROOT / "src" / "console" / "csv.cpp").read_text().partition("other_error_words[] =")[2].partition(";")[0])
+        self.assertGreater(len(words), 8)
+        for word in words:
+            self.assertIn(word.casefold(), [error.casefold() for error in ERRORS])
+            self.assertTrue(tables.ERROR_WORD.fullmatch(word), word)
+
+    def test_decimal_commas_beside_decimal_points_are_refused_with_line_and_column(self):
         for name, (command, head, lines) in self.READERS.items():
-            # Readers in Python take longer to start, so each of them has a part of the errors.
-            for number, error in enumerate(ERRORS if command[0].startswith("clog") else ERRORS[len(name) % 3::3]):
-                separator = SEPARATORS[number % len(SEPARATORS)] if name not in ("angles", "passage") else ","
-                if separator == " " and (" " in error or error == "####"):
-                    separator = ";"
-                # The first cell is the most dangerous one: lines that begin with # are comments.
-                for column in {0, number % len(head)}:
-                    broken = [list(line) for line in lines]
-                    row = number % len(lines)
-                    broken[row][column] = error
-                    self.table(separator, [head, *broken])
-                    with self.subTest(reader=name, error=error, separator=separator, column=column):
+            if name in ("angles", "passage"):
+                continue  # These are CSV files with commas between the cells.
+            columns = [column for column, title in enumerate(head) if title not in ("clogged", "wall", "seeds")]
+            for one, other in (("0,5", "1.5"), ("1.5", "0,5")):
+                # In one column, in two columns, and in one line.
+                for first, second in (((0, columns[0]), (2, columns[0])), ((0, columns[0]), (1, columns[1 % len(columns)])), ((1, columns[0]), (1, columns[-1]))):
+                    if first == second:
+                        continue
+                    broken = [[cell.replace(".", one[1]) for cell in line] for line in lines]
+                    broken[first[0]][first[1]], broken[second[0]][second[1]] = one, other
+                    self.table(";", [head, *broken])
+                    with self.subTest(reader=name, one=one, places=(first, second)):
                         done = self.call(command)
                         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
-                        self.assertIn(f"t.csv line {row + 2}: column {column + 1} is '{error}'", done.stderr)
+                        title = head[second[1]].partition("[")[0]
+                        self.assertIn(f"t.csv line {second[0] + 2}: {title}: '{other}' has a", done.stderr)
 
     def test_the_first_line_and_quoted_cells_are_no_exceptions(self):
         for text in ("#N/A,2,1\n5,5,1\n", '"#N/A",2,1\n5,5,1\n', "#N/A 2 1\n5 5 1\n", "#REF!;2;1\n5;5;1\n", '5,5,1\n"#DIV/0!",2,1\n'):

@@ -169,6 +169,26 @@ class Units(ProgramTest):
         long, = re.findall(r"t = ([-0-9.e]+) s", run)
         self.assertAlmostEqual(float(long) / (float(time) * self.units("lab.cfg")["time_s"]), 1, places=2)
 
+    def test_droplets_with_several_speeds_are_named_by_their_range(self):
+        self.lab(angle="10 deg, 20 deg", speed="1.2 mm/s")
+        self.succeed("clogsweep", "--lab", "lab.cfg", "terminal-speed=1mm/s", *QUICK, "seeds=1", "--output", "s.h5")
+        first, second = (1.2, 1.2 * np.sin(np.radians(20)) / np.sin(np.radians(10)))
+        self.assertIn(f"with a terminal speed of 1 mm/s; the laboratory's droplets have {first:.4g} to {second:.4g} mm/s", self.succeed("clogfit", "s.h5").stderr)
+
+    def test_numbers_are_those_of_the_laboratory_to_twelve_digits(self):
+        known = self.units(self.lab("1.1 mm", "30 deg", "0.7 mm/s", "3 mN/m"), "--length", "0.3")
+        self.assertEqual((known["angle_degrees"], known["diameter_mm"], known["tension_mN_per_m"], known["given"]["length_mm"]), (30, 1.1, 3, 0.33))
+        for name, value in known.items():
+            if isinstance(value, float):
+                self.assertEqual(value, float(f"{value:.12g}"), name)
+        # Runs have a Gamma of four digits.
+        self.succeed("clogsweep", "--lab", "lab.cfg", *QUICK, "seeds=1", "--output", "s.h5")
+        group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
+        self.assertEqual((group["tension_mN_per_m"], group["angle_degrees"]), (3, 30))
+        self.succeed("clogsweep", "--lab", "lab.cfg", "line-tension=0.5", *QUICK, "seeds=1", "--output", "half.h5")
+        group, = json.loads(self.succeed("clogfit", "half.h5", "--format", "json").stdout)["groups"]
+        self.assertAlmostEqual(group["tension_mN_per_m"], 0.5 * known["tension_mN_per_m_of_gamma_1"], places=9)
+
     def test_each_model_gets_the_value_of_its_droplet(self):
         known = self.units(self.lab())
         self.succeed("clogsweep", "--lab", "lab.cfg", "model=dp,sp", "box=20", "max-time=20", "seeds=1", "--output", "s.h5")

@@ -82,7 +82,7 @@ def read_table(path: str, length: str, scales: Scales) -> Numbers:
             if len(cells) <= max(columns[length], columns["v"]):
                 raise UserError("has too few columns")
             shape = (cells + [""])[min(columns.get("A", len(cells)), len(cells))]
-            found.append([numbers.read(cells[columns[length]]) * factors[0], numbers.read(cells[columns["v"]]) * factors[1], numbers.read(shape) if shape else math.nan])
+            found.append([numbers.read(cells[columns[length]], length) * factors[0], numbers.read(cells[columns["v"]], "v") * factors[1], numbers.read(shape, "A") if shape else math.nan])
         except UserError as error:
             raise UserError(f"{path} line {line_number}: {error}") from error
     numbers.check(path)

@@ -164,6 +164,15 @@ def in_rows(device: shapes.Device, radius: float) -> tuple[shapes.Device, list[s
                           f"corners lose {found.farthest:.2g} at most ({found.farthest * micrometres:.2g} um), walls are rough by {found.roughness:.2g}, in droplet diameters{advice}"]
 
 
+def named_slender(device: shapes.Device) -> list[str]:
+    """Names the slender outlines that are to become posts, because scale bars and labels would become posts, too."""
+    found = shapes.slender(device.others)
+    places = ", ".join(f"x={x:.5g} um, y={y:.5g} um" for x, y in (outline.mean(axis=0) * device.droplet_micrometres for outline in found[:3]))
+    more = f", and {len(found) - 3} more" if len(found) > 3 else ""
+    are = "is" if len(found) == 1 else "are"
+    return [f"{rounded.counted(len(found), 'post')} {are} at least three times as long as wide, at {places}{more}; if this is a scale bar or a label, cut it away by --region or in the drawing"] if found else []
+
+
 def body() -> int:
     arguments = options()
     droplet = shapes.length_in_metres(arguments.droplet, "--droplet")
@@ -178,9 +187,10 @@ def body() -> int:
     metres = metres_of(arguments, drawing)
     device = shapes.understood(drawing, metres, droplet, arguments.tolerance, TURNS[arguments.flow])
     shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), metres, remedy_of_unit(arguments), drawing.is_picture)
-    made: list[str] = []
+    made = named_slender(device) if arguments.as_rows or arguments.as_circles else []
     if arguments.as_rows and device.others:
-        device, made = in_rows(device, arguments.corner)
+        device, deviations = in_rows(device, arguments.corner)
+        made += deviations
     if arguments.as_circles:
         shapes.refuse_swallowed(drawing, [outline for outline, _ in drawing.swallowing])
         device = shapes.as_circles(device)

@@ -254,7 +254,8 @@ def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float
     if not drawing.is_picture:
         edge, outlines = edges_among(outlines, drawing.holes, np.reshape([circle[:2] for circle in found], (-1, 2)))
         refuse_swallowed(drawing, [] if edge is None else [edge])
-        refuse_round_holes(drawing, edge, tolerance)
+        refuse_lost_holes(drawing, edge, tolerance)
+        refuse_indented(edge, metres / droplet, droplet)
     for outline in outlines:
         is_closed = not drawing.is_picture or bool(np.allclose(outline[0], outline[-1]))
         circle = fitted_circle(outline, is_closed, tolerance)
@@ -275,19 +276,49 @@ def refuse_swallowed(drawing: Drawing, outlines: list[Numbers]) -> None:
                         f"choose the layer of the posts by --layer, or a part of the drawing by --region{drawing.layers_in_words()}")
 
 
-def round_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> int:
-    """The number of round holes that are neither the device's edge nor within a round post."""
+def lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> list[Numbers]:
+    """The holes that may be meant as posts: round holes that are neither the device's edge nor within a round post, and
+    holes of any form within the edge, or within the only outline, that are within no other outline."""
     posts = [*drawing.circles, *filter(None, (fitted_circle(outline, True, tolerance) for outline in drawing.outlines))]
     places = np.reshape(posts, (-1, 3))
-    found = [fitted_circle(hole, True, tolerance) for hole in drawing.holes if hole is not edge]
-    return sum(not (np.hypot(places[:, 0] - x, places[:, 1] - y) <= places[:, 2] / 2).any() for x, y, _ in filter(None, found))
+    is_alone = edge is None and len(drawing.outlines) + len(drawing.circles) == 1
+    hollow = [outline for outline in drawing.outlines if outline is not edge and not is_alone]
+
+    def is_lost(hole: Numbers) -> bool:
+        if (circle := fitted_circle(hole, True, tolerance)) is not None:
+            return not (np.hypot(places[:, 0] - circle[0], places[:, 1] - circle[1]) <= places[:, 2] / 2).any()
+        return is_alone or edge is not None and holds(edge, [hole]) and not any(holds(outline, [hole]) for outline in hollow)
+
+    return [hole for hole in drawing.holes if hole is not edge and is_lost(hole)]
 
 
-def refuse_round_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> None:
+def refuse_lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> None:
     """@throws UserError  if posts may be drawn as holes"""
-    if number := round_holes(drawing, edge, tolerance):
-        raise UserError(f"the drawing has {rounded.counted(number, 'round hole')}, which would not be posts; --holes reads holes as posts, and --layer or --region leave them out"
+    if holes := lost_holes(drawing, edge, tolerance):
+        kind = "round hole" if all(fitted_circle(hole, True, tolerance) for hole in holes) else "hole"
+        raise UserError(f"the drawing has {rounded.counted(len(holes), kind)}, which would not be posts; --holes reads holes as posts, and --layer or --region leave them out"
                         f"{drawing.layers_in_words()}")
+
+
+def refuse_indented(edge: Numbers | None, scale: float, droplet: float) -> None:
+    """Refuses an edge that is no rectangle: the device is the rectangle around its edge, so material within this
+    rectangle would be lost.
+    @param scale  droplet diameters per unit of the drawing, @param droplet  diameter of the droplet [m]
+    @throws UserError"""
+    if edge is None:
+        return
+    low, high = edge.min(axis=0), edge.max(axis=0)
+    along = np.linspace(0, 1, 9)[:-1, None]
+    points = np.vstack([begin + along * (end - begin) for begin, end in zip(edge, np.roll(edge, -1, axis=0))])
+    depths = scale * np.minimum(points - low, high - points).min(axis=1)
+    is_deep = depths > walls.FLAT
+    if is_deep.any():
+        number = int((is_deep & ~np.roll(is_deep, 1)).sum()) or 1
+        micrometres = droplet / METRES["um"]
+        x, y = scale * (points[np.argmax(depths)] - low) * micrometres
+        raise UserError(f"the device's edge is no rectangle: it has {rounded.counted(number, 'indentation')}, the deepest of {depths.max():.3g} droplet diameters "
+                        f"({depths.max() * micrometres:.4g} um) at x={x:.5g} um, y={y:.5g} um from the edge's lower left corner; the material there, such as posts at the edge, would be lost. "
+                        "Cut a rectangle within the edge by --region, or draw a rectangular edge and the material within it as outlines")
 
 
 def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tuple[float, ...] | None, scale: float, droplet: float, turns: int) -> Device:
@@ -325,6 +356,19 @@ def surroundings(circles: Numbers, others: list[Numbers]) -> Numbers:
     """Points that have the same bounding box as all posts together."""
     radii = circles[:, 2:] / 2
     return np.vstack([circles[:, :2] - radii, circles[:, :2] + radii, *others])
+
+
+def slender(outlines: list[Numbers]) -> list[Numbers]:
+    """The outlines that are at least three times as long as wide, as scale bars and labels are."""
+
+    def is_slender(outline: Numbers) -> bool:
+        near = along_edges(outline, True)
+        near = near - near.mean(axis=0)
+        along = near @ np.linalg.svd(near, full_matrices=False)[2].T  # along the principal axes
+        length, width = np.ptp(along, axis=0)
+        return bool(length >= walls.SLENDER * width)
+
+    return [outline for outline in outlines if is_slender(outline)]
 
 
 def as_circles(device: Device) -> Device:

@@ -62,9 +62,18 @@ class Numbers:
     def __init__(self) -> None:
         self._are_decimal = False
         self._ambiguous = ""  # The first number whose comma may separate thousands, such as 1,350.
+        self._first: dict[str, str] = {}  # The first number with a comma, and the first with a point.
 
-    def read(self, cell: str) -> float:
-        """@throws UserError"""
+    def read(self, cell: str, column: str) -> float:
+        """@throws UserError  that names the column, also if some numbers so far have a comma, and others a point"""
+        for mark in ",.":
+            if mark in cell:
+                self._first.setdefault(mark, cell)
+        if len(self._first) == 2:
+            words = {",": "comma", ".": "point"}
+            own, other = (",", ".") if "," in cell else (".", ",")
+            raise UserError(f"{column}: '{cell}' may have a decimal comma or separated thousands; write all numbers with decimal points and without commas" if other in cell else
+                            f"{column}: '{cell}' has a {words[own]}, but '{self._first[other]}' above has a {words[other]}; write all numbers of the file with decimal points, and without commas")
         if "," in cell:
             is_ambiguous = re.fullmatch(r"[+-]?[1-9]\d{0,2}(,\d{3})+", cell)
             self._are_decimal = self._are_decimal or not is_ambiguous
@@ -74,7 +83,7 @@ class Numbers:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise UserError(f"'{cell}' is not a finite number")
+            raise UserError(f"{column}: '{cell}' is not a finite number")
         return value
 
     def check(self, path: str) -> None:

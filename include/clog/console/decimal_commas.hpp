@@ -13,6 +13,7 @@ bool may_have_thousands(std::string_view number);
 class DecimalCommas {
  public:
   /// The number with a decimal point in place of its comma.
+  /// @throws Error if some numbers so far have a comma, and others a point
   std::string with_point(std::string number);
   /// @throws Error if every comma so far may separate thousands, so that the numbers are ambiguous.
   /// @param path  of the table
@@ -21,6 +22,7 @@ class DecimalCommas {
   [[noreturn]] static void refuse(std::string_view where, const std::string& number);
 
  private:
+  std::string with_comma_, with_point_;  // the first number with a comma, and the first with a point
   bool is_one_decimal_ = false;
   std::string perhaps_thousands_;  // the first number whose comma may separate thousands
 };

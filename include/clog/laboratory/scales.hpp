@@ -26,6 +26,9 @@ struct Scales {
   double line_tension_of_cell = 0;     ///< interfacial tension times thickness [N]
 };
 Scales scales_of(const Laboratory& lab);
+
+/// Gamma as droplet_texts() gives it to runs; empty if unknown.
+std::string line_tension_text(const Scales& scales);
 /// The text of each key, by the key's name.
 using Texts = std::map<std::string, std::string>;
 /// The laboratory's description, and two properties of its droplet unless the user has set them: the terminal

@@ -111,6 +111,10 @@ struct LaboratoryScale {
   double speed = std::numeric_limits<double>::quiet_NaN();   ///< v_t [mm/s]
   /// Interfacial tension of a droplet with Gamma = 1 [mN/m].
   double tension = std::numeric_limits<double>::quiet_NaN();
+  /// Gamma of the laboratory's droplet, rounded as its runs have it, and its interfacial tension before it
+  /// was rounded [mN/m].
+  double line_tension = std::numeric_limits<double>::quiet_NaN();
+  double own_tension = std::numeric_limits<double>::quiet_NaN();
   double tilt = std::numeric_limits<double>::quiet_NaN();  ///< tilt of the plates [degrees]
 };
 
