@@ -134,6 +134,16 @@ class Readers(Analysis):
         for word in ("note", "failed", "points:"):
             self.assertNotIn(word, text)
 
+    def test_a_comparison_corrects_the_tests_of_all_its_groups_together(self):
+        # By Weibull's test, the law of each group alone has p = 0.04.
+        rows = table(self.folder / "s.h5")
+        way = rows.line_tension * (-np.log(1 - (rows.seed - 0.5) / 12)) ** (1 / 1.8)
+        stored_rows.change_columns(self.folder / "s.h5", status=b"clogged", clogged_by=b"certified", mechanism=b"squeezed", failed_by=b"none", distance=way, sound_distance=way)
+        for group in self.fit("s.h5")["groups"]:
+            self.assertTrue(0.05 / 2 < group["weibull_p_value"] < 0.05)
+        for one in self.fit("compare", "s.h5", "--by", "line-tension")["comparisons"]:
+            self.assertNotIn("not_exponential", f"{one['doubts_here']} {one['doubts_there']}")
+
     def test_curves_reports_and_the_python_module(self):
         curve, = self.fit("curve", "s.h5")["curves"]
         points = sorted(curve["points"], key=lambda point: point["line_tension"])
