@@ -55,6 +55,12 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
     lines = ["; ".join(marks)] if marks else []
     if FITTED_TO_COMMON_OBSTACLES in labels:
         lines.append("points of a curve share seeds and so obstacles: their errors are correlated")
+    return lines + flaw_notes(groups)
+
+
+def flaw_notes(groups: Collection[Group]) -> list[str]:
+    """Explains hollow markers, and states how many points have unfinished or failed runs."""
+    lines = []
     if reasons := dict.fromkeys(HOLLOW_MARKERS[reason] for group in groups for reason in reasons_for_hollow_marker(group)):
         lines += textwrap.wrap(f"hollow: {', or '.join(reasons)}", NOTE_WIDTH)
     if num_incomplete := sum("incomplete" in style.doubts(group) for group in groups):
