@@ -4,6 +4,7 @@ import io
 import json
 import math
 import os
+import pathlib
 import subprocess
 import sys
 import types
@@ -17,7 +18,7 @@ from support import FEW, ROOT, ProgramTest
 
 sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep import style  # noqa: E402
-from clogsweep.drawing import measured  # noqa: E402
+from clogsweep.drawing import measured, survival_curve  # noqa: E402
 from clogsweep.results import fit  # noqa: E402
 from clogsweep.tools.errors import UserError  # noqa: E402
 
@@ -36,6 +37,11 @@ def table(head, separator=",", number=str):
 class Lengths(ProgramTest):
     def lengths(self, *arguments):
         return json.loads(self.succeed("clogfit", "lengths", *arguments, "--format", "json").stdout)
+
+    def succeed_in_python(self, *arguments):
+        done = subprocess.run([sys.executable, "-m", "clogsweep", *map(str, arguments), "--programs", support.BIN], cwd=self.folder, capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")})
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_lengths_shapes_and_survival_are_those_of_the_survival_package_of_r(self):
         self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
@@ -190,6 +196,23 @@ class Lengths(ProgramTest):
         for one, p_value in zip(told, (0.130678644081, 1)):
             self.assertAlmostEqual(one["log_rank_p_holm"], p_value, places=9)
         self.assertIn("corrected for 2 comparisons (Holm)\n", self.succeed("clogfit", "compare", "three.csv", "--by", "x").stdout)
+
+    def test_a_picture_has_the_survival_curve_of_each_group(self):
+        self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
+        axes, = style.figure_of(survival_curve.draw_on, survival_curve.of_table(self.lengths("aml.csv")), "mm").axes
+        self.assertEqual(axes.get_xlabel(), "displacement along the flow $r$ [mm]")
+        curves = {line.get_label(): line for line in axes.lines if line.get_label().startswith("x ")}
+        self.assertEqual(list(curves), ["x Maintained", "x Nonmaintained"])
+        # From R's survfit(Surv(time, status) ~ x, data = aml).
+        way, probability = curves["x Maintained"].get_data()
+        self.assertEqual(list(way), [0, 9, 13, 18, 23, 31, 34, 48, 161])
+        for found, expected in zip(probability, [1, 0.909091, 0.818182, 0.715909, 0.613636, 0.490909, 0.368182, 0.184091, 0.184091]):
+            self.assertAlmostEqual(found, expected, places=6)
+        self.assertEqual(list(curves["x Nonmaintained"].get_data()[0]), [0, 5, 8, 12, 23, 27, 30, 33, 43, 45, 45])
+        self.assertIn([13, 28, 45, 161], [list(line.get_xdata()) for line in axes.lines])
+        for name in ("aml.csv", self.copy_sweep("sweep.h5", *FEW)):
+            self.succeed_in_python("survival", name)
+            self.assertTrue((self.folder / f"{pathlib.Path(name).stem}-survival.png").exists())
 
     def test_a_comparison_corrects_the_tests_of_all_its_groups_together(self):
         # The p-values of groups of 12 droplets at the quantiles of Weibull's law of these shapes are 0.03 and 0.0002.
