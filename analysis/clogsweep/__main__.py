@@ -21,6 +21,7 @@ COMMANDS = {
     "clogging-length": "the clogging length against what a sweep varies",
     "critical-angle": "the angle up to which droplets follow the rows of lattices",
     "dwell": "the same over the time after which a droplet that stands counts as clogged",
+    "survival": "the probability to travel farther than r, for each group of a sweep or of measured distances",
     "compare": "ratios of the clogging lengths of two sweeps",
     "clogs": "the clogs of a sweep on one sheet",
     "predict": "the clogging length of stiff droplets in an array in which none has run",

@@ -10,6 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include "clog/fit/log_rank.hpp"
+
 namespace clog::fit {
 namespace {
 
@@ -150,16 +152,12 @@ WeibullTest test_exponentiality(std::span<const Observation> runs) {
 std::vector<bool> are_not_exponential(std::span<const WeibullTest> groups) {
   constexpr int fewest_clogs = 10;
   constexpr double significant = 0.05;
-  std::vector<std::pair<double, std::size_t>> tested;
-  for (std::size_t i = 0; i < groups.size(); ++i)
-    if (groups[i].num_clogs >= fewest_clogs && !std::isnan(groups[i].p_value))
-      tested.emplace_back(groups[i].p_value, i);
-  std::sort(tested.begin(), tested.end());
-  std::vector<bool> are_not(groups.size(), false);
-  for (std::size_t i = 0; i < tested.size(); ++i) {
-    if (tested[i].first * static_cast<double>(tested.size() - i) >= significant) break;
-    are_not[tested[i].second] = true;
-  }
+  std::vector<double> p_values;
+  for (const WeibullTest& group : groups)
+    p_values.push_back(group.num_clogs >= fewest_clogs ? group.p_value
+                                                       : std::numeric_limits<double>::quiet_NaN());
+  std::vector<bool> are_not;
+  for (const double p : holm_adjusted(p_values)) are_not.push_back(p < significant);
   return are_not;
 }
 

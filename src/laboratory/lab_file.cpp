@@ -25,11 +25,18 @@ using Entries = std::map<std::string, std::string>;
 
 /// The quantity that each key gives; the ratio is a plain number.
 const std::map<std::string, std::string>& known_keys() {
-  static const std::map<std::string, std::string> keys = {
-      {"diameter", "length"},       {"thickness", "length"}, {"density", "density"},
-      {"outer-density", "density"}, {"tension", "tension"},  {"angle", "angle"},
-      {"speed", "speed"},           {"tension-ratio", ""},   {"speed-diameter", "length"},
-      {"speed-angle", "angle"},     {"speed-exponent", ""}};
+  static const std::map<std::string, std::string> keys = {{"diameter", "length"},
+                                                          {"thickness", "length"},
+                                                          {"density", "density"},
+                                                          {"outer-density", "density"},
+                                                          {"tension", "tension"},
+                                                          {"angle", "angle"},
+                                                          {"density-difference", "density"},
+                                                          {"speed", "speed"},
+                                                          {"tension-ratio", ""},
+                                                          {"speed-diameter", "length"},
+                                                          {"speed-angle", "angle"},
+                                                          {"speed-exponent", ""}};
   return keys;
 }
 
@@ -118,6 +125,12 @@ Laboratory laboratory_of(const Entries& entries) {
                     .droplet_density = value_of(entries, "density", octane),
                     .outer_density = value_of(entries, "outer-density", water),
                     .interfacial_tension = value_of(entries, "tension", unknown)};
+  if (entries.contains("density-difference")) {
+    if (entries.contains("outer-density"))
+      throw Error("has outer-density and density-difference, and one follows from the other; leave one out");
+    lab.experiment.outer_density =
+        lab.experiment.droplet_density + value_of(entries, "density-difference", unknown);
+  }
   lab.thickness = value_of(entries, "thickness", unknown);
   lab.tension_ratio = value_of(entries, "tension-ratio", lab.tension_ratio);
   constexpr double largest = 0.1;  // [m]

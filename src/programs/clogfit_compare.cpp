@@ -78,7 +78,7 @@ results::Comparisons compare_sweeps(const cli::CommandLine& line, const std::vec
 
 /// Says which columns of a measured table choose no groups of another table, and which groups are left out.
 void say_unmatched(const results::DistanceTable& table, const results::DistanceTable& other) {
-  if (!results::is_distance_table(table.source)) return;
+  if (!table.is_measured) return;
   const std::vector<std::string> columns = results::unmatched_labels(table, other);
   if (!columns.empty())
     console::say(fmt::format(

@@ -45,7 +45,7 @@ lab.cfg has lines key = value:
   speed = 7 mm/s              terminal, far from walls
   tension = 9.6 mN/m          interfacial
   density = 0.703 g/ml        of the droplet (default)
-  outer-density = 0.997 g/ml  of the liquid around it (default)
+  outer-density = 0.997 g/ml  of the liquid around it (default), or density-difference = 0.294 g/ml
   thickness = 0.4 mm          of the cell
   tension-ratio = 0.3         Gamma of the model divided by Gamma_exp (default)
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -16,6 +17,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/fit/log_rank.hpp"
 #include "clog/results/selection.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/results/usual_parameters.hpp"
@@ -133,6 +135,7 @@ Comparison compare_sets(const ParameterSet& here, const ParameterSet& there, dou
   comparison.length_here = fit::fit_clogging_length(all_here, confidence);
   comparison.length_there = fit::fit_clogging_length(all_there, confidence);
   comparison.ratio = fit::fit_length_ratio(all_here, all_there, pairs, confidence);
+  comparison.log_rank_p = fit::log_rank_p_value(all_here, all_there);
   comparison.are_identical =
       num_identical == all_here.size() && num_identical == all_there.size() && num_identical > 0;
   return comparison;
@@ -196,8 +199,34 @@ const LaboratoryScale& scale_in(const Scales& scales, const RunRow& row) {
 std::map<std::vector<Value>, Flaws> flaws_by_parameters(const std::vector<RunRow>& rows, double confidence) {
   std::map<std::vector<Value>, Flaws> all;
   for (Group& group : group_runs(rows, confidence))
-    all[parameter_values(group.first_row)] = {group.num_failed, std::move(group.doubts)};
+    all[parameter_values(group.first_row)] = {
+        .num_failed = group.num_failed, .doubts = std::move(group.doubts), .weibull = group.weibull};
   return all;
+}
+
+void correct_tests(std::vector<Comparison>& comparisons) {
+  std::map<int, fit::WeibullTest> groups;
+  std::vector<double> log_rank;
+  for (const Comparison& one : comparisons) {
+    for (const Flaws* flaws : {&one.flaws_here, &one.flaws_there}) groups[flaws->group] = flaws->weibull;
+    log_rank.push_back(one.log_rank_p);
+  }
+  std::vector<fit::WeibullTest> tests;
+  tests.reserve(groups.size());
+  for (const auto& [group, test] : groups) tests.push_back(test);
+  const std::vector<bool> are_not = fit::are_not_exponential(tests);
+  const std::vector<double> adjusted = fit::holm_adjusted(log_rank);
+  for (std::size_t i = 0; i < comparisons.size(); ++i) {
+    comparisons[i].log_rank_p_holm = adjusted[i];
+    for (Flaws* flaws : {&comparisons[i].flaws_here, &comparisons[i].flaws_there}) {
+      const auto place = std::distance(groups.begin(), groups.find(flaws->group));
+      const bool is_marked = std::ranges::find(flaws->doubts, Doubt::not_exponential) != flaws->doubts.end();
+      if (!are_not[static_cast<std::size_t>(place)])
+        std::erase(flaws->doubts, Doubt::not_exponential);
+      else if (!is_marked)
+        flaws->doubts.push_back(Doubt::not_exponential);
+    }
+  }
 }
 
 bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
@@ -261,7 +290,13 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
   std::vector<std::pair<const RunRow*, const RunRow*>> compared;
   const Side& there = sides.front();
   const std::vector<ParameterSet> sets_there = sets_of(there.rows);
-  const auto flaws_there = flaws_by_parameters(there.rows, confidence);
+  int num_groups = 0;
+  const auto numbered_flaws = [&](const Side& side) {
+    auto all = flaws_by_parameters(side.rows, confidence);
+    for (auto& [values, flaws] : all) flaws.group = num_groups++;
+    return all;
+  };
+  const auto flaws_there = numbered_flaws(there);
   std::vector<std::vector<ParameterSet>> sets_here;
   sets_here.reserve(sides.size());  // `compared` points into them
   for (std::size_t i = 1; i < sides.size(); ++i) {
@@ -276,7 +311,7 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
                       here.name, columns.empty() ? "nothing" : joined(columns), sides[1].name,
                       comparisons.columns.empty() ? "nothing" : joined(comparisons.columns)));
     const ByValues all_there = by_values(sets_there, columns, there);
-    const auto flaws_here = flaws_by_parameters(here.rows, confidence);
+    const auto flaws_here = numbered_flaws(here);
     for (const auto& [values, set] : by_values(sets_here.back(), columns, here)) {
       const auto other = all_there.find(values);
       if (other == all_there.end()) continue;
@@ -295,6 +330,7 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
     throw Error(fmt::format(
         "cannot compare {} with {} (no parameter set of one has the values of any set of the other)",
         sides[1].name, there.name));
+  correct_tests(comparisons.all);
   comparisons.differing = differing_columns(compared);
   if (scales.size() > 1) name_droplets(comparisons, compared, scales);
   return comparisons;

@@ -60,6 +60,8 @@ std::vector<Field> fields_of(const Comparison& one, const Comparisons& all) {
   fields.emplace_back("paired_upper", finite_value(ratio.paired.upper));
   fields.emplace_back("correlation", finite_value(ratio.correlation));
   fields.emplace_back("gain", finite_value(ratio.gain));
+  fields.emplace_back("log_rank_p", finite_value(one.log_rank_p));
+  fields.emplace_back("log_rank_p_holm", finite_value(one.log_rank_p_holm));
   fields.emplace_back("both_clogged", std::int64_t{one.num_both_clogged});
   fields.emplace_back("same_place", std::int64_t{one.num_same_place});
   return fields;
@@ -107,7 +109,10 @@ std::vector<std::string> cells(const Comparison& one, double factor, bool have_p
     all.insert(all.end(), {one.are_identical ? "1" : rounded.value,
                            one.are_identical ? "identical" : rounded.lower + " .. " + rounded.upper});
   }
-  if (!have_pairs) return all;
+  if (!have_pairs) {
+    all.push_back(std::isnan(one.log_rank_p) ? "-" : fmt::format("{:.2g}", one.log_rank_p_holm));
+    return all;
+  }
   all.emplace_back(ratio.is_paired ? "yes" : "no");
   all.push_back(std::isnan(ratio.gain) ? "-" : fmt::format("{:.2f}", ratio.gain));
   all.push_back(fmt::format("{} of {}", one.num_same_place, one.num_both_clogged));
@@ -126,7 +131,11 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
       std::ranges::any_of(comparisons.all, [](const Comparison& one) { return one.ratio.num_pairs > 0; });
   lines[0].insert(lines[0].end(), {"clogs", "lambda/" + unit, "clogs there", "lambda there", "ratio",
                                    fmt::format("{:.4g} %", 100 * confidence)});
-  if (have_pairs) lines[0].insert(lines[0].end(), {"paired", "gain", "same place"});
+  if (have_pairs) {
+    lines[0].insert(lines[0].end(), {"paired", "gain", "same place"});
+  } else {
+    lines[0].emplace_back("log-rank p");
+  }
   const Flaws flaws = all_flaws(comparisons);
   if (!flaws.doubts.empty()) lines[0].emplace_back("note");
   for (const Comparison& one : comparisons.all) {
@@ -142,7 +151,12 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
                         sweep::counted(flaws.num_failed, "run"), flaws.num_failed == 1 ? "s" : "");
   if (std::ranges::any_of(comparisons.all, &Comparison::are_identical))
     text += "\nidentical: all runs end at the same places here and there, as copies of the same runs do\n";
-  if (!have_pairs) return text + "\nno runs have the same seed, so intervals are those of independent runs\n";
+  if (!have_pairs) {
+    text += "\nno runs have the same seed, so intervals are those of independent runs\n";
+    text += "log-rank p: probability that curves P(r) of one law differ as much";
+    const std::size_t number = comparisons.all.size();
+    return text + (number > 1 ? fmt::format(", corrected for {} comparisons (Holm)\n", number) : "\n");
+  }
   text +=
       "\npaired: the interval is from pairs of the same seed; gain: how many times smaller the error of "
       "the ratio is with\npairs than without; same place: pairs that clogged within ";

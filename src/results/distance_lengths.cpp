@@ -100,14 +100,12 @@ std::vector<Flaws> flaws_of(const DistanceTable& table) {
   std::vector<Flaws> all;
   std::vector<fit::WeibullTest> tests;
   for (const DistanceGroup& group : table.groups) {
-    if (!is_distance_table(table.source)) {
-      all.push_back(group.flaws);
-      continue;
-    }
     tests.push_back(fit::test_exponentiality(group.runs));
-    Flaws& one = all.emplace_back();
-    if (tests.back().num_clogs < enough_clogs) one.doubts.push_back(Doubt::few_clogs);
+    Flaws& one = all.emplace_back(group.flaws);
+    one.weibull = tests.back();
+    if (table.is_measured && tests.back().num_clogs < enough_clogs) one.doubts.push_back(Doubt::few_clogs);
   }
+  if (!table.is_measured) return all;
   const std::vector<bool> are_not = fit::are_not_exponential(tests);
   for (std::size_t i = 0; i < tests.size(); ++i) {
     if (are_not[i]) all[i].doubts.push_back(Doubt::not_exponential);

@@ -17,6 +17,7 @@
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/fit/log_rank.hpp"
 #include "clog/results/usual_parameters.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -284,7 +285,8 @@ bool is_distance_table(const std::string& path) {
 }
 
 DistanceTable read_distances(const std::string& path) {
-  DistanceTable table{.source = console::printable(path), .unit = "", .labels = {}, .groups = {}};
+  DistanceTable table{
+      .source = console::printable(path), .unit = "", .labels = {}, .groups = {}, .is_measured = true};
   std::map<std::vector<Value>, std::vector<fit::Observation>> runs;
   std::optional<Head> head;
   Cells cells;
@@ -342,7 +344,8 @@ std::vector<DistanceTable> tables_of_values(const DistanceTable& table, const st
       one = {.source = fmt::format("{}={}", *found, sweep::text_of(value)),
              .unit = table.unit,
              .labels = table.labels,
-             .groups = {}};
+             .groups = {},
+             .is_measured = true};
       one.labels.erase(one.labels.begin() + place);
     }
     group.labels.erase(group.labels.begin() + place);
@@ -414,14 +417,13 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
       std::ranges::all_of(tables, [&](const DistanceTable& table) { return table.unit == there.unit; });
   // Distances in droplet diameters do not say which of several droplets of a sweep is meant.
   const auto knows_diameters = [&](const DistanceTable& table) {
-    return is_distance_table(table.source) &&
-           std::ranges::all_of(table.groups, [&](const DistanceGroup& group) {
+    return table.is_measured && std::ranges::all_of(table.groups, [&](const DistanceGroup& group) {
              return diameter_of(table, group, sigma_mm).has_value();
            });
   };
   for (const DistanceTable& table : tables)
     if (table.unit != there.unit && !sigma_mm && !knows_diameters(table.unit == "mm" ? table : there)) {
-      const bool is_sweep_in_mm = !is_distance_table((table.unit == "mm" ? table : there).source);
+      const bool is_sweep_in_mm = !(table.unit == "mm" ? table : there).is_measured;
       throw Error(fmt::format(
           "cannot compare {} with {} (one is in mm, the other in droplet diameters); {}", table.source,
           there.source,
@@ -441,11 +443,17 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
       for (fit::Observation& run : runs) run.distance /= diameter_of(table, group, given_sigma).value();
     return runs;
   };
-  const std::vector<Flaws> flaws_there = flaws_of(there);
+  int num_groups = 0;
+  const auto numbered_flaws = [&](const DistanceTable& table) {
+    std::vector<Flaws> all = flaws_of(table);
+    for (Flaws& flaws : all) flaws.group = num_groups++;
+    return all;
+  };
+  const std::vector<Flaws> flaws_there = numbered_flaws(there);
   for (std::size_t i = 1; i < tables.size(); ++i) {
     const DistanceTable& here = tables[i];
     const Match match = match_of(here, there);
-    const std::vector<Flaws> flaws_here = flaws_of(here);
+    const std::vector<Flaws> flaws_here = numbered_flaws(here);
     if (i == 1) comparisons.columns = match.columns;
     if (match.columns != comparisons.columns)
       throw Error(
@@ -464,6 +472,7 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
         comparison.length_here = fit::fit_clogging_length(runs, confidence);
         comparison.length_there = fit::fit_clogging_length(others, confidence);
         comparison.ratio = fit::fit_length_ratio(runs, others, {}, confidence);
+        comparison.log_rank_p = fit::log_rank_p_value(runs, others);
         comparison.are_identical = runs.size() > 1 && are_same(runs, others);
         comparisons.all.push_back(std::move(comparison));
       }
@@ -476,6 +485,7 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
                     "both need the same values of {}",
                     tables[1].source, there.source, joined(common)));
   }
+  correct_tests(comparisons.all);
   return comparisons;
 }
 

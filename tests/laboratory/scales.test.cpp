@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
@@ -36,6 +37,24 @@ TEST(SagOnWall, IsNotKnownBeyondWhatIsTested) {
 TEST(SagOnWall, CanBeInverted) {
   for (const double line_tension : {0.03, 0.7, 20.0})
     EXPECT_NEAR(line_tension_of_sag(sag_on_wall(line_tension)) / line_tension, 1, 1e-6);
+}
+
+TEST(DensityDifference, AloneFixesGammaAndSetsTheOuterDensity) {
+  const std::string droplet = "diameter=2mm\nangle=30deg\ntension=10mN/m\nspeed=7mm/s\n";
+  const auto scales_for = [&](const char* densities) {
+    return scales_of(parse_laboratory(droplet + densities, "text"));
+  };
+  // Gamma_exp = gamma/(g sin(angle) difference sigma^2) = 0.010/(9.81 0.5 150 0.002^2)
+  for (const char* density : {"", "density=0.8g/ml", "density=1.9g/ml"}) {
+    const Scales scales = scales_for((std::string("density-difference=0.15g/ml\n") + density).c_str());
+    EXPECT_NEAR(scales.line_tension_experiment, 0.010 / (9.81 * 0.5 * 150 * 4e-6), 1e-9) << density;
+  }
+  const Scales by_difference = scales_for("density=0.8g/ml\ndensity-difference=150kg/m^3"),
+               by_densities = scales_for("density=0.8g/ml\nouter-density=0.95g/ml");
+  EXPECT_NEAR(by_difference.gravity, 9.81 * 0.5 * 150 / 800, 1e-12);
+  EXPECT_NEAR(by_difference.terminal_speed, by_densities.terminal_speed, 1e-12);
+  EXPECT_THROW(scales_for("outer-density=1g/ml\ndensity-difference=0.15g/ml"), Error);
+  EXPECT_THROW(scales_for("density-difference=0g/ml"), Error);
 }
 
 TEST(TiltOf, IsThatOfTheLaboratoryForItsOwnGamma) {

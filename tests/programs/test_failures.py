@@ -24,7 +24,7 @@ from test_clogfit import FAR
 import clogsweep
 from clogsweep import style
 from clogsweep.collisions import collision, prediction
-from clogsweep.drawing import device, lengths
+from clogsweep.drawing import device, lengths, ratios
 from clogsweep.reading import programs, stored
 
 TENSIONS = [0.25, 0.5, 1.0, 2.0]
@@ -133,6 +133,38 @@ class Readers(Analysis):
         text = self.succeed("clogfit", "compare", "s.h5", "--by", "line-tension").stdout + self.succeed("clogfit", "curve", "s.h5").stdout
         for word in ("note", "failed", "points:"):
             self.assertNotIn(word, text)
+
+    def test_a_comparison_corrects_the_tests_of_all_its_groups_together(self):
+        # By Weibull's test, the law of each group alone has p = 0.04.
+        rows = table(self.folder / "s.h5")
+        way = rows.line_tension * (-np.log(1 - (rows.seed - 0.5) / 12)) ** (1 / 1.8)
+        stored_rows.change_columns(self.folder / "s.h5", status=b"clogged", clogged_by=b"certified", mechanism=b"squeezed", failed_by=b"none", distance=way, sound_distance=way)
+        for group in self.fit("s.h5")["groups"]:
+            self.assertTrue(0.05 / 2 < group["weibull_p_value"] < 0.05)
+        for one in self.fit("compare", "s.h5", "--by", "line-tension")["comparisons"]:
+            self.assertNotIn("not_exponential", f"{one['doubts_here']} {one['doubts_there']}")
+
+    def test_pictures_of_comparisons_show_failures_and_doubts(self):
+        def drawn(told):
+            axes, = style.figure_of(ratios.draw_on, told).axes
+            faces = [line.get_markerfacecolor() == "white" for line in axes.lines if line.get_marker() in style.MARKERS]
+            return faces, [text.get_text() for text in axes.texts][-1], [[dashes is not None for _, dashes in bars.get_linestyle()] for bars in axes.collections]
+        told = self.fit("compare", "s.h5", "--by", "line-tension")
+        for one in told["comparisons"]:
+            for side in ("here", "there"):
+                one[f"doubts_{side}"], one[f"failed_{side}"] = "censored_by_time", 0
+        faces, notes, _ = drawn(told)
+        self.assertEqual(faces, [False] * 3)
+        for word in ("hollow", "failed", "incomplete"):
+            self.assertNotIn(word, notes)
+        first, second, third = told["comparisons"]
+        first["doubts_there"], second["doubts_here"], third["failed_here"] = "failures_matter not_exponential", "incomplete few_clogs", 2
+        second["interval"] = "paired"
+        faces, notes, dashed = drawn(told)
+        self.assertEqual((faces, dashed), ([True, True, False], [[True], [False], [True]]))
+        for words in ("hollow: failures, which would change the length if they were clogs, or fewer than 5 clogs", "incomplete: runs of 1 of 3 points", "failed: some runs of 1 of 3 points",
+                      "solid bars: from pairs of the same seed; dashed bars: from numbers of clogs alone"):
+            self.assertIn(words, " ".join(notes.split()))
 
     def test_curves_reports_and_the_python_module(self):
         curve, = self.fit("curve", "s.h5")["curves"]

@@ -644,6 +644,15 @@ class Pictures(Analysis):
         for most in (1, 2):
             self.assertEqual(len(film.chosen_frames(run, most)), most)
 
+    def test_a_film_that_has_room_for_the_whole_run_begins_with_its_first_frame(self):
+        for count in (2, 3, 7, 40, 100, 601):
+            run = SimpleNamespace(times=np.arange(count), polygons=np.tile([[0.0, 1, 0], [0, 0, 1]], (count, 1, 1)))
+            for most in (2, 3, 5, 30, 600):
+                frames = film.chosen_frames(run, most)
+                self.assertEqual((frames[0], frames[-1]), (0, count - 1), (count, most))
+                self.assertLessEqual(len(frames), most)
+                self.assertTrue((np.diff(frames) > 0).all())
+
     def test_a_film_that_cannot_be_made_is_refused_before_the_run(self):
         filmed = ["--polygon-interval", 15, "--frames", "film.mp4", "--output", "run.h5"]
         self.refuse("clogrun", "array", *QUICK, *filmed, env={**os.environ, "PATH": str(self.folder)}, words=["film.mp4", "no ffmpeg", "film.gif"])

@@ -4,6 +4,7 @@ import io
 import json
 import math
 import os
+import pathlib
 import subprocess
 import sys
 import types
@@ -18,7 +19,7 @@ from support import FEW, ROOT, ProgramTest
 
 sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep import style  # noqa: E402
-from clogsweep.drawing import measured  # noqa: E402
+from clogsweep.drawing import measured, survival_curve  # noqa: E402
 from clogsweep.results import fit  # noqa: E402
 from clogsweep.tools.errors import UserError  # noqa: E402
 
@@ -37,6 +38,11 @@ def table(head, separator=",", number=str):
 class Lengths(ProgramTest):
     def lengths(self, *arguments):
         return json.loads(self.succeed("clogfit", "lengths", *arguments, "--format", "json").stdout)
+
+    def succeed_in_python(self, *arguments):
+        done = subprocess.run([sys.executable, "-m", "clogsweep", *map(str, arguments), "--programs", support.BIN], cwd=self.folder, capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")})
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_clogged_is_read_as_programs_write_it(self):
         answers = [("1", "0"), ("1.0", "0.0"), ("1,0", "0,0"), ("T", "F"), ("TRUE", "FALSE"), ("y", "n"), ("Yes", "No")]
@@ -192,6 +198,57 @@ class Lengths(ProgramTest):
             self.assertAlmostEqual(one["ratio_upper"], ratio / scipy.stats.f.ppf(0.025, 12, 12))
         for words, arguments in [(["no column", "wall"], ["--by", "wal"]), (["one table"], ["own.csv", "--by", "wall"])]:
             self.refuse("clogfit", "compare", "own.csv", *arguments, words=words)
+
+    def test_survival_curves_of_groups_are_compared_by_the_log_rank_test(self):
+        self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
+        one, = json.loads(self.succeed("clogfit", "compare", "aml.csv", "--by", "x", "--format", "json").stdout)["comparisons"]
+        # From R's survdiff(Surv(time, status) ~ x, data = aml).
+        self.assertAlmostEqual(one["log_rank_p"], 0.0653393220405, places=12)
+        self.assertEqual(one["log_rank_p_holm"], one["log_rank_p"])
+        text = self.succeed("clogfit", "compare", "aml.csv", "--by", "x").stdout
+        self.assertRegex(text, r"log-rank p\n.* 0\.065\n")
+        # From R's p.adjust(c(0.0653393220405, 1), "holm").
+        self.write("three.csv", table(["x", "distance [mm]", "clogged"]) + "".join(f"Z,{pair.replace(' ', ',')}\n" for pair in AML["Maintained"].split(", ")))
+        told = json.loads(self.succeed("clogfit", "compare", "three.csv", "--by", "x", "--format", "json").stdout)["comparisons"]
+        for one, p_value in zip(told, (0.130678644081, 1)):
+            self.assertAlmostEqual(one["log_rank_p_holm"], p_value, places=9)
+        self.assertIn("corrected for 2 comparisons (Holm)\n", self.succeed("clogfit", "compare", "three.csv", "--by", "x").stdout)
+
+    def test_a_picture_has_the_survival_curve_of_each_group(self):
+        self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
+        axes, = style.figure_of(survival_curve.draw_on, survival_curve.of_table(self.lengths("aml.csv")), "mm").axes
+        self.assertEqual(axes.get_xlabel(), "displacement along the flow $r$ [mm]")
+        curves = {line.get_label(): line for line in axes.lines if line.get_label().startswith("x ")}
+        self.assertEqual(list(curves), ["x Maintained", "x Nonmaintained"])
+        # From R's survfit(Surv(time, status) ~ x, data = aml).
+        way, probability = curves["x Maintained"].get_data()
+        self.assertEqual(list(way), [0, 9, 13, 18, 23, 31, 34, 48, 161])
+        for found, expected in zip(probability, [1, 0.909091, 0.818182, 0.715909, 0.613636, 0.490909, 0.368182, 0.184091, 0.184091]):
+            self.assertAlmostEqual(found, expected, places=6)
+        self.assertEqual(list(curves["x Nonmaintained"].get_data()[0]), [0, 5, 8, 12, 23, 27, 30, 33, 43, 45, 45])
+        self.assertIn([13, 28, 45, 161], [list(line.get_xdata()) for line in axes.lines])
+        for name in ("aml.csv", self.copy_sweep("sweep.h5", *FEW)):
+            self.succeed_in_python("survival", name)
+            self.assertTrue((self.folder / f"{pathlib.Path(name).stem}-survival.png").exists())
+
+    def test_a_comparison_corrects_the_tests_of_all_its_groups_together(self):
+        # The p-values of groups of 12 droplets at the quantiles of Weibull's law of these shapes are 0.03 and 0.0002.
+        near, far = 1.65, 2.66
+        def ways(shape, length):
+            return [float(length * (-np.log(1 - (i + 0.5) / 12)) ** (1 / shape)) for i in range(12)]
+        self.write("own.csv", "wall,distance [mm],clogged\n" + "".join(f"{wall},{way!r},1\n" for wall, shape in zip("abcd", (near, near, far, near)) for way in ways(shape, 5)))
+        p_values = {group["wall"]: group["weibull_p_value"] for group in self.lengths("own.csv")["groups"]}
+        for wall, p_value in p_values.items():
+            self.assertTrue(p_value < 0.01 / 4 if wall == "c" else 0.05 / 2 < p_value < 0.05, p_values)
+        told = json.loads(self.succeed("clogfit", "compare", "own.csv", "--by", "wall", "--format", "json").stdout)["comparisons"]
+        self.assertEqual([(one["doubts_here"], one["doubts_there"]) for one in told], [(None, None), ("not_exponential", None), (None, None)])
+        for wall in "ab":
+            self.write(f"{wall}.csv", "distance [mm],clogged\n" + "".join(f"{way!r},1\n" for way in ways(near, 5 + (wall == "b"))))
+        one, = json.loads(self.succeed("clogfit", "compare", "a.csv", "b.csv", "--format", "json").stdout)["comparisons"]
+        self.assertEqual((one["doubts_here"], one["doubts_there"]), (None, None))
+        self.write("few.csv", "wall,distance [mm],clogged\na,5,1\na,6,1\nb,7,1\n")
+        one, = json.loads(self.succeed("clogfit", "compare", "few.csv", "--by", "wall", "--format", "json").stdout)["comparisons"]
+        self.assertEqual((one["doubts_here"], one["doubts_there"]), ("few_clogs", "few_clogs"))
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         for text, words in [("distance,clogged\n1,1\n", ["no unit", "distance [mm]"]), ("distance [ft],clogged\n1,1\n", ["'ft'"]),

@@ -29,7 +29,7 @@ ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", 
 
 
 class Calls(Analysis):
-    COMMANDS = ["clogging-length", "clogs", "critical-angle", "droplet", "dwell", "export-vtk", "poster", "report"]
+    COMMANDS = ["clogging-length", "clogs", "critical-angle", "droplet", "dwell", "export-vtk", "poster", "report", "survival"]
 
     def needs(self, command):
         return [] if command in ("droplet", "export-vtk") else ["--programs", BIN]

@@ -86,6 +86,20 @@ class Predicted(Analysis):
             self.assertEqual((tension, length, wrapped, doubts), ("3", squeezed, "", ""))
             self.assertAlmostEqual(float(length), 20 * 20 / apart, delta=0.1)
 
+    def test_a_laboratory_gives_the_droplet_and_units(self):
+        # Gamma = 0.3 gamma/(g sin(angle) difference sigma^2) = 3, with 9.81 m/s^2 and a difference of 100 kg/m^3.
+        tension = 3 / 0.3 * 9.81 * 0.5 * 100 * 0.002**2
+        self.write("lab.cfg", f"diameter = 2 mm\nangle = 30 deg\ntension = {tension} N/m\ndensity-difference = 0.1 g/ml\n")
+        self.write("pair.csv", "# units=mm droplet=2mm\nx,y,diameter\n26,19.2,0.6\n26,20.8,0.6\n")
+        head, line = self.draw("predict", "--programs", BIN, "vertices=64", "--lab", "lab.cfg", "obstacles=pair.csv", "box=40mm").stdout.splitlines()
+        self.assertEqual(head, "line_tension,clogging_length,squeezed,wrapped,doubts,clogging_length_mm")
+        tension, length, *_, in_mm = line.split(",")
+        # A pair across the flow catches on its whole width: 20 sigma times 20 sigma divided by 0.8 sigma.
+        self.assertEqual((tension, in_mm), ("3", "1000"))
+        self.assertAlmostEqual(float(length), 20 * 20 / 0.8, delta=0.1)
+        self.write("two.cfg", "diameter = 2 mm, 3 mm\nangle = 30 deg\n")
+        self.refuse_analysis("predict", "--programs", BIN, "--lab", "two.cfg", "obstacles=pair.csv", "box=40mm", words=["two.cfg", "2 droplets", "give one diameter"])
+
     def test_the_curve_is_drawn_beside_the_lengths_of_a_sweep(self):
         self.pair("pair.csv", 0)
         keys = ("obstacles=pair.csv", "box=20", "line-tension=3,4")

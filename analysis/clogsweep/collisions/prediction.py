@@ -195,16 +195,16 @@ def doubts_of(tension: float, length: float) -> list[str]:
     return [word for word, holds in (("soft", tension < SOFTEST), ("crowded", length < SMALLEST_LENGTH)) if holds]
 
 
-def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> Array:
+def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str], *options: object) -> Array:
     """Lets clogrun make the array. If it is random, several arrays are made. @param keys  that describe the array.
-    @throws UserError"""
+    @param options  of clogrun. @throws UserError"""
     run, circle_file = folder / "array.h5", folder / "array.csv"
     is_own = keys.get("obstacle-layout", "random") != "random" or "obstacles" in keys
     keys = keys if is_own else {"box": str(ARRAY_BOX)} | keys
     ways: list[Numbers] = []
     area, sizes = 0.0, []
     for seed in range(1, 2 if is_own else ARRAYS + 1):
-        programs.run_program(clogrun, "array", *(f"{key}={value}" for key, value in keys.items()), f"seeds={seed}", "vertices=64", "max-time=1",
+        programs.run_program(clogrun, "array", *options, *(f"{key}={value}" for key, value in keys.items()), f"seeds={seed}", "vertices=64", "max-time=1",
                              "--output", run, "--write-obstacles", circle_file)
         row = stored.read_rows(run)[0]
         run.unlink()

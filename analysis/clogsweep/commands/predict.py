@@ -3,9 +3,11 @@ array.
 
     python3 -m clogsweep predict obstacle-gap=0.3 obstacle-density=0.3 line-tension=1,3
     python3 -m clogsweep predict obstacles=posts.csv box=20 line-tension=2
+    python3 -m clogsweep predict --lab lab.cfg obstacle-gap=0.6mm obstacle-density=0.05/mm^2
     python3 -m clogsweep predict preset=elastic friction=0.05 line-tension=0.05,0.07,0.1,0.5,1,3 --output curve --with sweep.h5
 
-KEY=VALUE are keys of clogsweep. For each gap and direction a droplet falls onto a pair of obstacles. Other droplets
+KEY=VALUE are keys of clogsweep. With --lab, line tension and terminal speed are those of the laboratory's droplet unless
+they are given, keys of the array take units, and lengths are also in mm. For each gap and direction a droplet falls onto a pair of obstacles. Other droplets
 fall onto a single obstacle at several offsets, to find the largest offset at which the obstacle holds a wrapped
 droplet. These runs take half a minute for a large line tension. Then the command counts the obstacles and pairs of the
 array. It prints lengths as CSV, with the reasons to doubt them: soft (line tension below 1: clogs on three obstacles
@@ -20,6 +22,7 @@ import tempfile
 
 from ..collisions import prediction
 from ..reading import fits, programs
+from ..results import laboratory
 from ..tools import outputs
 from ..tools.errors import UserError
 from . import command_line
@@ -28,10 +31,15 @@ from . import command_line
 def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
     parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="keys of clogsweep; line-tension may be a list")
+    parser.add_argument("--lab", type=pathlib.Path, help="file that describes the laboratory of one droplet, see clogfit units")
     command_line.add_output(parser, "name of a picture; .png and .pdf are made", ".png", ".pdf")
     parser.add_argument("--with", dest="measured", metavar="SWEEP", type=pathlib.Path, help="also draw the lengths of this file of clogsweep --output")
     programs.add_option(parser)
-    return parser.parse_args()
+    return parser.parse_intermixed_args()
+
+
+def told(length: float) -> str:
+    return f"{length:.4g}" if math.isfinite(length) else ""
 
 
 def body() -> int:
@@ -48,17 +56,23 @@ def body() -> int:
     if arguments.output:
         outputs.refuse_unwritable_picture(arguments.output)
     folder_of_programs = programs.programs_in(arguments.programs)
+    droplet = laboratory.units(arguments.lab, folder=folder_of_programs) if arguments.lab else {}
+    if isinstance(droplet, list):
+        raise UserError(f"no place for --lab {arguments.lab} (it describes {len(droplet)} droplets); give one diameter and one angle")
+    for key in ("terminal-speed", "line-tension"):
+        if (value := droplet.get(key.replace("-", "_"))) is not None:
+            keys.setdefault(key, f"{value:.4g}")
     of_array = {key: keys[key] for key in (*prediction.OF_ARRAYS, "obstacle-diameter") if key in keys}
     of_droplet = {key: value for key, value in keys.items() if key not in of_array}
     with tempfile.TemporaryDirectory(prefix="clogsweep-predict-") as name:
         folder = pathlib.Path(name)
-        array = prediction.read_array(folder_of_programs / "clogrun", folder, of_array)
+        array = prediction.read_array(folder_of_programs / "clogrun", folder, of_array, *command_line.lab_options(arguments))
         droplets = prediction.Droplets(folder_of_programs / "clogsweep", folder, of_droplet)
         found = list(prediction.predict(droplets, array))
-    print("line_tension,clogging_length,squeezed,wrapped,doubts")
+    print("line_tension,clogging_length,squeezed,wrapped,doubts" + (",clogging_length_mm" if droplet else ""))
     for one in found:
-        print(f"{one.tension:g}", *(f"{length:.4g}" if math.isfinite(length) else "" for length in one[1:]),
-              " ".join(prediction.doubts_of(one.tension, one.length)), sep=",")
+        print(f"{one.tension:g}", *map(told, one[1:]), " ".join(prediction.doubts_of(one.tension, one.length)),
+              *([told(one.length * droplet["diameter_mm"])] if droplet else []), sep=",")
     if arguments.output:
         fit = fits.told(folder_of_programs / "clogfit", arguments.measured) if arguments.measured else {"groups": [], "confidence": 0.95}
         from .. import style  # loads matplotlib, which only a picture needs

@@ -47,13 +47,15 @@ SHADES = 96  # Number of colours of a palette for the first frame, and number of
 
 
 def chosen_frames(run: trajectory.Trajectory, most: int) -> npt.NDArray[np.int64]:
-    """Chooses every n-th frame, and at most `most` frames. If the droplet moved too far in n frames, n is reduced, and
-    the film shows only the end of the run."""
+    """Chooses every n-th frame up to the last one, and at most `most` frames. The first frame is added if the film
+    reaches so far back. If the droplet moved too far in n frames, n is reduced, and the film shows only the end of the
+    run."""
     count = len(run.times)
     way = np.abs(np.diff(trajectory.centroids(run.polygons), axis=0)).sum()
     step = max(1, -(-(count - 1) // max(1, most - 1)))
     step = max(1, min(step, int(LONGEST_STEP * count / max(way, LONGEST_STEP))))
-    return np.arange(count - 1, -1, -step)[:most][::-1]
+    frames = np.arange(count - 1, -1, -step)[:most][::-1]
+    return np.insert(frames, 0, 0) if 0 < frames[0] < step and len(frames) < most else frames
 
 
 def smoothed(values: Numbers, width: int) -> Numbers:

@@ -55,12 +55,24 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
     lines = ["; ".join(marks)] if marks else []
     if FITTED_TO_COMMON_OBSTACLES in labels:
         lines.append("points of a curve share seeds and so obstacles: their errors are correlated")
+    return lines + flaw_notes(groups)
+
+
+def flaw_notes(groups: Collection[Group]) -> list[str]:
+    """Explains hollow markers, and states how many points have unfinished or failed runs."""
+    lines = []
     if reasons := dict.fromkeys(HOLLOW_MARKERS[reason] for group in groups for reason in reasons_for_hollow_marker(group)):
         lines += textwrap.wrap(f"hollow: {', or '.join(reasons)}", NOTE_WIDTH)
+    return lines + failure_notes(groups)
+
+
+def failure_notes(groups: Collection[Group], noun: str = "point") -> list[str]:
+    """States how many points or curves have unfinished or failed runs."""
+    lines = []
     if num_incomplete := sum("incomplete" in style.doubts(group) for group in groups):
-        lines.append(f"incomplete: runs of {num_incomplete} of {rounded.counted(len(groups), 'point')} are unfinished")
+        lines.append(f"incomplete: runs of {num_incomplete} of {rounded.counted(len(groups), noun)} are unfinished")
     if num_failed := sum((group.get("failed") or 0) > 0 for group in groups):
-        lines.append(f"failed: some runs of {num_failed} of {rounded.counted(len(groups), 'point')} (not clogged up to their last check)")
+        lines.append(f"failed: some runs of {num_failed} of {rounded.counted(len(groups), noun)} (not clogged up to their last check)")
     return lines
 
 

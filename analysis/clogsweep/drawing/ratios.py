@@ -11,10 +11,13 @@ from .. import style
 from ..labels import AXES, axis_label, is_number, said
 from ..reading import fits
 from ..tools.errors import UserError
+from ..tools.hints import Group
 from ..tools.rounded import counted
 from ..tools.texts import literal
+from . import lengths
 
 Comparison = dict[str, Any]
+PAIRED, UNPAIRED = "solid", "dashed"  # lines of bars
 DROPLETS = {column["key"]: column for column in fits.droplet_columns().values()}
 
 
@@ -51,22 +54,31 @@ def side(told: dict[str, Any], name: str) -> str:
     return f"{key.replace('_', ' ')} {literal(value)}" if key in told["differing"] else literal(name)
 
 
+def flaws_of(one: Comparison) -> Group:
+    """The doubts and failures of both sides, as those of one group."""
+    sides = ("here", "there")
+    doubts = dict.fromkeys(word for side in sides for word in (one[f"doubts_{side}"] or "").split())
+    return {"doubts": " ".join(doubts), "clogs": min(one[f"clogs_{side}"] for side in sides), "failed": sum(one[f"failed_{side}"] for side in sides)}
+
+
 def draw_curve(axes: Axes, places: Sequence[float], curve: Sequence[Comparison], index: int, label: str) -> None:
     order = sorted(range(len(curve)), key=lambda i: places[i])
     known = [(places[i], curve[i]) for i in order if curve[i]["ratio_lower"] is not None]
     looks = style.curve_style(index)
-    axes.errorbar([x for x, _ in known], [one["ratio"] for _, one in known],
-                  yerr=[[abs(one["ratio"] - one[end]) for _, one in known] for end in ("ratio_lower", "ratio_upper")],
-                  color=looks["color"], linestyle=looks["linestyle"], linewidth=1, elinewidth=1, capsize=2.5, label=label if known else "_")
+    drawn = axes.errorbar([x for x, _ in known], [one["ratio"] for _, one in known],
+                          yerr=[[abs(one["ratio"] - one[end]) for _, one in known] for end in ("ratio_lower", "ratio_upper")],
+                          color=looks["color"], linestyle=looks["linestyle"], linewidth=1, elinewidth=1, capsize=2.5, label=label if known else "_")
+    for bars in drawn.lines[2]:
+        bars.set_linestyle([PAIRED if one["interval"] == "paired" else UNPAIRED for _, one in known])
     for x, one in known:
-        face = "auto" if one["interval"] == "paired" else "white"
+        face = "white" if lengths.reasons_for_hollow_marker(flaws_of(one)) else "auto"
         axes.plot(x, one["ratio"], color=looks["color"], marker=looks["marker"], markerfacecolor=face, markersize=5.5, zorder=3)
 
 
 def note_lines(told: dict[str, Any]) -> list[str]:
     kinds = {one["interval"] for one in told["comparisons"] if one["ratio_lower"] is not None}
     lines = [f"bars: {100 * told['confidence']:g} % confidence intervals"]
-    meanings = {"paired": "filled: from pairs of the same seed", "unpaired": "hollow: from numbers of clogs alone"}
+    meanings = {"paired": "solid bars: from pairs of the same seed", "unpaired": "dashed bars: from numbers of clogs alone"}
     lines += ["; ".join(meaning for kind, meaning in meanings.items() if kind in kinds)]
     unknown = sum(one["ratio_lower"] is None for one in told["comparisons"])
     identical = sum(one["interval"] == "identical" for one in told["comparisons"])
@@ -74,7 +86,7 @@ def note_lines(told: dict[str, Any]) -> list[str]:
         lines.append(f"{counted(unknown - identical, 'point')} without clogs on one side: no ratio")
     if identical:
         lines.append(f"{counted(identical, 'point')} with identical runs on both sides: no interval")
-    return lines
+    return lines + lengths.flaw_notes([flaws_of(one) for one in told["comparisons"]])
 
 
 def draw_on(axes: Axes, told: dict[str, Any]) -> None:

@@ -1,12 +1,21 @@
 """Draws P(r) of a group in clogfit's JSON: the probability that a droplet has not clogged within a distance r."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from .. import style
+from ..labels import said
+from ..labels.groups import Groups
+from ..reading import fits
+from ..tools.errors import UserError
 from ..tools.hints import Group, Numbers
+from ..tools.texts import literal
+from . import lengths
+
+Curve = tuple[str, Group]  # The label of a curve, and a group whose distances are in the unit of the picture.
 
 
 def longest_way(group: Group) -> float:
@@ -31,3 +40,40 @@ def draw(axes: Axes, group: Group, colour: str | Sequence[float], label: str, la
     if censored:
         axes.plot(censored, probability(group, censored), linestyle="none", marker="|", markersize=9, markeredgewidth=1.2, color=colour,
                   label=label_of_ticks)
+
+
+def scaled(group: Group, factor: float) -> Group:
+    """The group with its distances multiplied by a factor."""
+    steps = [step | {"distance": factor * step["distance"]} for step in group["survival"]]
+    return group | {"survival": steps, "censored_distances": [factor * distance for distance in group["censored_distances"]]}
+
+
+def of_groups(groups: Groups) -> list[Curve]:
+    """The curves of a sweep."""
+    return [(groups.label_of(group), scaled(group, group["diameter_mm"] if groups.are_in_mm else 1)) for group in groups.members if group["runs"]]
+
+
+def of_table(told: dict[str, Any]) -> list[Curve]:
+    """The curves of measured distances. @param told  the JSON output of clogfit lengths"""
+    droplets = {column["key"]: column for column in fits.droplet_columns().values()}
+
+    def words(label: str, value: Any) -> str:
+        return said(droplets[label], value) if label in droplets and value is not None else literal(f"{label} {value:g}" if isinstance(value, int | float) else f"{label} {value}")
+
+    return [(", ".join(words(label, group[label]) for label in told["labels"]), group) for group in told["groups"]]
+
+
+def draw_on(axes: Axes, curves: Sequence[Curve], unit: str) -> None:
+    """Draws P(r) of each group up to its longest distance. @param unit  of the distances: sigma or mm. @throws
+    UserError  if no droplet has moved"""
+    if not any(longest_way(group) > 0 for _, group in curves):
+        raise UserError("cannot draw P(r) (no droplet has moved)")
+    for (label, group), colour in zip(curves, style.shades(len(curves))):
+        with style.curve(axes, label):
+            draw(axes, group, colour, label)
+    axes.set_xlim(left=min(0, *(step["distance"] for _, group in curves for step in group["survival"])) if any(group["survival"] for _, group in curves) else 0)
+    axes.set_ylim(0, 1.02)
+    style.label(axes, r"displacement along the flow $r/\sigma$" if unit == "sigma" else "displacement along the flow $r$ [mm]", "$P(r)$, not yet clogged")
+    if any(label for label, _ in curves):
+        style.legend(axes)
+    style.notes(axes, ["steps: clogs; ticks: droplets that were last seen moving", *lengths.failure_notes([group for _, group in curves], "curve")])

@@ -99,10 +99,15 @@ def changed_run(path: AnyPath) -> UserError:
                      "give the file that clogrun wrote, or run the droplet again")
 
 
+def is_distance_table(path: AnyPath) -> bool:
+    """Whether this is the name of a text table, not of a sweep's file, as clogfit decides it."""
+    return os.fspath(path).lower().endswith((".csv", ".tsv", ".txt", ".dat"))
+
+
 def why_not_open(path: AnyPath, error: OSError) -> str:
     if error.errno:
         return os.strerror(error.errno)
-    if os.fspath(path).endswith((".csv", ".tsv", ".txt", ".dat")):
+    if is_distance_table(path):
         return "not an HDF5 file; clogfit lengths fits measured distances"
     return str(error) if h5py.is_hdf5(path) else "not an HDF5 file"
 

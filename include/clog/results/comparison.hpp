@@ -7,6 +7,7 @@
 
 #include "clog/fit/clogging_length.hpp"
 #include "clog/fit/length_ratio.hpp"
+#include "clog/fit/survival.hpp"
 #include "clog/results/groups.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/run_row.hpp"
@@ -33,6 +34,8 @@ bool follows_from_droplet(const sweep::Column& column, const std::vector<const s
 struct Flaws {
   int num_failed = 0;
   std::vector<Doubt> doubts;
+  fit::WeibullTest weibull{};
+  int group = 0;  ///< number of the group; two comparisons may have a group in common
 };
 /// The flaws of each group of the runs, see group_runs(); the key is parameter_values().
 std::map<std::vector<Value>, Flaws> flaws_by_parameters(const std::vector<sweep::RunRow>& rows,
@@ -45,6 +48,9 @@ struct Comparison {
   fit::CloggingLength length_here{}, length_there{};
   Flaws flaws_here{}, flaws_there{};
   fit::LengthRatio ratio{};  ///< ratio of the length here to the length there
+  /// p-value of the log-rank test, which takes all runs as independent, and the same with Holm's correction
+  /// for all comparisons; NaN if not known.
+  double log_rank_p = 0, log_rank_p_holm = 0;
   int num_both_clogged = 0;  ///< pairs of runs that both clogged
   int num_same_place = 0;    ///< pairs of runs that both clogged, at the same place
   /// All runs here and there ended alike at the same places, as copies of the same runs do. Their ratio is
@@ -60,6 +66,10 @@ struct Comparisons {
   std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are wanted in mm, too
   double within = 0;  ///< clogs at most this far apart count as at the same place [sigma]; 0: half a spacing
 };
+
+/// Corrects the tests of all comparisons for their number (Holm): the doubt not_exponential of each group,
+/// and the log-rank tests.
+void correct_tests(std::vector<Comparison>& comparisons);
 
 /// @throws Error if the side has no runs, or runs without a clogging length
 void require_lengths(const Side& side);

@@ -23,6 +23,7 @@ struct DistanceTable {
   std::string unit;                 ///< unit of the distances: "sigma" or "mm"
   std::vector<std::string> labels;  ///< columns that separate groups
   std::vector<DistanceGroup> groups;
+  bool is_measured = false;
 };
 
 /// The diameter of a group's droplets [mm]: the label `diameter` or, without a number there, `sigma_mm`.
