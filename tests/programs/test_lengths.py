@@ -202,12 +202,12 @@ class Lengths(ProgramTest):
     def test_survival_curves_of_groups_are_compared_by_the_log_rank_test(self):
         self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
         one, = json.loads(self.succeed("clogfit", "compare", "aml.csv", "--by", "x", "--format", "json").stdout)["comparisons"]
-        # From R's survdiff(Surv(time, status) ~ x, data = aml).
+        # From R: `survdiff(Surv(time, status) ~ x, data = aml)`.
         self.assertAlmostEqual(one["log_rank_p"], 0.0653393220405, places=12)
         self.assertEqual(one["log_rank_p_holm"], one["log_rank_p"])
         text = self.succeed("clogfit", "compare", "aml.csv", "--by", "x").stdout
         self.assertRegex(text, r"log-rank p\n.* 0\.065\n")
-        # From R's p.adjust(c(0.0653393220405, 1), "holm").
+        # From R: `p.adjust(c(0.0653393220405, 1), "holm")`.
         self.write("three.csv", table(["x", "distance [mm]", "clogged"]) + "".join(f"Z,{pair.replace(' ', ',')}\n" for pair in AML["Maintained"].split(", ")))
         told = json.loads(self.succeed("clogfit", "compare", "three.csv", "--by", "x", "--format", "json").stdout)["comparisons"]
         for one, p_value in zip(told, (0.130678644081, 1)):
@@ -220,7 +220,7 @@ class Lengths(ProgramTest):
         self.assertEqual(axes.get_xlabel(), "displacement along the flow $r$ [mm]")
         curves = {line.get_label(): line for line in axes.lines if line.get_label().startswith("x ")}
         self.assertEqual(list(curves), ["x Maintained", "x Nonmaintained"])
-        # From R's survfit(Surv(time, status) ~ x, data = aml).
+        # From R: `survfit(Surv(time, status) ~ x, data = aml)`.
         way, probability = curves["x Maintained"].get_data()
         self.assertEqual(list(way), [0, 9, 13, 18, 23, 31, 34, 48, 161])
         for found, expected in zip(probability, [1, 0.909091, 0.818182, 0.715909, 0.613636, 0.490909, 0.368182, 0.184091, 0.184091]):
@@ -234,6 +234,7 @@ class Lengths(ProgramTest):
     def test_a_comparison_corrects_the_tests_of_all_its_groups_together(self):
         # The p-values of groups of 12 droplets at the quantiles of Weibull's law of these shapes are 0.03 and 0.0002.
         near, far = 1.65, 2.66
+
         def ways(shape, length):
             return [float(length * (-np.log(1 - (i + 0.5) / 12)) ** (1 / shape)) for i in range(12)]
         self.write("own.csv", "wall,distance [mm],clogged\n" + "".join(f"{wall},{way!r},1\n" for wall, shape in zip("abcd", (near, near, far, near)) for way in ways(shape, 5)))

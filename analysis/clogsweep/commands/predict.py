@@ -19,6 +19,7 @@ import argparse
 import math
 import pathlib
 import tempfile
+from typing import Any
 
 from ..collisions import prediction
 from ..reading import fits, programs
@@ -56,7 +57,7 @@ def body() -> int:
     if arguments.output:
         outputs.refuse_unwritable_picture(arguments.output)
     folder_of_programs = programs.programs_in(arguments.programs)
-    droplet = laboratory.units(arguments.lab, folder=folder_of_programs) if arguments.lab else {}
+    droplet: Any = laboratory.units(arguments.lab, folder=folder_of_programs) if arguments.lab else {}  # a list for several droplets
     if isinstance(droplet, list):
         raise UserError(f"no place for --lab {arguments.lab} (it describes {len(droplet)} droplets); give one diameter and one angle")
     for key in ("terminal-speed", "line-tension"):

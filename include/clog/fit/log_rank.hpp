@@ -8,8 +8,8 @@
 namespace clog::fit {
 
 /// The p-value of the hypothesis that both sides have the same P(r), whatever its law: the log-rank test
-/// (Mantel, Cancer Chemother. Rep. 50, 163 (1966)), two-sided, with chi-squared's distribution. All runs
-/// count as independent. NaN if one side has no runs, or if no clog tells the sides apart.
+/// (N. Mantel, Cancer Chemotherapy Reports 50, 163 (1966)), two-sided, with chi-squared's distribution. All
+/// runs count as independent. NaN if one side has no runs, or if no clog tells the sides apart.
 double log_rank_p_value(std::span<const Observation> here, std::span<const Observation> there);
 
 /// The p-values of several tests, each multiplied so that, if all hypotheses are true, only one family of
