@@ -346,7 +346,6 @@ class Run(ProgramTest):
         self.write("words.csv", "x,y\n1,2\n3,four\n")
         self.write("outside.csv", "1,25\n")
         self.write("twice.csv", "x,y\n3,3\n\n1,1\n# again\n1,1\n")
-        self.write("near.csv", "x,y\n1,1\n1.1,1\n")
         self.write("semicolons.csv", "a;b;diameter" + 60 * ";" + "\n1;2;0.5\n")
         self.write("numbers.csv", "1;2;0.5;7\n")
         self.write("nan.csv", "x,y\n1,2\n3,nan\n")
@@ -380,7 +379,6 @@ class Run(ProgramTest):
             (["array", "--obstacles", "words.csv", *out], ["words.csv line 3", "four"]),
             (["array", "--obstacles", "outside.csv", *out], ["outside.csv", "x=1, y=25", "outside the array"]),
             (["array", "--obstacles", "twice.csv", *out], ["twice.csv line 6", "lists the circle of line 4 again"]),
-            (["array", "--obstacles", "near.csv", *out], ["near.csv", "x=1, y=1 and x=1.1, y=1", "overlap by 0.2 sigma"]),
             (["array", "--obstacles", "nan.csv", *out], ["nan.csv line 3", "nan"]),
             (["array", "--obstacles", "infinite.csv", *out], ["infinite.csv line 1", "inf"]),
             (["array", "--obstacles", "header.csv", *out], ["no obstacles"]),
