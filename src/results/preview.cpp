@@ -212,12 +212,12 @@ SweepCost plus(SweepCost cost, double seconds) {
 }
 
 /// Replaces the estimate and its limit; the interval keeps its relative width.
-SweepCost with_expected(SweepCost cost, const SweepCost& other) {
-  cost.bound = other.bound;
-  cost.lower *= other.expected / cost.expected;
-  cost.upper = std::min(cost.bound, cost.upper * other.expected / cost.expected);
-  cost.expected = other.expected;
-  return cost;
+SweepCost with_expected(SweepCost trials, const SweepCost& stored) {
+  trials.bound = stored.bound;
+  trials.lower *= stored.expected / trials.expected;
+  trials.upper = std::min(trials.bound, trials.upper * stored.expected / trials.expected);
+  trials.expected = stored.expected;
+  return trials;
 }
 
 void print_expected(const sweep::Plan& plan, const Sample& sample, const SweepCost& cost) {
