@@ -23,6 +23,7 @@ constexpr int on_arc = 41;
 /// and the end of the last one is joined to the first far outside.
 DropletState stack(const std::vector<double>& heights) {
   std::vector<double> radii;
+  radii.reserve(heights.size() + 1);
   for (const double height : heights) radii.push_back(disc + height);
   if (radii.size() % 2 != 0) radii.push_back(3 * disc);
   const int n = static_cast<int>(radii.size()) * on_arc;

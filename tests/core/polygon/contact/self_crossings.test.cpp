@@ -212,12 +212,12 @@ TEST(SelfCrossings, PushWithTheSlopeOfTheirEnergyWhereSeveralNeighboursPassed) {
     SelfCrossings crossings;
     crossings.renew(contour, state.crossings);
     crossings.find_pushes(contour, contacts);
-    Eigen::ArrayXd force = Eigen::ArrayXd::Zero(2 * n), slope = force;
+    Eigen::ArrayXd force = Eigen::ArrayXd::Zero(state.position.size()), slope = force;
     for (const auto& [vertex, push] : crossings.pushes()) {
       force[vertex] += push[0];
       force[n + vertex] += push[1];
     }
-    for (Eigen::Index k = 0; k < 2 * n; ++k) {
+    for (Eigen::Index k = 0; k < force.size(); ++k) {
       constexpr double small = 1e-8;
       double& coordinate = state.position[k];
       const double there = coordinate;
