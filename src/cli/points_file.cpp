@@ -54,13 +54,15 @@ std::string value_of(const sweep::Key& key, const std::string& cell, char separa
   const bool is_one_number =
       unit.find_first_of(",()") == std::string::npos;  // 0,4mm; not lin(1,2,3), 1mm,2mm
   if (number.empty() || !is_one_number || !(is_number || (is_integer && cell.ends_with(",0")))) return cell;
-  const std::string pointed = commas > 1 || separator == ',' ? number : with_point(number);
-  if (commas == 0) return cell;
-  if (is_integer || separator == ',' || commas > 1)
+  if (commas == 0) {
+    if (separator != ',') with_point(number);
+    return cell;
+  }
+  if (is_integer || separator == ',' || commas > 1 || number.find('.') != std::string::npos)
     throw Error(fmt::format(
         "{}: '{}' may be a list or have a decimal comma; write decimal points, and a line for each value",
         key.name, cell));
-  return pointed + unit;
+  return with_point(number) + unit;
 }
 
 /// @param num_columns  number of columns of the first line. @throws Error  if a value is invalid

@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "clog/fit/log_rank.hpp"
+#include "clog/fit/holm.hpp"
 
 namespace clog::fit {
 namespace {

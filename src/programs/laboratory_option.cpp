@@ -57,11 +57,11 @@ void say_other_speed(const std::vector<results::Group>& groups) {
     of_droplets.push_back(group.laboratory->speed);
   }
   if (of_runs.empty()) return;
-  const std::string speeds = speeds_text(of_droplets);
-  console::say(fmt::format(
-      "clogfit: speeds and times in mm/s and s are those of runs with a terminal speed of {} "
-      "mm/s; the laboratory's {} {} mm/s",
-      speeds_text(of_runs), speeds.find(' ') == std::string::npos ? "droplet has" : "droplets have", speeds));
+  console::say(
+      fmt::format("clogfit: speeds and times in mm/s and s are those of runs with a terminal speed of {} "
+                  "mm/s; that of the "
+                  "laboratory's description is {} mm/s",
+                  speeds_text(of_runs), speeds_text(of_droplets)));
 }
 
 /// The line tension that a laboratory gives to its runs.

@@ -17,6 +17,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/fit/holm.hpp"
 #include "clog/fit/log_rank.hpp"
 #include "clog/results/selection.hpp"
 #include "clog/results/stored_sweep.hpp"

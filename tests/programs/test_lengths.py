@@ -231,6 +231,15 @@ class Lengths(ProgramTest):
             self.succeed_in_python("survival", name)
             self.assertTrue((self.folder / f"{pathlib.Path(name).stem}-survival.png").exists())
 
+    def test_a_curve_begins_at_the_first_clog_upstream_of_a_release(self):
+        # Three of four droplets clog at r = -2, -1 and 3, and one still moves at 5.
+        steps = [{"distance": way, "probability": (3 - i) / 4} for i, way in enumerate((-2, -1, 3))]
+        group = {"survival": steps, "censored_distances": [5], "failed": 0, "doubts": ""}
+        axes, = style.figure_of(survival_curve.draw_on, [("a", group)], "sigma").axes
+        curve, = (line for line in axes.lines if line.get_label() == "a")
+        self.assertEqual([list(ends) for ends in curve.get_data()], [[-2, -2, -1, 3, 5], [1, 0.75, 0.5, 0.25, 0.25]])
+        self.assertEqual(axes.get_xlim()[0], -2)
+
     def test_a_comparison_corrects_the_tests_of_all_its_groups_together(self):
         # The p-values of groups of 12 droplets at the quantiles of Weibull's law of these shapes are 0.03 and 0.0002.
         near, far = 1.65, 2.66

@@ -105,6 +105,7 @@ class Points(PointsTest):
                 ("line-tension,obstacle-gap\n1\n", ["p.csv line 2", "1 cell", "2 keys"]),
                 ("line-tension;seeds\n1;2,0\n", ["p.csv line 2", "seeds: '2,0'", "decimal comma"]),
                 ("line-tension;max-time\n1;1,350\n2;2,050\n", ["p.csv", "'1,350'", "thousands"]),
+                ("line-tension;seeds\n0.5,0.7;1\n", ["p.csv line 2", "line-tension: '0.5,0.7' may be a list", "a line for each value"]),
                 ("line-tension\n1.234,5\n", ["p.csv line 2", "line-tension: '1.234,5'", "decimal comma"]),
                 ("line-tension,seeds\n\"0,5\",1\n", ["p.csv line 2", "line-tension: '0,5'", "decimal comma"]),
                 ("line-tension\n1\nx\n", ["p.csv line 3", "invalid line-tension=x"]),

@@ -163,7 +163,7 @@ class Units(ProgramTest):
             for name, model in (("speed_mm_per_s", "relative_speed_all"), ("speed_error_mm_per_s", "relative_speed_all_error")):
                 self.assertAlmostEqual(group[name] / (speed * group[model]), 1, places=3)
             self.assertIn("those of runs with a terminal speed of", told.stderr)
-            self.assertIn("the laboratory's droplet has 30 mm/s", told.stderr)
+            self.assertIn("that of the laboratory's description is 30 mm/s", told.stderr)
         run = self.succeed("clogrun", "array", "--lab", "lab.cfg", "terminal-speed=1mm/s", *QUICK, "seeds=1", "--output", "r.h5").stdout
         time, = re.findall(r"t = ([-0-9.e]+) t0", run)
         long, = re.findall(r"t = ([-0-9.e]+) s", run)
@@ -173,7 +173,7 @@ class Units(ProgramTest):
         self.lab(angle="10 deg, 20 deg", speed="1.2 mm/s")
         self.succeed("clogsweep", "--lab", "lab.cfg", "terminal-speed=1mm/s", *QUICK, "seeds=1", "--output", "s.h5")
         first, second = (1.2, 1.2 * np.sin(np.radians(20)) / np.sin(np.radians(10)))
-        self.assertIn(f"with a terminal speed of 1 mm/s; the laboratory's droplets have {first:.4g} to {second:.4g} mm/s", self.succeed("clogfit", "s.h5").stderr)
+        self.assertIn(f"with a terminal speed of 1 mm/s; that of the laboratory's description is {first:.4g} to {second:.4g} mm/s", self.succeed("clogfit", "s.h5").stderr)
 
     def test_numbers_are_those_of_the_laboratory_to_twelve_digits(self):
         known = self.units(self.lab("1.1 mm", "30 deg", "0.7 mm/s", "3 mN/m"), "--length", "0.3")

@@ -6,13 +6,14 @@ array.
     python3 -m clogsweep predict --lab lab.cfg obstacle-gap=0.6mm obstacle-density=0.05/mm^2
     python3 -m clogsweep predict preset=elastic friction=0.05 line-tension=0.05,0.07,0.1,0.5,1,3 --output curve --with sweep.h5
 
-KEY=VALUE are keys of clogsweep. With --lab, line tension and terminal speed are those of the laboratory's droplet unless
-they are given, keys of the array take units, and lengths are also in mm. For each gap and direction a droplet falls onto a pair of obstacles. Other droplets
-fall onto a single obstacle at several offsets, to find the largest offset at which the obstacle holds a wrapped
-droplet. These runs take half a minute for a large line tension. Then the command counts the obstacles and pairs of the
-array. It prints lengths as CSV, with the reasons to doubt them: soft (line tension below 1: clogs on three obstacles
-and more are not predicted), crowded (length below 4 sigma: the prediction is too long, because other obstacles come
-between). docs/explanation/predicted.md says where the predictions hold.
+KEY=VALUE are keys of clogsweep. With --lab, line tension and terminal speed are those of the laboratory's droplet
+unless they are given, keys of the array take units, and lengths are also in mm. For each gap and direction a droplet
+falls onto a pair of obstacles. Other droplets fall onto a single obstacle at several offsets, to find the largest
+offset at which the obstacle holds a wrapped droplet. These runs take half a minute for a large line tension. Then the
+command counts the obstacles and pairs of the array. It prints lengths as CSV, with the reasons to doubt them: soft
+(line tension below 1: clogs on three obstacles and more are not predicted), crowded (length below 4 sigma: the
+prediction is too long, because other obstacles come between). docs/explanation/predicted.md says where the predictions
+hold.
 """
 
 import argparse

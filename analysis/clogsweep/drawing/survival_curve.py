@@ -32,9 +32,11 @@ def probability(group: Group, distances: Sequence[float] | Numbers) -> Numbers:
 
 def draw(axes: Axes, group: Group, colour: str | Sequence[float], label: str, label_of_ticks: str | None = None, begin: float = 0.0) -> None:
     """Draws the estimate up to the longest distance. Each run that still moved at its end has a tick.
-    @param begin  distance at which the curve begins [sigma]"""
-    corners = [begin, *(step["distance"] for step in group["survival"]), longest_way(group)]
-    axes.step(corners, probability(group, corners), where="post", color=colour, linewidth=1.2, label=label,
+    @param begin  distance at which the curve begins [sigma]; clogs before it, upstream of the release, are not drawn"""
+    clogs = [step["distance"] for step in group["survival"]]
+    corners = [*(distance for distance in clogs if distance >= begin), longest_way(group)]
+    first = 1.0 if not clogs or begin <= clogs[0] else probability(group, [begin])[0]
+    axes.step([begin, *corners], [first, *probability(group, corners)], where="post", color=colour, linewidth=1.2, label=label,
               gid=style.mark("point", [group]))
     censored = group["censored_distances"]
     if censored:
@@ -68,10 +70,11 @@ def draw_on(axes: Axes, curves: Sequence[Curve], unit: str) -> None:
     UserError  if no droplet has moved"""
     if not any(longest_way(group) > 0 for _, group in curves):
         raise UserError("cannot draw P(r) (no droplet has moved)")
+    begin = min([0.0] + [step["distance"] for _, group in curves for step in group["survival"]])
     for (label, group), colour in zip(curves, style.shades(len(curves))):
         with style.curve(axes, label):
-            draw(axes, group, colour, label)
-    axes.set_xlim(left=min(0, *(step["distance"] for _, group in curves for step in group["survival"])) if any(group["survival"] for _, group in curves) else 0)
+            draw(axes, group, colour, label, begin=begin)
+    axes.set_xlim(left=begin)
     axes.set_ylim(0, 1.02)
     style.label(axes, r"displacement along the flow $r/\sigma$" if unit == "sigma" else "displacement along the flow $r$ [mm]", "$P(r)$, not yet clogged")
     if any(label for label, _ in curves):

@@ -17,7 +17,8 @@ def number(word: str) -> float:
 
 
 def numbers(text: str) -> list[float]:
-    """A list of numbers as clogsweep reads it: `0.2,0.3`, `1..50`, `1..50:7`, `lin(a,b,n)`, `log(a,b,n)`. Other texts are NaN."""
+    """A list of numbers as clogsweep reads it: `0.2,0.3`, `1..50`, `1..50:7`, `lin(a,b,n)`, `log(a,b,n)`. Other texts
+    are NaN."""
     values: list[float] = []
     for word in map(str.strip, re.split(r",(?![^()]*\))", text)):
         if spaced := SPACED.fullmatch(word):

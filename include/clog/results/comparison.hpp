@@ -50,7 +50,7 @@ struct Comparison {
   fit::LengthRatio ratio{};  ///< ratio of the length here to the length there
   /// p-value of the log-rank test, which takes all runs as independent, and the same with Holm's correction
   /// for all comparisons; NaN if not known.
-  double log_rank_p = 0, log_rank_p_holm = 0;
+  double log_rank_p = sweep::RunRow::not_known, log_rank_p_holm = sweep::RunRow::not_known;
   int num_both_clogged = 0;  ///< pairs of runs that both clogged
   int num_same_place = 0;    ///< pairs of runs that both clogged, at the same place
   /// All runs here and there ended alike at the same places, as copies of the same runs do. Their ratio is
