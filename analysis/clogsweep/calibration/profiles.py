@@ -74,7 +74,7 @@ def read_table(path: str, length: str, scales: Scales) -> Numbers:
     for line_number, cells in tables.rows(path):
         try:
             if not columns:
-                columns = {cell.partition("[")[0].strip(): index for index, cell in enumerate(cells)}
+                columns = tables.columns_of(cells)
                 if not {length, "v"} <= columns.keys():
                     raise UserError(f"needs a header that names the columns {length} and v, e.g. {length} [mm], v [mm/s]")
                 factors = (factor(cells[columns[length]], "sigma", scales.diameter, "--diameter"), factor(cells[columns["v"]], "v_t", scales.speed, "--speed"))
