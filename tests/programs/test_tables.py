@@ -75,7 +75,7 @@ class Tables(Analysis):
                 "angles": lambda: critical_angle.read_angles(path, ["line_tension"]), "passage": lambda: workshop.measured(path)}
 
     def test_readers_in_python_refuse_the_same_errors(self):
-        path, readers = self.folder / "t.csv", self.readers_in_python()
+        readers = self.readers_in_python()
         self.assertEqual([name for name, (command, *_) in self.READERS.items() if not command[0].startswith("clog")], list(readers))
         for name, read in readers.items():
             command, head, lines = self.READERS[name]

@@ -17,7 +17,7 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from . import areas, walls
 from .libraries import library
-from .shapes import Drawing, holds
+from .shapes import Box, Drawing, holds
 
 METRES_IN_PIXEL = 25.4e-3 / 96
 LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
@@ -43,6 +43,7 @@ def read_svg(path: pathlib.Path) -> Drawing:
     found.unit_hint = "" if has_unit else f" (--pixel {METRES_IN_PIXEL * 1e3:.7g}mm, if 96 of them are an inch; Inkscape before 0.92 had 90, --pixel {25.4 / 90:.7g}mm)"
     viewport = svgelements.Matrix(content.viewbox_transform) if content.viewbox else svgelements.Matrix()
     found.from_own = applied(viewport)
+    found.page = page_of(root, content, found)
     widest = 0.0
     for element in content.elements():
         if not isinstance(element, svgelements.Shape):
@@ -65,6 +66,19 @@ def read_svg(path: pathlib.Path) -> Drawing:
     if clips.unknown:
         found.notes.append(f"{clips.unknown} clips or masks ignored, which are not of plain shapes")
     return found
+
+
+def page_of(root: Any, content: Any, found: Drawing) -> Box | None:
+    """The page: width and height, or the viewBox of a drawing without these. None if the drawing has neither."""
+    if all(re.fullmatch(rf"[0-9.eE+]+\s*({'|'.join(LENGTHS)}|px)?", root.get(name, "").strip()) for name in ("width", "height")):
+        corners = np.array([(0.0, -float(content.height)), (float(content.width), 0.0)])
+    elif content.viewbox:
+        view = content.viewbox
+        corners = found.from_own([(view.x, view.y), (view.x + view.width, view.y + view.height)])
+    else:
+        return None
+    (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
+    return (left, bottom, right, top) if right > left and top > bottom else None
 
 
 def transform_length(matrix: Any) -> float:
