@@ -1005,6 +1005,32 @@ class OtherTools(Analysis):
         np.testing.assert_allclose([device.length, device.width], [18, 6], rtol=1e-5)
         np.testing.assert_allclose(np.ptp(device.others[0] * 200, axis=0), [600, 300], rtol=1e-5)
 
+    def test_svg_holes_in_filled_paths_are_posts(self):
+        def turned(x, y, sweep):
+            return f"M{200 * x - 50} {1200 - 200 * y} a50 50 0 1 {sweep} 100 0 a50 50 0 1 {sweep} -100 0 z "
+
+        edge = "M0 0 H3600 V1200 H0 Z "  # clockwise, as sweep=1
+        expected = [(200 * x, 200 * y, 100) for x, y in sorted(ROW)]
+        page = SVG.replace('<rect x="0" y="0" width="3600" height="1200" fill="none" stroke="black"/>', "")
+        for name, sweep, body in (("even-odd", 1, '<path fill-rule="evenodd" d="{}"/>'), ("even-odd, opposite", 0, '<path style="fill-rule:evenodd" d="{}"/>'),
+                                  ("in a group", 1, '<g fill-rule="evenodd"><path d="{}"/></g>'), ("nonzero", 0, '<path d="{}"/>')):
+            self.write("device.svg", page.format(body.format(edge + "".join(turned(x, y, sweep) for x, y in ROW))))
+            with self.subTest(name):
+                self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes")
+                rows = np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)
+                np.testing.assert_allclose(rows[np.lexsort((rows[:, 1], rows[:, 0]))], expected, rtol=1e-3)
+                # Without --holes, outlines within the outline are posts, as before.
+                np.testing.assert_allclose(self.circles_of("device.svg"), expected, rtol=1e-3)
+        # Boundaries that turn alike leave no hole, and neither does a path that is not filled.
+        (self.folder / "posts.csv").unlink()
+        for sweep, paint in ((1, ""), (0, 'fill="none" stroke="black"')):
+            self.write("device.svg", page.format(f'<path {paint} d="{edge}{turned(4, 3, sweep)}"/>'))
+            self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes", words=["no holes", "leave out --holes"])
+        # A clip that leaves the right half.
+        self.write("device.svg", page.format(f'<clipPath id="right"><rect x="1800" width="1800" height="1200"/></clipPath><path clip-path="url(#right)" fill-rule="evenodd" d="{edge}{turned(4, 3, 1)}{turned(13, 3, 1)}"/>'))
+        self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes")
+        np.testing.assert_allclose(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4), (800, 600, 100), rtol=1e-3)
+
     def test_svg_strokes_are_not_counted_and_that_is_said(self):
         post = '<g transform="scale(2)"><circle cx="400" cy="150" r="25" stroke="black" stroke-width="5"/></g><path d="M 900 600 h 0" stroke="black" stroke-width="100" stroke-linecap="round"/>'
         np.testing.assert_allclose(self.svg(post), [(800, 900, 100)], rtol=1e-3)

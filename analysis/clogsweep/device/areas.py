@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from typing import Any
 
 import numpy as np
@@ -76,8 +75,26 @@ def fill(drawing: Drawing, boundaries: list[Numbers], is_even_odd: bool) -> None
     if len(boundaries) == 1:
         drawing.outlines += boundaries
     elif boundaries:
-        shapes = [polygon(corners) for corners in boundaries]
-        add(drawing, functools.reduce(lambda area, shape: area.symmetric_difference(shape), shapes) if is_even_odd else union(shapes))
+        add(drawing, filled(boundaries, "evenodd") if is_even_odd else union([polygon(corners) for corners in boundaries]))
+
+
+def filled(boundaries: list[Numbers], rule: str) -> Any:
+    """The area within boundaries. @param rule  the fill-rule of SVG: with `evenodd`, places within an odd number of
+    boundaries are filled; with `nonzero`, those around which clockwise and counter-clockwise boundaries differ in number
+    @throws UserError  if a boundary crosses itself"""
+    ops = library("shapely.ops", "python3-shapely")
+    shapes = [polygon(corners) for corners in boundaries]
+    bounds = np.array([shape.bounds for shape in shapes])
+    turns = np.array([1 if rule == "evenodd" or shape.exterior.is_ccw else -1 for shape in shapes])
+
+    def is_filled(place: Any) -> bool:
+        near = np.flatnonzero((bounds[:, 0] <= place.x) & (place.x <= bounds[:, 2]) & (bounds[:, 1] <= place.y) & (place.y <= bounds[:, 3]))
+        winding = sum(int(turns[i]) for i in near.tolist() if shapes[i].contains(place))
+        return bool(winding % 2 if rule == "evenodd" else winding)
+
+    edges = ops.unary_union([shape.exterior for shape in shapes])
+    faces = ops.polygonize(getattr(edges, "geoms", [edges]))
+    return ops.unary_union([face for face in faces if is_filled(face.representative_point())])
 
 
 def drop_duplicates(drawing: Drawing) -> None:
