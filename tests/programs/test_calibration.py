@@ -69,6 +69,19 @@ class Deviations(unittest.TestCase):
     def test_a_frame_that_is_never_reached_counts_ten_and_ten_for_each_missing_diameter(self):
         self.assertAlmostEqual(deviation(frames([2, 1, math.nan]), self.stuck)[0], 20, places=12)
 
+    def test_frames_upstream_of_the_simulated_start_are_refused(self):
+        with self.assertRaisesRegex(UserError, "^2 measured frames, down to h = -0.75, are upstream of the simulated start at h = 0; .*start=-1.25, or delete these frames"):
+            deviation(frames([-0.75, 1, 1], [-0.5, 1, 1], [0.5, 1, 1]), self.stuck)
+        # A droplet that is pushed back has not started there.
+        with self.assertRaisesRegex(UserError, "^1 measured frame, .*is upstream of"):
+            deviation(frames([-0.5, 1, 1]), frames([0, 1, 1], [-1, 1, 1], [1, 1, 1]))
+        with self.assertRaisesRegex(UserError, "in the order of time$"):
+            deviation(frames([0.5, 1, 1]), frames([1, 1, 1], [0, 1, 1]))
+
+    def test_frames_at_the_ends_of_the_simulation_may_be_rounded(self):
+        rounded = frames([-1e-15, 1, 1.05], [1 + 1e-15, 0.5, 1.1])
+        np.testing.assert_allclose(speed_residuals(rounded, self.stuck)[0], 0, atol=1e-12)
+
     def test_unknown_shapes_are_excluded(self):
         self.assertTrue(math.isnan(deviation(frames([0.5, 0.75, math.nan]), self.stuck)[1]))
         self.assertTrue(math.isnan(deviation(frames([0.5, 1, 1.1]), frames([0, 1, math.nan], [1, 1, math.nan]))[1]))

@@ -49,7 +49,19 @@ class Profiles(ProgramTest):
         self.assertAlmostEqual(found["delta_v"], math.sqrt(((0.2 / 0.75) ** 2 + 0.2 ** 2 + 0.2 ** 2) / 3), places=12)
         self.assertAlmostEqual(found["delta_a"], math.sqrt((0.05 / 1.05) ** 2 / 3), places=12)
 
+    def test_measured_frames_in_laboratory_units_are_those_in_reduced_units(self):
+        self.write("measured.csv", "h [sigma], v [v_t], A\n-0.5,0.55,1.05\n0,0.6,1.1\n0.5,0.9,1.0\n")
+        # The same frames for a droplet of 2 mm at 3 mm/s.
+        self.write("mm.csv", "h [mm];v [mm/s];A\n-1,0;1,65;1,05\n0;1,8;1,1\n1,0;2,7;1,0\n")
+        self.write("simulated.csv", "h [sigma], v [v_t], A\n-1,1,1\n0,0.5,1.1\n1,1,1\n")
+        reduced, = json.loads(self.succeed("clogfit", "deviation", "measured.csv", "simulated.csv").stdout)["deviations"]
+        found, = json.loads(self.succeed("clogfit", "deviation", "mm.csv", "simulated.csv", "--diameter", "2mm", "--speed=3mm/s").stdout)["deviations"]
+        for name in ("delta_v", "delta_a"):
+            self.assertAlmostEqual(found[name], reduced[name], places=12)
+        self.refuse("clogfit", "deviation", "mm.csv", "simulated.csv", words=["mm.csv line 1", "is in mm and needs --diameter"])
+
     def test_mistakes_get_one_line_and_exit_code_2(self):
+        self.write("early.csv", "h [sigma], v [v_t]\n-1,1\n0,1\n1,1\n")
         self.write("good.csv", "h [sigma], v [v_t]\n0,1\n1,1\n2,1\n")
         self.write("fast.csv", "d [sigma], v [v_t]\n0.1,0.5\n0.2,1.5\n")
         for arguments, words in [
@@ -61,6 +73,7 @@ class Profiles(ProgramTest):
             (["drag", "fast.csv", "--format", "xml"], ["--format=xml"]),
             (["deviation", "good.csv"], ["missing profiles"]),
             (["deviation", "good.csv", "no.csv"], ["cannot read no.csv"]),
+            (["deviation", "early.csv", "good.csv"], ["good.csv: 1 measured frame, down to h = -1, is upstream of the simulated start at h = 0", "start=-1.5, or delete"]),
         ]:
             with self.subTest(arguments=arguments):
                 self.refuse("clogfit", *arguments, words=words)

@@ -953,6 +953,84 @@ class OtherTools(Analysis):
         self.assertEqual(len(self.svg(f'{box_units}<g clip-path="url(#left)">{circles}</g>')), 3)
         self.assertIn("1 clips or masks ignored", self.drawing.notes[0])
 
+    def test_svg_objects_outside_the_page_are_left_out_and_named(self):
+        frame = '<rect x="{0}" y="{1}" width="3600" height="1200" fill="none" stroke="black"/>'
+        posts = '<circle cx="{0}" cy="{1}" r="50"/>'
+        size, view = 'width="3600" height="1200"', 'viewBox="{0} {1} 3600 1200"'
+        # The page is the size, the viewBox, or both, in several units.
+        for page, left, top in ((size, 0, 0), (view.format(0, 0), 0, 0), (view.format(500, 200), 500, 200), (f"{size} {view.format(500, 200)}", 500, 200),
+                                (f'width="3.6mm" height="1.2mm" {view.format(-300, 70)}', -300, 70), (f'width="100%" height="100%" {view.format(500, 200)}', 500, 200)):
+            for has_frame in (True, False):
+                seen = [(left + x, top + y) for x, y in ((800, 300), (1600, 900), (2400, 600))]
+                # Beyond each side and corner; an edge that only touches the page is outside, too.
+                for places in ([(3651, 600)], [(-51, 600)], [(800, 1300), (900, 2000)], [(800, -50)], [(3700, 1300), (4500, 1400), (-700, -900)], [(3640, -40)]):
+                    beyond = [(left + x, top + y) for x, y in places]
+                    self.write("device.svg", f'<svg xmlns="http://www.w3.org/2000/svg" {page}>' + frame.format(left, top) * has_frame + "".join(posts.format(*place) for place in [*beyond, *seen]) + "</svg>")
+                    with self.subTest(page=page, beyond=beyond, has_frame=has_frame):
+                        expected = [(800, 900, 100), (1600, 300, 100), (2400, 600, 100)]
+                        if not has_frame:  # The margin of half a droplet is 100.
+                            expected = [(x - 650, y - 150, diameter) for x, y, diameter in expected]
+                        np.testing.assert_allclose(self.circles_of("device.svg", unit=1e-6 / self.width_in_drawing(3600)), expected, rtol=1e-3)
+                        x, y = np.transpose(beyond)
+                        count = f"{len(beyond)} object{'s' * (len(beyond) > 1)} wholly outside the page left out, "
+                        words = re.fullmatch(re.escape(count) + r"at x=(\S+) to (\S+), y=(\S+) to (\S+) \(enlarge the page .*", self.drawing.notes[0])
+                        np.testing.assert_allclose([float(word) for word in words.groups()], [x.min() - 50, x.max() + 50, y.min() - 50, y.max() + 50], atol=0.1)
+        self.write("device.svg", SVG.replace('<rect x="0" y="0" width="3600" height="1200" fill="none" stroke="black"/>', "").format(posts.format(5000, 600)))
+        self.refused("device.svg", "holds no posts", "1 object wholly outside the page", "x=4950 to 5050")
+        told = self.write("device.svg", SVG.format(posts.format(800, 600) + posts.format(5000, 600))) and self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts").stdout
+        self.assertIn("read 3 objects; 1 object wholly outside the page left out, at x=4950 to 5050, y=550 to 650", told)
+        self.assertIn("device 18 x 6 droplet diameters (its own edge)", told)
+        # A drawing without a size and without a viewBox has no page.
+        self.write("device.svg", f'<svg xmlns="http://www.w3.org/2000/svg">{posts.format(800, 300)}{posts.format(9000, -700)}</svg>')
+        self.assertEqual(len(self.circles_of("device.svg", unit=1e-6)), 2)
+
+    def width_in_drawing(self, width):
+        """The factor by which the viewBox scales lengths. @param width  of the page in units of the drawing program"""
+        found = readers.read(self.folder / "device.svg").from_own([(0, 0), (width, 0)])
+        return float(np.ptp(found[:, 0])) / width
+
+    def test_svg_objects_that_cross_the_border_of_the_page_are_treated_as_those_of_a_region(self):
+        whole = SVG.replace('<rect x="0" y="0" width="3600" height="1200" fill="none" stroke="black"/>', "")
+        posts = "".join(f'<circle cx="{x}" cy="{y}" r="50"/>' for x, y in ((20, 600), (800, -20), (1600, 1180), (2400, 600), (3600, 600), (3620, 300)))
+        self.write("device.svg", whole.format(posts))
+        # Without an edge, the device begins half a droplet, 100, beyond the posts.
+        np.testing.assert_allclose(self.circles_of("device.svg"), [(150, 730, 100), (1730, 150, 100), (2530, 730, 100)], atol=0.2)
+        self.assertEqual(self.drawing.notes, ["3 posts left out that reach into the page from outside"])
+        # The same posts in a larger drawing, of which a region is read. Its edge is that of the region.
+        self.write("device.svg", whole.replace('0 0 3600 1200', '-1000 -1000 7200 2400').replace("3.6mm", "7.2mm").replace("1.2mm", "2.4mm").format(posts))
+        np.testing.assert_allclose(self.circles_of("device.svg", region=(0, 0, 3600, 1200)), [(20, 600, 100), (1600, 20, 100), (2400, 600, 100)], atol=0.2)
+        # A background that is larger than the page is seen as the page, and a bar is cut.
+        self.write("device.svg", whole.format('<rect x="-100" y="-200" width="3800" height="1600"/><rect x="3000" y="400" width="900" height="300"/><circle cx="800" cy="300" r="50"/>'))
+        device = self.device("device.svg")
+        np.testing.assert_allclose([device.length, device.width], [18, 6], rtol=1e-5)
+        np.testing.assert_allclose(np.ptp(device.others[0] * 200, axis=0), [600, 300], rtol=1e-5)
+
+    def test_svg_holes_in_filled_paths_are_posts(self):
+        def turned(x, y, sweep):
+            return f"M{200 * x - 50} {1200 - 200 * y} a50 50 0 1 {sweep} 100 0 a50 50 0 1 {sweep} -100 0 z "
+
+        edge = "M0 0 H3600 V1200 H0 Z "  # clockwise, as sweep=1
+        expected = [(200 * x, 200 * y, 100) for x, y in sorted(ROW)]
+        page = SVG.replace('<rect x="0" y="0" width="3600" height="1200" fill="none" stroke="black"/>', "")
+        for name, sweep, body in (("even-odd", 1, '<path fill-rule="evenodd" d="{}"/>'), ("even-odd, opposite", 0, '<path style="fill-rule:evenodd" d="{}"/>'),
+                                  ("in a group", 1, '<g fill-rule="evenodd"><path d="{}"/></g>'), ("nonzero", 0, '<path d="{}"/>')):
+            self.write("device.svg", page.format(body.format(edge + "".join(turned(x, y, sweep) for x, y in ROW))))
+            with self.subTest(name):
+                self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes")
+                rows = np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)
+                np.testing.assert_allclose(rows[np.lexsort((rows[:, 1], rows[:, 0]))], expected, rtol=1e-3)
+                # Without --holes, outlines within the outline are posts, as before.
+                np.testing.assert_allclose(self.circles_of("device.svg"), expected, rtol=1e-3)
+        # Boundaries that turn alike leave no hole, and neither does a path that is not filled.
+        (self.folder / "posts.csv").unlink()
+        for sweep, paint in ((1, ""), (0, 'fill="none" stroke="black"')):
+            self.write("device.svg", page.format(f'<path {paint} d="{edge}{turned(4, 3, sweep)}"/>'))
+            self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes", words=["no holes", "leave out --holes"])
+        # A clip that leaves the right half.
+        self.write("device.svg", page.format(f'<clipPath id="right"><rect x="1800" width="1800" height="1200"/></clipPath><path clip-path="url(#right)" fill-rule="evenodd" d="{edge}{turned(4, 3, 1)}{turned(13, 3, 1)}"/>'))
+        self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes")
+        np.testing.assert_allclose(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4), (800, 600, 100), rtol=1e-3)
+
     def test_svg_strokes_are_not_counted_and_that_is_said(self):
         post = '<g transform="scale(2)"><circle cx="400" cy="150" r="25" stroke="black" stroke-width="5"/></g><path d="M 900 600 h 0" stroke="black" stroke-width="100" stroke-linecap="round"/>'
         np.testing.assert_allclose(self.svg(post), [(800, 900, 100)], rtol=1e-3)

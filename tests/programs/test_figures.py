@@ -30,7 +30,9 @@ from clogsweep.pages import report
 from clogsweep.reading import programs, stored, trajectory
 from clogsweep.tools import rounded
 from clogsweep.labels.groups import Groups
-from clogsweep.paper import arrays, dilute
+from clogsweep.calibration.deviation import root_mean_square, speed_residuals
+from clogsweep.calibration.profiles import Profile
+from clogsweep.paper import arrays, channels, dilute
 
 # Droplets are coarse and paths are short, so all runs together take a few seconds.
 TINY = {
@@ -131,6 +133,24 @@ class Parts(unittest.TestCase):
         for number in range(2, len(style.COLOURS) + 1):
             colours = matplotlib.colors.to_rgba_array(style.shades(number))
             self.assertGreater(np.abs(np.diff(colours, axis=0)).max(axis=1).min(), 0.3)
+
+    def test_all_frames_of_the_reference_in_figure_B2_lie_within_the_compared_passages(self):
+        # Passages with the same speeds at other places. Deviations from the same passage would be 0.
+        def run(step):
+            h = np.arange(-2, 2, step)
+            word = {"line_tension": 1.7, "near_wall_drag": 0.21, "terminal_speed": 0.028, "vertices": 64, "orifice": 0.9}
+            return SimpleNamespace(table=np.rec.fromarrays([h, 1 + 0.1 * h, 1 + 0 * h], names="h,speed_ratio,shape_parameter"), row=word, word=lambda _: "elastic")
+
+        written = {}
+
+        def fit(_, *names):
+            reference, *compared = (Profile(*np.array(list(written[name])).T) for name in names)
+            return {"deviations": [{"delta_v": root_mean_square(speed_residuals(reference, simulated)[0])} for simulated in compared]}
+
+        shop = SimpleNamespace(profiles=[], table=lambda name, _, rows: written.setdefault(name, list(rows)) and name, fit=fit)
+        with unittest.mock.patch.object(channels, "profiles", lambda *_, **__: [run(0.01 + 0.0007 * number) for number in range(7)]):
+            plate = channels.perimeter_springs(shop)
+        np.testing.assert_allclose([entry["delta_v"] for entry in plate.data], 0, atol=1e-12)
 
     def test_a_legend_stays_off_error_bars(self):
         # The error bars fill the axes, completely or except for the lower right. The legend would have room above the

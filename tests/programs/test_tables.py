@@ -68,11 +68,14 @@ class Tables(Analysis):
                 self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
                 self.assertIn(message, done.stderr)
 
-    def test_readers_in_python_refuse_the_same_errors(self):
-        # In this process, because commands take long to start.
+    def readers_in_python(self):
+        """Reads t.csv in this process, because commands take long to start."""
         path = self.folder / "t.csv"
-        readers = {"profile": lambda: profiles.read_profile(str(path)), "speeds": lambda: profiles.read_table(str(path), "d", profiles.Scales()),
-                   "angles": lambda: critical_angle.read_angles(path, ["line_tension"]), "passage": lambda: workshop.measured(path)}
+        return {"profile": lambda: profiles.read_profile(str(path)), "speeds": lambda: profiles.read_table(str(path), "d", profiles.Scales()),
+                "angles": lambda: critical_angle.read_angles(path, ["line_tension"]), "passage": lambda: workshop.measured(path)}
+
+    def test_readers_in_python_refuse_the_same_errors(self):
+        readers = self.readers_in_python()
         self.assertEqual([name for name, (command, *_) in self.READERS.items() if not command[0].startswith("clog")], list(readers))
         for name, read in readers.items():
             command, head, lines = self.READERS[name]
@@ -84,6 +87,27 @@ class Tables(Analysis):
             # The command uses this reader.
             done = self.analyse(*command)
             self.assertEqual((done.returncode, message in done.stderr), (2, True), done.stderr)
+
+    def test_two_columns_of_one_quantity_are_refused_with_their_names_and_the_line(self):
+        # The second column follows its twin or comes last, with the same unit or another.
+        for name, read in self.readers_in_python().items():
+            _, head, lines = self.READERS[name]
+            for column, title in enumerate(head[:3]):
+                quantity = title.partition("[")[0].strip()
+                for other in {title, f"{quantity} [mm]"}:
+                    for place in (column + 1, len(head)):
+                        doubled = [[*cells[:place], cell, *cells[place:]] for cells, cell in zip([head, *lines], [other, *(line[column] for line in lines)])]
+                        self.table(",", [["# measured"], *doubled])
+                        with self.subTest(reader=name, header=doubled[0]), self.assertRaises(UserError) as refusal:
+                            read()
+                        self.assertIn(f"t.csv line 2: there are two columns for {quantity}, '{title}' and '{other}'; delete one", str(refusal.exception))
+
+    def test_columns_without_a_title_are_not_two_columns_of_one_quantity(self):
+        read = self.readers_in_python()["speeds"]
+        self.write("t.csv", "d [sigma],v [v_t]\n0.6,0.5\n1,0.7\n")
+        plain = read()
+        self.write("t.csv", "d [sigma],v [v_t],,\n0.6,0.5,,\n1,0.7,,\n")
+        np.testing.assert_array_equal(read(), plain)
 
     def test_both_languages_know_the_same_errors(self):
         words = re.findall(r'"(#[^"]+)"', (ROOT / "src" / "console" / "csv.cpp").read_text().partition("other_error_words[] =")[2].partition(";")[0])

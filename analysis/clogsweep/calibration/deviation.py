@@ -4,8 +4,11 @@ import math
 
 import numpy as np
 
+from ..tools.errors import UserError
 from ..tools.hints import Numbers
+from ..tools.rounded import counted
 from .profiles import Profile, at
+from .simulation import APPROACH
 
 # Residual of a frame that the simulated droplet just fails to reach. Residuals of frames that it reached are limited to
 # this value.
@@ -16,17 +19,28 @@ FEWEST_CORRELATED = 8
 
 def speed_residuals(measured: Profile, simulated: Profile) -> tuple[Numbers, int]:
     """v_measured/v_simulated - 1 of each frame, and the number of frames that the simulated droplet never reached.
+    @throws UserError  if frames are upstream of the start of the simulation
 
     The residual of such a frame is 10, plus 10 for each diameter between the frame and the farthest point that the
     droplet reached. So a search among droplets that clog can tell which of them get closer.
     """
     speed = at(simulated, measured.h).speed
+    refuse_upstream(measured.h[np.isnan(speed) & (measured.h < simulated.h[0])], simulated)
     never = np.isnan(speed)
     with np.errstate(all="ignore"):
         found = np.clip(measured.speed / speed - 1, -NEVER_REACHED, NEVER_REACHED)
     found[~(speed > 0)] = NEVER_REACHED  # the droplet rests, or is pushed back
     found[never] += NEVER_REACHED * np.maximum(0, measured.h - max(simulated.h))[never]
     return found, int(never.sum())
+
+
+def refuse_upstream(missed: Numbers, simulated: Profile) -> None:
+    """@param missed  the measured h upstream of the start of the simulation. @throws UserError  if there are any"""
+    if len(missed):
+        start = simulated.h[0]
+        remedy = ("write the simulated frames in the order of time" if simulated.h[-1] < start else
+                  f"start the simulation farther upstream, start={missed.min() - APPROACH:.4g}, or delete these frames")
+        raise UserError(f"{counted(len(missed), 'measured frame')}, down to h = {missed.min():.6g}, {'is' if len(missed) == 1 else 'are'} upstream of the simulated start at h = {start:.6g}; {remedy}")
 
 
 def shape_residuals(measured: Profile, simulated: Profile) -> Numbers:

@@ -15,6 +15,7 @@ FEWEST_FRAMES = 3
 # experiment [sigma].
 FARTHEST_FRAME = 1.5
 FRAMES_PER_DIAMETER = 20
+ROUNDING = 1e-9  # [sigma]
 # The units that clogfit units knows. Unicode has two characters for micro.
 METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "\u00b5m": 1e-6, "\u03bcm": 1e-6}
 
@@ -74,7 +75,7 @@ def read_table(path: str, length: str, scales: Scales) -> Numbers:
     for line_number, cells in tables.rows(path):
         try:
             if not columns:
-                columns = {cell.partition("[")[0].strip(): index for index, cell in enumerate(cells)}
+                columns = tables.columns_of(cells)
                 if not {length, "v"} <= columns.keys():
                     raise UserError(f"needs a header that names the columns {length} and v, e.g. {length} [mm], v [mm/s]")
                 factors = (factor(cells[columns[length]], "sigma", scales.diameter, "--diameter"), factor(cells[columns["v"]], "v_t", scales.speed, "--speed"))
@@ -97,9 +98,12 @@ def read_run(path: str) -> tuple[Profile, np.void]:
 
 def at(profile: Profile, h: Numbers) -> Profile:
     """The profile at the places h, interpolated linearly. If the droplet reaches h several times, the first time
-    counts. Values are NaN where the droplet never reaches h."""
+    counts. Values are NaN upstream of the start, and where the droplet never reaches h."""
     first = profile.h >= np.maximum.accumulate(profile.h)
-    return Profile(h, *(np.interp(h, profile.h[first], values[first], left=math.nan, right=math.nan) for values in profile[1:]))
+    ends = np.array([profile.h[0], profile.h.max()])
+    # Conversion to diameters may round a frame at the start or at the end of the profile to a place outside.
+    near = np.where(np.abs(h - np.clip(h, *ends)) < ROUNDING, np.clip(h, *ends), h)
+    return Profile(h, *(np.interp(near, profile.h[first], values[first], left=math.nan, right=math.nan) for values in profile[1:]))
 
 
 def read_profile(path: str, scales: Scales = Scales()) -> tuple[Profile, np.void | None]:

@@ -179,7 +179,7 @@ def body() -> int:
     table = pathlib.Path(f"{arguments.output}.csv")
     outputs.refuse_unwritable_picture(arguments.output, arguments.drawing)
     outputs.refuse_unwritable(table, "csv", arguments.drawing)
-    drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts, arguments.cell)
+    drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts, arguments.cell, arguments.holes)
     if arguments.holes and drawing.is_picture:
         raise UserError("no place for --holes (the drawing is a picture); --posts bright or dark chooses the posts of a picture")
     lines.join(drawing)

@@ -34,7 +34,7 @@ def add_format(parser: argparse.ArgumentParser) -> None:
 
 def read_angles(path: pathlib.Path, columns: Container[str]) -> pandas.DataFrame:
     """@throws UserError"""
-    tables.refuse_spreadsheet_errors(path)
+    tables.refuse_misread(path)
     try:
         table = pandas.read_csv(path, comment="#")
         table = table.astype(dict.fromkeys(critical_angles.FOUND, float))

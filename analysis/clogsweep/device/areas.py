@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from ..tools import rounded
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from .libraries import library
-from .shapes import Drawing, fitted_circle, holds
+from .shapes import Box, Drawing, fitted_circle, holds
 from . import walls
 from .walls import SHARE, is_rectangle
 
@@ -22,10 +21,12 @@ SAME = 1e-8  # Corners are the same if they differ by at most this fraction of t
 
 
 def tidy(drawing: Drawing, region: Numbers | None, tolerance: float, are_holes_posts: bool = False) -> None:
-    """Drops duplicates, unites outlines that touch, and cuts out a region.
+    """Drops duplicates, unites outlines that touch, and cuts out the page and a region.
     @param are_holes_posts  whether the holes in outlines are the posts, see posts_of_holes()
     @param region  two opposite corners in the coordinates that a drawing program shows, or None
     @param tolerance  as in fitted_circle()"""
+    if drawing.page is not None:
+        leave_out_beyond(drawing, drawing.page)
     if not drawing.is_picture:
         drop_duplicates(drawing)
         find_slits(drawing)
@@ -33,10 +34,13 @@ def tidy(drawing: Drawing, region: Numbers | None, tolerance: float, are_holes_p
             posts_of_holes(drawing)
         else:
             unite(drawing, tolerance)
+    if drawing.page is not None:
+        cut_at_page(drawing, drawing.page, tolerance)
     if region is not None:
         corners = drawing.from_own(region)
         (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
-        cut(drawing, (left, bottom, right, top), tolerance)
+        drawing.frame = left, bottom, right, top
+        drawing.outside, _ = cut(drawing, drawing.frame, tolerance, "region")
 
 
 def polygon(corners: Numbers) -> Any:
@@ -71,8 +75,26 @@ def fill(drawing: Drawing, boundaries: list[Numbers], is_even_odd: bool) -> None
     if len(boundaries) == 1:
         drawing.outlines += boundaries
     elif boundaries:
-        shapes = [polygon(corners) for corners in boundaries]
-        add(drawing, functools.reduce(lambda area, shape: area.symmetric_difference(shape), shapes) if is_even_odd else union(shapes))
+        add(drawing, filled(boundaries, "evenodd") if is_even_odd else union([polygon(corners) for corners in boundaries]))
+
+
+def filled(boundaries: list[Numbers], rule: str) -> Any:
+    """The area within boundaries. @param rule  the fill-rule of SVG: with `evenodd`, places within an odd number of
+    boundaries are filled; with `nonzero`, those around which clockwise and counter-clockwise boundaries differ in number
+    @throws UserError  if a boundary crosses itself"""
+    ops = library("shapely.ops", "python3-shapely")
+    shapes = [polygon(corners) for corners in boundaries]
+    bounds = np.array([shape.bounds for shape in shapes])
+    turns = np.array([1 if rule == "evenodd" or shape.exterior.is_ccw else -1 for shape in shapes])
+
+    def is_filled(place: Any) -> bool:
+        near = np.flatnonzero((bounds[:, 0] <= place.x) & (place.x <= bounds[:, 2]) & (bounds[:, 1] <= place.y) & (place.y <= bounds[:, 3]))
+        winding = sum(int(turns[i]) for i in near.tolist() if shapes[i].contains(place))
+        return bool(winding % 2 if rule == "evenodd" else winding)
+
+    edges = ops.unary_union([shape.exterior for shape in shapes])
+    faces = ops.polygonize(getattr(edges, "geoms", [edges]))
+    return ops.unary_union([face for face in faces if is_filled(face.representative_point())])
 
 
 def drop_duplicates(drawing: Drawing) -> None:
@@ -171,12 +193,64 @@ def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
             for j in np.flatnonzero(is_post[:i] & (lows[:i] <= highs[i] + near).all(axis=1) & (highs[:i] >= lows[i] - near).all(axis=1))]
 
 
-def cut(drawing: Drawing, region: tuple[float, float, float, float], tolerance: float) -> None:
-    """Keeps the part of the drawing that is in a region. The region becomes the frame. Round posts that cross the
-    region's border stay whole, or are left out if their centre is outside; other outlines and lines are cut at the
-    border.
+def leave_out_beyond(drawing: Drawing, page: Box) -> None:
+    """Leaves out what is wholly outside the page, and notes how many objects were left out, and where."""
+    visible: dict[str, list[Any]] = {"circles": [], "outlines": [], "lines": []}
+    beyond: list[Numbers] = []
+    for kind, kept in visible.items():
+        for one in getattr(drawing, kind):
+            points = np.asarray([np.subtract(one[:2], one[2] / 2), np.add(one[:2], one[2] / 2)]) if kind == "circles" else one[1] if kind == "lines" else one
+            beyond.append(points) if is_beyond(points, page, kind == "outlines") else kept.append(one)
+    drawing.circles, drawing.outlines, drawing.lines = visible.values()
+    drawing.holes = [hole for hole in drawing.holes if not is_beyond(hole, page, True)]
+    if beyond:
+        own = drawing.to_own(np.vstack(beyond))
+        (left, low), (right, high) = own.min(axis=0), own.max(axis=0)
+        drawing.notes.append(f"{rounded.counted(len(beyond), 'object')} wholly outside the page left out, at x={left:.6g} to {right:.6g}, y={low:.6g} to {high:.6g} "
+                             "(enlarge the page if they belong to the device)")
+
+
+def is_beyond(points: Numbers, page: Box, is_closed: bool) -> bool:
+    """Whether an outline or a line has no part on the page."""
+    if not is_near(points, page):
+        return True
+    if is_on(points, page):
+        return False
+    geometry = library("shapely.geometry", "python3-shapely")
+    shape = geometry.Polygon(points).buffer(0) if is_closed else geometry.LineString(points)
+    common = geometry.box(*page).intersection(shape)
+    return bool(common.area == 0 if is_closed else common.length == 0)
+
+
+def is_on(points: Numbers, page: Box) -> bool:
+    """Whether all points are on the page, apart from rounding."""
+    near = NEAR * max(page[2] - page[0], page[3] - page[1])
+    return bool((points.min(axis=0) >= np.array(page[:2]) - near).all() and (points.max(axis=0) <= np.array(page[2:]) + near).all())
+
+
+def cut_at_page(drawing: Drawing, page: Box, tolerance: float) -> None:
+    """Cuts the outlines and lines that cross the border of the page. An outline around the whole page becomes the
+    border of the page. @param tolerance  as in fitted_circle()"""
+    inside, inside_lines = [outline for outline in drawing.outlines if is_on(outline, page)], [line for line in drawing.lines if is_on(line[1], page)]
+    if len(inside) == len(drawing.outlines) and len(inside_lines) == len(drawing.lines):
+        return
+    drawing.outlines = [outline for outline in drawing.outlines if not walls.is_one_of(outline, inside)]
+    drawing.lines = [line for line in drawing.lines if not is_on(line[1], page)]
+    _, around = cut(drawing, page, tolerance, "page")
+    left, bottom, right, top = page
+    border = [np.array([(left, bottom), (right, bottom), (right, top), (left, top)], dtype=float)]
+    drawing.outlines += inside + border * bool(around)
+    drawing.lines += inside_lines
+
+
+def cut(drawing: Drawing, region: Box, tolerance: float, name: str) -> tuple[int, int]:
+    """Keeps the part of the drawing that is in a region. Round posts that cross the region's border stay whole, or are
+    left out if their centre is outside; other outlines and lines are cut at the border, and outlines around the whole
+    region are left out.
     @param region  left, bottom, right, top
-    @param tolerance  as in fitted_circle()"""
+    @param tolerance  as in fitted_circle()
+    @param name  of the region
+    @return the number of outlines, circles and lines outside the region, and that of outlines around it"""
     geometry = library("shapely.geometry", "python3-shapely")
     box = geometry.box(*region)
     number = len(drawing.circles) + len(drawing.outlines) + len(drawing.lines)
@@ -198,21 +272,22 @@ def cut(drawing: Drawing, region: tuple[float, float, float, float], tolerance: 
     drawing.outlines = inside
     lines = [(kind, box.intersection(geometry.LineString(line))) for kind, line in drawing.lines]
     drawing.lines = [(kind, np.asarray(part.coords)) for kind, line in lines for part in getattr(line, "geoms", [line]) if part.length > 0]
-    drawing.outside = number - len(drawing.circles) - len(inside) - len(cuts) - around - sum(line.length > 0 for _, line in lines)
+    outside = number - len(drawing.circles) - len(inside) - len(cuts) - around - sum(line.length > 0 for _, line in lines)
     for common in cuts:
         add(drawing, common)
     if beside:
-        drawing.notes.append(f"{rounded.counted(beside, 'post')} left out that {'reaches' if beside == 1 else 'reach'} into the region from outside")
-    drawing.frame = region
+        drawing.notes.append(f"{rounded.counted(beside, 'post')} left out that {'reaches' if beside == 1 else 'reach'} into the {name} from outside")
+    return outside, around
 
 
-def holds_centre(region: tuple[float, float, float, float], circle: tuple[float, float, float]) -> bool:
+def holds_centre(region: Box, circle: tuple[float, float, float]) -> bool:
     """Whether a region holds the centre of a circle. A centre on the upper or the right border is outside, because the
-    array repeats there."""
+    array repeats there. The centre of a fitted circle is rounded."""
     left, bottom, right, top = region
-    return left <= circle[0] < right and bottom <= circle[1] < top
+    near = NEAR * max(right - left, top - bottom)
+    return left - near <= circle[0] < right - near and bottom - near <= circle[1] < top - near
 
 
-def is_near(outline: Numbers, region: tuple[float, float, float, float]) -> bool:
+def is_near(outline: Numbers, region: Box) -> bool:
     """Whether the bounding box of an outline meets a region."""
     return bool((outline.min(axis=0) < region[2:]).all() and (outline.max(axis=0) > region[:2]).all())

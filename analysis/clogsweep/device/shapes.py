@@ -23,6 +23,7 @@ NEAR = 0.01  # A line that is part of the edge may be this far outside the edge 
 SAME = 1e-3  # Two circles are the same if they differ by at most this fraction of the diameter.
 WINDOW = 1000  # Copies of a circle are searched for among this number of neighbours along x.
 LONGEST = 10000  # A side of a device that is longer than this probably comes from a wrong unit [sigma].
+Box = tuple[float, float, float, float]  # Left, bottom, right and top.
 Line = tuple[str, Numbers]  # The kind of an object in a drawing, and its points (n, 2).
 
 
@@ -34,8 +35,7 @@ class Drawing:
     # Corners (n, 2). The last corner is joined to the first, unless the border of a picture cuts the outline.
     outlines: list[Numbers]
     metres: float | None  # Length of the drawing's unit [m]; None if the file does not state it.
-    # Left, bottom, right and top of a picture, or of the region that the user gave.
-    frame: tuple[float, float, float, float] | None = None
+    frame: Box | None = None  # A picture, or the region that the user gave.
     is_picture: bool = False  # Whether the drawing consists of pixels.
     # Holes in outlines. Holes are no posts, but a hole may be the device's edge.
     holes: list[Numbers] = dataclasses.field(default_factory=list)
@@ -50,6 +50,7 @@ class Drawing:
     layers: dict[str, int] = dataclasses.field(default_factory=dict)  # Number of objects on each layer, chosen or not.
     # Outlines that came from round posts and something else, which touched, and the number of these posts.
     swallowing: list[tuple[Numbers, int]] = dataclasses.field(default_factory=list)
+    page: Box | None = None  # The page of an SVG, outside which nothing is visible.
     outside: int = 0  # Number of outlines, circles and lines outside the region that the user gave.
     can_join: bool = True
     unit_in_words: str | None = None  # Name of the unit, if this is not the usual name of a length of `metres`.
@@ -61,6 +62,11 @@ class Drawing:
     @property
     def unit(self) -> str:
         return self.unit_in_words or unit_name(self.metres or 0.0)
+
+    def to_own(self, points: Numbers) -> Numbers:
+        """The inverse of from_own()."""
+        origin, *ends = self.from_own([(0, 0), (1, 0), (0, 1)])
+        return np.asarray(np.linalg.solve(np.transpose(ends - origin), np.transpose(points - origin)).T)
 
     def layers_in_words(self) -> str:
         """The layers and their numbers of objects, such as "; it has layer 1/0 with 55 objects, 2/0 with 1 object"."""
@@ -261,7 +267,8 @@ def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float
         circle = fitted_circle(outline, is_closed, tolerance)
         found.append(circle) if circle else others.append(outline)
     if not found and not others:
-        raise UserError(f"the drawing holds no posts; choose another --layer or --region, or close the outlines{drawing.layers_in_words()}")
+        read = f" ({'; '.join(drawing.notes)})" if drawing.notes else ""
+        raise UserError(f"the drawing holds no posts{read}; choose another --layer or --region, or close the outlines{drawing.layers_in_words()}")
     circles = distinct(np.reshape(found, (-1, 3))) if found else np.empty((0, 3))
     drawing.duplicates += len(found) - len(circles)
     frame = drawing.frame if edge is None else (*edge.min(axis=0), *edge.max(axis=0))

@@ -17,7 +17,7 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from . import areas, walls
 from .libraries import library
-from .shapes import Drawing, holds
+from .shapes import Box, Drawing, holds
 
 METRES_IN_PIXEL = 25.4e-3 / 96
 LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
@@ -29,8 +29,9 @@ TEMPLATES = [NAMESPACE + name for name in ("symbol", "marker", "mask")]
 LINKS = ("href", "{http://www.w3.org/1999/xlink}href")
 
 
-def read_svg(path: pathlib.Path) -> Drawing:
-    """Reads visible circles and closed outlines, including curves."""
+def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
+    """Reads visible circles and closed outlines, including curves.
+    @param are_holes_posts  whether holes in filled paths are read as holes, and not as outlines within outlines"""
     svgelements = library("svgelements", "python3-svgelements")
     root = ElementTree.parse(path).getroot()
     expand(root, {element.get("id"): element for element in root.iter()}, path)
@@ -43,6 +44,7 @@ def read_svg(path: pathlib.Path) -> Drawing:
     found.unit_hint = "" if has_unit else f" (--pixel {METRES_IN_PIXEL * 1e3:.7g}mm, if 96 of them are an inch; Inkscape before 0.92 had 90, --pixel {25.4 / 90:.7g}mm)"
     viewport = svgelements.Matrix(content.viewbox_transform) if content.viewbox else svgelements.Matrix()
     found.from_own = applied(viewport)
+    found.page = page_of(root, content, found)
     widest = 0.0
     for element in content.elements():
         if not isinstance(element, svgelements.Shape):
@@ -56,6 +58,10 @@ def read_svg(path: pathlib.Path) -> Drawing:
             if kind := invisible(element):
                 found.skipped[f"{kind} {tag}"] += 1
                 continue
+            compound = [part for part in parts if is_closed(part)] if are_holes_posts and is_painted(element.fill) else []
+            if len(compound) > 1:
+                clips.cut_area(found, element.values, tag, areas.filled([part[:-1] for part in compound], element.values.get("fill-rule", "nonzero")))
+                parts = [part for part in parts if not is_closed(part)]
             for part in parts:
                 clips.cut(found, element.values, tag, part)
             if is_painted(element.fill) and is_painted(element.stroke) and any(map(is_closed, parts)):
@@ -65,6 +71,19 @@ def read_svg(path: pathlib.Path) -> Drawing:
     if clips.unknown:
         found.notes.append(f"{clips.unknown} clips or masks ignored, which are not of plain shapes")
     return found
+
+
+def page_of(root: Any, content: Any, found: Drawing) -> Box | None:
+    """The page: width and height, or the viewBox of a drawing without these. None if the drawing has neither."""
+    if all(re.fullmatch(rf"[0-9.eE+]+\s*({'|'.join(LENGTHS)}|px)?", root.get(name, "").strip()) for name in ("width", "height")):
+        corners = np.array([(0.0, -float(content.height)), (float(content.width), 0.0)])
+    elif content.viewbox:
+        view = content.viewbox
+        corners = found.from_own([(view.x, view.y), (view.x + view.width, view.y + view.height)])
+    else:
+        return None
+    (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
+    return (left, bottom, right, top) if right > left and top > bottom else None
 
 
 def transform_length(matrix: Any) -> float:
@@ -182,9 +201,7 @@ class Clips:
             return
         geometry = library("shapely.geometry", "python3-shapely")
         shape = areas.polygon(corners) if is_closed(corners) else geometry.LineString(corners)
-        left = shape
-        for clip in clips:
-            left = left.intersection(areas.union([areas.polygon(part) for part in clip], 0.0) if clip else geometry.Polygon())
+        left = self._visible(values, shape)
         if left.is_empty:
             found.skipped[f"clipped {tag}"] += 1
         elif left.equals(shape):
@@ -193,6 +210,20 @@ class Clips:
             areas.add(found, left)
         else:
             found.pieces += [("open outline", np.asarray(part.coords)) for part in getattr(left, "geoms", [left]) if part.length > 0]
+
+    def cut_area(self, found: Drawing, values: dict[str, Any], tag: Any, area: Any) -> None:
+        """Adds the part of an area that is inside all its clips."""
+        left = self._visible(values, area)
+        if left.is_empty:
+            found.skipped[f"clipped {tag}"] += 1
+        areas.add(found, left)
+
+    def _visible(self, values: dict[str, Any], shape: Any) -> Any:
+        """The part of a shape that is inside all its clips."""
+        for name in values.get(self.USED, "").split():
+            clip = self._areas[name]
+            shape = shape.intersection(areas.union([areas.polygon(part) for part in clip], 0.0) if clip else library("shapely.geometry", "python3-shapely").Polygon())
+        return shape
 
 
 def corners_of(svgelements: Any, outline: Any) -> Numbers:

@@ -248,7 +248,7 @@ def measured(path: pathlib.Path) -> pandas.DataFrame:
     import pandas  # pandas is slow to load, and seldom needed here.
 
     if path.is_file():
-        tables.refuse_spreadsheet_errors(path)
+        tables.refuse_misread(path)
     try:
         table = pandas.read_csv(path, comment="#", skipinitialspace=True)
     except FileNotFoundError as error:

@@ -9,7 +9,7 @@ import os
 import pathlib
 import re
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from .errors import UserError
 
@@ -117,8 +117,28 @@ def rows(path: str) -> Iterator[tuple[int, list[str]]]:
         yield number, cells
 
 
-def refuse_spreadsheet_errors(path: str | os.PathLike[str]) -> None:
-    """Call this before another library reads the table: pandas takes such cells for comments or missing values.
-    @throws UserError"""
-    for _ in rows(os.fspath(path)):
-        pass
+def quantity(title: str) -> str:
+    """The quantity of a column. @param title  with or without a unit, such as h [mm]"""
+    return title.partition("[")[0].strip()
+
+
+def columns_of(titles: Sequence[str]) -> dict[str, int]:
+    """The places of the columns by their quantities. Columns without a title are left out.
+    @throws UserError  if two columns have the same quantity, in whatever units"""
+    found: dict[str, int] = {}
+    for place, title in enumerate(titles):
+        name = quantity(title)
+        if name and found.setdefault(name, place) != place:
+            raise UserError(f"there are two columns for {name}, '{titles[found[name]]}' and '{title}'; delete one")
+    return found
+
+
+def refuse_misread(path: str | os.PathLike[str]) -> None:
+    """Call this before pandas reads the table: pandas takes errors of spreadsheets for comments or missing values, and
+    renames the second of two columns. @throws UserError"""
+    for index, (number, cells) in enumerate(rows(os.fspath(path))):
+        if index == 0:
+            try:
+                columns_of(cells)
+            except UserError as error:
+                raise UserError(f"{path} line {number}: {error}") from error
