@@ -126,10 +126,11 @@ std::string lengths_text(const DistanceTable& table, double confidence, std::opt
     lines[0].insert(lines[0].end(),
                     {fmt::format("lambda/{}", unit.text), fmt::format("{:g} %", 100 * confidence)});
   lines[0].emplace_back("note");
+  const auto labels = label_texts(table.groups, &DistanceGroup::labels);
   std::vector<Doubt> doubts;
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     std::vector<std::string>& line = lines.emplace_back();
-    for (const Value& label : table.groups[i].labels) line.push_back(short_text(label));
+    line = labels[i];
     line.push_back(std::to_string(lengths[i].clogging.num_runs));
     line.push_back(std::to_string(lengths[i].clogging.num_clogs));
     for (const Unit& unit : units)
