@@ -223,6 +223,16 @@ Match match_of(const DistanceTable& here, const DistanceTable& there) {
   return match;
 }
 
+/// @param matched  places of the groups that match a group of the other table
+void append_unmatched(Comparisons& comparisons, const DistanceTable& table,
+                      const DistanceTable& compared_with, const std::set<std::size_t>& matched) {
+  std::vector<std::vector<Value>> unmatched;
+  for (std::size_t i = 0; i < table.groups.size(); ++i)
+    if (!matched.contains(i)) unmatched.push_back(table.groups[i].labels);
+  append_left_out(comparisons, table.source, compared_with.source, table.labels, unmatched,
+                  table.groups.size());
+}
+
 DistanceTable grouped(DistanceTable table,
                       std::map<std::vector<Value>, std::vector<fit::Observation>>&& runs) {
   for (auto& [labels, own] : runs) table.groups.push_back({labels, std::move(own), {}});
@@ -260,22 +270,6 @@ std::optional<double> diameter_of(const DistanceTable& table, const DistanceGrou
 std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other) {
   std::vector<std::string> unmatched = table.labels;
   std::erase_if(unmatched, [&](const std::string& label) { return has_label(other.labels, label); });
-  return unmatched;
-}
-
-std::vector<std::string> unmatched_groups(const DistanceTable& table, const DistanceTable& other) {
-  const Match match = match_of(table, other);
-  std::vector<std::string> unmatched;
-  for (const DistanceGroup& group : table.groups) {
-    if (std::ranges::any_of(
-            other.groups, [&](const DistanceGroup& there) { return match.have_common_labels(group, there); }))
-      continue;
-    std::vector<std::string> words;
-    words.reserve(table.labels.size());
-    for (std::size_t i = 0; i < table.labels.size(); ++i)
-      words.push_back(table.labels[i] + "=" + sweep::text_of(group.labels[i]));
-    unmatched.push_back(joined(words));
-  }
   return unmatched;
 }
 
@@ -460,10 +454,13 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
           fmt::format("cannot compare {} (its groups differ in {}, those of {} in {}); compare two "
                       "files at a time",
                       here.source, joined(match.columns), tables[1].source, joined(comparisons.columns)));
+    std::set<std::size_t> matched_here, matched_there;
     for (std::size_t place = 0; place < here.groups.size(); ++place)
       for (std::size_t other_place = 0; other_place < there.groups.size(); ++other_place) {
         const DistanceGroup &one = here.groups[place], &other = there.groups[other_place];
         if (!match.have_common_labels(one, other)) continue;
+        matched_here.insert(place);
+        matched_there.insert(other_place);
         Comparison comparison{.here = here.source, .there = there.source, .common = one.labels};
         comparison.flaws_here = flaws_here[place];
         comparison.flaws_there = flaws_there[other_place];
@@ -476,6 +473,8 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
         comparison.are_identical = runs.size() > 1 && are_same(runs, others);
         comparisons.all.push_back(std::move(comparison));
       }
+    append_unmatched(comparisons, here, there, matched_here);
+    append_unmatched(comparisons, there, here, matched_there);
   }
   if (comparisons.all.empty()) {
     std::vector<std::string> common = there.labels;

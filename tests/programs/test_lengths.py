@@ -196,6 +196,10 @@ class Lengths(ProgramTest):
             self.assertAlmostEqual(one["ratio"], ratio)
             # All droplets clogged, so the ratio follows Snedecor's F.
             self.assertAlmostEqual(one["ratio_upper"], ratio / scipy.stats.f.ppf(0.025, 12, 12))
+        # A group without a counterpart is named.
+        self.write("own.csv", "n,diameter [mm],distance [mm],clogged\n1,0.5,1,1\n1,0.5,2,1\n2,0.5,5,1\n2,0.8,4,0\n3,0.5,6,1\n")
+        self.assertEqual(self.succeed("clogfit", "compare", "own.csv", "--by", "n").stderr, "clogfit compare: n=2: left out, 1 of 2 groups match no runs of n=1, such as diameter=0.8\n")
+        self.write("own.csv", "surfactant [mM],wall,distance [mm],clogged\n1,a,3,1\n2,a,3,1\n")
         for words, arguments in [(["no column", "wall"], ["--by", "wal"]), (["one table"], ["own.csv", "--by", "wall"])]:
             self.refuse("clogfit", "compare", "own.csv", *arguments, words=words)
 
@@ -341,7 +345,8 @@ class Beside(ProgramTest):
     def test_groups_that_match_nothing_are_named(self):
         self.write("own.csv", "distance [sigma],clogged,line-tension,wall\n3,1,1,glass\n4,1,7,glass\n4,1,7,steel\n")
         done = self.succeed("clogfit", "compare", "own.csv", "sweep.h5")
-        self.assertEqual(done.stderr.splitlines()[-1], "clogfit compare: own.csv: left out, 2 of 3 groups match no runs of sweep.h5, such as line-tension=7, wall=glass")
+        self.assertEqual(done.stderr.splitlines()[-2:], ["clogfit compare: sweep.h5: left out, 1 of 2 groups match no runs of own.csv, such as line_tension=3",
+                                                         "clogfit compare: own.csv: left out, 2 of 3 groups match no runs of sweep.h5, such as line-tension=7, wall=glass"])
 
     def test_a_column_of_numbers_of_droplets_gets_a_hint(self):
         for rows, hint in [("1,glass,3,1\n2,glass,4,1\n3,steel,5,0\n", "clogfit: own.csv: each droplet is a group of its own; delete columns such as no to join droplets\n"),

@@ -57,8 +57,6 @@ DistanceTable distances_of(const Side& side, const Scales& scales, const std::ve
 std::vector<Flaws> flaws_of(const DistanceTable& table);
 /// Labels of a table that the other table lacks.
 std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other);
-/// The groups of a table that match no group of the other table, each as `label=value, label=value`.
-std::vector<std::string> unmatched_groups(const DistanceTable& table, const DistanceTable& other);
 
 /// These functions print lengths, intervals, doubts and survival of each group, estimated as for a sweep.
 /// @param sigma_mm  see diameter_of(); groups with a known diameter have lengths in both units
