@@ -106,8 +106,9 @@ results::Comparisons compare_measured(const cli::CommandLine& line, const std::v
           "no place for --by (several files of measured distances are compared with each other); give one "
           "table");
     return results::compare_distances(
-        results::tables_of_values(results::read_distances(paths[0]), line.get("by")), confidence,
-        std::nullopt);
+        results::tables_of_values(results::read_distances(paths[0], results::names_of_comparisons()),
+                                  line.get("by")),
+        confidence, std::nullopt);
   }
   if (paths.size() < 2)
     throw Error("nothing to compare this table with; give --by and a column, a sweep, or another table");
@@ -115,7 +116,7 @@ results::Comparisons compare_measured(const cli::CommandLine& line, const std::v
   std::vector<std::string> asked;
   for (std::size_t i = 0; i < paths.size(); ++i)
     if (results::is_distance_table(paths[i])) {
-      tables[i] = results::read_distances(paths[i]);
+      tables[i] = results::read_distances(paths[i], results::names_of_comparisons());
       asked.insert(asked.end(), tables[i].labels.begin(), tables[i].labels.end());
     }
   std::vector<sweep::RunRow> rows;

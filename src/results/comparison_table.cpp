@@ -174,6 +174,14 @@ std::string to_csv(const Comparisons& comparisons) {
   return csv_table(rows);
 }
 
+std::vector<std::string> names_of_comparisons() {
+  Comparisons in_both_units;
+  in_both_units.sigma_mm = 1;
+  std::vector<std::string> names;
+  for (const auto& [name, value] : fields_of(Comparison(), in_both_units)) names.push_back(name);
+  return names;
+}
+
 std::string to_json(const Comparisons& comparisons, double confidence) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Comparison& one : comparisons.all) {

@@ -110,5 +110,7 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
 std::string to_text(const Comparisons& comparisons, double confidence);
 std::string to_csv(const Comparisons& comparisons);
 std::string to_json(const Comparisons& comparisons, double confidence);
+/// Names of all results that these functions print beside Comparisons::columns.
+std::vector<std::string> names_of_comparisons();
 
 }  // namespace clog::results
