@@ -57,27 +57,10 @@ struct Scale {
   }
 };
 
-/// The comment with `units = um` written as `units=um`.
-std::string without_blanks_around_equals(std::string comment) {
-  for (auto at = comment.find('='); at != std::string::npos; at = comment.find('=', at + 1)) {
-    while (at + 1 < comment.size() && comment[at + 1] == ' ') comment.erase(at + 1, 1);
-    while (at > 0 && comment[at - 1] == ' ') comment.erase(--at, 1);
-  }
-  return comment;
-}
-
 /// Reads `units=um droplet=200um` from a comment; anything else in a comment is skipped. @throws Error
 /// @param are_below_circles  whether circles precede the comment
 void read_scale(const std::string& comment, Scale& scale, bool are_below_circles) {
-  std::istringstream words(without_blanks_around_equals(comment));
-  std::optional<std::string> unit, droplet;
-  for (std::string word; words >> word;) {
-    word.erase(word.find_last_not_of(";,\"") + 1);  // drops empty cells that a spreadsheet adds
-    word.erase(0, word.find_first_not_of("#\""));
-    const std::string name = console::in_lower_case(word.substr(0, word.find('=') + 1));
-    if (name == "units=" || name == "unit=") unit = word.substr(name.size());
-    if (name == "droplet=") droplet = word.substr(name.size());
-  }
+  const auto [unit, droplet] = console::units_in(comment);
   if (!unit && !droplet) return;
   if (unit == droplet_diameters && !droplet && scale.unit.empty()) return;
   if (!unit || !droplet)

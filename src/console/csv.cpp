@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "clog/console/text_file.hpp"
 #include "clog/core/tools/error.hpp"
@@ -178,6 +180,15 @@ void give_empty_cells(const std::vector<int>& numbers,
   for (const int number : numbers) each({.number = number, .cells = {""}, .separator = ' '});
 }
 
+/// The comment with `units = um` written as `units=um`.
+std::string without_blanks_around_equals(std::string comment) {
+  for (auto at = comment.find('='); at != std::string::npos; at = comment.find('=', at + 1)) {
+    while (at + 1 < comment.size() && comment[at + 1] == ' ') comment.erase(at + 1, 1);
+    while (at > 0 && comment[at - 1] == ' ') comment.erase(--at, 1);
+  }
+  return comment;
+}
+
 std::string read_table_text(const std::string& path) {
   std::string text = read_text(path);
   if (text.find('\0') != std::string::npos)
@@ -233,6 +244,26 @@ std::optional<double> metres_of(const std::string& unit) {
                                                       {"mm", 1e-3}, {"cm", 1e-2},     {"m", 1}};
   const auto found = units.find(unit);
   return found == units.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<double> degrees_of(const std::string& unit) {
+  static const std::map<std::string, double> units = {
+      {"deg", 1}, {"degree", 1}, {"degrees", 1}, {"°", 1}, {"rad", 180 / std::numbers::pi}};
+  const auto found = units.find(unit);
+  return found == units.end() ? std::nullopt : std::optional(found->second);
+}
+
+UnitsComment units_in(std::string comment) {
+  std::istringstream words(without_blanks_around_equals(std::move(comment)));
+  UnitsComment found;
+  for (std::string word; words >> word;) {
+    word.erase(word.find_last_not_of(";,\"") + 1);  // drops empty cells that a spreadsheet adds
+    word.erase(0, word.find_first_not_of("#\""));
+    const std::string name = in_lower_case(word.substr(0, word.find('=') + 1));
+    if (name == "units=" || name == "unit=") found.unit = word.substr(name.size());
+    if (name == "droplet=") found.droplet = word.substr(name.size());
+  }
+  return found;
 }
 
 void read_table(const std::string& path, const std::function<void(const TableLine& line)>& each,

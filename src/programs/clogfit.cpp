@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -17,6 +18,7 @@
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/group_table.hpp"
 #include "clog/results/merger.hpp"
@@ -90,6 +92,26 @@ void set_row_angle(const std::string& text, std::vector<results::Group>& groups)
   for (results::Group& group : groups) group.row_angle = angle;
 }
 
+/// @throws Error if there is no device, or if a line is behind the exit of one, where no droplet is followed
+void require_lines_in_devices(const std::string& text, const std::vector<double>& lines,
+                              const std::vector<results::Group>& groups) {
+  bool is_any = false;
+  for (const results::Group& group : groups) {
+    const RunParameters& run = group.first_row.parameters;
+    if (!results::is_device(run)) continue;
+    is_any = true;
+    const double exit = run.obstacles.exit, last = std::ranges::max(lines);
+    if (exit > 0 && last > exit)
+      throw Error(fmt::format(
+          "invalid --lines={} ({} is behind the exit at x = {}, where runs end) give lines up to the exit{}",
+          text, shortest(last), shortest(twelve_digits(exit)),
+          groups.size() > 1 ? " of every group, or choose groups with clogsweep select" : ""));
+  }
+  if (!is_any)
+    throw Error(
+        "no place for --lines (no run has release=entrance or an exit, so there is no device); leave it out");
+}
+
 int clogfit(int argc, const char* const* argv) {
   cli::CommandLine line("clogfit", clogfit_usage);
   line.words("file", "sweep files")
@@ -135,6 +157,7 @@ int clogfit(int argc, const char* const* argv) {
   const std::vector<double> lines = line.get_positives("lines");
   std::vector<results::Group> groups =
       results::group_runs(sweep.rows, confidence, from_distance, dwell, pooled, lines);
+  if (line.has("lines")) require_lines_in_devices(line.get("lines"), lines, groups);
   if (line.has("row-angle")) set_row_angle(line.get("row-angle"), groups);
   set_scales(line, groups);
   const SharedParameters shared =

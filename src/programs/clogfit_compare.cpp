@@ -76,18 +76,21 @@ results::Comparisons compare_sweeps(const cli::CommandLine& line, const std::vec
   return found;
 }
 
-/// Says which columns of a measured table choose no groups of another table, and which groups are left out.
-void say_unmatched(const results::DistanceTable& table, const results::DistanceTable& other) {
+/// Says which columns of a measured table choose no groups of another table.
+void say_unmatched_columns(const results::DistanceTable& table, const results::DistanceTable& other) {
   if (!table.is_measured) return;
   const std::vector<std::string> columns = results::unmatched_labels(table, other);
   if (!columns.empty())
     console::say(fmt::format(
         "clogfit compare: {}: columns without a match in {}: {} (groups are compared whatever their values)",
         table.source, other.source, joined(columns)));
-  const std::vector<std::string> groups = results::unmatched_groups(table, other);
-  if (!groups.empty())
+}
+
+/// Says which groups no comparison contains.
+void say_left_out(const results::Comparisons& comparisons) {
+  for (const results::LeftOut& groups : comparisons.left_out)
     console::say(fmt::format("clogfit compare: {}: left out, {} of {} groups match no runs of {}, such as {}",
-                             table.source, groups.size(), table.groups.size(), other.source, groups.front()));
+                             groups.side, groups.number, groups.number_of_all, groups.other, groups.example));
 }
 
 /// Compares files, at least one of which is a table of measured distances.
@@ -103,8 +106,9 @@ results::Comparisons compare_measured(const cli::CommandLine& line, const std::v
           "no place for --by (several files of measured distances are compared with each other); give one "
           "table");
     return results::compare_distances(
-        results::tables_of_values(results::read_distances(paths[0]), line.get("by")), confidence,
-        std::nullopt);
+        results::tables_of_values(results::read_distances(paths[0], results::names_of_comparisons()),
+                                  line.get("by")),
+        confidence, std::nullopt);
   }
   if (paths.size() < 2)
     throw Error("nothing to compare this table with; give --by and a column, a sweep, or another table");
@@ -112,7 +116,7 @@ results::Comparisons compare_measured(const cli::CommandLine& line, const std::v
   std::vector<std::string> asked;
   for (std::size_t i = 0; i < paths.size(); ++i)
     if (results::is_distance_table(paths[i])) {
-      tables[i] = results::read_distances(paths[i]);
+      tables[i] = results::read_distances(paths[i], results::names_of_comparisons());
       asked.insert(asked.end(), tables[i].labels.begin(), tables[i].labels.end());
     }
   std::vector<sweep::RunRow> rows;
@@ -124,8 +128,8 @@ results::Comparisons compare_measured(const cli::CommandLine& line, const std::v
     }
   results::Comparisons found = results::compare_distances(tables, confidence, sigma_in_mm(line, rows));
   for (std::size_t i = 1; i < tables.size(); ++i) {
-    say_unmatched(tables[0], tables[i]);
-    say_unmatched(tables[i], tables[0]);
+    say_unmatched_columns(tables[0], tables[i]);
+    say_unmatched_columns(tables[i], tables[0]);
   }
   return found;
 }
@@ -167,6 +171,7 @@ int clogfit_compare(int argc, const char* const* argv) {
   if (line.has("picture") && !are_measured) draw(line, paths);
   const results::Comparisons found = are_measured ? compare_measured(line, paths, confidence)
                                                   : compare_sweeps(line, paths, confidence, within);
+  say_left_out(found);
   std::cout << (format == "csv"    ? results::to_csv(found)
                 : format == "json" ? results::to_json(found, confidence)
                                    : results::to_text(found, confidence));

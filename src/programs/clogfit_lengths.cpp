@@ -56,7 +56,7 @@ int clogfit_lengths(int argc, const char* const* argv) {
   const std::string path = line.require("file");
   if (path.ends_with(".h5"))
     throw Error(fmt::format("cannot read {0} (a table of distances is CSV); clogfit {0} fits a sweep", path));
-  results::DistanceTable table = results::read_distances(path);
+  results::DistanceTable table = results::read_distances(path, results::names_of_lengths());
   if (line.has("from-distance"))
     table = results::counted_from(line.get_positive("from-distance"), std::move(table));
   const std::optional<double> sigma_mm = sigma_in_mm(line, {});

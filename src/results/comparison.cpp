@@ -102,6 +102,15 @@ ByValues by_values(const std::vector<ParameterSet>& sets, const std::vector<std:
   return all;
 }
 
+/// Appends the sets of a side whose values in Comparisons::columns no set of the other side has.
+void append_unmatched(Comparisons& comparisons, const Side& side, const Side& compared_with,
+                      const ByValues& own, const ByValues& others) {
+  std::vector<std::vector<Value>> unmatched;
+  for (const auto& [values, set] : own)
+    if (!others.contains(values)) unmatched.push_back(values);
+  append_left_out(comparisons, side.name, compared_with.name, comparisons.columns, unmatched, own.size());
+}
+
 std::vector<fit::Observation> observations(const ParameterSet& set) {
   std::vector<fit::Observation> all;
   all.reserve(set.by_seed.size());
@@ -203,6 +212,21 @@ std::map<std::vector<Value>, Flaws> flaws_by_parameters(const std::vector<RunRow
     all[parameter_values(group.first_row)] = {
         .num_failed = group.num_failed, .doubts = std::move(group.doubts), .weibull = group.weibull};
   return all;
+}
+
+void append_left_out(Comparisons& comparisons, const std::string& side, const std::string& other,
+                     const std::vector<std::string>& labels, const std::vector<std::vector<Value>>& unmatched,
+                     std::size_t number_of_all) {
+  if (unmatched.empty()) return;
+  std::vector<std::string> words;
+  words.reserve(labels.size());
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    words.push_back(labels[i] + "=" + sweep::text_of(unmatched.front()[i]));
+  comparisons.left_out.push_back({.side = side,
+                                  .other = other,
+                                  .number = unmatched.size(),
+                                  .number_of_all = number_of_all,
+                                  .example = joined(words)});
 }
 
 void correct_tests(std::vector<Comparison>& comparisons) {
@@ -313,7 +337,10 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
                       comparisons.columns.empty() ? "nothing" : joined(comparisons.columns)));
     const ByValues all_there = by_values(sets_there, columns, there);
     const auto flaws_here = numbered_flaws(here);
-    for (const auto& [values, set] : by_values(sets_here.back(), columns, here)) {
+    const ByValues all_here = by_values(sets_here.back(), columns, here);
+    append_unmatched(comparisons, here, there, all_here, all_there);
+    append_unmatched(comparisons, there, here, all_there, all_here);
+    for (const auto& [values, set] : all_here) {
       const auto other = all_there.find(values);
       if (other == all_there.end()) continue;
       const double near = within.value_or(sweep::obstacle_spacing(set->first) / 2);

@@ -138,9 +138,11 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
   }
   const Flaws flaws = all_flaws(comparisons);
   if (!flaws.doubts.empty()) lines[0].emplace_back("note");
-  for (const Comparison& one : comparisons.all) {
+  const auto labels = label_texts(comparisons.all, &Comparison::common);
+  for (std::size_t i = 0; i < comparisons.all.size(); ++i) {
+    const Comparison& one = comparisons.all[i];
     std::vector<std::string>& line = lines.emplace_back(1, one.here);
-    for (const Value& value : one.common) line.push_back(short_text(value));
+    line.insert(line.end(), labels[i].begin(), labels[i].end());
     for (std::string& cell : cells(one, comparisons.sigma_mm.value_or(1), have_pairs))
       line.push_back(std::move(cell));
     if (!flaws.doubts.empty()) line.push_back(note_of(one));
@@ -170,6 +172,14 @@ std::string to_csv(const Comparisons& comparisons) {
   rows.reserve(comparisons.all.size());
   for (const Comparison& one : comparisons.all) rows.push_back(fields_of(one, comparisons));
   return csv_table(rows);
+}
+
+std::vector<std::string> names_of_comparisons() {
+  Comparisons in_both_units;
+  in_both_units.sigma_mm = 1;
+  std::vector<std::string> names;
+  for (const auto& [name, value] : fields_of(Comparison(), in_both_units)) names.push_back(name);
+  return names;
 }
 
 std::string to_json(const Comparisons& comparisons, double confidence) {

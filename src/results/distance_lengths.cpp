@@ -86,6 +86,23 @@ std::vector<Field> fields_of(const DistanceTable& table, std::size_t group, cons
   return fields;
 }
 
+/// All of a group's fields, with its curve.
+nlohmann::ordered_json entry_of(const DistanceTable& table, std::size_t group, const Lengths& lengths,
+                                const std::vector<Unit>& units, double confidence) {
+  nlohmann::ordered_json entry;
+  for (const auto& [name, value] : fields_of(table, group, lengths, units)) entry[name] = json_of(value);
+  entry["survival"] = entry["censored_distances"] = nlohmann::ordered_json::array();
+  const std::vector<fit::Observation>& runs = table.groups[group].runs;
+  for (const fit::SurvivalStep& step : fit::survival_curve(runs, confidence))
+    entry["survival"].push_back(step_json(step, "clogs", step.num_clogs));
+  std::vector<double> censored;
+  for (const fit::Observation& run : runs)
+    if (!run.clogged) censored.push_back(run.distance);
+  std::ranges::sort(censored);
+  entry["censored_distances"] = censored;
+  return entry;
+}
+
 std::vector<std::string> length_cells(const fit::CloggingLength& clogging, double factor) {
   if (std::isnan(factor) || clogging.num_runs == 0) return {"-", "-"};
   const double lower = factor * clogging.interval.lower, upper = factor * clogging.interval.upper;
@@ -126,10 +143,11 @@ std::string lengths_text(const DistanceTable& table, double confidence, std::opt
     lines[0].insert(lines[0].end(),
                     {fmt::format("lambda/{}", unit.text), fmt::format("{:g} %", 100 * confidence)});
   lines[0].emplace_back("note");
+  const auto labels = label_texts(table.groups, &DistanceGroup::labels);
   std::vector<Doubt> doubts;
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     std::vector<std::string>& line = lines.emplace_back();
-    for (const Value& label : table.groups[i].labels) line.push_back(short_text(label));
+    line = labels[i];
     line.push_back(std::to_string(lengths[i].clogging.num_runs));
     line.push_back(std::to_string(lengths[i].clogging.num_clogs));
     for (const Unit& unit : units)
@@ -159,24 +177,22 @@ std::string lengths_csv(const DistanceTable& table, double confidence, std::opti
   return csv_table(rows);
 }
 
+std::vector<std::string> names_of_lengths() {
+  const DistanceTable one_group{.source = "", .unit = "mm", .labels = {}, .groups = {DistanceGroup()}};
+  constexpr double any_confidence = 0.95;
+  const nlohmann::ordered_json entry = entry_of(one_group, 0, lengths_of(one_group, any_confidence).front(),
+                                                units_of(one_group, 1.0), any_confidence);
+  std::vector<std::string> names;
+  for (const auto& [name, value] : entry.items()) names.push_back(name);
+  return names;
+}
+
 std::string lengths_json(const DistanceTable& table, double confidence, std::optional<double> sigma_mm) {
   const std::vector<Unit> units = units_of(table, sigma_mm);
   const std::vector<Lengths> lengths = lengths_of(table, confidence);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
-    nlohmann::ordered_json entry;
-    for (const auto& [name, value] : fields_of(table, i, lengths[i], units)) entry[name] = json_of(value);
-    entry["survival"] = entry["censored_distances"] = nlohmann::ordered_json::array();
-    const std::vector<fit::Observation>& runs = table.groups[i].runs;
-    for (const fit::SurvivalStep& step : fit::survival_curve(runs, confidence))
-      entry["survival"].push_back(step_json(step, "clogs", step.num_clogs));
-    std::vector<double> censored;
-    for (const fit::Observation& run : runs)
-      if (!run.clogged) censored.push_back(run.distance);
-    std::ranges::sort(censored);
-    entry["censored_distances"] = censored;
-    list.push_back(std::move(entry));
-  }
+  for (std::size_t i = 0; i < lengths.size(); ++i)
+    list.push_back(entry_of(table, i, lengths[i], units, confidence));
   const console::BuildInfo build = console::build_info();
   return console::json_text({{"version", build.version},
                              {"git_describe", build.git_describe},

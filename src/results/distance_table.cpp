@@ -43,8 +43,12 @@ struct Head {
   int distance = -1, clogged = -1;
   double factor = 1;  ///< factor from the column's unit to the table's unit
   std::size_t num_columns = 0;
-  std::vector<std::size_t> labels;
-  std::vector<double> label_factors;  ///< factors from the labels' units to mm or degrees
+  /// A column whose values separate groups.
+  struct Label {
+    std::size_t column;
+    std::optional<double> factor;  ///< from the unit of a laboratory's column to mm or degrees
+  };
+  std::vector<Label> labels;
 };
 
 void set_once(int& place, std::size_t column, const char* name) {
@@ -68,22 +72,46 @@ void refuse_entry(const std::string& cell, const std::string& name, const std::s
   const bool is_length = unit == "sigma" || (!unit.empty() && console::metres_of(unit));
   if (name == "entry" || (is_length && std::set<std::string>{"start", "begin", "from"}.contains(name)))
     throw Error(fmt::format(
-        "has a column '{}' (droplets that are first seen on their way are no groups) subtract it from the "
-        "distances, which leaves an exponential law as it is, or give a common one by --from-distance",
+        "column '{}' says where droplets were first seen, and groups cannot depend on that; delete the "
+        "column "
+        "and subtract its values from the distances, which does not change the length of an exponential law, "
+        "or give a common value by --from-distance",
         console::printable(cell)));
 }
 
 /// The factor to the unit of a laboratory's column, mm or degrees; nullopt for any other column.
-std::optional<double> laboratory_factor(const std::string& name, const std::string& unit) {
-  if (name == "angle" && std::set<std::string>{"", "deg", "degree", "degrees", "°"}.contains(unit)) return 1;
-  const std::optional<double> metres = console::metres_of(unit.empty() ? "mm" : unit);
-  return name == "diameter" && metres ? std::optional(*metres / metres_per_mm) : std::nullopt;
+/// @throws Error if the unit of a laboratory's column is not known
+std::optional<double> laboratory_factor(const std::string& cell, const std::string& name,
+                                        const std::string& unit) {
+  if (name != "diameter" && name != "angle") return {};
+  const bool is_length = name == "diameter";
+  std::optional<double> factor = is_length ? console::metres_of(unit) : console::degrees_of(unit);
+  if (is_length && factor) factor = *factor / metres_per_mm;
+  if (!is_length && unit.empty()) factor = 1;
+  if (!factor)
+    throw Error(fmt::format("column '{}' has {}; write {}, or rename a column that is not {}",
+                            console::printable(excerpt(cell)),
+                            unit.empty() ? "no unit" : "the unit '" + console::printable(excerpt(unit)) + "'",
+                            is_length ? "diameter [mm], um, cm or m" : "angle [deg] or rad",
+                            is_length ? "the droplets' diameter" : "the tilt of the plates"));
+  return factor;
 }
 
-Head head_of(std::vector<std::string> cells, DistanceTable& table) {
+/// @throws Error if a comment states units, as in files of circles: the numbers of this table have others
+void refuse_units(const std::string& comment) {
+  const console::UnitsComment stated = console::units_in(comment);
+  if (stated.unit || stated.droplet)
+    throw Error(
+        "units in a comment do not apply to a table of distances; delete this line, write the unit in the "
+        "header, as in 'distance [um]', and give the droplet's diameter in a column 'diameter [um]' or by "
+        "--lab");
+}
+
+Head head_of(std::vector<std::string> cells, DistanceTable& table, const std::vector<std::string>& taken) {
   while (!cells.empty() && cells.back().empty()) cells.pop_back();
   Head head;
   head.num_columns = cells.size();
+  std::vector<std::size_t> others;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto [name, unit] = console::column_head(cells[i]);
     const bool is_in_brackets = cells[i].find_first_of("[(") != std::string::npos;
@@ -93,30 +121,50 @@ Head head_of(std::vector<std::string> cells, DistanceTable& table) {
     } else if (console::in_lower_case(cells[i]) == "clogged") {
       set_once(head.clogged, i, "clogged");
     } else if (!cells[i].empty()) {  // pandas writes its index without a name
-      refuse_entry(cells[i], name, unit);
-      const std::optional<double> factor = laboratory_factor(name, unit);
-      head.labels.push_back(i);
-      head.label_factors.push_back(factor.value_or(1));
-      table.labels.push_back(factor ? name : console::printable(cells[i]));
-      if (std::ranges::count(table.labels, table.labels.back()) > 1)
-        throw Error(fmt::format("there are two columns named {}; delete one", table.labels.back()));
+      others.push_back(i);
     }
   }
   if (head.distance < 0 || head.clogged < 0)
     throw Error(fmt::format(
         "has no column {}; {}", head.distance < 0 ? "distance" : "clogged",
-        head.clogged < 0 && has_label(table.labels, "censored")
+        head.clogged < 0 && std::ranges::any_of(others, [&](std::size_t i) { return cells[i] == "censored"; })
             ? "clogged is the opposite of censored: give a column clogged with 1 where censored is 0"
             : example));
+  for (const std::size_t i : others) {
+    const auto [name, unit] = console::column_head(cells[i]);
+    refuse_entry(cells[i], name, unit);
+    const std::optional<double> factor = laboratory_factor(cells[i], name, unit);
+    head.labels.push_back({i, factor});
+    const std::string& label = table.labels.emplace_back(factor ? name : console::printable(cells[i]));
+    if (std::ranges::count(table.labels, label) > 1)
+      throw Error(fmt::format("there are two columns named {}; delete one", label));
+    if (std::ranges::find(taken, column_name(label)) != taken.end())
+      throw Error(fmt::format("column '{}' has the name of a result; rename it", label));
+  }
   return head;
+}
+
+std::optional<double> number_of(const std::string& text) {
+  try {
+    return sweep::to_number(text);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// The cell with a decimal point in place of its comma, unless the comma may separate thousands.
+std::string with_any_comma_as_point(std::string cell) {
+  if (!console::may_have_thousands(cell)) std::ranges::replace(cell, ',', '.');
+  return cell;
 }
 
 bool is_clogged(const std::string& cell) {
   const std::string word = console::in_lower_case(cell);
-  static const std::set<std::string> yes = {"1", "1.0", "1,0", "yes", "y", "true", "t"};
-  static const std::set<std::string> no = {"0", "0.0", "0,0", "no", "n", "false", "f"};
-  if (yes.contains(word)) return true;
-  if (no.contains(word)) return false;
+  static const std::set<std::string> yes = {"yes", "y", "true", "t"};
+  static const std::set<std::string> no = {"no", "n", "false", "f"};
+  const std::optional<double> number = number_of(with_any_comma_as_point(cell));
+  if (yes.contains(word) || number == 1) return true;
+  if (no.contains(word) || number == 0) return false;
   throw Error(
       fmt::format("clogged is '{}'; write 1 for a droplet that clogged and 0 for one that was last "
                   "seen moving there (censored)",
@@ -127,33 +175,36 @@ bool is_clogged(const std::string& cell) {
 class Cells {
  public:
   double distance(const std::string& cell, char separator) {
-    const bool is_ambiguous = separator == ',' && console::may_have_thousands(cell);
-    if (is_ambiguous) console::DecimalCommas::refuse("distance: ", cell);
-    const std::optional<double> number = number_of(with_point(cell, "distance"));
-    if (!number || !(*number >= 0))
+    const std::optional<double> distance = number(cell, separator, "distance");
+    if (!distance || !(*distance >= 0))
       throw Error(fmt::format("distance is '{}'; write a number of 0 or more", excerpt(cell)));
-    return *number;
+    return *distance;
   }
-  /// A number times the factor, or the words of a label. @param name  of the label
-  Value label(const std::string& cell, double factor, const std::string& name) {
-    std::string text = cell;
-    if (!console::may_have_thousands(cell)) std::ranges::replace(text, ',', '.');
-    const std::optional<double> number = number_of(text);
+  /// The diameter [mm] or the angle [degrees]; unset for an empty cell. @param name  of the column
+  Value of_laboratory(const std::string& cell, char separator, double factor, const std::string& name) {
+    if (cell.empty()) return {};
+    const std::optional<double> value = number(cell, separator, name);
+    if (!value || (name == "diameter" && !(*value > 0)))
+      throw Error(fmt::format("{} is '{}'; write a number{}, or leave the cell empty", name,
+                              console::printable(excerpt(cell)), name == "diameter" ? " above 0" : ""));
+    return factor == 1 ? *value : twelve_digits(factor * *value);
+  }
+  /// The number or the words of a label. @param name  of the column
+  Value label(const std::string& cell, const std::string& name) {
+    const std::optional<double> number = number_of(with_any_comma_as_point(cell));
     if (!number) return cell.empty() ? Value() : Value(console::printable(cell));
     with_point(cell, name);
-    return factor == 1 ? *number : twelve_digits(factor * *number);
+    return *number;
   }
   void check(const std::string& path) const { commas_.check(path); }
 
  private:
   console::DecimalCommas commas_;
 
-  static std::optional<double> number_of(const std::string& text) {
-    try {
-      return sweep::to_number(text);
-    } catch (const Error&) {
-      return {};
-    }
+  std::optional<double> number(const std::string& cell, char separator, const std::string& name) {
+    const bool is_ambiguous = separator == ',' && console::may_have_thousands(cell);
+    if (is_ambiguous) console::DecimalCommas::refuse(name + ": ", cell);
+    return number_of(with_point(cell, name));
   }
   std::string with_point(const std::string& cell, const std::string& name) {
     try {
@@ -223,6 +274,16 @@ Match match_of(const DistanceTable& here, const DistanceTable& there) {
   return match;
 }
 
+/// @param matched  places of the groups that match a group of the other table
+void append_unmatched(Comparisons& comparisons, const DistanceTable& table,
+                      const DistanceTable& compared_with, const std::set<std::size_t>& matched) {
+  std::vector<std::vector<Value>> unmatched;
+  for (std::size_t i = 0; i < table.groups.size(); ++i)
+    if (!matched.contains(i)) unmatched.push_back(table.groups[i].labels);
+  append_left_out(comparisons, table.source, compared_with.source, table.labels, unmatched,
+                  table.groups.size());
+}
+
 DistanceTable grouped(DistanceTable table,
                       std::map<std::vector<Value>, std::vector<fit::Observation>>&& runs) {
   for (auto& [labels, own] : runs) table.groups.push_back({labels, std::move(own), {}});
@@ -263,51 +324,43 @@ std::vector<std::string> unmatched_labels(const DistanceTable& table, const Dist
   return unmatched;
 }
 
-std::vector<std::string> unmatched_groups(const DistanceTable& table, const DistanceTable& other) {
-  const Match match = match_of(table, other);
-  std::vector<std::string> unmatched;
-  for (const DistanceGroup& group : table.groups) {
-    if (std::ranges::any_of(
-            other.groups, [&](const DistanceGroup& there) { return match.have_common_labels(group, there); }))
-      continue;
-    std::vector<std::string> words;
-    words.reserve(table.labels.size());
-    for (std::size_t i = 0; i < table.labels.size(); ++i)
-      words.push_back(table.labels[i] + "=" + sweep::text_of(group.labels[i]));
-    unmatched.push_back(joined(words));
-  }
-  return unmatched;
-}
-
 bool is_distance_table(const std::string& path) {
   static const std::set<std::string> endings = {".csv", ".tsv", ".txt", ".dat"};
   return endings.contains(console::in_lower_case(std::filesystem::path(path).extension()));
 }
 
-DistanceTable read_distances(const std::string& path) {
+DistanceTable read_distances(const std::string& path, const std::vector<std::string>& taken) {
   DistanceTable table{
       .source = console::printable(path), .unit = "", .labels = {}, .groups = {}, .is_measured = true};
   std::map<std::vector<Value>, std::vector<fit::Observation>> runs;
   std::optional<Head> head;
   Cells cells;
-  console::read_table(path, [&](const console::TableLine& line) {
-    if (!head) {
-      head = head_of(line.cells, table);
-      return;
-    }
-    std::vector<std::string> texts = line.cells;
-    while (texts.size() > head->num_columns && texts.back().empty()) texts.pop_back();
-    if (texts.size() != head->num_columns)
-      throw Error(fmt::format("has {}, but the first line names {}",
-                              sweep::counted(std::ssize(texts), "cell"), head->num_columns));
-    std::vector<Value> labels;
-    labels.reserve(head->labels.size());
-    for (std::size_t i = 0; i < head->labels.size(); ++i)
-      labels.push_back(cells.label(texts[head->labels[i]], head->label_factors[i], table.labels[i]));
-    const double distance = cells.distance(texts[static_cast<std::size_t>(head->distance)], line.separator);
-    runs[std::move(labels)].push_back(
-        {head->factor * distance, is_clogged(texts[static_cast<std::size_t>(head->clogged)])});
-  });
+  console::read_table(
+      path,
+      [&](const console::TableLine& line) {
+        if (!head) {
+          head = head_of(line.cells, table, taken);
+          return;
+        }
+        std::vector<std::string> texts = line.cells;
+        while (texts.size() > head->num_columns && texts.back().empty()) texts.pop_back();
+        if (texts.size() != head->num_columns)
+          throw Error(fmt::format("has {}, but the first line names {}",
+                                  sweep::counted(std::ssize(texts), "cell"), head->num_columns));
+        std::vector<Value> labels;
+        labels.reserve(head->labels.size());
+        for (std::size_t i = 0; i < head->labels.size(); ++i) {
+          const auto& [column, factor] = head->labels[i];
+          const std::string &cell = texts[column], &name = table.labels[i];
+          labels.push_back(factor ? cells.of_laboratory(cell, line.separator, *factor, name)
+                                  : cells.label(cell, name));
+        }
+        const double distance =
+            cells.distance(texts[static_cast<std::size_t>(head->distance)], line.separator);
+        runs[std::move(labels)].push_back(
+            {head->factor * distance, is_clogged(texts[static_cast<std::size_t>(head->clogged)])});
+      },
+      refuse_units);
   cells.check(path);
   if (runs.empty()) throw Error(fmt::format("{} holds no distances; {}", path, example));
   table = grouped(std::move(table), std::move(runs));
@@ -427,7 +480,7 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
       throw Error(fmt::format(
           "cannot compare {} with {} (one is in mm, the other in droplet diameters); {}", table.source,
           there.source,
-          is_sweep_in_mm ? "the sweep has several droplets: give distances in mm, and a column diameter"
+          is_sweep_in_mm ? "the sweep has several droplets: give distances in mm, and a column diameter [mm]"
                          : "give the droplet's diameter by --lab lab.cfg"));
     }
   if (sigma_mm && !std::ranges::all_of(tables, [&](const DistanceTable& table) {
@@ -460,10 +513,13 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
           fmt::format("cannot compare {} (its groups differ in {}, those of {} in {}); compare two "
                       "files at a time",
                       here.source, joined(match.columns), tables[1].source, joined(comparisons.columns)));
+    std::set<std::size_t> matched_here, matched_there;
     for (std::size_t place = 0; place < here.groups.size(); ++place)
       for (std::size_t other_place = 0; other_place < there.groups.size(); ++other_place) {
         const DistanceGroup &one = here.groups[place], &other = there.groups[other_place];
         if (!match.have_common_labels(one, other)) continue;
+        matched_here.insert(place);
+        matched_there.insert(other_place);
         Comparison comparison{.here = here.source, .there = there.source, .common = one.labels};
         comparison.flaws_here = flaws_here[place];
         comparison.flaws_there = flaws_there[other_place];
@@ -476,6 +532,8 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
         comparison.are_identical = runs.size() > 1 && are_same(runs, others);
         comparisons.all.push_back(std::move(comparison));
       }
+    append_unmatched(comparisons, here, there, matched_here);
+    append_unmatched(comparisons, there, here, matched_there);
   }
   if (comparisons.all.empty()) {
     std::vector<std::string> common = there.labels;

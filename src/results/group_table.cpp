@@ -51,15 +51,23 @@ std::string laboratory_label(const Group& group, const std::vector<Group>& group
   return joined(label.empty() ? own : label, "; ");
 }
 
+/// The value, to twelve digits if it is a number, as values are compared that follow from others.
+Value without_round_off(const Value& value) {
+  const auto* number = std::get_if<double>(&value);
+  return number ? Value(twelve_digits(*number)) : value;
+}
+
 /// A parameter's value as text. User-supplied circles are named by their file, if it is known.
-std::string rounded_text(const Group& group, const std::vector<Group>& groups, const sweep::Column& column) {
+/// @param digits  of a number
+std::string rounded_text(const Group& group, const std::vector<Group>& groups, const sweep::Column& column,
+                         int digits = few_digits) {
   const sweep::RunRow& row = group.first_row;
   if (column.name == "laboratory")
     if (std::string label = laboratory_label(group, groups); !label.empty()) return label;
   const std::optional<OwnCircles>& own = row.parameters.obstacles.own;
   if (column.name == "obstacles" && own && !own->source().empty())
     return console::printable(std::filesystem::path(own->source()).filename().string());
-  return short_text(column.get(row));
+  return short_text(without_round_off(column.get(row)), digits);
 }
 
 /// Explains the letters in the last column.
@@ -276,7 +284,11 @@ ParameterColumns parameter_columns(const std::vector<Group>& groups, const std::
   for (std::size_t i = 0; i < shown.size(); ++i) {
     if (!shown[i]) continue;
     const sweep::Column& column = *group_columns()[i];
-    const auto cell = [&](const Group& group) { return rounded_text(group, groups, column); };
+    const auto value_of = [&](const Group& group) { return without_round_off(column.get(group.first_row)); };
+    const int digits = digits_in(groups, value_of);
+    const auto cell = [&groups, &column, digits](const Group& group) {
+      return rounded_text(group, groups, column, digits);
+    };
     if (columns.droplets.empty() || !follows(groups, cell, droplet_of))
       columns.others.push_back({column.name, cell});
     else if (column.name != "laboratory")

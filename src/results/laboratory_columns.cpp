@@ -74,10 +74,16 @@ std::vector<Field> laboratory_fields(const Group& group) {
 }
 
 std::vector<ResultColumn> droplet_columns(const std::vector<Group>& groups) {
-  std::vector<ResultColumn> columns = {
-      {"diameter/mm", [](const Group& group) { return short_text(finite_value(scale_of(group).length)); }},
-      {"angle/degrees", [](const Group& group) { return short_text(finite_value(scale_of(group).tilt)); }}};
   if (!have_laboratory(groups)) return {};
+  const auto column_of = [&](const char* name, double LaboratoryScale::*number) {
+    const auto value_of = [number](const Group& group) {
+      return finite_value(twelve_digits(scale_of(group).*number));
+    };
+    const int digits = digits_in(groups, value_of);
+    return ResultColumn{name, [=](const Group& group) { return short_text(value_of(group), digits); }};
+  };
+  std::vector<ResultColumn> columns = {column_of("diameter/mm", &LaboratoryScale::length),
+                                       column_of("angle/degrees", &LaboratoryScale::tilt)};
   std::erase_if(columns, [&](const ResultColumn& column) { return is_constant(column, groups); });
   return columns;
 }

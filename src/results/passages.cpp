@@ -1,6 +1,7 @@
 #include "passages.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "clog/core/parameters/circles.hpp"
 #include "clog/fit/share.hpp"
@@ -43,7 +44,10 @@ std::vector<Passage> passages_of(const RunParameters& device, std::span<const Ar
                                  std::span<const double> lines, double confidence) {
   std::vector<double> places(lines.begin(), lines.end());
   if (places.empty()) places = rows_of_posts(device.obstacles);
-  if (device.obstacles.exit > 0) places.push_back(device.obstacles.exit);
+  if (const double exit = device.obstacles.exit; exit > 0) {
+    std::erase_if(places, [=](double x) { return std::abs(x - exit) < round_off; });  // it is the last line
+    places.push_back(exit);
+  }
   std::vector<Passage> passages;
   passages.reserve(places.size());
   for (const double x : places) passages.push_back(passage_at(x, arrivals, confidence));

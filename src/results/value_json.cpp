@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <variant>
 
@@ -20,8 +21,23 @@ nlohmann::ordered_json json_of(const sweep::Value& value) {
   return nullptr;
 }
 
-std::string short_text(const sweep::Value& value) {
-  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.4g}", *number);
+int distinct_digits(const std::vector<sweep::Value>& values) {
+  std::set<double> numbers;
+  for (const sweep::Value& value : values)
+    if (const auto* number = std::get_if<double>(&value); number && std::isfinite(*number))
+      numbers.insert(*number);
+  int digits = few_digits;
+  for (; digits < all_digits; ++digits) {
+    std::set<std::string> texts;
+    for (const double number : numbers) texts.insert(fmt::format("{:.{}g}", number, digits));
+    if (texts.size() == numbers.size()) break;
+  }
+  return digits;
+}
+
+std::string short_text(const sweep::Value& value, int digits) {
+  if (const auto* number = std::get_if<double>(&value); number && digits < all_digits)
+    return fmt::format("{:.{}g}", *number, digits);
   const std::string text = console::printable(sweep::text_of(value));
   return text.empty() ? "-" : text;
 }

@@ -24,9 +24,35 @@ nlohmann::ordered_json step_json(const Step& step, const char* name, int num_end
           {"lower", step.interval.lower},
           {"upper", step.interval.upper}};
 }
-/// Text for a printed table: four figures; `-` for an unset value. Escapes control characters, which the
-/// words of a foreign file may contain.
-std::string short_text(const sweep::Value& value);
+inline constexpr int few_digits = 4;
+inline constexpr int all_digits = 17;  ///< enough for each number to have its own text
+/// The fewest digits, four or more, with which different numbers among the values have different texts.
+int distinct_digits(const std::vector<sweep::Value>& values);
+/// Text for a printed table: so many significant digits of a number; `-` for an unset value. Escapes control
+/// characters, which the words of a foreign file may contain.
+/// @param digits  from all_digits on, those that identify the number
+std::string short_text(const sweep::Value& value, int digits = few_digits);
+/// The distinct_digits() of a value of all groups. @param value_of  the group's value
+template <class ValueOf>
+int digits_in(const std::vector<Group>& groups, const ValueOf& value_of) {
+  std::vector<Value> values;
+  for (const Group& group : groups) values.push_back(value_of(group));
+  return distinct_digits(values);
+}
+/// The short_text() of each label of each group, so that different labels have different texts.
+/// @param labels  member of a group; all groups have equally many labels
+template <class Group>
+std::vector<std::vector<std::string>> label_texts(const std::vector<Group>& groups,
+                                                  std::vector<Value> Group::*labels) {
+  std::vector<std::vector<std::string>> texts(groups.size());
+  for (std::size_t column = 0; !groups.empty() && column < (groups[0].*labels).size(); ++column) {
+    std::vector<Value> values;
+    for (const Group& group : groups) values.push_back((group.*labels)[column]);
+    const int digits = distinct_digits(values);
+    for (std::size_t i = 0; i < groups.size(); ++i) texts[i].push_back(short_text(values[i], digits));
+  }
+  return texts;
+}
 /// Text for CSV: all digits; quoted if a word contains a comma or a quote.
 std::string csv_cell(const sweep::Value& value);
 /// CSV with the names of the fields, then a line for each row.

@@ -13,7 +13,7 @@ import pandas
 import scipy.stats
 
 import stored_rows
-from support import BIN, ROOT, SMALL, ProgramTest
+from support import BIN, QUICK, ROOT, SMALL, ProgramTest
 
 sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.tools import rounded  # noqa: E402
@@ -356,6 +356,15 @@ class Fit(ProgramTest):
     def test_a_list_of_vertices_is_told_though_they_may_be_automatic(self):
         self.succeed("clogsweep", "seeds=1..2", "vertices=64,96", "box=20", *FAR, "--output", "sweep.h5")
         self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r"\nobstacle_gap +line_tension +vertices +runs")
+
+    def test_different_parameters_have_different_texts(self):
+        self.copy_sweep("sweep.h5", *QUICK, "line-tension=1,1.00001,0.123456", "seeds=1")
+        text = self.succeed("clogfit", "sweep.h5").stdout
+        for value in ("1", "1.00001", "0.123456"):
+            self.assertRegex(text, rf" {value} +1 ")
+        self.copy_sweep("sweep.h5", *QUICK, "line-tension=1,0.123456", "seeds=1")
+        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r" 0\.1235 +1 ")
+        self.refuse("clogfit", "sweep.h5", "--lines", "2", words=["no place for --lines"])
 
     def test_clogs_that_the_mesh_may_hold_are_marked(self):
         self.sweep("seeds=1..10", *FAR)

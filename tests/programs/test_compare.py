@@ -83,6 +83,21 @@ class Compared(Analysis):
         self.sweep("more.h5", "preset=robust", seeds="1..7")
         self.assertEqual({one["interval"] for one in self.compare("s.h5", "more.h5")["comparisons"]}, {"unpaired"})
 
+    def test_parameter_sets_without_a_counterpart_are_named(self):
+        for name, gaps, tensions in (("s.h5", "0.4,0.5,0.6", "0.5,2"), ("t.h5", "0.4", "0.5,2")):
+            self.copy_sweep(name, *SMALL, f"line-tension={tensions}", f"obstacle-gap={gaps}", "max-time=60", "seeds=1..2")
+        left_out = "clogfit compare: s.h5: left out, 4 of 6 groups match no runs of t.h5, such as obstacle_gap=0.5, line_tension=0.5\n"
+        for files in (["s.h5", "t.h5"], ["t.h5", "s.h5"]):
+            done = self.succeed("clogfit", "compare", *files)
+            self.assertEqual(done.stderr, left_out)
+        self.assertIn(left_out, self.run_program("clogfit", "compare", "s.h5", "t.h5", "--picture", "ratio.png").stderr)
+        self.assertEqual(self.succeed("clogfit", "compare", "s.h5", "--by", "obstacle-gap").stderr, "")
+        self.succeed("clogsweep", "select", "s.h5", "obstacle_gap!=0.5", "--output", "one.h5")
+        self.succeed("clogsweep", "select", "s.h5", "obstacle_gap=0.5", "line_tension=2", "--output", "other.h5")
+        self.succeed("clogsweep", "merge", "one.h5", "other.h5", "--output", "both.h5")
+        self.assertEqual(self.succeed("clogfit", "compare", "both.h5", "--by", "obstacle-gap").stderr,
+                         "clogfit compare: obstacle_gap=0.4: left out, 1 of 2 groups match no runs of obstacle_gap=0.5, such as line_tension=0.5\n")
+
     def test_text_csv_and_a_picture(self):
         self.sweep("s.h5", "near-wall-drag=0,2", seeds="1..3")
         text = self.succeed("clogfit", "compare", "s.h5", "--by", "near-wall-drag").stdout

@@ -306,6 +306,10 @@ class Devices(Walls):
             self.assertGreaterEqual(group["displaced"], displaced)
             self.assertLess(group["displaced"], 20)
             self.assertIn(f"released: 30, displaced: {group['displaced']}", [text.get_text() for text in panel.get_legend().texts])
+        # Behind the exit no droplet is followed. The exit is listed once.
+        self.refuse("clogfit", "s.h5", "--lines", "5,12.5", words=["--lines=5,12.5", "12.5 is behind the exit at x = 12"])
+        for group in json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lines", "5,12").stdout)["groups"]:
+            self.assertEqual([passage["x"] for passage in group["passages"]], [5, 12])
         told = self.succeed("clogfit", "s.h5").stdout
         self.assertIn(f"{sum(group['displaced'] for group in groups)} droplets were released in the nearest void, from x = ", told)
         self.assertNotIn("nearest void", self.succeed("clogfit", self.rows_path("none")).stdout)

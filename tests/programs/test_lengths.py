@@ -45,12 +45,13 @@ class Lengths(ProgramTest):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_clogged_is_read_as_programs_write_it(self):
-        answers = [("1", "0"), ("1.0", "0.0"), ("1,0", "0,0"), ("T", "F"), ("TRUE", "FALSE"), ("y", "n"), ("Yes", "No")]
+        answers = [("1", "0"), ("1.0", "0.0"), ("1,0", "0,0"), ("1.00", "0.00"), ("1e0", "-0"), ("+1", "0,000"), ("T", "F"), ("TRUE", "FALSE"), ("y", "n"), ("Yes", "No")]
         self.write("own.csv", "table;distance [mm];clogged\n" + "".join(f"t{i};3;{yes}\nt{i};5;{no}\nt{i};9;{yes}\n" for i, (yes, no) in enumerate(answers)))
         groups = self.lengths("own.csv")["groups"]
         self.assertEqual([(group["clogs"] / group["runs"], group["clogging_length_mm"]) for group in groups], len(groups) * [(2 / 3, 17 / 2)])
         self.assertEqual(len(groups), len(answers))
-        self.refuse("clogfit", "lengths", self.write("own.csv", "distance [mm],clogged\n3,0.5\n"), words=["own.csv line 2", "clogged is '0.5'"])
+        for cell in ("0.5", '"1,000"', "1.0.0", "2", ""):
+            self.refuse("clogfit", "lengths", self.write("own.csv", f"distance [mm],clogged\n3,{cell}\n"), words=["own.csv line 2", f"""clogged is '{cell.strip('"')}'"""])
 
     def test_droplets_that_were_pushed_back_come_first_in_survival(self):
         # Two of four droplets clog upstream of their release, so P falls to 3/4 at -2 and to 1/2 at -1.
@@ -131,7 +132,7 @@ class Lengths(ProgramTest):
     def test_a_delayed_entry_is_refused(self):
         for head in ("entry [mm]", "Entry", "entry_um", "start (mm)", "from [sigma]"):
             self.write("own.csv", f"distance [mm],clogged,{head}\n10,1,2\n20,1,4\n")
-            self.refuse("clogfit", "lengths", "own.csv", words=["own.csv", head, "subtract", "--from-distance"])
+            self.refuse("clogfit", "lengths", "own.csv", words=[f"own.csv line 1: column '{head}' says where droplets were first seen", "; delete the column and subtract its values", "--from-distance"])
         self.write("own.csv", "distance [mm],clogged,start\n10,1,left\n20,1,right\n")
         self.succeed("clogfit", "lengths", "own.csv")
 
@@ -147,9 +148,62 @@ class Lengths(ProgramTest):
                 self.assertEqual(found, {None: unknown, 1: (10, 10), 2: (20, 10), 2.5: (50, 20)})
                 text = self.succeed("clogfit", "lengths", "own.csv", *lab).stdout
                 self.assertRegex(text, r"lambda/mm|lambda/sigma")
-        self.write("own.csv", "diameter,distance [mm],clogged\n,5,1\n")
+        self.write("own.csv", "diameter [um],distance [mm],clogged\n,5,1\n")
         group, = self.lengths("own.csv")["groups"]
         self.assertNotIn("clogging_length", group)
+
+    def test_a_diameter_or_an_angle_needs_a_unit_and_numbers(self):
+        for head, words in [("diameter", ["column 'diameter' has no unit", "diameter [mm]"]), ("Diameter", ["column 'Diameter' has no unit"]),
+                            ("diameter [px]", ["the unit 'px'", "diameter [mm]"]), ("diameter [sigma]", ["the unit 'sigma'"]), ("diameter_px", ["the unit 'px'", "rename"]),
+                            ("angle [grad]", ["the unit 'grad'", "angle [deg] or rad"])]:
+            for line in ("3,1,200\n", "3,1,abc\n"):
+                self.refuse("clogfit", "lengths", self.write("own.csv", f"distance [um],clogged,{head}\n{line}"), words=["own.csv line 1", *words])
+        for head, cell, words in [("diameter [um]", "1,000", ["line 2", "'1,000'"]), ("diameter [um]", "big", ["line 2: diameter is 'big'", "above 0", "empty"]), ("diameter [mm]", "0", ["above 0"]),
+                                  ("diameter [mm]", "-2", ["above 0"]), ("angle [deg]", "1,000", ["'1,000'"]), ("angle", "flat", ["line 2: angle is 'flat'", "empty"])]:
+            self.refuse("clogfit", "lengths", self.write("own.csv", f"distance [mm];clogged;{head}\n12.5;1;{cell}\n"), words=["own.csv", *words])
+            self.refuse("clogfit", "lengths", self.write("own.csv", f'{head},distance [mm],clogged\n"{cell}",12,1\n'), words=["own.csv", *words])
+        # What is no table of distances at all is not about a diameter.
+        self.refuse("clogfit", "lengths", self.write("own.csv", "x,y,diameter\n1,2,3\n"), words=["own.csv line 1: has no column distance"])
+
+    def test_an_angle_is_in_degrees(self):
+        for head, factor in (("angle", 1), ("angle [deg]", 1), ("Angle (°)", 1), ("angle_degrees", 1), ("angle [rad]", math.pi / 180)):
+            self.write("own.csv", f"distance [mm],clogged,{head}\n" + "".join(f"{way},1,{angle * factor!r}\n" for way, angle in ((3, 20), (5, 20), (7, 45), (8, -90))))
+            self.assertEqual([(group["angle"], group["clogging_length_mm"]) for group in self.lengths("own.csv")["groups"]], [(-90, 8), (20, 4), (45, 7)])
+
+    def test_units_in_a_comment_are_refused(self):
+        for comment in ("# units=um droplet=200um", "# units = um", "#droplet=200um", "# unit=mm"):
+            for text in (f"{comment}\ndistance [mm],clogged\n100,1\n", f"distance [mm],clogged\n100,1\n{comment}\n"):
+                self.refuse("clogfit", "lengths", self.write("own.csv", text),
+                            words=[f"own.csv line {text.splitlines().index(comment) + 1}: units in a comment", "header", "'diameter [um]'", "--lab"])
+        self.write("own.csv", "# units of the camera: px, droplet no. 7\ndistance [mm],clogged\n# day=2\n3,1\n")
+        self.assertEqual(self.lengths("own.csv")["groups"][0]["clogging_length_mm"], 3)
+
+    def test_a_column_does_not_have_the_name_of_a_result(self):
+        """Takes the names from what the commands print, so names of later results are tested, too."""
+        self.write("lab.cfg", LAB)
+        self.write("own.csv", "distance [mm],clogged,wall\n3,1,a\n5,1,b\n6,1,a\n")
+        for arguments, labels in ((["lengths", "own.csv", "--lab", "lab.cfg"], ["wall"]), (["compare", "own.csv", "--by", "wall"], []), (["compare", "own.csv", "own.csv", "--lab", "lab.cfg"], ["wall"])):
+            told = json.loads(self.succeed("clogfit", *arguments, "--format", "json").stdout)
+            names = [name for name in (told.get("groups") or told["comparisons"])[0] if name not in labels]
+            self.assertGreater(len(names), 10)
+            for name in (*names, names[-1].replace("_", "-")):
+                self.write("taken.csv", f"distance [sigma],clogged,wall,{name}\n3,1,a,7\n5,1,b,7\n6,1,c,8\n")
+                for form in ("text", "csv"):
+                    self.refuse("clogfit", *(word.replace("own.csv", "taken.csv") for word in arguments), "--format", form,
+                                words=[f"taken.csv line 1: column '{name}' has the name of a result; rename it"])
+        # A result of one command is a label of the other one.
+        self.write("own.csv", "distance [mm],clogged,ratio\n3,1,7\n5,1,8\n")
+        self.assertEqual([group["ratio"] for group in self.lengths("own.csv")["groups"]], [7, 8])
+
+    def test_different_labels_have_different_texts(self):
+        values = [0.1, 0.1000001, 0.30000000000000004, 0.3, 20240501123456, 20240501123457, -5]
+        self.write("own.csv", "distance [mm],clogged,n,wall\n" + "".join(f"{3 + i},1,{value!r},{wall}\n" for i, value in enumerate(values) for wall in "ab"))
+        for arguments in (["lengths", "own.csv"], ["compare", "own.csv", "--by", "wall"]):
+            text = self.succeed("clogfit", *arguments).stdout
+            for value in values:
+                self.assertRegex(text, rf"(?m)(^| ){value!r} ", text)
+        self.write("own.csv", "distance [mm],clogged,n\n3,1,0.12345\n4,1,0.5\n")
+        self.assertIn("0.1235 ", self.succeed("clogfit", "lengths", "own.csv").stdout)
 
     def test_tables_of_equal_droplets_have_a_doubt(self):
         random = np.random.default_rng(67)
@@ -196,6 +250,10 @@ class Lengths(ProgramTest):
             self.assertAlmostEqual(one["ratio"], ratio)
             # All droplets clogged, so the ratio follows Snedecor's F.
             self.assertAlmostEqual(one["ratio_upper"], ratio / scipy.stats.f.ppf(0.025, 12, 12))
+        # A group without a counterpart is named.
+        self.write("own.csv", "n,diameter [mm],distance [mm],clogged\n1,0.5,1,1\n1,0.5,2,1\n2,0.5,5,1\n2,0.8,4,0\n3,0.5,6,1\n")
+        self.assertEqual(self.succeed("clogfit", "compare", "own.csv", "--by", "n").stderr, "clogfit compare: n=2: left out, 1 of 2 groups match no runs of n=1, such as diameter=0.8\n")
+        self.write("own.csv", "surfactant [mM],wall,distance [mm],clogged\n1,a,3,1\n2,a,3,1\n")
         for words, arguments in [(["no column", "wall"], ["--by", "wal"]), (["one table"], ["own.csv", "--by", "wall"])]:
             self.refuse("clogfit", "compare", "own.csv", *arguments, words=words)
 
@@ -312,7 +370,7 @@ class Beside(ProgramTest):
         self.assertAlmostEqual(one["ratio_upper"], one["ratio"] * quantile, places=6)
 
     def test_droplets_of_another_size_are_no_droplets_of_the_sweep(self):
-        self.write("own.csv", "distance [mm],clogged,diameter,line-tension\n6,1,2,1\n10,1,2.004,1\n40,1,4,1\n60,1,4,3\n")
+        self.write("own.csv", "distance [mm],clogged,diameter [mm],line-tension\n6,1,2,1\n10,1,2.004,1\n40,1,4,1\n60,1,4,3\n")
         done = self.succeed("clogfit", "compare", "own.csv", "sweep.h5", "--lab", "lab.cfg", "--format", "json")
         found = json.loads(done.stdout)["comparisons"]
         self.assertEqual([(one["diameter"], round(one["clogging_length_there_mm"], 9)) for one in found], [(2, 6), (2, 10)])
@@ -320,7 +378,7 @@ class Beside(ProgramTest):
         self.write("angles.csv", "distance [mm],clogged,angle\n6,1,45\n")
         self.refuse("clogfit", "compare", "angles.csv", "sweep.h5", "--lab", "lab.cfg", words=["no group"])
         # Two tables have the lengths of their own droplets.
-        self.write("other.csv", "distance [mm],clogged,diameter\n20,1,4\n5,1,2\n")
+        self.write("other.csv", "distance [mm],clogged,diameter [mm]\n20,1,4\n5,1,2\n")
         for lab in ([], ["--lab", "lab.cfg"]):
             for one in self.compare("own.csv", "other.csv", *lab):
                 self.assertNotIn("clogging_length_here", one)
@@ -350,7 +408,8 @@ class Beside(ProgramTest):
     def test_groups_that_match_nothing_are_named(self):
         self.write("own.csv", "distance [sigma],clogged,line-tension,wall\n3,1,1,glass\n4,1,7,glass\n4,1,7,steel\n")
         done = self.succeed("clogfit", "compare", "own.csv", "sweep.h5")
-        self.assertEqual(done.stderr.splitlines()[-1], "clogfit compare: own.csv: left out, 2 of 3 groups match no runs of sweep.h5, such as line-tension=7, wall=glass")
+        self.assertEqual(done.stderr.splitlines()[-2:], ["clogfit compare: sweep.h5: left out, 1 of 2 groups match no runs of own.csv, such as line_tension=3",
+                                                         "clogfit compare: own.csv: left out, 2 of 3 groups match no runs of sweep.h5, such as line-tension=7, wall=glass"])
 
     def test_a_column_of_numbers_of_droplets_gets_a_hint(self):
         for rows, hint in [("1,glass,3,1\n2,glass,4,1\n3,steel,5,0\n", "clogfit: own.csv: each droplet is a group of its own; delete columns such as no to join droplets\n"),

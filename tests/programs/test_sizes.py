@@ -260,7 +260,7 @@ class Sizes(ProgramTest):
 
     def test_measured_distances_are_compared_in_millimetres_with_the_same_droplet(self):
         self.sweep()
-        for diameter, angle, factor in [("diameter", "angle", 1), ("diameter [mm]", "angle [deg]", 1), ("Diameter_um", "angle (degrees)", 1000)]:
+        for diameter, angle, factor in [("diameter [mm]", "angle", 1), ("diameter (mm)", "angle [deg]", 1), ("Diameter_um", "angle (degrees)", 1000)]:
             self.write("own.csv", f"distance [mm],clogged,{diameter},{angle}\n3,1,{1.6 * factor},20\n5,1,{1.6 * factor},20\n4,0,{0.8 * factor},45\n")
             found = json.loads(self.succeed("clogfit", "compare", "own.csv", "s.h5", "--format", "json").stdout)
             self.assertEqual({(one["diameter"], one["angle"]) for one in found["comparisons"]}, {(1.6, 20.0), (0.8, 45.0)})
@@ -270,14 +270,14 @@ class Sizes(ProgramTest):
         for size, friction in [("0.8 mm", "0"), ("1.6 mm", "0.3")]:
             self.sweep(*ARRAY, "preset=elastic", f"friction={friction}", output=f"{friction}.h5", diameter=size, angle="20 deg")
         self.succeed("clogsweep", "merge", "0.h5", "0.3.h5", "--output", "merged.h5")
-        self.write("own.csv", "distance [mm],clogged,diameter\n3,1,0.8\n4,1,1.6\n")
+        self.write("own.csv", "distance [mm],clogged,diameter [mm]\n3,1,0.8\n4,1,1.6\n")
         found = json.loads(self.succeed("clogfit", "compare", "own.csv", "merged.h5", "--format", "json").stdout)
         self.assertEqual({(one["diameter"], one["friction"]) for one in found["comparisons"]}, {(0.8, 0), (1.6, 0.3)})
         self.lab()
         self.succeed("clogsweep", "select", "s.h5", f"laboratory={table(self.folder / 's.h5').laboratory[0]}", "--output", "one.h5")
-        self.refuse("clogfit", "compare", self.write("large.csv", "distance [mm],clogged,diameter\n3,1,1.6\n"), "one.h5", words=["no group"])
+        self.refuse("clogfit", "compare", self.write("large.csv", "distance [mm],clogged,diameter [mm]\n3,1,1.6\n"), "one.h5", words=["no group"])
         self.write("sigma.csv", "distance [sigma],clogged\n3,1\n")
-        self.refuse("clogfit", "compare", "sigma.csv", "s.h5", words=["several droplets", "distances in mm, and a column diameter"])
+        self.refuse("clogfit", "compare", "sigma.csv", "s.h5", words=["several droplets", "distances in mm, and a column diameter [mm]"])
         self.refuse("clogfit", "compare", "sigma.csv", "s.h5", "--lab", "lab.cfg", words=["omit --lab: the sweep stores its laboratories"])
 
     def test_sweeps_are_compared_in_millimetres_with_the_same_droplet(self):

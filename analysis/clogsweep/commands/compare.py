@@ -33,6 +33,6 @@ def body() -> int:
     outputs.refuse_unwritable_picture(arguments.output, arguments.sweeps[0])
     options = [word for name in ("by", "within", "confidence") if (value := getattr(arguments, name)) is not None for word in (f"--{name}", value)]
     clogfit = programs.programs_in(arguments.programs) / "clogfit"
-    told = json.loads(programs.run_program(clogfit, "compare", *arguments.sweeps, *options, "--format", "json"))
+    told = json.loads(programs.run_with_warnings(clogfit, "compare", *arguments.sweeps, *options, "--format", "json"))
     source = f"clogfit compare {' '.join(map(str, [*arguments.sweeps, *options]))}"
     return save(style.Picture(style.figure_of(ratios.draw_on, told), source), arguments)

@@ -6,6 +6,7 @@ import pathlib
 import shlex
 import shutil
 import subprocess
+import sys
 
 from ..tools.errors import ProgramFailed, UserError
 
@@ -59,6 +60,14 @@ def add_option(parser: argparse.ArgumentParser) -> None:
 def run_program(program: str | os.PathLike[str], *arguments: object, ranks: int = 1) -> str:
     """Runs a program. @return the program's output. @throws ProgramFailed  with its reason"""
     return _outputs(program, *arguments, ranks=ranks)[0]
+
+
+def run_with_warnings(program: str | os.PathLike[str], *arguments: object) -> str:
+    """Runs a program, and prints its warnings on the error stream. @return its output.
+    @throws ProgramFailed  with its reason"""
+    output, warnings = _outputs(program, *arguments)
+    print(warnings, end="", file=sys.stderr)
+    return output
 
 
 def warnings_of(program: str | os.PathLike[str], *arguments: object) -> str:

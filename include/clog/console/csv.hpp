@@ -21,6 +21,15 @@ struct ColumnHead {
 ColumnHead column_head(const std::string& cell);
 /// Number of metres in one unit of length that a table may use, such as mm; nullopt for any other word.
 std::optional<double> metres_of(const std::string& unit);
+/// Number of degrees in one unit of angle that a table may use, such as rad; nullopt for any other word.
+std::optional<double> degrees_of(const std::string& unit);
+
+/// What a comment such as `# units=um droplet=200um` states.
+struct UnitsComment {
+  std::optional<std::string> unit, droplet;
+};
+/// Anything else in a comment is skipped.
+UnitsComment units_in(std::string comment);
 
 /// Whether a cell is an error of a spreadsheet: #N/A, #DIV/0!, #REF!, #WERT!, Err:502, and the like in other
 /// languages. All of them consist of upper case; most begin with # and end with ! or ?.

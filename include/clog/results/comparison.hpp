@@ -57,15 +57,28 @@ struct Comparison {
   /// exactly 1 and has no interval.
   bool are_identical = false;
 };
+/// Groups of a side that no comparison with another side contains, because none of its groups matches them.
+struct LeftOut {
+  std::string side, other;
+  std::size_t number = 0, number_of_all = 0;
+  std::string example;  ///< the first of them, as `label=value, label=value`
+};
 struct Comparisons {
   std::vector<std::string> columns;    ///< listed columns with a value that both sides have; the values in
                                        ///< these columns name a comparison
   std::vector<std::string> differing;  ///< columns whose values here and there differ
   std::vector<Comparison> all;
+  std::vector<LeftOut> left_out;
   std::string unit = "sigma";      ///< unit of lengths: "sigma" or "mm"
   std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are wanted in mm, too
   double within = 0;  ///< clogs at most this far apart count as at the same place [sigma]; 0: half a spacing
 };
+
+/// Appends the groups of `side` that match no group of `other` to Comparisons::left_out, if there are any.
+/// @param labels  names of the values of a group
+void append_left_out(Comparisons& comparisons, const std::string& side, const std::string& other,
+                     const std::vector<std::string>& labels, const std::vector<std::vector<Value>>& unmatched,
+                     std::size_t number_of_all);
 
 /// Corrects the tests of all comparisons for their number (Holm): the doubt not_exponential of each group,
 /// and the log-rank tests.
@@ -97,5 +110,7 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
 std::string to_text(const Comparisons& comparisons, double confidence);
 std::string to_csv(const Comparisons& comparisons);
 std::string to_json(const Comparisons& comparisons, double confidence);
+/// Names of all results that these functions print beside Comparisons::columns.
+std::vector<std::string> names_of_comparisons();
 
 }  // namespace clog::results

@@ -34,9 +34,11 @@ std::optional<double> diameter_of(const DistanceTable& table, const DistanceGrou
 bool is_distance_table(const std::string& path);
 /// Reads a table with the columns `distance [UNIT]` and `clogged` (1 or 0, yes or no, true or false). Rows
 /// with the same values in all other columns form a group. The columns `diameter [UNIT]` and `angle [deg]`
-/// become the labels `diameter` [mm] and `angle`. Prints a hint if each droplet is a group of its own.
+/// become the labels `diameter` [mm] and `angle` [degrees]. Prints a hint if each droplet is a group of its
+/// own.
+/// @param taken  names of results, which no other column may have
 /// @throws Error that names file and line
-DistanceTable read_distances(const std::string& path);
+DistanceTable read_distances(const std::string& path, const std::vector<std::string>& taken);
 /// The table with distances that count from `from` on, in the table's unit; droplets that ended before are
 /// left out, and their number is printed (left truncation, see group_runs()).
 DistanceTable counted_from(double from, DistanceTable table);
@@ -57,14 +59,14 @@ DistanceTable distances_of(const Side& side, const Scales& scales, const std::ve
 std::vector<Flaws> flaws_of(const DistanceTable& table);
 /// Labels of a table that the other table lacks.
 std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other);
-/// The groups of a table that match no group of the other table, each as `label=value, label=value`.
-std::vector<std::string> unmatched_groups(const DistanceTable& table, const DistanceTable& other);
 
 /// These functions print lengths, intervals, doubts and survival of each group, estimated as for a sweep.
 /// @param sigma_mm  see diameter_of(); groups with a known diameter have lengths in both units
 std::string lengths_text(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
 std::string lengths_json(const DistanceTable& table, double confidence, std::optional<double> sigma_mm);
+/// Names of all results that these functions print beside the labels.
+std::vector<std::string> names_of_lengths();
 
 /// Compares each group of the other tables with each group of the first table that has the same values of the
 /// labels that both tables have. The runs are not paired. Where the tables' units differ, lengths are in the
