@@ -22,6 +22,7 @@
 #include "clog/results/distance_table.hpp"
 #include "clog/results/group_table.hpp"
 #include "clog/results/merger.hpp"
+#include "clog/results/mixture.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clogfit_compare.hpp"
@@ -130,7 +131,10 @@ int clogfit(int argc, const char* const* argv) {
               "x1,x2,...: count the droplets that passed these lines across a device, instead of the rows of "
               "its posts [sigma]")
       .option("row-angle", "tilt of the rows of user-supplied circles from the flow towards +y [degrees]")
-      .option("dwell", "droplets that rest for this time count as clogged [t0]");
+      .option("dwell", "droplets that rest for this time count as clogged [t0]")
+      .option("mixture",
+              "COLUMN=VALUE:WEIGHT,...: length and survival curve of droplets mixed in these shares, such as "
+              "diameter=2.8mm:0.3,3.2mm:0.7");
   line.add_commands(cli::names_of(clogfit_commands));
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
   const std::vector<std::string> paths = line.require_all("file");
@@ -149,9 +153,11 @@ int clogfit(int argc, const char* const* argv) {
   }
   const store::SweepFile sweep = results::read_together(paths);
   if (sweep.rows.empty()) throw Error(joined(paths) + " has no runs yet; let the sweep finish some first");
-  if (line.has("dwell") && !results::has_clogging_length(sweep.rows.front()))
-    throw Error(
-        "no place for --dwell (droplets in a channel or on a wall have no clogging length); leave it out");
+  for (const char* option : {"dwell", "mixture"})
+    if (line.has(option) && !results::has_clogging_length(sweep.rows.front()))
+      throw Error(fmt::format(
+          "no place for --{} (droplets in a channel or on a wall have no clogging length); leave it out",
+          option));
   const std::vector<const sweep::Column*> pooled =
       line.has("pool") ? results::pooled_columns(line.get("pool")) : std::vector<const sweep::Column*>();
   const std::vector<double> lines = line.get_positives("lines");
@@ -160,13 +166,20 @@ int clogfit(int argc, const char* const* argv) {
   if (line.has("lines")) require_lines_in_devices(line.get("lines"), lines, groups);
   if (line.has("row-angle")) set_row_angle(line.get("row-angle"), groups);
   set_scales(line, groups);
+  std::optional<results::Mixture> mixture;
+  if (line.has("mixture")) {
+    if (format == "csv") throw Error("no place for --mixture in CSV; use --format text or json");
+    mixture = results::mix(line.get("mixture"), groups, confidence);
+  }
   const SharedParameters shared =
       line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;
-  std::cout << (format == "csv"    ? results::to_csv(groups)
-                : format == "json" ? results::to_json(groups, confidence, sweep.provenance)
-                                   : results::to_text(groups, confidence, shared));
+  std::cout << (format == "csv" ? results::to_csv(groups)
+                : format == "json"
+                    ? results::to_json(groups, confidence, sweep.provenance, mixture ? &*mixture : nullptr)
+                    : results::to_text(groups, confidence, shared));
   if (format == "text" && line.has("pool"))
     std::cout << fmt::format("   groups that differ only in {} are joined (--pool)\n", line.get("pool"));
+  if (format == "text" && mixture) std::cout << '\n' << results::to_text(*mixture, confidence);
   return console::exit_success;
 }
 

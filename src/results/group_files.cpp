@@ -82,7 +82,32 @@ Json group_json(const Group& group, bool with_laboratory) {
   return entry;
 }
 
+Json mixture_json(const Mixture& mixture) {
+  Json weights = Json::object(), survival = Json::array();
+  for (const Mixture::Part& part : mixture.parts) weights[part.value] = part.share;
+  for (const Mixture::Step& step : mixture.survival)
+    survival.push_back({{"distance", step.distance},
+                        {"probability", step.probability},
+                        {"lower", step.interval.lower},
+                        {"upper", step.interval.upper}});
+  return {{"column", mixture.column},
+          {"weights", weights},
+          {"unit", mixture.unit},
+          {"clogging_length", json_of(Value(mixture.length))},
+          {"clogging_length_lower", json_of(Value(mixture.interval.lower))},
+          {"clogging_length_upper", json_of(Value(mixture.interval.upper))},
+          {"survival", survival},
+          {"censored_distances", mixture.censored_distances}};
+}
+
 }  // namespace
+
+bool have_one_scale(const std::vector<Group>& groups) {
+  const std::optional<LaboratoryScale>& first = groups.front().laboratory;
+  return first && std::ranges::all_of(groups, [&](const Group& group) {
+           return group.laboratory && scale_json(*group.laboratory) == scale_json(*first);
+         });
+}
 
 std::string to_csv(const std::vector<Group>& groups) {
   std::vector<std::vector<Field>> rows;
@@ -91,8 +116,8 @@ std::string to_csv(const std::vector<Group>& groups) {
   return csv_table(rows);
 }
 
-std::string to_json(const std::vector<Group>& groups, double confidence,
-                    const store::Provenance& provenance) {
+std::string to_json(const std::vector<Group>& groups, double confidence, const store::Provenance& provenance,
+                    const Mixture* mixture) {
   const bool with_laboratory = have_laboratory(groups);
   Json list = Json::array();
   for (const Group& group : groups) list.push_back(group_json(group, with_laboratory));
@@ -117,11 +142,8 @@ std::string to_json(const std::vector<Group>& groups, double confidence,
   for (const Group& group : groups)
     if (const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory)
       document["laboratories"][own->check_sum()] = console::printable(own->text());
-  const std::optional<LaboratoryScale>& first = groups.front().laboratory;
-  if (first && std::ranges::all_of(groups, [&](const Group& group) {
-        return group.laboratory && scale_json(*group.laboratory) == scale_json(*first);
-      }))
-    document["laboratory"] = scale_json(*first);
+  if (have_one_scale(groups)) document["laboratory"] = scale_json(*groups.front().laboratory);
+  if (mixture) document["mixture"] = mixture_json(*mixture);
   return console::json_text(document);
 }
 

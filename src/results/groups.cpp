@@ -183,7 +183,8 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
     for (const Ending& run : runs) observations.push_back({run.distance - from_distance, is_end(run)});
     return observations;
   };
-  const std::vector<fit::Observation> all = observe([](const Ending& run) { return run.is_clog; });
+  const std::vector<fit::Observation>& all = group.runs =
+      observe([](const Ending& run) { return run.is_clog; });
   group.clogging = fit::fit_clogging_length(all, confidence);
   group.least_squares_length = fit::least_squares_length(all);
   group.weibull = fit::test_exponentiality(all);

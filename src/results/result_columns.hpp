@@ -33,6 +33,8 @@ bool have_some_broken(const std::vector<Group>& groups);
 
 /// Whether any group has a laboratory and lengths to convert.
 bool have_laboratory(const std::vector<Group>& groups);
+/// Whether all groups have a laboratory, with the same units.
+bool have_one_scale(const std::vector<Group>& groups);
 /// A group's interfacial tension, clogging length, speed and time until a clog in laboratory units.
 std::vector<Field> laboratory_fields(const Group& group);
 /// The laboratory_fields() as printed columns.

@@ -12,12 +12,13 @@ import h5py
 import numpy as np
 import pandas
 from matplotlib.text import Text
-from support import BIN, ROOT, ProgramTest, table
+import stored_rows
+from support import BIN, ROOT, SMALL, ProgramTest, table
 
 sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
 from clogsweep import style  # noqa: E402
-from clogsweep.drawing import critical_angles, device, lengths, ratios  # noqa: E402
+from clogsweep.drawing import critical_angles, device, lengths, ratios, survival_curve  # noqa: E402
 from clogsweep.pages import poster  # noqa: E402
 from clogsweep.reading import fits  # noqa: E402
 
@@ -32,7 +33,7 @@ def sine(degrees):
     return math.sin(math.radians(degrees))
 
 
-class Sizes(ProgramTest):
+class LaboratoryTest(ProgramTest):
     def lab(self, name="lab.cfg", **changed):
         lines = {key: text for key, text in (LAB | {key.replace("_", "-"): text for key, text in changed.items()}).items() if text}
         return self.write(name, "".join(f"{key} = {text}\n" for key, text in lines.items()))
@@ -46,6 +47,8 @@ class Sizes(ProgramTest):
     def fit(self, *arguments):
         return json.loads(self.succeed("clogfit", *arguments, "--format", "json").stdout)
 
+
+class Sizes(LaboratoryTest):
     def test_gamma_falls_with_area_and_tilt(self):
         found = self.droplets()
         self.assertEqual([(one["diameter_mm"], round(one["angle_degrees"], 9)) for one in found], SETS)
@@ -410,6 +413,209 @@ class Sizes(ProgramTest):
         page = (self.folder / "r.html").read_text()
         self.assertIn("diameter mm", page)
         self.assertIn("1 to 3", page)
+
+
+class Mixtures(LaboratoryTest):
+    """clogfit --mixture, with outcomes that the tests write into the rows."""
+
+    SHARES = {0.8: 0.3, 1.6: 0.7}
+    MIXTURE = ["--mixture", "diameter=0.8mm:3,1600 um:7"]
+    TENSIONS = ["--mixture", "line-tension=0.5:1,1:3"]
+    FAR = ["max-time=1", "terminal-speed=100"]  # droplets can travel a hundred diameters
+    CLOG = {"status": b"clogged", "clogged_by": b"certified", "mechanism": b"squeezed"}
+
+    def module(self, *arguments):
+        path = f"{BIN}:{os.environ['PATH']}"
+        done = subprocess.run([sys.executable, "-m", "clogsweep", *arguments], cwd=self.folder, capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": str(ROOT / "analysis"), "PATH": path})
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def rows(self, output, seeds, diameter, outcomes):
+        """A sweep with these outcomes. @param outcomes  status and distance [mm] by diameter and seed"""
+        self.sweep("--quiet", *ARRAY[:-2], *self.FAR, f"seeds={seeds}", output=output, angle="20 deg", diameter=diameter)
+        texts = self.fit(output)["laboratories"]
+
+        def edit(rows):
+            for row in range(len(rows)):
+                size = float(texts[rows["laboratory"][row].decode()].split("diameter = ")[1].split(" mm")[0])
+                status, way = outcomes(size, int(rows["seed"][row]))
+                others = {"status": status, "clogged_by": b"none", "mechanism": b"none"}
+                results = self.CLOG if status == b"clogged" else others
+                for name, value in {**results, "distance": way / size, "sound_distance": np.nan}.items():
+                    rows[name][row] = value
+            failed = rows["status"] == b"failed"
+            stored_rows.fail(rows, failed, rows["distance"][failed] + 1, rows["distance"][failed])
+
+        stored_rows.change(self.folder / output, edit)
+
+    @staticmethod
+    def outcomes(diameter, seed):
+        """The droplets of a seed go about equally far, in units of their mean distance."""
+        common, own = np.random.default_rng(seed).exponential(), np.random.default_rng([seed, int(10 * diameter)]).random()
+        way = {0.8: 4, 1.6: 9}[diameter] * (common + 0.1 * own)
+        if seed in (3, 55):
+            return b"failed", way
+        if seed in (5, 11):
+            return b"interrupted", way
+        return (b"clogged", way) if way < 15 else (b"flowing", 15 + way / 100)
+
+    def observed(self, *files):
+        """The runs of all files, from exported rows."""
+        tables = []
+        for name in files:
+            if not (self.folder / f"{name}.csv").exists():
+                self.module("export", name, f"{name}.csv")
+            table = pandas.read_csv(self.folder / f"{name}.csv")
+            tables.append(table.rename(columns=lambda head: head.split(" ")[0]))
+        rows = pandas.concat(tables)
+        way = np.where(rows.status == "failed", rows.sound_distance, rows.distance) * rows.diameter_mm
+        return pandas.DataFrame({"size": rows.diameter_mm.round(6), "seed": rows.seed, "way": way,
+                                 "clogged": rows.status == "clogged"})
+
+    @staticmethod
+    def in_order(runs):
+        """By distance. Clogs count before runs that ended at the same distance."""
+        return runs.sort_values(["way", "clogged"], ascending=[True, False])
+
+    def estimates(self, runs, times, places):
+        """Length and P(r) of resamples. @param times  how often each seed counts: by seed, a number for each resample"""
+        way = clogs = probability = 0
+        for size, share in self.SHARES.items():
+            own = self.in_order(runs[runs["size"] == size])
+            clogged = own.clogged.to_numpy().astype(float)
+            counts = np.stack([times[seed] for seed in own.seed], axis=-1)
+            num = counts.sum(axis=-1)
+            way = way + share * (counts @ own.way.to_numpy()) / num
+            clogs = clogs + share * (counts @ clogged) / num
+            at_risk = np.cumsum(counts[:, ::-1], axis=-1)[:, ::-1]
+            steps = np.cumprod(1 - counts * clogged / np.maximum(at_risk, 1), axis=-1)
+            steps = np.concatenate([np.ones((len(counts), 1)), steps], axis=-1)
+            passed = np.searchsorted(own.way.to_numpy(), places * (1 + 1e-12), side="right")
+            probability = probability + share * steps[:, passed]
+        return way / clogs, probability
+
+    def resampled(self, runs, places):
+        """The same for 8000 resamples of seeds."""
+        strata = {}
+        for seed, own in runs.groupby("seed"):
+            strata.setdefault(tuple(sorted(own["size"])), []).append(seed)
+        times, chance = {}, np.random.default_rng(1)
+        for seeds in strata.values():
+            counts = chance.multinomial(len(seeds), [1 / len(seeds)] * len(seeds), size=8000)
+            times |= dict(zip(seeds, counts.T))
+        return self.estimates(runs, times, places)
+
+    def check(self, *files):
+        """Compares clogfit's mixture with numpy. @return the mixture"""
+        told = self.fit(*files, *self.MIXTURE)["mixture"]
+        runs = self.observed(*files)
+        self.assertEqual((told["column"], told["unit"]), ("diameter", "mm"))
+        self.assertEqual(list(told["weights"]), ["0.8 mm", "1.6 mm"])
+        np.testing.assert_allclose(list(told["weights"].values()), [0.3, 0.7])
+        last = [self.in_order(own).iloc[-1] for _, own in runs.groupby("size")]
+        end = min((one.way for one in last if not one.clogged), default=np.inf) * (1 + 1e-12)
+        known = runs[runs.way <= end]
+        places = np.array([step["distance"] for step in told["survival"]])
+        np.testing.assert_allclose(places, np.unique(known.way[known.clogged]), rtol=1e-12)
+        np.testing.assert_allclose(told["censored_distances"], np.sort(known.way[~known.clogged]), rtol=1e-12)
+        length, probability = self.estimates(runs, {seed: np.array([1]) for seed in runs.seed}, places)
+        self.assertAlmostEqual(told["clogging_length"] / length[0], 1, places=12)
+        np.testing.assert_allclose([step["probability"] for step in told["survival"]], probability[0], rtol=1e-12)
+        # Each limit of 2000 resamples has a standard error of 0.06 standard deviations.
+        lengths, probabilities = self.resampled(runs, places)
+        np.testing.assert_allclose([told["clogging_length_lower"], told["clogging_length_upper"]],
+                                   np.percentile(lengths, [2.5, 97.5]), rtol=0, atol=0.25 * lengths.std())
+        for name, percentile in (("lower", 2.5), ("upper", 97.5)):
+            limits = np.array([step[name] for step in told["survival"]])
+            difference = np.abs(limits - np.percentile(probabilities, percentile, axis=0))
+            # The steps of P(r) are 0.3 and 0.7 of a fortieth.
+            self.assertLess(np.max(difference - 0.25 * probabilities.std(axis=0)), 0.7 / 40)
+        return told
+
+    def test_a_mixture_has_the_length_the_curve_and_the_intervals_of_numpy(self):
+        self.rows("both.h5", "1..40", "0.8 mm, 1.6 mm", self.outcomes)
+        shared = self.check("both.h5")
+        # The runs of a seed go about equally far. With the same outcomes for other seeds, these chances are
+        # independent, so the interval is narrower.
+        self.rows("small.h5", "1..40", "0.8 mm", self.outcomes)
+        self.rows("large.h5", "101..140", "1.6 mm", lambda diameter, seed: self.outcomes(diameter, seed - 100))
+        disjoint = self.check("small.h5", "large.h5")
+        self.assertAlmostEqual(disjoint["clogging_length"], shared["clogging_length"])
+        wide, narrow = (told["clogging_length_upper"] - told["clogging_length_lower"] for told in (shared, disjoint))
+        self.assertGreater(wide, 1.15 * narrow)
+        # Ten of the seeds are shared.
+        self.rows("later.h5", "31..70", "1.6 mm", self.outcomes)
+        self.check("small.h5", "later.h5")
+
+        text = self.succeed("clogfit", "both.h5", *self.MIXTURE).stdout
+        self.assertRegex(text, r"\n\nmixture of diameter 0\.8 mm \(30 %\), 1\.6 mm \(70 %\): "
+                               r"lambda = [0-9.]+ \([0-9.]+ \.\. [0-9.]+\) mm, 95 %\n$")
+        half = self.fit("both.h5", *self.MIXTURE, "--confidence", "0.5")["mixture"]
+        self.assertLess(half["clogging_length_upper"] - half["clogging_length_lower"], wide / 2)
+        # A share of 1 is the group itself.
+        pure = self.fit("both.h5", "--mixture", "diameter=0.8mm:1,1.6mm:0")
+        group = next(group for group in pure["groups"] if group["diameter_mm"] == 0.8)
+        self.assertAlmostEqual(pure["mixture"]["clogging_length"], group["clogging_length_mm"], places=12)
+        np.testing.assert_allclose([step["probability"] for step in pure["mixture"]["survival"]],
+                                   [step["probability"] for step in group["survival"]], rtol=1e-12)
+
+        self.module("survival", "both.h5", *self.MIXTURE)
+        self.assertTrue((self.folder / "both-survival.png").exists())
+        curves = survival_curve.of_groups(clogsweep.open(self.folder / "both.h5", BIN).fit().known)
+        mixture = survival_curve.of_mixture({"mixture": shared}, "mm")
+        axes, = style.figure_of(survival_curve.draw_on, curves, "mm", mixture).axes
+        drawn = {line.get_label(): line for line in axes.lines}
+        self.assertLess({"diameter 0.8 mm", "diameter 1.6 mm"}, set(drawn))
+        way, probability = drawn["mixture of diameter 0.8 mm (30 %), 1.6 mm (70 %)"].get_data()
+        np.testing.assert_allclose(probability[1:-1], [step["probability"] for step in shared["survival"]])
+        self.assertEqual(way[-1], max(shared["censored_distances"]))
+
+    def test_parameters_can_be_mixed_too(self):
+        path = self.copy_sweep("s.h5", *SMALL, *self.FAR, "line-tension=0.5,1", "seeds=1..4")
+        stored_rows.change_columns(path, distance=[1, 2, 3, 4, 5, 6, 7, 8], status=b"flowing")
+        self.assertIn("mixture of line_tension 0.5 (25 %), 1 (75 %): lambda is unknown, because no droplet clogged\n",
+                      self.succeed("clogfit", "s.h5", *self.TENSIONS).stdout)
+        rows = table(path)
+        others = {"status": b"flowing", "clogged_by": b"none", "mechanism": b"none"}
+        stored_rows.change_columns(path, **{name: np.where(rows.seed <= 2, word, others[name]) for name, word in self.CLOG.items()})
+        told = self.fit("s.h5", *self.TENSIONS)["mixture"]
+        ways = [rows.distance[rows.line_tension == tension].mean() for tension in (0.5, 1)]
+        self.assertEqual((told["column"], told["unit"]), ("line_tension", "sigma"))
+        self.assertEqual(told["weights"], {"0.5": 0.25, "1": 0.75})
+        self.assertAlmostEqual(told["clogging_length"], (ways[0] + 3 * ways[1]) / 4 / 0.5)
+        # A sixteenth of the resamples has no clog.
+        self.assertIsNone(told["clogging_length_upper"])
+        self.assertIn(" (above ", self.succeed("clogfit", "s.h5", *self.TENSIONS).stdout)
+        one = self.copy_sweep("one.h5", *SMALL, *self.FAR, "line-tension=0.5,1", "seeds=1")
+        stored_rows.change_columns(one, distance=[1, 2], **self.CLOG)
+        self.assertIn("lambda = 1.75 sigma, without an interval\n", self.succeed("clogfit", "one.h5", *self.TENSIONS).stdout)
+
+    def test_what_is_no_mixture_is_refused(self):
+        keys = [*ARRAY[:-2], "max-time=1", "seeds=1", "preset=elastic"]
+        self.sweep(*keys, "friction=0,0.3", output="walls.h5", angle="20 deg")
+        self.sweep(*keys, angle="20 deg")
+        self.copy_sweep("own.h5", *SMALL, "line-tension=0.5,1", "seeds=1", "max-time=1")
+        for file, mixture, words in [
+            ("s.h5", "diameter=0.8mm:1,1.2mm:1", ["no group has diameter = 1.2 mm", "the groups have 0.8 mm, 1.6 mm"]),
+            ("walls.h5", "diameter=0.8mm:1,1.6mm:1", ["2 groups have diameter = 0.8 mm and differ in friction",
+                                                      "clogsweep select"]),
+            ("s.h5", "diameter=0.8mm:-1,1.6mm:2", ["a weight is negative"]),
+            ("s.h5", "diameter=0.8mm:0,1.6mm:0", ["all weights are 0"]),
+            ("s.h5", "diameter=0.8mm:1e308,1.6mm:1e308", ["the weights is infinite"]),
+            ("s.h5", "diameter=0.8mm:1", ["a single value is no mixture"]),
+            ("s.h5", "diameter=0.8mm:1,800um:1", ["0.8 mm occurs twice"]),
+            ("s.h5", "diameter=0.8:1,1.6:1", ["the diameter '0.8' has no unit of length", "2.8mm"]),
+            ("s.h5", "diameter=0.8mm:x,1.6mm:1", ["'x'", "diameter=2.8mm:0.3,3.2mm:0.7"]),
+            ("s.h5", "diameter=0.8mm:nan,1.6mm:1", ["nan"]),
+            ("s.h5", "diameter=0.8mm,1.6mm", ["'0.8mm' is not VALUE:WEIGHT"]),
+            ("s.h5", "diameter", ["is not VALUE:WEIGHT"]),
+            ("s.h5", "diametre=1:1,2:1", ["'diametre' is no parameter of a run"]),
+            ("own.h5", "diameter=0.8mm:1,1.6mm:1", ["the runs have no laboratory"])]:
+            with self.subTest(mixture):
+                self.refuse("clogfit", file, "--mixture", mixture, words=["--mixture", *words])
+        self.refuse("clogfit", "s.h5", *self.MIXTURE, "--format", "csv", words=["no place for --mixture in CSV"])
+        self.succeed("clogsweep", "obstacle-layout=channel", "vertices=64", "max-time=1", "--output", "channel.h5")
+        self.refuse("clogfit", "channel.h5", *self.MIXTURE, words=["no place for --mixture (droplets in a channel"])
 
 
 if __name__ == "__main__":

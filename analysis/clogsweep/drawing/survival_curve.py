@@ -65,15 +65,38 @@ def of_table(told: dict[str, Any]) -> list[Curve]:
     return [(", ".join(words(label, group[label]) for label in told["labels"]), group) for group in told["groups"]]
 
 
-def draw_on(axes: Axes, curves: Sequence[Curve], unit: str) -> None:
-    """Draws P(r) of each group up to its longest distance. @param unit  of the distances: sigma or mm. @throws
-    UserError  if no droplet has moved"""
+def of_mixture(told: dict[str, Any], unit: str) -> Curve | None:
+    """The curve of clogfit --mixture, if the JSON output of clogfit has one. @throws UserError  if its distances are in
+    another unit than those of the groups"""
+    mixture = told.get("mixture")
+    if mixture is None:
+        return None
+    if mixture["unit"] != unit:
+        raise UserError(f"cannot draw a mixture in {mixture['unit']} beside groups in {unit} (some have no laboratory); leave "
+                        "them out with clogsweep select")
+    shares = ", ".join(f"{value} ({100 * share:.4g} %)" for value, share in mixture["weights"].items())
+    return literal(f"mixture of {mixture['column']} {shares}"), mixture
+
+
+def draw_on(axes: Axes, curves: Sequence[Curve], unit: str, mixture: Curve | None = None) -> None:
+    """Draws P(r) of each group up to its longest distance, and that of a mixture with its intervals. @param unit  of
+    the distances: sigma or mm. @throws UserError  if no droplet has moved"""
     if not any(longest_way(group) > 0 for _, group in curves):
         raise UserError("cannot draw P(r) (no droplet has moved)")
-    begin = min([0.0] + [step["distance"] for _, group in curves for step in group["survival"]])
+    drawn = [*curves, mixture] if mixture else curves
+    begin = min([0.0] + [step["distance"] for _, group in drawn for step in group["survival"]])
     for (label, group), colour in zip(curves, style.shades(len(curves))):
         with style.curve(axes, label):
             draw(axes, group, colour, label, begin=begin)
+    if mixture:
+        label, group = mixture
+        limits = [(step["distance"], step["lower"], step["upper"]) for step in group["survival"]]
+        known = [one for one in limits if one[1] is not None]
+        with style.curve(axes, label):
+            draw(axes, group, "black", label, begin=begin)
+            if known:
+                end = (longest_way(group), *known[-1][1:])
+                axes.fill_between(*zip(*known, end), step="post", color="black", alpha=0.12, linewidth=0)
     axes.set_xlim(left=begin)
     axes.set_ylim(0, 1.02)
     style.label(axes, r"displacement along the flow $r/\sigma$" if unit == "sigma" else "displacement along the flow $r$ [mm]", "$P(r)$, not yet clogged")

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clog/results/groups.hpp"
+#include "clog/results/mixture.hpp"
 #include "clog/store/run_table.hpp"
 
 namespace clog::results {
@@ -18,7 +19,9 @@ enum class SharedParameters { unusual, all };
 std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared);
 /// All fields of every group.
 std::string to_csv(const std::vector<Group>& groups);
-/// All fields of every group, its P(r), and the origin of the rows. @param provenance  of the sweep
-std::string to_json(const std::vector<Group>& groups, double confidence, const store::Provenance& provenance);
+/// All fields of every group, its P(r), and the origin of the rows. @param provenance  of the sweep; @param
+/// mixture  of some of the groups; nullptr: none
+std::string to_json(const std::vector<Group>& groups, double confidence, const store::Provenance& provenance,
+                    const Mixture* mixture = nullptr);
 
 }  // namespace clog::results

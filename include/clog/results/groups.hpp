@@ -165,9 +165,10 @@ struct Group {
   /// Tilt of the rows of posts from the flow towards +y, given by a lattice or by --row-angle; NaN: unknown
   /// [degrees].
   double row_angle = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::uint32_t> seeds;  ///< seeds of the runs that count for the clogging length
-  int num_passed = 0;                ///< runs whose droplet reached the exit of the device
-  int num_flowing = 0;               ///< runs that max-time ended
+  std::vector<std::uint32_t> seeds;    ///< seeds of the runs that count for the clogging length
+  std::vector<fit::Observation> runs;  ///< outcomes of these runs, in the same order
+  int num_passed = 0;                  ///< runs whose droplet reached the exit of the device
+  int num_flowing = 0;                 ///< runs that max-time ended
   /// Number of those flowing runs whose droplet, at the end, had rested for longer than a free droplet takes
   /// to fall ten diameters; the next member is the shortest such rest [t0].
   int num_resting = 0;
