@@ -595,7 +595,7 @@ class Mixtures(LaboratoryTest):
         self.sweep(*keys, "friction=0,0.3", output="walls.h5", angle="20 deg")
         self.sweep(*keys, angle="20 deg")
         self.copy_sweep("own.h5", *SMALL, "line-tension=0.5,1", "seeds=1", "max-time=1")
-        for file, mixture, words in [
+        refusals = [
             ("s.h5", "diameter=0.8mm:1,1.2mm:1", ["no group has diameter = 1.2 mm", "the groups have 0.8 mm, 1.6 mm"]),
             ("walls.h5", "diameter=0.8mm:1,1.6mm:1", ["2 groups have diameter = 0.8 mm and differ in friction",
                                                       "clogsweep select"]),
@@ -610,7 +610,9 @@ class Mixtures(LaboratoryTest):
             ("s.h5", "diameter=0.8mm,1.6mm", ["'0.8mm' is not VALUE:WEIGHT"]),
             ("s.h5", "diameter", ["is not VALUE:WEIGHT"]),
             ("s.h5", "diametre=1:1,2:1", ["'diametre' is no parameter of a run"]),
-            ("own.h5", "diameter=0.8mm:1,1.6mm:1", ["the runs have no laboratory"])]:
+            ("own.h5", "diameter=0.8mm:1,1.6mm:1", ["the runs have no laboratory"])
+        ]
+        for file, mixture, words in refusals:
             with self.subTest(mixture):
                 self.refuse("clogfit", file, "--mixture", mixture, words=["--mixture", *words])
         self.refuse("clogfit", "s.h5", *self.MIXTURE, "--format", "csv", words=["no place for --mixture in CSV"])
