@@ -116,8 +116,10 @@ Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
   for (const sweep::RunRow& row : read_with_caution(path).rows)
     if (sweep::fault_of(row).empty()) rows.emplace(sweep::identity_in_any_laboratory(row), row);
   for (std::int64_t set = 0; set < plan.num_groups(); ++set)
-    stored.waiting.push_back({set, plan.num_seeds(set), longest_work(plan.group(set))});
+    stored.waiting.push_back(
+        {set, plan.has_twin(set) ? 0 : plan.num_seeds(set), longest_work(plan.group(set))});
   for (std::int64_t task = 0; task < plan.size() && !rows.empty(); ++task) {
+    if (plan.twin(task)) continue;
     const RunParameters run = plan.task(task);
     const auto found = rows.extract(sweep::identity_in_any_laboratory(sweep::describe(run)));
     if (found.empty()) continue;
@@ -200,8 +202,9 @@ Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
 SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample) {
   double all_work = 0;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group)
-    all_work += longest_work(plan.group(group)) * static_cast<double>(plan.num_seeds(group));
-  return sweep_cost(sample.costs, all_work, plan.size());
+    if (!plan.has_twin(group))
+      all_work += longest_work(plan.group(group)) * static_cast<double>(plan.num_seeds(group));
+  return sweep_cost(sample.costs, all_work, plan.num_runs());
 }
 
 /// Adds seconds to a cost; negative seconds subtract.
@@ -241,8 +244,8 @@ void print_left(const sweep::Plan& plan, const std::string& output, const Stored
   const SweepCost left = plus(cost, -stored.seconds);
   fmt::print(std::cout,
              "# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})\n",
-             console::printable(output), stored.num_done, sweep::counted(plan.size(), "task"),
-             plan.size() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
+             console::printable(output), stored.num_done, sweep::counted(plan.num_runs(), "run"),
+             plan.num_runs() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
 }
 
 /// Warns before the runs about clogging lengths below an obstacle spacing, which clogfit would doubt (`v`).
@@ -325,6 +328,10 @@ void print_tasks(const sweep::Plan& plan) {
   if (console::stop_signalled()) return;
   fmt::print(std::cout, "# {}: {}, {} each\n", sweep::counted(plan.size(), "task"),
              sweep::counted(plan.num_groups(), "parameter set"), seeds_in_words(plan));
+  if (const std::int64_t number = plan.size() - plan.num_runs(); number > 0)
+    fmt::print(std::cout, "# {} the same {} in another laboratory, which {} once\n",
+               number == 1 ? "1 task is" : fmt::format("{} tasks are", number), number == 1 ? "run" : "runs",
+               number == 1 ? "is computed" : "are computed");
   print_lattices(plan);
 }
 
@@ -336,10 +343,10 @@ void print_limits(const sweep::Plan& plan) {
 int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule,
                const sweep::JobFactory& jobs) {
   const Stored stored = stored_runs(plan, output);
-  const bool is_done = stored.num_done == plan.size();
+  const bool is_done = stored.num_done == plan.num_runs();
   if (is_done)
     fmt::print(std::cout, "# {} has all {}, which took {:.2g} core-hours{}\n", console::printable(output),
-               sweep::counted(plan.size(), "task"), stored.seconds / hour,
+               sweep::counted(plan.num_runs(), "run"), stored.seconds / hour,
                rule ? "" : "; nothing is left to do");
   if (is_done && !rule) return console::exit_success;
   const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan, jobs);

@@ -169,7 +169,7 @@ void SweepState::find_tasks(Known known) {
       if (run->row.status == RunStatus::running) run->row.status = RunStatus::interrupted;
       past_[task].take_costs(run->row);
     }
-    if (task < num_wanted_) tasks_left_.push_back(task);
+    if (task < num_wanted_) request(task);
   }
   for (auto& [run, entry] : known) other_runs_.push_back(std::move(entry));
   std::ranges::sort(other_runs_, {}, [](const auto& run) { return run->row.task; });

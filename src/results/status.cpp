@@ -32,7 +32,9 @@ std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep
     SetTimes& set = sets[static_cast<std::size_t>(group)];
     const std::int64_t wanted =
         num_wanted == plan.size() ? plan.num_seeds(group) : num_wanted / plan.num_groups();
-    set.num_waiting = std::max<std::int64_t>(0, wanted - set.num_finished - set.num_running);
+    // Twins are not computed.
+    if (!plan.has_twin(group))
+      set.num_waiting = std::max<std::int64_t>(0, wanted - set.num_finished - set.num_running);
   }
   return sets;
 }

@@ -92,9 +92,44 @@ void SweepState::want(const std::vector<std::int64_t>& tasks) {
   num_wanted_ += static_cast<std::int64_t>(tasks.size());
   set_attribute(provenance_, "num_wanted", std::to_string(num_wanted_));
   tasks_left_.clear();
+  waiting_.clear();
   for (const std::int64_t task : tasks)
-    if (const Entry* const run = entry(task); !run || !is_over(run->row)) tasks_left_.push_back(task);
+    if (const Entry* const run = entry(task); !run || !is_over(run->row)) request(task);
   is_published_ = false;
+}
+
+/// Requests a task, or lets it wait for its twin. Tasks are requested in increasing order.
+void SweepState::request(std::int64_t task) {
+  const std::optional<std::int64_t> twin = plan_->twin(task);
+  const Entry* const run = twin ? entry(*twin) : nullptr;
+  if (run && is_over(run->row))
+    copy_to(task, *run);
+  else if (twin && std::ranges::binary_search(tasks_left_, *twin))
+    waiting_[*twin].push_back(task);
+  else
+    tasks_left_.push_back(task);
+}
+
+void SweepState::copy_to(std::int64_t task, const Entry& twin) {
+  std::unique_ptr<Entry>& run = place_of(task);
+  std::unique_lock lock(changing_);
+  if (!run) run = std::make_unique<Entry>();
+  *run = twin;
+  run->row.parameters.laboratory = plan_->task(task).laboratory;
+  run->row.task = task;
+  lock.unlock();
+  write_down(*run);
+}
+
+void SweepState::pass_on(const Entry& twin) {
+  if (const auto waiting = waiting_.find(twin.row.task); waiting != waiting_.end())
+    for (const std::int64_t task : waiting->second) copy_to(task, twin);
+}
+
+std::int64_t SweepState::num_waiting() const {
+  std::int64_t number = 0;
+  for (const auto& [twin, tasks] : waiting_) number += std::ssize(tasks);
+  return number;
 }
 
 std::vector<std::int64_t> SweepState::tasks_begun() const {
@@ -176,6 +211,7 @@ void SweepState::report(const sweep::Report& report) {
   if (entry.row.status == RunStatus::failed) past_[entry.row.task].take_costs(entry.row);
   lock.unlock();
   write_down(entry);
+  if (is_over(entry.row)) pass_on(entry);
 }
 
 const sweep::RunRow* SweepState::first_if_all_failed() const {
@@ -209,6 +245,7 @@ void SweepState::withdraw_failure(std::int64_t task) {
     restart(entry.row);  // the broken rank's result does not count as progress
   }
   write_down(entry);
+  pass_on(entry);
 }
 
 void SweepState::tick() {

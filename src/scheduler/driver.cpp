@@ -41,7 +41,7 @@ class Driver {
   /// Adds tasks to the total against which progress is measured.
   void expect(const std::vector<std::int64_t>& tasks) {
     is_expecting_ = is_expecting_ || !tasks.empty();
-    progress_.expect(tasks, state_.num_wanted());
+    progress_.expect(tasks, state_.num_wanted() - state_.num_waiting());
   }
 
   scheduler::SweepEvents events() {

@@ -36,8 +36,9 @@ void announce(const std::string& output, const sweep::Plan& plan, const results:
   const std::int64_t num_runs = state.num_wanted();
   const auto num_left = static_cast<std::int64_t>(state.tasks_left().size());
   if (!state.caution().empty()) console::say(state.caution());
-  if (num_left < num_runs)
-    console::say(fmt::format("{} has {} of {}{}", output, num_runs - num_left,
+  const std::int64_t num_waiting = state.num_waiting();
+  if (num_left + num_waiting < num_runs)
+    console::say(fmt::format("{} has {} of {}{}", output, num_runs - num_left - num_waiting,
                              sweep::counted(num_runs, "run"),
                              num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
   if (const std::int64_t number = state.num_beyond(); number > 0)
@@ -59,6 +60,11 @@ void announce(const std::string& output, const sweep::Plan& plan, const results:
   for (const std::string& words : sweep::limits_of_results(plan)) console::say(words);
   console::say(fmt::format("{} on {}, results go to {}", sweep::counted(num_left, "run"),
                            sweep::counted(num_ranks, "computing rank"), output));
+  if (num_waiting > 0)
+    console::say(num_waiting == 1 ? "1 more run is the same in another laboratory and gets its result"
+                                  : fmt::format("{} more runs are the same in another laboratory and get "
+                                                "these results",
+                                                num_waiting));
 }
 
 void Log::say(const std::string& text) {

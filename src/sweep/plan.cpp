@@ -103,12 +103,14 @@ class Plan::Builder {
         add_branch(branch, branch, fmt::format("point {}", point + 1));
     });
     if (!settings.shard().is_whole()) keep(settings.shard());
+    find_twins();
     number_tasks();
   }
 
  private:
   Plan& plan_;
   std::unordered_map<std::string, std::int64_t> known_;  // groups, by the identity of their runs
+  std::unordered_map<std::string, std::int64_t> runs_;   // first groups, by that identity in any laboratory
   std::vector<std::string> names_;                       // names of products, for messages; empty for lists
   std::int64_t num_runs_ = 0;                            // number of runs of all shards
   Seeds last_seeds_;                                     // shared by branches with the same seeds
@@ -185,7 +187,12 @@ class Plan::Builder {
     run.parameters.seed = 0;
     const auto [known, is_new] = known_.emplace(identity(run), plan_.num_groups());
     if (is_new) {
-      plan_.groups_.push_back({product, place, last_seeds_});
+      const std::int64_t group = known->second;
+      const bool has_laboratory = run.parameters.laboratory.has_value();
+      const std::int64_t runs =
+          has_laboratory ? runs_.emplace(identity_in_any_laboratory(std::move(run)), group).first->second
+                         : group;
+      plan_.groups_.push_back({product, place, last_seeds_, runs});
       return;
     }
     refuse_repeated_seeds(known->second, product);
@@ -215,15 +222,26 @@ class Plan::Builder {
   /// Keeps the shard's part of a product.
   void keep(const Shard& shard) {
     std::vector<Group> groups;
-    for (std::size_t i = 0; i < plan_.groups_.size(); ++i) {
-      Group group = plan_.groups_[i];
-      group.seeds = std::make_shared<const std::vector<std::uint32_t>>(part_of(*group.seeds, i, shard));
+    for (Group group : plan_.groups_) {
+      group.seeds = std::make_shared<const std::vector<std::uint32_t>>(
+          part_of(*group.seeds, static_cast<std::size_t>(group.runs), shard));
       if (!group.seeds->empty()) groups.push_back(std::move(group));
     }
     if (groups.empty())
       throw Error(fmt::format("part {} of the sweep is empty: the whole sweep has only {}", shard.text(),
                               counted(num_runs_, "run")));
     plan_.groups_ = std::move(groups);
+  }
+
+  void find_twins() {
+    std::unordered_map<std::int64_t, std::int64_t> first_groups;
+    for (std::int64_t i = 0; i < plan_.num_groups(); ++i) {
+      Group& group = plan_.groups_[static_cast<std::size_t>(i)];
+      const auto [first, is_new] = first_groups.emplace(group.runs, i);
+      if (!is_new && *plan_.groups_[static_cast<std::size_t>(first->second)].seeds == *group.seeds)
+        group.twin = first->second;
+      if (group.twin < 0) plan_.num_runs_ += std::ssize(*group.seeds);
+    }
   }
 
   void number_tasks() {
@@ -255,11 +273,21 @@ const Plan::Layer& Plan::layer_of(std::int64_t task) const {
   return *std::prev(next);
 }
 
+/// The place of the task's seed among the seeds of its group.
+std::int64_t Plan::seed_place(std::int64_t task) const {
+  const Layer& layer = layer_of(task);
+  return layer.first_seed + (task - layer.first_task) / std::ssize(layer.groups);
+}
+
 RunParameters Plan::task(std::int64_t index) const {
-  const Layer& layer = layer_of(index);
-  const std::int64_t seed = layer.first_seed + (index - layer.first_task) / std::ssize(layer.groups);
   const Group& group = groups_[static_cast<std::size_t>(group_of(index))];
-  return parameters(group.product, group.place, (*group.seeds)[static_cast<std::size_t>(seed)]);
+  return parameters(group.product, group.place, (*group.seeds)[static_cast<std::size_t>(seed_place(index))]);
+}
+
+std::optional<std::int64_t> Plan::twin(std::int64_t task) const {
+  const std::int64_t group = groups_[static_cast<std::size_t>(group_of(task))].twin;
+  if (group < 0) return std::nullopt;
+  return task_of(group, seed_place(task));
 }
 
 RunParameters Plan::group(std::int64_t group) const {

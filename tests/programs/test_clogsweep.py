@@ -173,7 +173,7 @@ class Sweep(ProgramTest):
         self.assertAlmostEqual(more / of_all, 1 - hours / of_all, delta=0.1)
         # Nothing remains for an estimate.
         told = self.succeed("clogsweep", *sweep, "seeds=1..3", "--dry-run").stdout.splitlines()[-1]
-        self.assertEqual(told, f"# s.h5 has all 6 tasks, which took {hours:.2g} core-hours; nothing is left to do")
+        self.assertEqual(told, f"# s.h5 has all 6 runs, which took {hours:.2g} core-hours; nothing is left to do")
 
     def test_a_dry_run_estimates_remaining_runs_from_their_own_parameter_set(self):
         sweep = [*QUICK, "--output", "s.h5"]

@@ -123,7 +123,7 @@ class Precision(ProgramTest):
         told = self.succeed("clogsweep", *SWEEP, "--output", "s.h5", "--dry-run").stdout
         self.assertNotIn("nothing is left", told)
         hours = table(self.folder / "s.h5").processor_seconds.sum() / 3600
-        self.assertIn(f"# s.h5 has all 8 tasks, which took {hours:.2g} core-hours\n", told)
+        self.assertIn(f"# s.h5 has all 8 runs, which took {hours:.2g} core-hours\n", told)
         self.assertIn(f"14 seeds each (--most-seeds) if few do, expected {hours * 14 / 4:.2g} core-hours", told)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):

@@ -41,8 +41,8 @@ class LaboratoryTest(ProgramTest):
     def droplets(self, **changed):
         return json.loads(self.succeed("clogfit", "units", self.lab(**changed), "--format", "json").stdout)
 
-    def sweep(self, *arguments, output="s.h5", **changed):
-        return self.succeed("clogsweep", "--lab", self.lab(**changed), *(arguments or ARRAY), "--output", output)
+    def sweep(self, *arguments, output="s.h5", ranks=None, **changed):
+        return self.succeed("clogsweep", "--lab", self.lab(**changed), *(arguments or ARRAY), "--output", output, ranks=ranks)
 
     def fit(self, *arguments):
         return json.loads(self.succeed("clogfit", *arguments, "--format", "json").stdout)
@@ -217,6 +217,33 @@ class Sizes(LaboratoryTest):
         self.assertEqual((len(rows), rows.laboratory.nunique(), rows.wall_seconds.nunique()), (4, 2, 2))
         self.assertEqual(set(rows.distance), set(before.distance))
         self.assertEqual({group["angle_degrees"] for group in self.fit("s.h5")["groups"]}, {20, 45})
+
+    def test_runs_that_laboratories_share_are_computed_once_in_a_new_sweep(self):
+        keys = ["line-tension=0.5", "terminal-speed=0.03", "obstacle-gap=0.4sigma", "vertices=64", "box=20sigma", "max-time=40"]
+
+        def sweep(*options, output, ranks=None):
+            told = self.sweep(*keys, *options, output=output, diameter="0.8 mm", angle="20 deg, 45 deg", ranks=ranks).stderr
+            rows = table(self.folder / output)
+            per_seed = rows.groupby("seed")
+            self.assertTrue((per_seed.laboratory.nunique() == 2).all())
+            self.assertTrue((per_seed[["wall_seconds", "distance", "time"]].nunique() == 1).all(axis=None), "one computation")
+            return told, rows
+
+        told = self.sweep(*keys, "seeds=1..3", "--dry-run", diameter="0.8 mm", angle="20 deg, 45 deg").stdout
+        self.assertIn("# 3 tasks are the same runs in another laboratory, which are computed once", told)
+        told, rows = sweep("seeds=1..3", output="new.h5", ranks=3)
+        self.assertIn("3 runs on 3 computing ranks", told)
+        self.assertIn("3 more runs are the same in another laboratory and get these results", told)
+        self.assertEqual(len(rows), 6)
+        self.assertIn("there is nothing left to do", sweep("seeds=1..3", output="new.h5")[0])
+        self.assertIn("new.h5 has all 3 runs", self.sweep(*keys, "seeds=1..3", "--dry-run", output="new.h5", diameter="0.8 mm",
+                                                          angle="20 deg, 45 deg").stdout)
+        for part in (1, 2):
+            sweep("seeds=1..3", "--shard", f"{part}/2", output=f"part{part}.h5")
+        self.succeed("clogsweep", "merge", "part1.h5", "part2.h5", "--output", "all.h5")
+        self.assertEqual(len(table(self.folder / "all.h5")), 6)
+        _, rows = sweep("seeds=1..2", "--until-precision", "1%", "--most-seeds", "5", output="rounds.h5")
+        self.assertEqual(len(rows), 10)
 
     def test_a_pitch_and_the_same_gap_are_one_parameter_set(self):
         keys = ["obstacle-layout=lattice", "obstacle-diameter=0.3", "vertices=64", "max-time=20", "box=6"]

@@ -41,8 +41,10 @@ class SweepState {
   /// Tasks that have begun and are not over, whether they are requested or not.
   std::vector<std::int64_t> tasks_begun() const;
 
-  /// Tasks that are requested and not over.
+  /// Tasks that are requested, not over and to be computed.
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
+  /// Number of tasks that get the results of tasks_left() in other laboratories.
+  std::int64_t num_waiting() const;
   /// Number of tasks_left() that resume from a snapshot.
   std::int64_t num_resumed() const;
   /// Number of runs in the file that are outside this plan; the file keeps them.
@@ -96,6 +98,8 @@ class SweepState {
   std::int64_t num_wanted_;
   std::int64_t num_faulty_ = 0;
   std::vector<std::int64_t> tasks_left_;
+  std::unordered_map<std::int64_t, std::vector<std::int64_t>>
+      waiting_;  // tasks, by their twins in tasks_left_
   /// What is known of a task from earlier sessions or attempts.
   struct Past {
     double wall_seconds = 0, processor_seconds = 0;  // time spent on the task
@@ -140,6 +144,9 @@ class SweepState {
   double seconds_so_far() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
   sweep::RunRow published(const sweep::RunRow& row) const;
   void write_down(const Entry& entry);
+  void request(std::int64_t task);
+  void copy_to(std::int64_t task, const Entry& twin);
+  void pass_on(const Entry& twin);
   /// Publishes the rows of all runs, also of those outside this plan.
   std::optional<std::string> publish_to(const store::OutputPath& place, const std::string& stamp,
                                         const std::vector<const Entry*>& all,

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ class Plan {
   explicit Plan(const Settings& settings);
 
   std::int64_t size() const { return size_; }
+  /// Number of tasks without a twin: so many runs are computed.
+  std::int64_t num_runs() const { return num_runs_; }
   /// Resolved parameters of task `index`, 0 <= index < size().
   RunParameters task(std::int64_t index) const;
   /// Number of parameter sets without the seeds.
@@ -42,6 +45,11 @@ class Plan {
   std::vector<std::string> texts(std::int64_t group) const;
   /// @param place  place of the task's seed among the seeds of the group, 0 <= place < num_seeds(group)
   std::int64_t task_of(std::int64_t group, std::int64_t place) const;
+  /// The first task with the same run in another laboratory, on which runs do not depend; empty if this task
+  /// is the first.
+  std::optional<std::int64_t> twin(std::int64_t task) const;
+  /// Whether each of the group's tasks has a twin.
+  bool has_twin(std::int64_t group) const { return groups_[static_cast<std::size_t>(group)].twin >= 0; }
   /// Whether every group has equally many seeds, and task s num_groups() + g is seed s of group g.
   bool has_equal_seeds() const { return layers_.size() == 1; }
 
@@ -62,6 +70,8 @@ class Plan {
     std::size_t product;
     std::int64_t place;  ///< place in the product, seeds excepted
     Seeds seeds;
+    std::int64_t runs;  ///< the first group with the same parameters except the laboratory, without shards
+    std::int64_t twin = -1;  ///< group of the twins of this group's tasks; -1 if they have none
   };
   /// Successive tasks that go through the same groups again and again, each time with the next seed.
   struct Layer {
@@ -78,8 +88,10 @@ class Plan {
   CircleFiles circle_files_;
   std::vector<std::string> possible_decimals_;
   std::int64_t size_ = 0;
+  std::int64_t num_runs_ = 0;
 
   const Layer& layer_of(std::int64_t task) const;
+  std::int64_t seed_place(std::int64_t task) const;
   std::vector<const std::string*> texts(std::size_t product, std::int64_t place) const;
   /// Parameters before automatic values are known.
   RunParameters unresolved(std::size_t product, std::int64_t place, std::uint32_t seed) const;
