@@ -80,6 +80,13 @@ class Calls(Analysis):
             # The critical angle of a rigid disk is arcsin(1/3).
             self.assertTrue(18 < lower < math.degrees(math.asin(1 / 3)) < upper < 21.1 and runs == 4, printed)
 
+    def test_a_run_that_is_too_short_does_not_count_for_a_critical_angle(self):
+        # After 30 t0 the droplet has moved by 3 diameters at most: straight on it would have crossed no row.
+        self.succeed("clogsweep", "obstacle-layout=lattice", "pitch=3", "obstacle-diameter=1", "terminal-speed=0.1", "vertices=64", "box=200",
+                     "max-time=30,1000", "seeds=1", "lattice-angle=15,25", "--output", "s.h5")
+        printed = self.draw("critical-angle", "s.h5", "--format", "csv", "--programs", BIN).stdout
+        self.assertEqual([line.split(",")[-1] for line in printed.splitlines()], ["runs", "0", "2"])
+
     def test_an_output_may_be_left_out_or_have_its_ending(self):
         self.copy_sweep("s.h5", *FEW)
         for command, made, *options in [("clogging-length", "s-clogging-length.png"), ("clogs", "s-clogs.png", "--most", 1),
@@ -253,6 +260,35 @@ class Looks(Analysis):
         for command, made in [("droplet", "disk.png"), ("export-vtk", "disk.pvd")]:
             self.draw(command, "run.h5", "-o", "disk")
             self.assertTrue((self.folder / made).exists())
+
+    def test_arrays_channels_and_walls_share_no_picture_but_their_rows_and_fits_are_there(self):
+        self.write("kinds.csv", "obstacle-layout,orifice,obstacle-gap,box,seeds\nwall,,,,1\nchannel,0.8,,,1\nrandom,,0.3,20,1..2\n")
+        self.succeed("clogsweep", "--points", "kinds.csv", "line-tension=1", "vertices=32", "max-time=60", "--output", "s.h5")
+        for command in ("clogging-length", "survival", "dwell", "report", "poster"):
+            self.refuse_analysis(command, "s.h5", "--programs", BIN, words=["arrays", "channels", "a flat wall", "clogsweep select FILE obstacle_filling=density"])
+        self.succeed("clogsweep", "select", "s.h5", "obstacle_filling=density", "--output", "arrays.h5")
+        self.draw("survival", "arrays.h5", "--programs", BIN)
+        sweep = Sweep(self.folder / "s.h5", BIN)
+        self.assertEqual(len(sweep.fit().groups), 3)
+        self.assertLessEqual({"runs", "sag"}, set(sweep.fit().summary))
+        self.draw("export", "s.h5", "rows.csv", "--programs", BIN)
+
+    def test_two_models_share_a_picture_over_what_both_have(self):
+        self.write("models.csv", "model,wall-stiffness,obstacle-gap\nsp,2,0.3\nsp,4,0.4\ndp,,0.3\n")
+        self.succeed("clogsweep", "--points", "models.csv", "box=20", "boxes=2", "max-time=60", "seeds=1..2", "--output", "s.h5")
+        for command in ("clogging-length", "survival", "dwell", "report", "poster"):
+            self.draw(command, "s.h5", "--programs", BIN)
+        groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
+        self.assertEqual([label.split(",")[0] for label, _ in groups.curves()], ["model dp", "model sp", "model sp"])
+        self.assertNotIn("no ", " ".join(label for label, _ in groups.curves()), "parameters that a model lacks are not named")
+        self.assertIn("deformable polygon and soft disk", groups.caption())
+
+    def test_only_the_density_of_a_saturated_array_is_called_saturated(self):
+        self.write("arrays.csv", "obstacle-layout,lattice-angle,obstacle-gap\nlattice,0,0.5\nrandom,,0.4\n")
+        self.succeed("clogsweep", "--points", "arrays.csv", "vertices=32", "box=20", "max-time=30", "seeds=1..2", "--output", "s.h5")
+        groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
+        self.assertEqual(groups.said("lattice_angle", None), "no lattice angle")
+        self.assertIn("saturated", groups.said("obstacle_density", None))
 
     def test_a_caption_names_what_its_model_has(self):
         disk = self.fit("model=sp", "wall-stiffness=30", "box=20", "max-time=60", "seeds=1")

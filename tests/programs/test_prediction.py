@@ -143,6 +143,8 @@ class Predicted(Analysis):
         for words, said in [(["seeds=1..5"], "seeds"), (["obstacle-gap=0.2,0.3"], "one value"), (["release=anywhere"], "release"), (["--with", "s.h5"], "--output"),
                             (["terminal-speed=x"], "terminal-speed"), (["frobnicate=1", "obstacles=two.csv"], "")]:
             self.refuse_analysis("predict", "--programs", BIN, *words, words=[said])
+        self.write("lab.cfg", "diameter = 1.2 mm\nangle = 30 deg\ntension = 2 mN/m\nspeed = 1 mm/s\n")
+        self.refuse_analysis("predict", "--programs", BIN, "--lab", "lab.cfg", "line-tension=20mN/m", words=["line-tension=20mN/m", "write it into lab.cfg as the tension"])
         self.assertEqual(sorted(path.name for path in pathlib.Path(self.folder).glob("*.h5")), [])
 
 

@@ -20,8 +20,8 @@ from ..tools.hints import Numbers
 from . import command_line
 
 
-def fit(distances: Numbers, speeds: Numbers) -> dict[str, float]:
-    """v/(v_t - v) = (b_inf/b_0) (d/sigma)^alpha (Cheng et al., Appendix A); errors are NaN for two speeds.
+def fit(distances: Numbers, speeds: Numbers) -> dict[str, float | None]:
+    """v/(v_t - v) = (b_inf/b_0) (d/sigma)^alpha (Cheng et al., Appendix A); two speeds leave no errors (None).
 
     @param distances  between wall and droplet surface [sigma]; @param speeds  far from walls 1 [v_t]
     @throws UserError  for numbers that have no such logarithm, or fewer than two different distances
@@ -34,8 +34,8 @@ def fit(distances: Numbers, speeds: Numbers) -> dict[str, float]:
         raise UserError("needs speeds at two different distances at least")
     line = stats.linregress(np.log(distances), np.log(speeds / (1 - speeds)))
     drag = math.exp(-line.intercept)
-    errors = (line.stderr, drag * line.intercept_stderr) if len(speeds) > 2 else (math.nan, math.nan)
-    return {"near_wall_exponent": float(line.slope), "near_wall_exponent_error": float(errors[0]), "near_wall_drag": drag, "near_wall_drag_error": float(errors[1])}
+    errors = (float(line.stderr), float(drag * line.intercept_stderr)) if len(speeds) > 2 else (None, None)
+    return {"near_wall_exponent": float(line.slope), "near_wall_exponent_error": errors[0], "near_wall_drag": drag, "near_wall_drag_error": errors[1]}
 
 
 def body() -> int:
@@ -55,7 +55,11 @@ def body() -> int:
     except UserError as error:
         raise UserError(f"{arguments.file} cannot be fitted ({error})") from error
     if arguments.format == "text":
-        print("alpha = {:.4g} +- {:.2g}, b_0/b_inf = {:.4g} +- {:.2g}, from {} speeds".format(*found.values(), len(speeds)))
+        exponent, its_error, drag, drag_error = (None if value is None else f"{value:.{digits}g}" for value, digits in zip(found.values(), (4, 2, 4, 2)))
+        if its_error is None:
+            print(f"alpha = {exponent}, b_0/b_inf = {drag}, from {len(speeds)} speeds, which are too few for errors")
+        else:
+            print(f"alpha = {exponent} +- {its_error}, b_0/b_inf = {drag} +- {drag_error}, from {len(speeds)} speeds")
     else:
         laboratory.print_json(answer, {**found, "speeds": len(speeds)})
     return 0

@@ -19,6 +19,7 @@ hold.
 import argparse
 import math
 import pathlib
+import re
 import tempfile
 from typing import Any
 
@@ -40,6 +41,9 @@ def parse() -> argparse.Namespace:
     return parser.parse_intermixed_args()
 
 
+OF_DROPLET = {"terminal-speed": "speed of the droplet", "line-tension": "tension of the droplet"}  # entries of a laboratory
+
+
 def told(length: float) -> str:
     return f"{length:.4g}" if math.isfinite(length) else ""
 
@@ -53,6 +57,8 @@ def body() -> int:
     for key, value in keys.items():
         if key not in ("line-tension", "obstacles") and ("," in value or ".." in value or "(" in value):
             raise UserError(f"invalid {key}={value} (only line-tension takes a list here); give one value")
+        if arguments.lab and key in OF_DROPLET and re.search("[A-Za-z]", value):
+            raise UserError(f"invalid {key}={value} (is without a unit here); write it into {arguments.lab} as the {OF_DROPLET[key]}, or give it in the model's unit")
     if arguments.measured and not arguments.output:
         raise UserError("no picture for the lengths of --with; give --output NAME")
     if arguments.output:
@@ -61,7 +67,7 @@ def body() -> int:
     droplet: Any = laboratory.units(arguments.lab, folder=folder_of_programs) if arguments.lab else {}  # a list for several droplets
     if isinstance(droplet, list):
         raise UserError(f"no place for --lab {arguments.lab} (it describes {len(droplet)} droplets); give one diameter and one angle")
-    for key in ("terminal-speed", "line-tension"):
+    for key in OF_DROPLET:
         if (value := droplet.get(key.replace("-", "_"))) is not None:
             keys.setdefault(key, f"{value:.4g}")
     of_array = {key: keys[key] for key in (*prediction.OF_ARRAYS, "obstacle-diameter") if key in keys}

@@ -152,7 +152,7 @@ def why_too_few(fit: Fit, members: Members, keys: Sequence[Column]) -> str:
     """The reason why these groups are too few for a curve. The text is empty if they are enough."""
     groups = [fit["groups"][index] for index in members.groups]
     names = " and ".join(key["key"] for key in keys)
-    where = " with " + ", ".join(f"{name.replace('_', '-')}={told(value)}" for name, value in members.shared.items()) if members.shared else ""
+    where = " with " + ", ".join(told_of(name.replace("_", "-"), value) for name, value in members.shared.items()) if members.shared else ""
     places = {tuple(place_of(group, keys)) for group in groups}
     clogging = {tuple(place_of(group, keys)) for group in groups if group["clogs"] > 0}
     if len(places) < FEWEST_VALUES:
@@ -167,6 +167,11 @@ def why_too_few(fit: Fit, members: Members, keys: Sequence[Column]) -> str:
 
 def told(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def told_of(name: str, value: Any) -> str:
+    """A parameter and its value."""
+    return f"no {name}" if value is None else f"{name}={told(value)}"
 
 
 def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Excluded]]:

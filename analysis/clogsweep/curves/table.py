@@ -11,7 +11,7 @@ from typing import Any
 from ..tools import rounded
 from ..tools.lists import numbers
 from .answer import ALL, CAUSES
-from .points import told
+from .points import told, told_of
 
 EVERY_ON_LINE = 8  # A curve of one key has 97 places, and every eighth is printed.
 ON_SIDE = 25
@@ -40,7 +40,7 @@ def text(answer: dict[str, Any], crossing: list[float]) -> str:
     keys = answer["keys"]
     lines = [f"lambda vs {' and '.join(keys)}, fitted; {100 * answer['confidence']:g} % intervals"]
     for curve in answer["curves"]:
-        shared = " ".join(f"{name}={told(value)}" for name, value in curve["shared"].items())
+        shared = " ".join(told_of(name, value) for name, value in curve["shared"].items())
         num_clogs = sum(point["clogs"] for point in curve["points"])
         lines += ["", f"{shared}{': ' if shared else ''}through {rounded.counted(len(curve['points']), 'point')} with {rounded.counted(num_clogs, 'clog')}"]
         if curve["common_obstacles"]:

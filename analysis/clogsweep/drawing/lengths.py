@@ -232,4 +232,5 @@ def draw_speeds_on(axes: Axes, groups: Groups) -> None:
     draw_curves(axes, groups, functools.partial(draw_speeds, column=speed_column(groups.members)))
     add_laboratory(axes, groups, "speed")
     has_points = any(curve.lines[0].get_xdata().size for curve in axes.containers)
-    style.finish(axes, AXES["speed"], groups.caption(), speed_notes(groups.members) if has_points else [], title=groups.legend_title())
+    of_all = " of all runs" if speed_column(groups.members) == OF_ALL_RUNS else ""
+    style.finish(axes, AXES["speed"] + of_all, groups.caption(), speed_notes(groups.members) if has_points else [], title=groups.legend_title())

@@ -81,6 +81,8 @@ def said(column: Column, value: float | str | None) -> str:
     """A parameter and its value in words, such as $N_v = 128$."""
     if "label" in column:
         return str(column["label"].format(value))
+    if value is None and column["name"] != "obstacle_density":
+        return f"no {column['name'].replace('_', ' ')}"
     if isinstance(value, str):
         return f"{column['name'].replace('_', ' ')} {literal(value)}"
     if column["name"] == "lattice_angle" and value is not None:

@@ -15,7 +15,13 @@ from . import AXES, INTERFACES, axis_label, interface_of, is_number, runs_a_poin
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
 LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # names by obstacle_filling
+PLACES = {"channel": "channels", "wall": "a flat wall"}  # where droplets have no clogging length, by obstacle_filling
 FINISHED = ("passed", "clogged", "broken", "flowing")
+
+
+def has_results(group: Group) -> bool:
+    """Whether a group has finished runs. In a channel or on a wall each group is one run, with a status."""
+    return group["status"] in FINISHED if "status" in group else group["runs"] + group["met_none"] > 0
 
 
 class Groups:
@@ -24,11 +30,11 @@ class Groups:
     def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
         """@param fit  the JSON output of clogfit; @param circle_files  see stored.circle_files()"""
         # Nothing in a channel or on a wall is random, so each group consists of one run and has a status.
-        self.are_passages = any("status" in group for group in fit["groups"])
+        self.are_passages = all("status" in group for group in fit["groups"])
         self._fit = fit
         fit = fits.in_millimetres(fit)
         self.are_in_mm = "in_mm" in fit  # whether parameters, and lengths in pictures, are in millimetres
-        self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] + group["met_none"] > 0)]
+        self.members: list[Group] = [group for group in fit["groups"] if has_results(group)]
         self._told: list[Group] = fit["groups"]
         self.confidence: float = fit["confidence"]
         # The model's units in the laboratory, if all groups have the same ones.
@@ -44,17 +50,24 @@ class Groups:
         self._ask_for_curves: Callable[[], dict[str, Any]] = lambda: NO_CURVES  # see fit_curves()
 
     def finished(self, source: object = "the sweep") -> Groups:
-        """Returns the groups. @throws UserError  if no run has finished"""
+        """Returns the groups. @throws UserError  if no run has finished, or if they have different kinds of results:
+        those of arrays, channels and walls cannot share a picture"""
         if not self.members:
             raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
+        fillings: dict[str, list[str]] = {}
+        for filling in sorted(self.values("obstacle_filling"), key=lambda filling: (filling in PLACES, filling)):
+            fillings.setdefault(PLACES.get(filling, "arrays"), []).append(filling)
+        if len(fillings) > 1:
+            raise UserError(f"cannot draw droplets in {' and '.join(fillings)} in one picture ({source}); keep one kind, as by "
+                            f"clogsweep select FILE obstacle_filling={','.join(next(iter(fillings.values())))} --output ONE_KIND.h5")
         return self
 
     def with_lengths(self, source: object = "the sweep") -> Groups:
         """Returns the groups, as finished() does. @throws UserError  also for droplets in a channel or on a wall, which
         have no clogging lengths"""
-        if self.are_passages:
+        if self.finished(source).are_passages:
             raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws their results")
-        if not any(group["runs"] for group in self.finished(source).members):
+        if not any(group["runs"] for group in self.members):
             raise UserError(f"no droplet of {source} met an obstacle, so there is no clogging length; python3 -m clogsweep device or report shows their paths")
         return self
 
@@ -119,10 +132,12 @@ class Groups:
             return max(fits.DROPLETS, key=lambda name: len(self.values(name)))
         if self.are_lattices and self.varies("lattice_angle"):
             return "lattice_angle"
-        if self.varies(usual) and not self._is_automatic(usual):
+        known = [name for name in self.columns if self._is_number(name) and None not in self.values(name)]  # to both models
+        if usual not in known:
+            usual = next(iter(known), usual)
+        elif self.varies(usual) and not self._is_automatic(usual):
             return usual
-        varied = [name for name in self.columns if self._is_number(name) and self.varies(name) and None not in self.values(name)]
-        return max(varied, key=lambda name: (not self._is_automatic(name), len(self.values(name))), default=usual)
+        return max(filter(self.varies, known), key=lambda name: (not self._is_automatic(name), len(self.values(name))), default=usual)
 
     def _is_number(self, name: str) -> bool:
         return self.columns[name]["kind"] != "word"
@@ -170,7 +185,14 @@ class Groups:
         for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):
             if name == "preset" and len(self.values(name) & INTERFACES.keys()) > 1 or not self.follows(name, [self.abscissa, *told]):
                 told.append(name)
-        return told
+        return self._of_models(told)
+
+    def _of_models(self, names: Iterable[str]) -> list[str]:
+        """Names of parameters in which groups differ, without those that follow from the model: one model has a single
+        value, and the other lacks them."""
+        if not self.varies("model"):
+            return list(names)
+        return ["model", *(name for name in names if name != "model" and len(self.values(name) - {None}) > 1)]
 
     def symbol(self, name: str) -> str:
         return symbol(self.columns[name])
@@ -192,12 +214,8 @@ class Groups:
         return "; ".join(own or parts[check_sum])
 
     def distinguishing(self) -> list[str]:
-        """Names of the parameters in which the groups differ. If the groups have several models, some parameters are
-        left out: those that only one model has, with a single value. The model's name implies them."""
-        names = [name for name in [self.abscissa, *self.curve_parameters()] if name != "model" and self.varies(name)]
-        if not self.varies("model"):
-            return names
-        return ["model", *(name for name in names if len(self.values(name) - {None}) > 1)]
+        """Names of the parameters in which the groups differ."""
+        return self._of_models(name for name in [self.abscissa, *self.curve_parameters()] if self.varies(name))
 
     def row_values(self, member: Group) -> dict[str, Any]:
         """The values that identify the rows of a group. Values that clogfit does not know, such as the density of a
@@ -209,8 +227,11 @@ class Groups:
 
     def label_of(self, member: Group) -> str:
         """A label with the values that distinguish a group from the others."""
-        is_lacking = {name for name in self.distinguishing() if member[name] is None and self.varies("model")}
-        return ", ".join(self.said(name, member[name]) for name in self.distinguishing() if name not in is_lacking)
+        return self._label({name: member[name] for name in self.distinguishing()})
+
+    def _label(self, values: dict[str, Any]) -> str:
+        """Names values. Parameters that a model lacks are left out."""
+        return ", ".join(self.said(name, value) for name, value in values.items() if value is not None or not self.varies("model"))
 
     def abscissa_key(self) -> str:
         """The name of the abscissa as a column of a user's table."""
@@ -224,7 +245,7 @@ class Groups:
         names = self.curve_parameters()
         keys = sorted({tuple(group[name] for name in names) for group in self.members},
                       key=lambda key: [(value is None, isinstance(value, str), value) for value in key])
-        return [(", ".join(self.said(name, value) for name, value in zip(names, key)),
+        return [(self._label(dict(zip(names, key))),
                  [group for group in self.members if tuple(group[name] for name in names) == key]) for key in keys]
 
     def legend_title(self) -> str:
@@ -240,7 +261,8 @@ class Groups:
         if not self.tells_what_all_share:
             return ""
         first = self.members[0]
-        words = ["deformable polygon" if self.are_polygons else "soft disk"]
+        models = [name for model, name in (("dp", "deformable polygon"), ("sp", "soft disk")) if model in self.values("model")]
+        words = [" and ".join(models)]
         words += [self.said(name, first[name]) for name in self.columns if self._is_worth_a_word(name, first[name])]
         if self.values("obstacle_filling") == {"saturated"}:
             words.append("saturated arrays")

@@ -25,9 +25,9 @@ MOST_ROWS_OFF = 1.0  # A droplet follows the rows if it comes no farther off its
 FEWEST_ROWS = 2.0
 
 
-def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
-    """For each angle, whether some droplets leave the rows, and whether droplets follow the rows. The angles
-    increase; a negative angle counts as its mirror image. Failed and unfinished runs do not count."""
+def verdicts(runs: pandas.DataFrame) -> pandas.DataFrame:
+    """For each run, its angle, and whether the droplet leaves the rows or follows them. Runs that are too short to show
+    either, failed and unfinished runs do neither."""
     angle, side = np.radians(abs(runs["lattice_angle"])), np.where(runs["lattice_angle"] < 0, -1, 1)
     of_pitch = np.select([runs["obstacle_filling"] == "triangular", runs["obstacle_filling"] == "rhombic"], [math.sqrt(3) / 2, np.cos(angle)], 1)
     spacing = (runs["obstacle_gap"] + runs["obstacle_diameter"]) * of_pitch  # spacing of the rows
@@ -35,8 +35,13 @@ def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
     counts = ~runs["status"].isin(["failed", *UNFINISHED])
     leaves = counts & (abs(across * np.cos(angle) - along * np.sin(angle)) > MOST_ROWS_OFF * spacing)
     is_long = counts & (along * np.sin(angle) >= FEWEST_ROWS * spacing)
-    found = pandas.DataFrame({"angle": abs(runs["lattice_angle"]), "leaves": leaves, "follows": is_long & ~leaves})
-    found = found.groupby("angle").any()
+    return pandas.DataFrame({"angle": abs(runs["lattice_angle"]), "leaves": leaves, "follows": is_long & ~leaves})
+
+
+def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
+    """For each angle, whether some droplets leave the rows, and whether droplets follow the rows. The angles
+    increase; a negative angle counts as its mirror image."""
+    found = verdicts(runs).groupby("angle").any()
     return found.assign(follows=found["follows"] & ~found["leaves"])
 
 
@@ -51,7 +56,7 @@ def bracket(angles: pandas.DataFrame) -> tuple[float, float]:
 
 def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFrame:
     """For every set of parameters: the parameters that vary, the ends of the bracket, `lower` and `upper`, and the
-    number of `runs` that count. Failed and unfinished runs do not count.
+    number of `runs` that count: those of droplets that leave the rows or follow them.
     @param parameters  names of columns; a column is left out if its values follow from the columns before it
     @throws UserError"""
     lattices = rows[rows["lattice_angle"].notna()]
@@ -65,7 +70,7 @@ def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFr
     lines = []
     for _, runs in lattices.groupby(varying, dropna=False) if varying else [((), lattices)]:
         lower, upper = bracket(tried_angles(runs))
-        lines.append([*(runs[name].iloc[0] for name in varying), lower, upper, (~runs["status"].isin(["failed", *UNFINISHED])).sum()])
+        lines.append([*(runs[name].iloc[0] for name in varying), lower, upper, verdicts(runs)[["leaves", "follows"]].any(axis=1).sum()])
     return pandas.DataFrame(lines, columns=[*varying, "lower", "upper", "runs"])
 
 

@@ -111,7 +111,8 @@ class Fit:
         # Automatic values follow from these parameters, so they are left out.
         chosen = {self.known.abscissa, *self.known.curve_parameters()}
         varies = [name for name in columns if name in chosen and known[name].nunique(dropna=False) > 1]
-        told = [name for name in (PASSAGE if self.known.are_passages else LENGTHS) if name in known and not known[name].isna().all()]
+        of_kind = [*(() if self.known.are_passages else LENGTHS), *(PASSAGE if "status" in known else ())]
+        told = [name for name in of_kind if name in known and not known[name].isna().all()]
         return known[[*varies, *(name for name in told if name not in varies)]]
 
     def __repr__(self) -> str:
