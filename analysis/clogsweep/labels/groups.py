@@ -25,6 +25,8 @@ class Groups:
         """@param fit  the JSON output of clogfit; @param circle_files  see stored.circle_files()"""
         # Nothing in a channel or on a wall is random, so each group consists of one run and has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
+        if self.are_passages and not all("status" in group for group in fit["groups"]):
+            raise UserError("cannot draw arrays together with channels or walls; take one of them by clogsweep select, e.g. with obstacle_filling=wall")
         self._fit = fit
         fit = fits.in_millimetres(fit)
         self.are_in_mm = "in_mm" in fit  # whether parameters, and lengths in pictures, are in millimetres
