@@ -154,7 +154,7 @@ int clogfit(int argc, const char* const* argv) {
   const store::SweepFile sweep = results::read_together(paths);
   if (sweep.rows.empty()) throw Error(joined(paths) + " has no runs yet; let the sweep finish some first");
   for (const char* option : {"dwell", "mixture"})
-    if (line.has(option) && !results::has_clogging_length(sweep.rows.front()))
+    if (line.has(option) && std::ranges::none_of(sweep.rows, results::has_clogging_length))
       throw Error(fmt::format(
           "no place for --{} (droplets in a channel or on a wall have no clogging length); leave it out",
           option));

@@ -267,9 +267,10 @@ bool follows_from_droplet(const sweep::Column& column, const std::vector<const s
 
 void require_lengths(const Side& side) {
   if (side.rows.empty()) throw Error(side.name + " has no runs yet; let the sweep finish some first");
-  if (!has_clogging_length(side.rows.front()))
+  if (!std::ranges::all_of(side.rows, has_clogging_length))
     throw Error("cannot compare " + side.name +
-                " (droplets in a channel or on a wall have no clogging length)");
+                " (droplets in a channel or on a wall have no clogging length); clogsweep select takes the "
+                "others, if there are any");
 }
 
 std::vector<Side> sides_of_files(const std::vector<std::string>& paths) {

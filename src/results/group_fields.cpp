@@ -89,6 +89,8 @@ std::vector<Value> parameter_values(const sweep::RunRow& row) {
   return values;
 }
 
+Finding finding_of(const Group& group) { return scene_of(group.first_row.parameters).finding; }
+
 bool has_clogging_length(const sweep::RunRow& row) {
   return scene_of(row.parameters).finding == Finding::clogging_length;
 }

@@ -36,13 +36,13 @@ Json scale_json(const LaboratoryScale& scale) {
           {"tension_mN_per_m_of_gamma_1", json_of(Value(scale.tension))}};
 }
 
-/// @param with_laboratory  whether any of the groups has one
+/// The fields that all groups with the same finding have. @param with_laboratory  see have_laboratory()
 std::vector<Field> all_fields(const Group& group, bool with_laboratory) {
   std::vector<Field> fields;
   const std::vector<Value> values = parameter_values(group.first_row);
   for (std::size_t i = 0; i < values.size(); ++i) fields.emplace_back(group_columns()[i]->name, values[i]);
   for (Field& field : result_fields(group)) fields.push_back(std::move(field));
-  if (with_laboratory)
+  if (with_laboratory && has_clogging_length(group.first_row))
     for (Field& field : laboratory_fields(group)) fields.push_back(std::move(field));
   return fields;
 }
@@ -50,8 +50,9 @@ std::vector<Field> all_fields(const Group& group, bool with_laboratory) {
 /// Units of a group's fields, if any, and of the entries of its lists.
 Json field_units(const std::vector<Group>& groups) {
   Json all;
-  for (const auto& [name, value] : all_fields(groups.front(), have_laboratory(groups)))
-    if (const std::string_view unit = unit_of(name); !unit.empty()) all[name] = unit;
+  for (const Group& group : groups)
+    for (const auto& [name, value] : all_fields(group, have_laboratory(groups)))
+      if (const std::string_view unit = unit_of(name); !unit.empty()) all[name] = unit;
   all["survival"] = all["incidence"] = {{"distance", "sigma"}};
   all["censored_distances"] = "sigma";
   return all;

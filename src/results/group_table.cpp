@@ -79,6 +79,7 @@ std::string legend(const std::vector<Group>& groups) {
 
 /// Explains columns whose heads are not enough.
 std::string column_notes(const std::vector<Group>& groups) {
+  if (!has_clogging_length(groups.front().first_row)) return "";
   std::string text;
   if (are_mechanisms_shown(groups))
     text += fmt::format(
@@ -88,8 +89,7 @@ std::string column_notes(const std::vector<Group>& groups) {
     text +=
         "lambda_b: mean distance before break-up. Broken droplets are censored in lambda, clogged ones in "
         "lambda_b\n";
-  if (has_clogging_length(groups.front().first_row) &&
-      std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
+  if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
     text +=
         "passed: droplets that reached the exit. They count as not clogged on their way, so lambda may "
         "exceed the device's length\n";
@@ -403,9 +403,8 @@ std::string definition_of_clogs(const std::vector<Group>& groups) {
   return text;
 }
 
-}  // namespace
-
-std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
+/// The table of groups with the same kind of results.
+std::string text_of_kind(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
   const std::vector<bool> varies = varying_columns(groups);
   const std::vector<bool> shown = shown_columns(groups, varies);
   std::string text = "all runs:" + wrapped(shared_words(groups, varies, shown, shared));
@@ -418,6 +417,17 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
   return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, parameters.first(), confidence) +
          legend(groups) + column_notes(groups) + note_of_rest(groups) + note_of_displaced(groups) +
          left_out(groups);
+}
+
+}  // namespace
+
+std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
+  std::map<Finding, std::vector<Group>> kinds;
+  for (const Group& group : groups) kinds[finding_of(group)].push_back(group);
+  std::string text;
+  for (const auto& [finding, own] : kinds)
+    text += (text.empty() ? "" : "\n") + text_of_kind(own, confidence, shared);
+  return text;
 }
 
 }  // namespace clog::results

@@ -176,6 +176,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
 
 /// Fits clogging lengths to those intact runs that reached `from_distance`.
 void fit_clogging(Group& group, std::span<const Ending> runs, double confidence, double from_distance) {
+  if (!has_clogging_length(group.first_row)) return;
   // Some of the ends count as events; all other runs are censored.
   const auto observe = [&](auto is_end) {
     std::vector<fit::Observation> observations;
@@ -188,10 +189,8 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
   group.clogging = fit::fit_clogging_length(all, confidence);
   group.least_squares_length = fit::least_squares_length(all);
   group.weibull = fit::test_exponentiality(all);
-  if (has_clogging_length(group.first_row)) {
-    group.survival = fit::survival_curve(all, confidence);
-    group.censored_distances = censored_distances(all);
-  }
+  group.survival = fit::survival_curve(all, confidence);
+  group.censored_distances = censored_distances(all);
   if (std::any_of(runs.begin(), runs.end(), [](const Ending& run) { return run.is_clog && !run.cause; }))
     return;
   std::vector<fit::CompetingEnd> competing;
@@ -202,8 +201,7 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
     const auto is_of_cause = [&](const Ending& run) { return run.cause == text.cause; };
     Group::EndsBy& one = group.causes.emplace_back(
         Group::EndsBy{&text, fit::fit_clogging_length(observe(is_of_cause), confidence), {}});
-    if (has_clogging_length(group.first_row))
-      one.incidence = fit::cumulative_incidence(competing, static_cast<int>(text.cause), confidence);
+    one.incidence = fit::cumulative_incidence(competing, static_cast<int>(text.cause), confidence);
   }
 }
 
@@ -469,6 +467,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     group.doubts = doubts_about(group);
     groups.push_back(std::move(group));
   }
+  std::ranges::stable_sort(groups, {}, finding_of);
   doubt_exponentiality(groups);
   return groups;
 }

@@ -55,8 +55,9 @@ bool is_constant(const ResultColumn& column, const std::vector<Group>& groups) {
 }  // namespace
 
 bool have_laboratory(const std::vector<Group>& groups) {
-  return has_clogging_length(groups.front().first_row) &&
-         std::ranges::any_of(groups, [](const Group& group) { return group.laboratory.has_value(); });
+  return std::ranges::any_of(groups, [](const Group& group) {
+    return group.laboratory.has_value() && has_clogging_length(group.first_row);
+  });
 }
 
 std::vector<Field> laboratory_fields(const Group& group) {

@@ -190,7 +190,7 @@ std::vector<ResultColumn> columns_of_walls() {
 
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
                                               bool has_laboratory) {
-  switch (scene_of(groups.front().first_row.parameters).finding) {
+  switch (finding_of(groups.front())) {
     case Finding::clogging_length:
       return columns_of_arrays(groups, confidence, has_laboratory);
     case Finding::passage:

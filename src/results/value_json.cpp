@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <set>
 #include <string>
 #include <variant>
@@ -51,14 +52,15 @@ std::string csv_cell(const sweep::Value& value) {
 }
 
 std::string csv_table(const std::vector<std::vector<Field>>& rows) {
-  std::string table;
+  std::vector<std::string> names;
+  std::map<std::string, std::size_t> places;
+  for (const std::vector<Field>& row : rows)
+    for (const auto& [name, value] : row)
+      if (places.try_emplace(name, names.size()).second) names.push_back(name);
+  std::string table = rows.empty() ? "" : joined(names, ",") + '\n';
   for (const std::vector<Field>& row : rows) {
-    std::vector<std::string> names, cells;
-    for (const auto& [name, value] : row) {
-      names.push_back(name);
-      cells.push_back(csv_cell(value));
-    }
-    if (table.empty()) table = joined(names, ",") + '\n';
+    std::vector<std::string> cells(names.size());
+    for (const auto& [name, value] : row) cells[places.at(name)] = csv_cell(value);
     table += joined(cells, ",") + '\n';
   }
   return table;

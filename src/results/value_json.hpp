@@ -55,7 +55,7 @@ std::vector<std::vector<std::string>> label_texts(const std::vector<Group>& grou
 }
 /// Text for CSV: all digits; quoted if a word contains a comma or a quote.
 std::string csv_cell(const sweep::Value& value);
-/// CSV with the names of the fields, then a line for each row.
+/// CSV with the names of the fields of all rows, then a line for each row. Fields that a row lacks are empty.
 std::string csv_table(const std::vector<std::vector<Field>>& rows);
 
 }  // namespace clog::results

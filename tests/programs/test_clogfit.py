@@ -13,7 +13,7 @@ import pandas
 import scipy.stats
 
 import stored_rows
-from support import BIN, QUICK, ROOT, SMALL, ProgramTest
+from support import BIN, FEW, QUICK, ROOT, SMALL, ProgramTest, shared_sweep
 
 sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.tools import rounded  # noqa: E402
@@ -23,6 +23,62 @@ from clogsweep.reading import stored  # noqa: E402
 FAR = ["max-time=1", "terminal-speed=100"]
 # The distances of these ten runs follow the exponential law exactly.
 EXPONENTIAL = -np.log(1 - (np.arange(10) + 0.5) / 10)
+
+
+class Mixtures(ProgramTest):
+    """clogfit of files whose droplets are in arrays, in channels and on flat walls."""
+
+    def setUp(self):
+        super().setUp()
+        self.parts = [str(shared_sweep(*FEW)), "channel.h5", "wall.h5"]
+        self.succeed("clogsweep", *QUICK[:1], "orifice=0.6,0.8", "start=-1.5", "end=1", "max-time=60", "--output", "channel.h5")
+        self.succeed("clogsweep", *QUICK[:1], "obstacle-layout=wall", "line-tension=0.5,1", "--output", "wall.h5")
+
+    def fit(self, *words, program=("clogfit",)):
+        return self.succeed(*program, *words).stdout
+
+    def test_each_kind_has_the_table_that_it_has_alone(self):
+        array, channel, wall = parts = self.parts
+        for files in (parts, parts[::-1], [channel, wall], [wall, array], [channel, array]):
+            known = sorted(files, key=parts.index)
+            self.assertEqual(self.fit(*files), "\n".join(self.fit(file) for file in known))
+        self.assertNotIn("lambda", self.fit(wall) + self.fit(channel))
+        self.succeed("clogsweep", "merge", *parts, "--output", "all.h5")
+        self.assertEqual(self.fit("all.h5"), self.fit(*parts))
+        status = self.fit("all.h5", program=("clogsweep", "status"))
+        self.assertTrue(status.endswith("\n\n" + self.fit("all.h5")), status)
+
+    def test_csv_and_json_have_the_cells_that_they_have_alone(self):
+        parts = self.parts
+        alone = [list(csv.DictReader(io.StringIO(self.fit(file, "--format=csv")))) for file in parts]
+        for files in (parts, parts[::-1]):
+            head, *lines = csv.reader(io.StringIO(self.fit(*files, "--format=csv")))
+            self.assertEqual({len(line) for line in lines}, {len(head)})
+            self.assertEqual(len(set(head)), len(head))
+            self.assertEqual(head[:len(alone[0][0])], list(alone[0][0]))
+            rows = [dict(zip(head, line)) for line in lines]
+            self.assertEqual([{name: cell for name, cell in row.items() if cell} for row in rows],
+                             [{name: cell for name, cell in row.items() if cell} for part in alone for row in part])
+            self.assertEqual([row["clogging_length"] == "" for row in rows], [False] * 2 + [True] * 4)
+            document = json.loads(self.fit(*files, "--format=json"))
+            apart = [json.loads(self.fit(file, "--format=json")) for file in parts]
+            self.assertEqual(document["groups"], [group for part in apart for group in part["groups"]])
+            for part in apart:
+                self.assertLessEqual(part["units"].items(), document["units"].items())
+
+    def test_only_arrays_have_lengths_in_a_laboratory(self):
+        self.write("lab.cfg", "diameter = 2 mm\nangle = 28 deg\nspeed = 3 mm/s\ndensity-difference = 100 kg/m^3\ntension = 2 mN/m\n")
+        text = self.fit(*self.parts[::-1], "--lab=lab.cfg")
+        self.assertEqual(text.count("lambda/mm"), 1)
+        for group in json.loads(self.fit(*self.parts[::-1], "--lab=lab.cfg", "--format=json"))["groups"]:
+            self.assertEqual("clogging_length_mm" in group, group["obstacle_filling"] not in ("channel", "wall"))
+
+    def test_what_needs_clogging_lengths_refuses_the_others(self):
+        self.succeed("clogsweep", "merge", *self.parts, "--output", "all.h5")
+        self.refuse("clogfit", "compare", "all.h5", "--by=line-tension", words=["on a wall", "clogsweep select"])
+        self.refuse("clogfit", "report", "all.h5", words=["arrays", "clogsweep select"])
+        self.refuse("clogfit", *self.parts[1:], "--dwell=5", words=["--dwell", "on a wall"])
+        self.assertIn("clogged: has not moved", self.fit(*self.parts[::-1], "--dwell=30"))
 
 
 class Profiles(ProgramTest):

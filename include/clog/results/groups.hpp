@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "clog/core/scene/scene.hpp"
 #include "clog/fit/clogging_length.hpp"
 #include "clog/fit/incidence.hpp"
 #include "clog/fit/mean_speed.hpp"
@@ -215,8 +216,8 @@ bool is_observed(const sweep::RunRow& run);
 /// is nullopt if the droplet met no obstacle.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
-/// Groups rows by all parameters except the seed. The groups are in the order of their parameters. Runs count
-/// as in observation_of().
+/// Groups rows by all parameters except the seed. The groups are in the order of their findings, then of
+/// their parameters. Runs count as in observation_of().
 /// @param from_distance  the distance from which on runs are observed [sigma]: runs that ended earlier are
 /// excluded, and the others count with their distance beyond it (left truncation)
 /// @param dwell  a droplet that rested for longer than this counts as clogged where it first did so [t0]. A
@@ -249,6 +250,8 @@ using Field = std::pair<std::string, Value>;
 std::span<const sweep::Column* const> group_columns();
 /// The values of a row in these columns.
 std::vector<Value> parameter_values(const sweep::RunRow& row);
+/// The kind of the group's results.
+Finding finding_of(const Group& group);
 /// Whether the results include a clogging length. They do not in a channel and on a wall, where nothing is
 /// random: there each group is one run, whose row has the results.
 bool has_clogging_length(const sweep::RunRow& row);
