@@ -937,6 +937,38 @@ class OtherTools(Analysis):
         np.testing.assert_allclose(self.svg(styles + body + seen), [(800, 300, 100)], rtol=1e-3)
         self.assertEqual(dict(self.drawing.skipped), {"transparent circle": 4, "unpainted circle": 5, "hidden circle": 1})
 
+    def test_svg_style_sheets_follow_the_cascade(self):
+        # CSS 2.1, 6.4: !important, then specificity, then place. A group is drawn with its opacity as a whole (CSS Color).
+        c, left = 'class="c"', '<clipPath id="left"><rect width="600" height="1200"/></clipPath>'
+        seen, post = '<circle cx="800" cy="900" r="50"/>', '<circle cx="1600" cy="300" r="50" {}/>'
+        for sheet, around, attributes in [
+                ("g.h circle{display:none}", "<g class='h'>*</g>", ""), ("circle.a.b{display:none}", "*", 'class="a b"'), ('circle[data-k="q"]{visibility:hidden}', "*", 'data-k="q"'),
+                ("g > .c{opacity:0}", "<g>*</g>", c), ("circle.f{display:none !important}", "*", 'class="f" style="display:inline"'), ("#p{display:none} .c{display:inline}", "*", f'id="p" {c}'),
+                (".c{display:inline} .c{display:none}", "*", c), ("desc + circle{fill:none}", "<g><desc/>*</g>", ""), ("g:nth-of-type(2) *{display:none}", "<g/><g>*</g>", ""),
+                (".c{fill:none}", "*", f'{c} fill="red"'), (".c{display:inline !important} #p{display:none !important}", "*", f'id="p" {c}'), ("@media screen, print{.c{display:none}}", "*", c),
+                ("/* a comment */ .C, .c{ DISPLAY : none ; } ", "*", c), ("g{opacity:0} .c{opacity:1}", "<g>*</g>", c), ("<![CDATA[ g > .c{display:none} ]]>", "<g>*</g>", c),
+                (".c{clip-path:none} g .c{clip-path:url(#left)}", "<g>*</g>", c), ("#page > .c{display:none}", "<g id='page'>*</g>", c)]:
+            body = around.replace("*", post.format(attributes)) + seen
+            for drawn in (f"<style>{sheet}</style>{left}{body}", f"{left}{body}<style>{sheet}</style>"):
+                with self.subTest(drawn):
+                    np.testing.assert_allclose(self.svg(drawn), [(800, 300, 100)], rtol=1e-3)
+        for sheet, attributes in [("@media print{.c{display:none}}", c), (".c{display:none}", f'{c} style="display:inline"'), (".c{display:inline} circle{display:none}", c),
+                                  ("circle:hover, .c:not(circle){display:none}", c), ("</style><style media='print'>.c{display:none}", c), (".c{clip-path:none}", f'{c} clip-path="url(#left)"'),
+                                  (".c{fill:inherit}", f'{c} fill="none"'), (".b{display:none}", c), ("</style><style>", ""), (".c{cy:300px}", c)]:
+            with self.subTest(sheet):
+                np.testing.assert_allclose(self.svg(f"<style>{sheet}</style>{left}{post.format(attributes)}"), [(1600, 900, 100)], rtol=1e-3)
+                self.assertEqual(self.drawing.notes, [])
+
+    def test_svg_style_rules_that_cannot_be_applied_are_named(self):
+        sheet = '@import "other.css"; circle:unheard-of{display:none} @media (max-width: 9px){circle{display:none}} g{circle{display:none}} @layer base{circle{display:none}}'
+        self.assertEqual(len(self.svg(f'<style>{sheet}</style><circle cx="800" cy="300" r="50"/>')), 1)
+        self.assertEqual(len(self.drawing.notes), 1)
+        for word in ("styles ignored", '@import "other.css"', "circle:unheard-of", "@media (max-width: 9px)", "rules within g", "@layer base"):
+            self.assertIn(word, self.drawing.notes[0])
+        self.write("device.svg", '<?xml-stylesheet href="other.css"?>' + SVG.format('<circle cx="800" cy="300" r="50"/>'))
+        self.assertEqual(len(self.circles_of("device.svg")), 1)
+        self.assertIn("style sheet in another file ignored", self.drawing.notes[0])
+
     def test_svg_shows_what_its_clips_leave(self):
         circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))
         left = '<clipPath id="left"><rect width="600" height="1200"/></clipPath>'

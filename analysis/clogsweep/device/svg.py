@@ -15,7 +15,7 @@ import numpy as np
 
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
-from . import areas, walls
+from . import areas, css, walls
 from .libraries import library
 from .shapes import Box, Drawing, holds
 
@@ -24,8 +24,8 @@ LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
 # Number of straight pieces of each curved segment. For a quarter of a circle they deviate by 2e-5 of its radius.
 PIECES_OF_CURVE = 64
 NAMESPACE = "{http://www.w3.org/2000/svg}"
-# Elements that are drawn only if something refers to them.
-TEMPLATES = [NAMESPACE + name for name in ("symbol", "marker", "mask")]
+# Elements that are drawn only if something refers to them, and style sheets that are already applied.
+TEMPLATES = [NAMESPACE + name for name in ("symbol", "marker", "mask", "style")]
 LINKS = ("href", "{http://www.w3.org/1999/xlink}href")
 
 
@@ -34,12 +34,15 @@ def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
     @param are_holes_posts  whether holes in filled paths are read as holes, and not as outlines within outlines"""
     svgelements = library("svgelements", "python3-svgelements")
     root = ElementTree.parse(path).getroot()
+    notes = ["style sheet in another file ignored; embed it in the drawing"] if b"<?xml-stylesheet" in path.read_bytes() else []
+    css.apply(root, notes)
     expand(root, {element.get("id"): element for element in root.iter()}, path)
+    hide_within_transparent(root)
     clips = Clips(root)
     content = svgelements.SVG.parse(io.BytesIO(ElementTree.tostring(root)), reify=False)
     width = str(root.get("width", "")).strip()
     has_unit = width.endswith(LENGTHS)
-    found = Drawing([], [], METRES_IN_PIXEL if has_unit else None, skipped=collections.Counter())
+    found = Drawing([], [], METRES_IN_PIXEL if has_unit else None, notes=notes, skipped=collections.Counter())
     found.unit_in_words = width.lstrip("0123456789.eE+- ") if has_unit else "px"
     found.unit_hint = "" if has_unit else f" (--pixel {METRES_IN_PIXEL * 1e3:.7g}mm, if 96 of them are an inch; Inkscape before 0.92 had 90, --pixel {25.4 / 90:.7g}mm)"
     viewport = svgelements.Matrix(content.viewbox_transform) if content.viewbox else svgelements.Matrix()
@@ -105,6 +108,14 @@ def invisible(element: Any) -> str:
     return "" if is_painted(element.fill) or is_painted(element.stroke) and element.stroke_width > 0 else "unpainted"
 
 
+def hide_within_transparent(root: Any) -> None:
+    """Makes all that is within a transparent group transparent. The library lets a part replace the group's opacity."""
+    for element in root.iter():
+        if number(element.get("opacity", "1")) == 0:
+            for part in element.iter():
+                part.set("opacity", "0")
+
+
 def number(text: Any) -> float:
     """An opacity as a number. Text that is no number counts as 1."""
     try:
@@ -151,18 +162,16 @@ class Clips:
 
     def __init__(self, root: Any) -> None:
         self._by_id = {element.get("id"): element for element in root.iter(NAMESPACE + "clipPath")}
-        styles = " ".join(element.text or "" for element in root.iter(NAMESPACE + "style"))
-        self._by_class = {name: link for names, link in re.findall(r"([^{}]*)\{[^{}]*clip-path\s*:\s*url\(([^)]*)\)", styles) for name in re.findall(r"\.([\w-]+)", names)}
         self._areas: dict[str, list[Numbers]] = {}
         self.unknown = 0
         self._draw(root, "")
 
     def _link(self, element: Any) -> str:
-        styled = re.search(r"clip-path\s*:\s*url\(([^)]*)\)", element.get("style", ""))
-        own = re.search(r"url\(([^)]*)\)", element.get("clip-path", ""))
-        classes = [self._by_class[name] for name in element.get("class", "").split() if name in self._by_class]
-        self.unknown += bool(re.search(r"\bmask\s*[:=]\s*url\(", f"mask={element.get('mask', '')};{element.get('style', '')}"))
-        return next((link.strip(" '\"#") for link in [*(found[1] for found in (styled, own) if found), *classes]), "")
+        """The name of the clip-path of an element, or an empty text."""
+        clip = element.get("clip-path", "none")
+        link = re.search(r"url\(([^)]*)\)", clip)
+        self.unknown += ("url(" in element.get("mask", "")) + (link is None and clip != "none")
+        return link[1].strip(" '\"#") if link else ""
 
     def _draw(self, element: Any, outer: str) -> None:
         """Adds the shapes of clip-paths to the groups that they clip. @param outer  numbers of the clips around the
