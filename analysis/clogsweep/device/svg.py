@@ -13,20 +13,16 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..tools.errors import UserError
 from ..tools.hints import Numbers
-from . import areas, css, walls
+from . import areas, css, elements, walls
+from .elements import NAMESPACE
 from .libraries import library
-from .shapes import Box, Drawing, holds
+from .shapes import Box, Drawing
 
 METRES_IN_PIXEL = 25.4e-3 / 96
 LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
 # Number of straight pieces of each curved segment. For a quarter of a circle they deviate by 2e-5 of its radius.
 PIECES_OF_CURVE = 64
-NAMESPACE = "{http://www.w3.org/2000/svg}"
-# Elements that are drawn only if something refers to them, and style sheets that are already applied.
-TEMPLATES = [NAMESPACE + name for name in ("symbol", "marker", "mask", "style")]
-LINKS = ("href", "{http://www.w3.org/1999/xlink}href")
 
 
 def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
@@ -36,7 +32,7 @@ def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
     root = ElementTree.parse(path).getroot()
     notes = ["style sheet in another file ignored; embed it in the drawing"] if b"<?xml-stylesheet" in path.read_bytes() else []
     css.apply(root, notes)
-    expand(root, {element.get("id"): element for element in root.iter()}, path)
+    elements.prepare(root, path)
     hide_within_transparent(root)
     clips = Clips(root)
     content = svgelements.SVG.parse(io.BytesIO(ElementTree.tostring(root)), reify=False)
@@ -124,38 +120,12 @@ def number(text: Any) -> float:
         return 1.0
 
 
-def expand(element: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> None:
-    """Replaces each <use> by a group with a copy of its target.
-
-    The library makes three mistakes in this step: it drops references to elements further down in the file, draws a
-    <symbol> where it is defined, and ignores the viewBox of a <symbol>."""
-    element[:] = [group_of(child, by_id, path) if child.tag == NAMESPACE + "use" else child for child in element if child.tag not in TEMPLATES]
-    for child in element:
-        expand(child, by_id, path)
-
-
-def group_of(use: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> Any:
-    """A group with a copy of the target of a <use>. @throws UserError  if the file lacks the target"""
-    link = next((use.get(name) for name in LINKS if use.get(name)), "")
-    if link[:1] != "#" or link[1:] not in by_id:
-        raise UserError(f"cannot read {path} (<use> refers to '{link[:60]}', which is not in the file); embed it, or unlink clones, in the drawing program")
-    original = copy.deepcopy(by_id[link[1:]])
-    if original.tag == NAMESPACE + "symbol":
-        original.tag = NAMESPACE + "svg"  # A <symbol> is drawn like an <svg> inside the drawing.
-        original.attrib.update({name: use.get(name) for name in ("width", "height") if use.get(name)})
-    attributes = {name: value for name, value in use.attrib.items() if name not in ("x", "y", "width", "height", *LINKS)}
-    attributes["transform"] = f"{use.get('transform', '')} translate({use.get('x', 0)}, {use.get('y', 0)})"
-    group = ElementTree.Element(NAMESPACE + "g", attributes)
-    group.append(original)
-    return group
-
-
 class Clips:
     """Clips shapes: only the part inside a clip-path is visible. The clip-path belongs to the shape itself or to a
-    group around it.
+    group around it. The viewport of an <svg> within the drawing is a rectangle that clips its content.
 
-    The library ignores clip-paths. So the shapes of each clip-path are added to the clipped group, and the library
-    applies the group's transform to them. Both the clipping and the clipped shapes are marked with attributes that the
+    The library ignores clips. So the shapes of each clip are added to a group around the clipped element, and the
+    library applies the element's transform to them. Both the clipping and the clipped shapes are marked with attributes that the
     library keeps."""
 
     SHAPE, USED = "clip-shape", "clipped-by"
@@ -181,17 +151,24 @@ class Clips:
                 continue
             link, clips = self._link(child), outer
             clip = self._by_id.get(link)
+            contents: list[tuple[list[Any], str]] = []
             if clip is not None and clip.get("clipPathUnits") != "objectBoundingBox":
-                name = str(len(self._areas))
-                self._areas[name] = []
-                clips = f"{outer} {name}"
-                shapes = ElementTree.Element(NAMESPACE + "g", {self.SHAPE: name, "visibility": "visible", "transform": clip.get("transform", "")})
-                shapes.extend(copy.deepcopy(list(clip)))
-                group = ElementTree.Element(NAMESPACE + "g", {"transform": child.attrib.pop("transform", "")})
-                group.extend([shapes, child])
-                element[index] = group
+                contents.append((list(clip), clip.get("transform", "")))
             elif link:
                 self.unknown += 1
+            if child.tag == NAMESPACE + "svg" and child.get("overflow") not in ("visible", "auto"):
+                sides = {name: child.get(name, "0") for name in elements.LENGTHS["svg"]}
+                contents.append(([ElementTree.Element(NAMESPACE + "rect", sides)], ""))
+            if contents:
+                group = ElementTree.Element(NAMESPACE + "g", {"transform": child.attrib.pop("transform", "")})
+                for shapes, transform in contents:
+                    name = str(len(self._areas))
+                    self._areas[name] = []
+                    clips = f"{clips} {name}"
+                    area = ElementTree.SubElement(group, NAMESPACE + "g", {self.SHAPE: name, "visibility": "visible", "transform": transform})
+                    area.extend(copy.deepcopy(shapes))
+                group.append(child)
+                element[index] = group
             child.set(self.USED, clips)
             self._draw(child, clips)
 
@@ -205,7 +182,7 @@ class Clips:
     def cut(self, found: Drawing, values: dict[str, Any], tag: Any, corners: Numbers) -> None:
         """Adds the part of an outline or a line that is inside all its clips."""
         clips = [self._areas[name] for name in values.get(self.USED, "").split()]
-        if len(corners) == 0 or all(len(clip) == 1 and walls.is_rectangle(clip[0][:-1]) and holds(clip[0], [corners]) for clip in clips):
+        if len(corners) == 0 or all(len(clip) == 1 and walls.is_rectangle(clip[0][:-1]) and is_within(corners, clip[0]) for clip in clips):
             add(found, corners)
             return
         geometry = library("shapely.geometry", "python3-shapely")
@@ -233,6 +210,12 @@ class Clips:
             clip = self._areas[name]
             shape = shape.intersection(areas.union([areas.polygon(part) for part in clip], 0.0) if clip else library("shapely.geometry", "python3-shapely").Polygon())
         return shape
+
+
+def is_within(corners: Numbers, rectangle: Numbers) -> bool:
+    """Whether all corners are in a rectangle, apart from rounding."""
+    (left, bottom), (right, top) = rectangle.min(axis=0), rectangle.max(axis=0)
+    return areas.is_on(corners, (left, bottom, right, top))
 
 
 def corners_of(svgelements: Any, outline: Any) -> Numbers:
