@@ -552,6 +552,17 @@ class Drawings(Analysis):
         self.gdsii(DEVICE=self.rounds())
         self.refused("--holes", words=["no holes", "leave out --holes"])
 
+    def test_holes_that_were_cut_into_pieces_are_counted_as_at_least(self):
+        import gdspy
+
+        # Two pieces, whose border cuts the third of five holes.
+        holes = [gdspy.Round((400 + 500 * i, 600), 50, number_of_points=64) for i in range(5)]
+        pieces = [gdspy.boolean(gdspy.Rectangle((left, 0), (left + 1400, 1200)), holes, "not", max_points=10000) for left in (0, 1400)]
+        self.gdsii(DEVICE=pieces)
+        self.refused(words=["the drawing has at least 4 round holes", "--holes"])
+        self.gdsii(DEVICE=gdspy.boolean(gdspy.Rectangle((0, 0), (2800, 1200)), holes, "not", max_points=10000))
+        self.refused(words=["the drawing has 5 round holes", "--holes"])
+
     def test_holes_that_touch_the_outer_edge_do_not_vanish(self):
         import gdspy
 
@@ -1411,6 +1422,21 @@ class OtherTools(Analysis):
         framed.save(self.folder / "framed.png")
         self.device("framed.png", unit=1e-6)
         self.assertEqual(self.drawing.notes, ["the posts are dark (--posts)"])
+
+    def test_posts_centred_beyond_the_border_of_a_picture_are_left_out_and_named(self):
+        # Of the third post less than half is in the picture, and of the fourth more; the fifth is beyond the upper border.
+        self.picture("L", 255, 0, "mask.png", extra=[(-12, 100), (885, 200), (400, -10)])
+        np.testing.assert_allclose(self.circles_of("mask.png", unit=1e-6), [(200.5, 149.5, 61), (600.5, 149.5, 61), (885.5, 99.5, 61)], atol=1)
+        told = self.draw("circles", "mask.png", "--pixel", "2um", "--droplet", "200um", "--output", "posts").stdout
+        self.assertIn("2 posts left out that reach into the picture from outside", told)
+        self.assertIn("3 posts, device 9 x 3 droplet diameters", told)
+        self.assertEqual(len(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)), 3)
+        # Where the user drew an edge, a post with its centre on the edge remains an error.
+        drawing, space = self.dxf()
+        for x, y in ((800, 300), (1600, 1200)):
+            space.add_circle((x, y), 50)
+        drawing.saveas(self.folder / "device.dxf")
+        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "other", words=["1 post with the centre outside the edge"])
 
     def test_pixels_of_tiff_files(self):
         info = TiffImagePlugin.ImageFileDirectory_v2()
