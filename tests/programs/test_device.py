@@ -1424,7 +1424,7 @@ class OtherTools(Analysis):
         self.assertEqual(self.drawing.notes, ["the posts are dark (--posts)"])
 
     def test_posts_centred_beyond_the_border_of_a_picture_are_left_out_and_named(self):
-        # Of the third post less than half is in the picture, and of the fourth more; the fifth is beyond the upper border.
+        # Less than half of the third post is in the picture, and more than half of the fourth; the fifth is beyond the upper border.
         self.picture("L", 255, 0, "mask.png", extra=[(-12, 100), (885, 200), (400, -10)])
         np.testing.assert_allclose(self.circles_of("mask.png", unit=1e-6), [(200.5, 149.5, 61), (600.5, 149.5, 61), (885.5, 99.5, 61)], atol=1)
         told = self.draw("circles", "mask.png", "--pixel", "2um", "--droplet", "200um", "--output", "posts").stdout
