@@ -552,6 +552,17 @@ class Drawings(Analysis):
         self.gdsii(DEVICE=self.rounds())
         self.refused("--holes", words=["no holes", "leave out --holes"])
 
+    def test_holes_that_were_cut_into_pieces_are_counted_as_at_least(self):
+        import gdspy
+
+        # Two pieces, whose border cuts the third of five holes.
+        holes = [gdspy.Round((400 + 500 * i, 600), 50, number_of_points=64) for i in range(5)]
+        pieces = [gdspy.boolean(gdspy.Rectangle((left, 0), (left + 1400, 1200)), holes, "not", max_points=10000) for left in (0, 1400)]
+        self.gdsii(DEVICE=pieces)
+        self.refused(words=["the drawing has at least 4 round holes", "--holes"])
+        self.gdsii(DEVICE=gdspy.boolean(gdspy.Rectangle((0, 0), (2800, 1200)), holes, "not", max_points=10000))
+        self.refused(words=["the drawing has 5 round holes", "--holes"])
+
     def test_holes_that_touch_the_outer_edge_do_not_vanish(self):
         import gdspy
 
@@ -937,6 +948,38 @@ class OtherTools(Analysis):
         np.testing.assert_allclose(self.svg(styles + body + seen), [(800, 300, 100)], rtol=1e-3)
         self.assertEqual(dict(self.drawing.skipped), {"transparent circle": 4, "unpainted circle": 5, "hidden circle": 1})
 
+    def test_svg_style_sheets_follow_the_cascade(self):
+        # CSS 2.1, 6.4: !important, then specificity, then place. A group is drawn with its opacity as a whole (`opacity` in CSS).
+        c, left = 'class="c"', '<clipPath id="left"><rect width="600" height="1200"/></clipPath>'
+        seen, post = '<circle cx="800" cy="900" r="50"/>', '<circle cx="1600" cy="300" r="50" {}/>'
+        for sheet, around, attributes in [
+                ("g.h circle{display:none}", "<g class='h'>*</g>", ""), ("circle.a.b{display:none}", "*", 'class="a b"'), ('circle[data-k="q"]{visibility:hidden}', "*", 'data-k="q"'),
+                ("g > .c{opacity:0}", "<g>*</g>", c), ("circle.f{display:none !important}", "*", 'class="f" style="display:inline"'), ("#p{display:none} .c{display:inline}", "*", f'id="p" {c}'),
+                (".c{display:inline} .c{display:none}", "*", c), ("desc + circle{fill:none}", "<g><desc/>*</g>", ""), ("g:nth-of-type(2) *{display:none}", "<g/><g>*</g>", ""),
+                (".c{fill:none}", "*", f'{c} fill="red"'), (".c{display:inline !important} #p{display:none !important}", "*", f'id="p" {c}'), ("@media screen, print{.c{display:none}}", "*", c),
+                ("/* a comment */ .C, .c{ DISPLAY : none ; } ", "*", c), ("g{opacity:0} .c{opacity:1}", "<g>*</g>", c), ("<![CDATA[ g > .c{display:none} ]]>", "<g>*</g>", c),
+                (".c{clip-path:none} g .c{clip-path:url(#left)}", "<g>*</g>", c), ("#page > .c{display:none}", "<g id='page'>*</g>", c)]:
+            body = around.replace("*", post.format(attributes)) + seen
+            for text in (f"<style>{sheet}</style>{left}{body}", f"{left}{body}<style>{sheet}</style>"):
+                with self.subTest(text):
+                    np.testing.assert_allclose(self.svg(text), [(800, 300, 100)], rtol=1e-3)
+        for sheet, attributes in [("@media print{.c{display:none}}", c), (".c{display:none}", f'{c} style="display:inline"'), (".c{display:inline} circle{display:none}", c),
+                                  ("circle:hover, .c:not(circle){display:none}", c), ("</style><style media='print'>.c{display:none}", c), (".c{clip-path:none}", f'{c} clip-path="url(#left)"'),
+                                  (".c{fill:inherit}", f'{c} fill="none"'), (".b{display:none}", c), ("</style><style>", ""), (".c{cy:300px}", c)]:
+            with self.subTest(sheet):
+                np.testing.assert_allclose(self.svg(f"<style>{sheet}</style>{left}{post.format(attributes)}"), [(1600, 900, 100)], rtol=1e-3)
+                self.assertEqual(self.drawing.notes, [])
+
+    def test_svg_style_rules_that_cannot_be_applied_are_named(self):
+        sheet = '@import "other.css"; circle:unheard-of{display:none} @media (max-width: 9px){circle{display:none}} g{circle{display:none}} @layer base{circle{display:none}}'
+        self.assertEqual(len(self.svg(f'<style>{sheet}</style><circle cx="800" cy="300" r="50"/>')), 1)
+        self.assertEqual(len(self.drawing.notes), 1)
+        for word in ("styles ignored", '@import "other.css"', "circle:unheard-of", "@media (max-width: 9px)", "rules within g", "@layer base"):
+            self.assertIn(word, self.drawing.notes[0])
+        self.write("device.svg", '<?xml-stylesheet href="other.css"?>' + SVG.format('<circle cx="800" cy="300" r="50"/>'))
+        self.assertEqual(len(self.circles_of("device.svg")), 1)
+        self.assertIn("style sheet in another file ignored", self.drawing.notes[0])
+
     def test_svg_shows_what_its_clips_leave(self):
         circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))
         left = '<clipPath id="left"><rect width="600" height="1200"/></clipPath>'
@@ -956,6 +999,60 @@ class OtherTools(Analysis):
         box_units = left.replace("<clipPath", '<clipPath clipPathUnits="objectBoundingBox"')
         self.assertEqual(len(self.svg(f'{box_units}<g clip-path="url(#left)">{circles}</g>')), 3)
         self.assertIn("1 clips or masks ignored", self.drawing.notes[0])
+
+    def test_svg_transforms_have_an_origin(self):
+        # CSS Transforms Level 1: translate(origin) transform translate(-origin). Percentages and words refer to the viewBox.
+        for origin, (x, y) in [("1000 200", (1000, 200)), ("1000px 200px", (1000, 200)), ("50% 50%", (1800, 600)), ("center", (1800, 600)), ("right top", (3600, 0)), ("bottom left", (0, 1200)), ("top", (1800, 0)),
+                               ("0 0", (0, 0)), ("25.4mm 1in", (96, 96)), ("1000 200 5", (1000, 200))]:
+            # Each transform moves the post to (x + 100, y + 120) with a radius of 50.
+            for transform, cx, cy, radius in [("scale(0.5)", x + 200, y + 240, 100), ("rotate(90)", x + 120, y - 100, 50), ("rotate(180deg)", x - 100, y - 120, 50)]:
+                for attributes in (f'transform="{transform}" transform-origin="{origin}"', f'style="transform:{transform};transform-origin:{origin}"', f'transform="{transform}" style="transform-origin:{origin}"'):
+                    with self.subTest(attributes):
+                        # The outer transform moves the post to the middle of the drawing.
+                        body = f'<g transform="translate({1000 - x} {500 - y})"><g {attributes}><circle cx="{cx}" cy="{cy}" r="{radius}"/></g></g>'
+                        np.testing.assert_allclose(self.svg(body), [(1100, 1200 - 620, 100)], rtol=1e-4)
+        for attributes, words in [('id="p" transform="scale(2)" transform-origin="1em 2em"', ['transform-origin="1em 2em"', '<circle id="p">', "in px"]),
+                                  ('transform="scale(2)" style="transform-box:fill-box; transform-origin: center"', ['transform-box="fill-box"', "in px"]),
+                                  ('style="transform:translate(10%)"', ['transform="translate(10%)"', '<circle cx="800"', "ungrouping"]), ('style="transform:translate3d(1px,2px,0)"', ["translate3d(1px,2px,0)"])]:
+            with self.subTest(attributes):
+                self.write("device.svg", SVG.format(f'<circle {attributes} cx="800" cy="300" r="50"/>'))
+                self.refused("device.svg", *words)
+        np.testing.assert_allclose(self.svg('<circle style="transform-origin:center; transform-box:fill-box; transform:none" cx="800" cy="300" r="50"/>'), [(800, 900, 100)], rtol=1e-4)
+
+    def test_svg_viewports_within_the_drawing_clip(self):
+        circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))
+        symbol = f'<symbol id="s" {{}}>{circles}</symbol>'
+        for body in [f'<svg width="600" height="1200">{circles}</svg>', f'<svg width="16.6666666667%" viewBox="0 0 600 1200">{circles}</svg>', symbol.format("") + '<use href="#s" width="600" height="500"/>',
+                     symbol.format('viewBox="0 200 600 200"') + '<use href="#s" y="200" width="600" height="200"/>', f'<svg width="600" height="1200" overflow="hidden">{circles}</svg>',
+                     f'<svg x="-100" width="700" height="1200"><g transform="translate(100 0)">{circles}</g></svg>',
+                     f'<defs><svg id="t" width="3000" height="900">{circles}</svg></defs><use href="#t" width="600"/>', f'<g transform="rotate(90)"><svg width="1200" height="600" y="-600"><g transform="translate(0 600) rotate(-90)">{circles}</g></svg></g>']:
+            with self.subTest(body):
+                np.testing.assert_allclose(self.svg(body), [(400, 900, 100)], rtol=1e-3)
+                self.assertEqual(dict(self.drawing.skipped), {"clipped circle": 2})
+        for attributes in ('overflow="visible"', 'style="overflow:auto"'):
+            self.assertEqual(len(self.svg(f'<svg width="600" height="1200" {attributes}>{circles}</svg>')), 3)
+        # A post that crosses the viewport is cut, and an empty viewport shows nothing, but what follows is drawn.
+        self.write("device.svg", SVG.format(f'<svg width="400" height="1200">{circles}</svg>'))
+        np.testing.assert_allclose(np.ptp(self.device("device.svg").others[0] * 200, axis=0), [50, 100], rtol=1e-3)
+        self.assertEqual(len(self.svg(f'<svg width="0" height="1200">{circles}</svg><circle cx="800" cy="300" r="50"/>')), 1)
+
+    def test_svg_lengths_have_units(self):
+        # SVG 2, 8.9: percentages refer to the viewport, and for r to the square root of (width^2 + height^2) / 2.
+        percent = 50 / np.sqrt((3600**2 + 1200**2) / 2) * 100
+        for shape in [f'<circle cx="800" cy="300" r="{percent}%"/>', '<circle cx="22.2222222%" cy="25%" r="50"/>', '<ellipse cx="800" cy="300" rx="50"/>', '<ellipse cx="800" cy="300" ry="50" rx="auto"/>',
+                      '<rect x="750" y="250" width="2.7777778%" height="8.333333%" rx="50"/>', '<circle cx="800px" cy="225pt" r="0.5208333333in"/>', '<circle style="cx:800px; cy:300px; r:50px"/>',
+                      '<rect/><circle cx="800" cy="300" r="50"/>', '<circle cx="8e2" cy="+300." r="50"/>', f'<svg x="0" y="0" width="3600" height="1200" viewBox="0 0 36 12"><circle cx="22.2222222%" cy="25%" r="{percent}%"/></svg>',
+                      '<use href="#c" x="50%" y="0"/><defs><circle id="c" cx="-1000" cy="300" r="50"/></defs>', '<g display="none"><circle r="1em"/></g><circle cx="800" cy="300" r="50"/>']:
+            with self.subTest(shape):
+                np.testing.assert_allclose(self.svg(shape), [(800, 900, 100)], rtol=1e-4)
+        for shape, words in [('<circle id="a" r="5em"/>', ['r="5em" of <circle id="a">']), ('<ellipse rx="3" ry="1ex"/>', ['ry="1ex" of <ellipse rx="3" ry="1ex">']), ('<rect x="1rem" width="9" height="9"/>', ['x="1rem"']),
+                             ('<circle cx="5vw" r="1"/>', ['cx="5vw"']), ('<g style="font-size:9px"><circle r="3" cy="5vh"/></g>', ['cy="5vh"']), ('<rect width="calc(1px + 2%)" height="9"/>', ["calc(1px + 2%)"]),
+                             ('<circle style="r:2em"/>', ['r="2em"'])]:
+            with self.subTest(shape):
+                self.write("device.svg", SVG.format(shape))
+                self.refused("device.svg", "cannot read", "px, mm, cm, in, pt or pc", "give it in one of these", *words)
+        self.write("device.svg", '<svg xmlns="http://www.w3.org/2000/svg"><circle r="5%"/></svg>')
+        self.refused("device.svg", 'r="5%"')
 
     def test_svg_objects_outside_the_page_are_left_out_and_named(self):
         frame = '<rect x="{0}" y="{1}" width="3600" height="1200" fill="none" stroke="black"/>'
@@ -1325,6 +1422,21 @@ class OtherTools(Analysis):
         framed.save(self.folder / "framed.png")
         self.device("framed.png", unit=1e-6)
         self.assertEqual(self.drawing.notes, ["the posts are dark (--posts)"])
+
+    def test_posts_centred_beyond_the_border_of_a_picture_are_left_out_and_named(self):
+        # Less than half of the third post is in the picture, and more than half of the fourth; the fifth is beyond the upper border.
+        self.picture("L", 255, 0, "mask.png", extra=[(-12, 100), (885, 200), (400, -10)])
+        np.testing.assert_allclose(self.circles_of("mask.png", unit=1e-6), [(200.5, 149.5, 61), (600.5, 149.5, 61), (885.5, 99.5, 61)], atol=1)
+        told = self.draw("circles", "mask.png", "--pixel", "2um", "--droplet", "200um", "--output", "posts").stdout
+        self.assertIn("2 posts left out that reach into the picture from outside", told)
+        self.assertIn("3 posts, device 9 x 3 droplet diameters", told)
+        self.assertEqual(len(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)), 3)
+        # Where the user drew an edge, a post with its centre on the edge remains an error.
+        drawing, space = self.dxf()
+        for x, y in ((800, 300), (1600, 1200)):
+            space.add_circle((x, y), 50)
+        drawing.saveas(self.folder / "device.dxf")
+        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "other", words=["1 post with the centre outside the edge"])
 
     def test_pixels_of_tiff_files(self):
         info = TiffImagePlugin.ImageFileDirectory_v2()

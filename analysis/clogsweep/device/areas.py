@@ -10,7 +10,7 @@ from ..tools import rounded
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from .libraries import library
-from .shapes import Box, Drawing, fitted_circle, holds
+from .shapes import Box, Drawing, fitted_circle, holds, holds_centre, left_out
 from . import walls
 from .walls import SHARE, is_rectangle
 
@@ -276,16 +276,8 @@ def cut(drawing: Drawing, region: Box, tolerance: float, name: str) -> tuple[int
     for common in cuts:
         add(drawing, common)
     if beside:
-        drawing.notes.append(f"{rounded.counted(beside, 'post')} left out that {'reaches' if beside == 1 else 'reach'} into the {name} from outside")
+        drawing.notes.append(left_out(beside, name))
     return outside, around
-
-
-def holds_centre(region: Box, circle: tuple[float, float, float]) -> bool:
-    """Whether a region holds the centre of a circle. A centre on the upper or the right border is outside, because the
-    array repeats there. The centre of a fitted circle is rounded."""
-    left, bottom, right, top = region
-    near = NEAR * max(right - left, top - bottom)
-    return left - near <= circle[0] < right - near and bottom - near <= circle[1] < top - near
 
 
 def is_near(outline: Numbers, region: Box) -> bool:

@@ -20,6 +20,7 @@ from .walls import area, centroid
 METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3, "mil": 25.4e-6}
 MARGIN = 0.5  # Distance between the posts and the edge of a device whose edge is not drawn [sigma].
 NEAR = 0.01  # A line that is part of the edge may be this far outside the edge [sigma].
+ROUNDED = 1e-6  # The centre of a fitted circle is rounded by at most this fraction of the size of the drawing.
 SAME = 1e-3  # Two circles are the same if they differ by at most this fraction of the diameter.
 WINDOW = 1000  # Copies of a circle are searched for among this number of neighbours along x.
 LONGEST = 10000  # A side of a device that is longer than this probably comes from a wrong unit [sigma].
@@ -266,6 +267,8 @@ def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float
         is_closed = not drawing.is_picture or bool(np.allclose(outline[0], outline[-1]))
         circle = fitted_circle(outline, is_closed, tolerance)
         found.append(circle) if circle else others.append(outline)
+    if drawing.frame is not None and edge is None:
+        found = leave_out_centres_beyond(drawing, drawing.frame, found)
     if not found and not others:
         read = f" ({'; '.join(drawing.notes)})" if drawing.notes else ""
         raise UserError(f"the drawing holds no posts{read}; choose another --layer or --region, or close the outlines{drawing.layers_in_words()}")
@@ -273,6 +276,27 @@ def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float
     drawing.duplicates += len(found) - len(circles)
     frame = drawing.frame if edge is None else (*edge.min(axis=0), *edge.max(axis=0))
     return placed(drawing, circles, others, frame, metres / droplet, droplet, turns)
+
+
+def holds_centre(region: Box, circle: tuple[float, float, float]) -> bool:
+    """Whether a region holds the centre of a circle. A centre on the upper or the right border is outside, because the
+    array repeats there. The centre of a fitted circle is rounded."""
+    left, bottom, right, top = region
+    near = ROUNDED * max(right - left, top - bottom)
+    return left - near <= circle[0] < right - near and bottom - near <= circle[1] < top - near
+
+
+def leave_out_centres_beyond(drawing: Drawing, frame: Box, circles: list[tuple[float, float, float]]) -> list[tuple[float, float, float]]:
+    """The circles with their centre within the frame of a picture or a region. Notes how many others there are."""
+    kept = [circle for circle in circles if holds_centre(frame, circle)]
+    if number := len(circles) - len(kept):
+        drawing.notes.append(left_out(number, "picture" if drawing.is_picture else "region"))
+    return kept
+
+
+def left_out(number: int, name: str) -> str:
+    """@param number  of posts with their centre outside a region, @param name  of the region"""
+    return f"{rounded.counted(number, 'post')} left out that {'reaches' if number == 1 else 'reach'} into the {name} from outside"
 
 
 def refuse_swallowed(drawing: Drawing, outlines: list[Numbers]) -> None:
@@ -302,8 +326,10 @@ def lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> list
 def refuse_lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> None:
     """@throws UserError  if posts may be drawn as holes"""
     if holes := lost_holes(drawing, edge, tolerance):
+        # The borders between several pieces of one area may cut holes, which are then not among these.
+        least = "at least " if edge is None and len(drawing.outlines) > 1 else ""
         kind = "round hole" if all(fitted_circle(hole, True, tolerance) for hole in holes) else "hole"
-        raise UserError(f"the drawing has {rounded.counted(len(holes), kind)}, which would not be posts; --holes reads holes as posts, and --layer or --region leave them out"
+        raise UserError(f"the drawing has {least}{rounded.counted(len(holes), kind)}, which would not be posts; --holes reads holes as posts, and --layer or --region leave them out"
                         f"{drawing.layers_in_words()}")
 
 

@@ -13,20 +13,16 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..tools.errors import UserError
 from ..tools.hints import Numbers
-from . import areas, walls
+from . import areas, css, elements, walls
+from .elements import NAMESPACE
 from .libraries import library
-from .shapes import Box, Drawing, holds
+from .shapes import Box, Drawing
 
 METRES_IN_PIXEL = 25.4e-3 / 96
 LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
 # Number of straight pieces of each curved segment. For a quarter of a circle they deviate by 2e-5 of its radius.
 PIECES_OF_CURVE = 64
-NAMESPACE = "{http://www.w3.org/2000/svg}"
-# Elements that are drawn only if something refers to them.
-TEMPLATES = [NAMESPACE + name for name in ("symbol", "marker", "mask")]
-LINKS = ("href", "{http://www.w3.org/1999/xlink}href")
 
 
 def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
@@ -34,12 +30,15 @@ def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
     @param are_holes_posts  whether holes in filled paths are read as holes, and not as outlines within outlines"""
     svgelements = library("svgelements", "python3-svgelements")
     root = ElementTree.parse(path).getroot()
-    expand(root, {element.get("id"): element for element in root.iter()}, path)
+    notes = ["style sheet in another file ignored; embed it in the drawing"] if b"<?xml-stylesheet" in path.read_bytes() else []
+    css.apply(root, notes)
+    elements.prepare(root, path)
+    hide_within_transparent(root)
     clips = Clips(root)
     content = svgelements.SVG.parse(io.BytesIO(ElementTree.tostring(root)), reify=False)
     width = str(root.get("width", "")).strip()
     has_unit = width.endswith(LENGTHS)
-    found = Drawing([], [], METRES_IN_PIXEL if has_unit else None, skipped=collections.Counter())
+    found = Drawing([], [], METRES_IN_PIXEL if has_unit else None, notes=notes, skipped=collections.Counter())
     found.unit_in_words = width.lstrip("0123456789.eE+- ") if has_unit else "px"
     found.unit_hint = "" if has_unit else f" (--pixel {METRES_IN_PIXEL * 1e3:.7g}mm, if 96 of them are an inch; Inkscape before 0.92 had 90, --pixel {25.4 / 90:.7g}mm)"
     viewport = svgelements.Matrix(content.viewbox_transform) if content.viewbox else svgelements.Matrix()
@@ -105,6 +104,14 @@ def invisible(element: Any) -> str:
     return "" if is_painted(element.fill) or is_painted(element.stroke) and element.stroke_width > 0 else "unpainted"
 
 
+def hide_within_transparent(root: Any) -> None:
+    """Makes all that is within a transparent group transparent. The library lets a part replace the group's opacity."""
+    for element in root.iter():
+        if number(element.get("opacity", "1")) == 0:
+            for part in element.iter():
+                part.set("opacity", "0")
+
+
 def number(text: Any) -> float:
     """An opacity as a number. Text that is no number counts as 1."""
     try:
@@ -113,56 +120,28 @@ def number(text: Any) -> float:
         return 1.0
 
 
-def expand(element: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> None:
-    """Replaces each <use> by a group with a copy of its target.
-
-    The library makes three mistakes in this step: it drops references to elements further down in the file, draws a
-    <symbol> where it is defined, and ignores the viewBox of a <symbol>."""
-    element[:] = [group_of(child, by_id, path) if child.tag == NAMESPACE + "use" else child for child in element if child.tag not in TEMPLATES]
-    for child in element:
-        expand(child, by_id, path)
-
-
-def group_of(use: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> Any:
-    """A group with a copy of the target of a <use>. @throws UserError  if the file lacks the target"""
-    link = next((use.get(name) for name in LINKS if use.get(name)), "")
-    if link[:1] != "#" or link[1:] not in by_id:
-        raise UserError(f"cannot read {path} (<use> refers to '{link[:60]}', which is not in the file); embed it, or unlink clones, in the drawing program")
-    original = copy.deepcopy(by_id[link[1:]])
-    if original.tag == NAMESPACE + "symbol":
-        original.tag = NAMESPACE + "svg"  # A <symbol> is drawn like an <svg> inside the drawing.
-        original.attrib.update({name: use.get(name) for name in ("width", "height") if use.get(name)})
-    attributes = {name: value for name, value in use.attrib.items() if name not in ("x", "y", "width", "height", *LINKS)}
-    attributes["transform"] = f"{use.get('transform', '')} translate({use.get('x', 0)}, {use.get('y', 0)})"
-    group = ElementTree.Element(NAMESPACE + "g", attributes)
-    group.append(original)
-    return group
-
-
 class Clips:
     """Clips shapes: only the part inside a clip-path is visible. The clip-path belongs to the shape itself or to a
-    group around it.
+    group around it. The viewport of an <svg> within the drawing is a rectangle that clips its content.
 
-    The library ignores clip-paths. So the shapes of each clip-path are added to the clipped group, and the library
-    applies the group's transform to them. Both the clipping and the clipped shapes are marked with attributes that the
+    The library ignores clips. So the shapes of each clip are added to a group around the clipped element, and the
+    library applies the element's transform to them. Both the clipping and the clipped shapes are marked with attributes that the
     library keeps."""
 
     SHAPE, USED = "clip-shape", "clipped-by"
 
     def __init__(self, root: Any) -> None:
         self._by_id = {element.get("id"): element for element in root.iter(NAMESPACE + "clipPath")}
-        styles = " ".join(element.text or "" for element in root.iter(NAMESPACE + "style"))
-        self._by_class = {name: link for names, link in re.findall(r"([^{}]*)\{[^{}]*clip-path\s*:\s*url\(([^)]*)\)", styles) for name in re.findall(r"\.([\w-]+)", names)}
         self._areas: dict[str, list[Numbers]] = {}
         self.unknown = 0
         self._draw(root, "")
 
     def _link(self, element: Any) -> str:
-        styled = re.search(r"clip-path\s*:\s*url\(([^)]*)\)", element.get("style", ""))
-        own = re.search(r"url\(([^)]*)\)", element.get("clip-path", ""))
-        classes = [self._by_class[name] for name in element.get("class", "").split() if name in self._by_class]
-        self.unknown += bool(re.search(r"\bmask\s*[:=]\s*url\(", f"mask={element.get('mask', '')};{element.get('style', '')}"))
-        return next((link.strip(" '\"#") for link in [*(found[1] for found in (styled, own) if found), *classes]), "")
+        """The name of the clip-path of an element, or an empty text."""
+        clip = element.get("clip-path", "none")
+        link = re.search(r"url\(([^)]*)\)", clip)
+        self.unknown += ("url(" in element.get("mask", "")) + (link is None and clip != "none")
+        return link[1].strip(" '\"#") if link else ""
 
     def _draw(self, element: Any, outer: str) -> None:
         """Adds the shapes of clip-paths to the groups that they clip. @param outer  numbers of the clips around the
@@ -172,17 +151,24 @@ class Clips:
                 continue
             link, clips = self._link(child), outer
             clip = self._by_id.get(link)
+            contents: list[tuple[list[Any], str]] = []
             if clip is not None and clip.get("clipPathUnits") != "objectBoundingBox":
-                name = str(len(self._areas))
-                self._areas[name] = []
-                clips = f"{outer} {name}"
-                shapes = ElementTree.Element(NAMESPACE + "g", {self.SHAPE: name, "visibility": "visible", "transform": clip.get("transform", "")})
-                shapes.extend(copy.deepcopy(list(clip)))
-                group = ElementTree.Element(NAMESPACE + "g", {"transform": child.attrib.pop("transform", "")})
-                group.extend([shapes, child])
-                element[index] = group
+                contents.append((list(clip), clip.get("transform", "")))
             elif link:
                 self.unknown += 1
+            if child.tag == NAMESPACE + "svg" and child.get("overflow") not in ("visible", "auto"):
+                sides = {name: child.get(name, "0") for name in elements.LENGTHS["svg"]}
+                contents.append(([ElementTree.Element(NAMESPACE + "rect", sides)], ""))
+            if contents:
+                group = ElementTree.Element(NAMESPACE + "g", {"transform": child.attrib.pop("transform", "")})
+                for shapes, transform in contents:
+                    name = str(len(self._areas))
+                    self._areas[name] = []
+                    clips = f"{clips} {name}"
+                    area = ElementTree.SubElement(group, NAMESPACE + "g", {self.SHAPE: name, "visibility": "visible", "transform": transform})
+                    area.extend(copy.deepcopy(shapes))
+                group.append(child)
+                element[index] = group
             child.set(self.USED, clips)
             self._draw(child, clips)
 
@@ -196,7 +182,7 @@ class Clips:
     def cut(self, found: Drawing, values: dict[str, Any], tag: Any, corners: Numbers) -> None:
         """Adds the part of an outline or a line that is inside all its clips."""
         clips = [self._areas[name] for name in values.get(self.USED, "").split()]
-        if len(corners) == 0 or all(len(clip) == 1 and walls.is_rectangle(clip[0][:-1]) and holds(clip[0], [corners]) for clip in clips):
+        if len(corners) == 0 or all(len(clip) == 1 and walls.is_rectangle(clip[0][:-1]) and is_within(corners, clip[0]) for clip in clips):
             add(found, corners)
             return
         geometry = library("shapely.geometry", "python3-shapely")
@@ -224,6 +210,12 @@ class Clips:
             clip = self._areas[name]
             shape = shape.intersection(areas.union([areas.polygon(part) for part in clip], 0.0) if clip else library("shapely.geometry", "python3-shapely").Polygon())
         return shape
+
+
+def is_within(corners: Numbers, rectangle: Numbers) -> bool:
+    """Whether all corners are in a rectangle, apart from rounding."""
+    (left, bottom), (right, top) = rectangle.min(axis=0), rectangle.max(axis=0)
+    return areas.is_on(corners, (left, bottom, right, top))
 
 
 def corners_of(svgelements: Any, outline: Any) -> Numbers:
