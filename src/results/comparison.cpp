@@ -214,6 +214,11 @@ std::map<std::vector<Value>, Flaws> flaws_by_parameters(const std::vector<RunRow
   return all;
 }
 
+std::string named_value(const std::string& column, const Value& value) {
+  const std::string text = console::printable(sweep::text_of(value));
+  return text.empty() ? "no " + column : fmt::format("{}={}", column, text);
+}
+
 void append_left_out(Comparisons& comparisons, const std::string& side, const std::string& other,
                      const std::vector<std::string>& labels, const std::vector<std::vector<Value>>& unmatched,
                      std::size_t number_of_all) {
@@ -221,7 +226,7 @@ void append_left_out(Comparisons& comparisons, const std::string& side, const st
   std::vector<std::string> words;
   words.reserve(labels.size());
   for (std::size_t i = 0; i < labels.size(); ++i)
-    words.push_back(labels[i] + "=" + sweep::text_of(unmatched.front()[i]));
+    words.push_back(named_value(labels[i], unmatched.front()[i]));
   comparisons.left_out.push_back({.side = side,
                                   .other = other,
                                   .number = unmatched.size(),
@@ -301,9 +306,7 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
   std::erase(lists, column);
   std::vector<Side> sides;
   sides.reserve(rows.size());
-  for (auto& [value, own] : rows)
-    sides.push_back(
-        {fmt::format("{}={}", column, console::printable(sweep::text_of(value))), std::move(own), lists});
+  for (auto& [value, own] : rows) sides.push_back({named_value(column, value), std::move(own), lists});
   return sides;
 }
 

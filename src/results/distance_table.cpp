@@ -70,12 +70,27 @@ void take_distance(Head& head, std::size_t column, const std::string& unit, Dist
 /// @throws Error if the column says where each droplet was first seen
 void refuse_entry(const std::string& cell, const std::string& name, const std::string& unit) {
   const bool is_length = unit == "sigma" || (!unit.empty() && console::metres_of(unit));
-  if (name == "entry" || (is_length && std::set<std::string>{"start", "begin", "from"}.contains(name)))
+  static const std::set<std::string> places = {"start", "begin", "from", "entrance", "entered", "x0"};
+  if (name == "entry" || (is_length && places.contains(name)))
     throw Error(fmt::format(
         "column '{}' says where droplets were first seen, and groups cannot depend on that; delete the "
         "column "
         "and subtract its values from the distances, which does not change the length of an exponential law, "
         "or give a common value by --from-distance",
+        console::printable(cell)));
+}
+
+/// @throws Error if the column would separate droplets by their outcomes, so that lengths mean nothing
+void refuse_outcome(const std::string& cell) {
+  std::string name = column_name(console::in_lower_case(cell));
+  std::ranges::replace(name, ' ', '_');
+  static const std::set<std::string> words = {"censored", "event", "outcome"};
+  const bool is_result = std::ranges::any_of(sweep::columns(), [&](const sweep::Column& column) {
+    return column.role == sweep::ColumnRole::result && column.name == name;
+  });
+  if (is_result || words.contains(name))
+    throw Error(fmt::format(
+        "column '{}' belongs to the outcome of a droplet, on which groups cannot depend; delete it",
         console::printable(cell)));
 }
 
@@ -140,6 +155,7 @@ Head head_of(std::vector<std::string> cells, DistanceTable& table, const std::ve
       throw Error(fmt::format("there are two columns named {}; delete one", label));
     if (std::ranges::find(taken, column_name(label)) != taken.end())
       throw Error(fmt::format("column '{}' has the name of a result; rename it", label));
+    refuse_outcome(cells[i]);
   }
   return head;
 }
@@ -307,6 +323,29 @@ void hint_at_lone_droplets(const DistanceTable& table) {
       table.source, joined(unique.empty() ? table.labels : unique)));
 }
 
+/// Names columns whose values with two droplets or more have only clogged, or only moving droplets.
+void hint_at_outcomes(const DistanceTable& table) {
+  for (std::size_t i = 0; i < table.labels.size(); ++i) {
+    std::map<Value, std::pair<int, int>> counts;  // of moving and clogged droplets
+    for (const DistanceGroup& group : table.groups)
+      for (const fit::Observation& run : group.runs)
+        ++(run.clogged ? counts[group.labels[i]].second : counts[group.labels[i]].first);
+    bool is_any_moving = false, is_any_clogged = false, is_any_mixed = false;
+    for (const auto& [value, number] : counts) {
+      const auto& [num_moving, num_clogged] = number;
+      if (num_moving + num_clogged < 2) continue;
+      is_any_mixed |= num_moving > 0 && num_clogged > 0;
+      is_any_moving |= num_moving > 0;
+      is_any_clogged |= num_clogged > 0;
+    }
+    if (is_any_moving && is_any_clogged && !is_any_mixed)
+      console::say(fmt::format(
+          "clogfit: {}: each value of '{}' has only clogged or only moving droplets; if the column restates "
+          "the outcome, delete it",
+          table.source, table.labels[i]));
+  }
+}
+
 }  // namespace
 
 std::optional<double> diameter_of(const DistanceTable& table, const DistanceGroup& group,
@@ -365,6 +404,7 @@ DistanceTable read_distances(const std::string& path, const std::vector<std::str
   if (runs.empty()) throw Error(fmt::format("{} holds no distances; {}", path, example));
   table = grouped(std::move(table), std::move(runs));
   hint_at_lone_droplets(table);
+  hint_at_outcomes(table);
   return table;
 }
 
@@ -394,7 +434,7 @@ std::vector<DistanceTable> tables_of_values(const DistanceTable& table, const st
     const Value value = group.labels[static_cast<std::size_t>(place)];
     DistanceTable& one = tables[value];
     if (one.groups.empty()) {
-      one = {.source = fmt::format("{}={}", *found, sweep::text_of(value)),
+      one = {.source = named_value(*found, value),
              .unit = table.unit,
              .labels = table.labels,
              .groups = {},

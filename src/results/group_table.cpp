@@ -208,7 +208,32 @@ bool follows_from_shown(std::size_t place, const std::vector<bool>& shown, const
       groups, [&](const Group& group) { return group_columns()[place]->get(group.first_row); }, shown_values);
 }
 
-/// Columns that vary, except those whose automatic values follow from the others.
+/// Whether the row lacks a value because the other model alone has this parameter.
+bool lacks_as_model(const sweep::Column& column, const sweep::RunRow& row) {
+  if (column.name == "preset") return row.parameters.model != Model::dp;
+  RunParameters of_other_model = row.parameters;
+  of_other_model.model = row.parameters.model == Model::dp ? Model::sp : Model::dp;
+  return column.parameter && !column.parameter->applies_to(row.parameters) &&
+         column.parameter->applies_to(of_other_model);
+}
+
+/// A group with the column's value if one model alone has this parameter, with the same value in all of its
+/// groups; otherwise nullptr.
+const Group* group_of_only_model(const sweep::Column& column, const std::vector<Group>& groups) {
+  const Group* with_value = nullptr;
+  bool do_some_lack = false;
+  for (const Group& group : groups) {
+    const bool lacks = lacks_as_model(column, group.first_row);
+    do_some_lack = do_some_lack || lacks;
+    if (lacks) continue;
+    if (!with_value) with_value = &group;
+    if (column.get(group.first_row) != column.get(with_value->first_row)) return nullptr;
+  }
+  return do_some_lack ? with_value : nullptr;
+}
+
+/// Columns that vary, except those whose automatic values follow from the others, and those that vary only
+/// because one of the models lacks them.
 std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vector<bool>& varies) {
   const sweep::RunRow& first = groups.front().first_row;
   const RunParameters& run = first.parameters;
@@ -217,9 +242,12 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
     const auto is_of = [&](const char* key) { return key && column->name == parameter(key).column; };
     const bool is_automatic_everywhere = std::ranges::all_of(
         groups, [&](const Group& group) { return separating_value(*column, group.first_row) == Value(); });
-    shown.push_back((varies[shown.size()] && !is_automatic_everywhere && !column->may_be_automatic(run)) ||
-                    (column->get(first) != Value() && is_of(scene_of(run).gap_key)) ||
-                    is_of(model_of(run).stiffness_key));
+    const bool is_stiffness = std::ranges::any_of(groups, [&](const Group& group) {
+      return is_of(model_of(group.first_row.parameters).stiffness_key);
+    });
+    shown.push_back(
+        (varies[shown.size()] && !is_automatic_everywhere && !group_of_only_model(*column, groups)) ||
+        (column->get(first) != Value() && is_of(scene_of(run).gap_key)) || is_stiffness);
   }
   // The number of vertices comes first, then the time step, because other automatic values follow from both.
   std::vector<std::size_t> order(shown.size());
@@ -229,26 +257,29 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
     return name == "vertices" ? 0 : name == "time_step" ? 1 : 2;
   });
   for (const std::size_t i : order)
-    shown[i] = shown[i] || (varies[i] && !follows_from_shown(i, shown, groups));
+    shown[i] = shown[i] || (varies[i] && !group_of_only_model(*group_columns()[i], groups) &&
+                            !follows_from_shown(i, shown, groups));
   return shown;
 }
 
-/// The parameters that all groups share and that need a mention.
+/// The parameters that all groups, or all with a model, share and that need a mention.
 std::vector<std::string> shared_words(const std::vector<Group>& groups, const std::vector<bool>& varies,
                                       const std::vector<bool>& shown, SharedParameters shared) {
-  const sweep::RunRow& row = groups.front().first_row;
-  const std::vector<Value> usual =
-      shared == SharedParameters::unusual ? usual_parameters(row) : std::vector<Value>();
+  std::map<const Group*, std::vector<Value>> all_usual;
   std::vector<std::string> words;
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    if (shown[i] || varies[i]) continue;
     const sweep::Column& column = *group_columns()[i];
+    const Group* group = varies[i] ? group_of_only_model(column, groups) : &groups.front();
+    if (shown[i] || !group) continue;
+    const sweep::RunRow& row = group->first_row;
+    std::vector<Value>& usual = all_usual[group];
+    if (usual.empty() && shared == SharedParameters::unusual) usual = usual_parameters(row);
     const Value value = column.get(row);
     const std::string text = sweep::text_of(value);
     const bool tells_all =
         column.name == "model" || (column.name == "preset" && text != sweep::find_key("preset").default_text);
     if (!text.empty() && text != "none" && (tells_all || usual.empty() || value != usual[i]))
-      words.push_back(fmt::format("{}={}", column.name, rounded_text(groups.front(), groups, column)));
+      words.push_back(fmt::format("{}={}", column.name, rounded_text(*group, groups, column)));
   }
   return words;
 }

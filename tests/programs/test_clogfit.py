@@ -81,6 +81,55 @@ class Mixtures(ProgramTest):
         self.assertIn("clogged: has not moved", self.fit(*self.parts[::-1], "--dwell=30"))
 
 
+class GivenKeys(ProgramTest):
+    """Keys of numerics that were given are columns or words of the table, even if they vary together with others."""
+
+    SETTINGS = ["box=20", "obstacle-density=saturated", "max-time=5", "seeds=1"]
+
+    def table_of(self, points, *words):
+        """@return the words above the table, and its lines as dictionaries"""
+        (self.folder / "s.h5").unlink(missing_ok=True)
+        self.write("p.csv", points)
+        self.succeed("clogsweep", *self.SETTINGS, *words, "--points", "p.csv", "--output", "s.h5")
+        shared, lines = self.succeed("clogfit", "s.h5").stdout.split("\n\n")[:2]
+        head, *lines = [re.split(r"  +", line.strip()) for line in lines.splitlines()]
+        return shared, [dict(zip(head, line)) for line in lines]
+
+    def test_given_values_are_columns_and_automatic_values_are_not(self):
+        lengths = {"runs", "clogs", "lambda/sigma"}
+        for points in ("line-tension,vertices,wall-stiffness\n1,32,0.5\n2,64,0.7\n", "obstacle-gap,time-step,area-stiffness\n0.4,0.001,60\n0.5,0.0005,70\n",
+                       "obstacle-gap,line-tension,wall-stiffness\n0.4,1,0.6\n0.5,2,0.7\n"):
+            _, lines = self.table_of(points)
+            head, *rows = [line.split(",") for line in points.splitlines()]
+            names = [name.replace("-", "_") for name in head]
+            self.assertEqual([[float(line[name]) for name in names] for line in lines], [[float(cell) for cell in row] for row in rows])
+            before = list(lines[0])[:list(lines[0]).index("runs")]
+            self.assertEqual(set(before) - {"obstacle_gap", "line_tension"}, set(names) - {"obstacle_gap", "line_tension"})
+            self.assertLess(lengths, set(lines[0]))
+        # The same column for merged files.
+        for name, tension, stiffness in (("a.h5", 1, 0.5), ("b.h5", 2, 0.7)):
+            self.succeed("clogsweep", *self.SETTINGS, f"line-tension={tension}", f"wall-stiffness={stiffness}", "--output", name)
+        told = self.succeed("clogfit", "a.h5", "b.h5").stdout
+        self.assertIn("wall_stiffness", told)
+        self.assertNotIn("vertices", told)
+
+    def test_one_given_value_among_automatic_ones_is_a_column(self):
+        _, lines = self.table_of("line-tension,vertices\n1,32\n2,\n")
+        self.assertEqual([line["vertices"] for line in lines], ["32", "128"])
+
+    def test_a_given_ratio_of_stiffness_and_tension_is_told(self):
+        _, lines = self.table_of("line-tension\n1\n2\n", "perimeter-spring=rest", "perimeter-stiffness-ratio=3")
+        self.assertEqual([float(line["perimeter_stiffness"]) for line in lines], [3, 6])
+
+    def test_keys_that_only_one_model_has_are_columns_if_they_vary_in_it(self):
+        shared, lines = self.table_of("model,line-tension,near-wall-drag,wall-stiffness\nsp,,,5\ndp,1,0.2,\ndp,2,0.2,\n")
+        before = list(lines[0])[:list(lines[0]).index("runs")]
+        self.assertEqual(before, ["model", "obstacle_gap", "line_tension", "wall_stiffness"])
+        self.assertIn("near_wall_drag=0.2", shared.split())
+        shared, lines = self.table_of("model,line-tension,near-wall-drag,wall-stiffness\nsp,,,5\ndp,1,0.2,\ndp,2,0.3,\n")
+        self.assertEqual([line["near_wall_drag"] for line in lines], ["0.2", "0.3", "0"])
+
+
 class Profiles(ProgramTest):
     """clogfit drag and clogfit deviation with CSV files."""
 

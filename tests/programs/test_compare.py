@@ -98,6 +98,15 @@ class Compared(Analysis):
         self.assertEqual(self.succeed("clogfit", "compare", "both.h5", "--by", "obstacle-gap").stderr,
                          "clogfit compare: obstacle_gap=0.4: left out, 1 of 2 groups match no runs of obstacle_gap=0.5, such as line_tension=0.5\n")
 
+    def test_a_side_without_a_value_is_named(self):
+        for name, *keys in (("random.h5", "obstacle-gap=0.4"), ("lattice.h5", "obstacle-layout=lattice", "obstacle-gap=0.4", "lattice-angle=0")):
+            self.copy_sweep(name, "vertices=64", *(["box=20"] if name == "random.h5" else []), *keys, "line-tension=1,2", "max-time=20", "seeds=1..2")
+        self.succeed("clogsweep", "merge", "random.h5", "lattice.h5", "--output", "both.h5")
+        told = json.loads(self.succeed("clogfit", "compare", "both.h5", "--by", "lattice-angle", "--format", "json").stdout)["comparisons"]
+        self.assertEqual({(one["here"], one["there"]) for one in told}, {("lattice_angle=0", "no lattice_angle")})
+        self.write("own.csv", "distance [mm],clogged,wall\n5,1,glass\n6,0,glass\n7,1,\n8,0,\n")
+        self.assertIn("over that of no wall\n", self.succeed("clogfit", "compare", "own.csv", "--by", "wall").stdout)
+
     def test_text_csv_and_a_picture(self):
         self.sweep("s.h5", "near-wall-drag=0,2", seeds="1..3")
         text = self.succeed("clogfit", "compare", "s.h5", "--by", "near-wall-drag").stdout

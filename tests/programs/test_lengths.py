@@ -11,11 +11,12 @@ import types
 import unittest
 import unittest.mock
 
+import h5py
 import numpy as np
 import scipy.stats
 
 import support
-from support import FEW, ROOT, ProgramTest
+from support import FEW, ROOT, ProgramTest, shared_sweep
 
 sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep import style  # noqa: E402
@@ -130,11 +131,38 @@ class Lengths(ProgramTest):
         self.assertRegex(text, r"Nonmaintained +0 +0 +- +- +f")
 
     def test_a_delayed_entry_is_refused(self):
-        for head in ("entry [mm]", "Entry", "entry_um", "start (mm)", "from [sigma]"):
+        for head in ("entry [mm]", "Entry", "entry_um", "start (mm)", "from [sigma]", "entrance [mm]", "Entered_um", "x0 (sigma)"):
             self.write("own.csv", f"distance [mm],clogged,{head}\n10,1,2\n20,1,4\n")
             self.refuse("clogfit", "lengths", "own.csv", words=[f"own.csv line 1: column '{head}' says where droplets were first seen", "; delete the column and subtract its values", "--from-distance"])
-        self.write("own.csv", "distance [mm],clogged,start\n10,1,left\n20,1,right\n")
-        self.succeed("clogfit", "lengths", "own.csv")
+        for name in ("start", "entrance"):
+            self.write("own.csv", f"distance [mm],clogged,{name}\n10,1,left\n20,1,right\n")
+            self.succeed("clogfit", "lengths", "own.csv")
+
+    def test_a_label_that_restates_the_outcome_is_refused(self):
+        results = [column["name"] for column in json.loads(self.succeed("clogfit", shared_sweep(*FEW), "--format", "json").stdout)["columns"]]
+        with h5py.File(shared_sweep(*FEW)) as file:
+            results = [name for name in file["runs"].dtype.names if name not in results]
+        self.assertLess({"status", "mechanism", "clogged_by", "time"}, set(results))
+        circumstances = {"task", "seed", "wall_seconds", "processor_seconds", "rank", "instruction_set", "host", "attempt", "message", "preset", "obstacle_density", "distance"}
+        for name in ["Status", "Clogged by", "clogged-by", "censored", "event", "Outcome", *sorted(set(results) - circumstances)]:
+            self.write("own.csv", f"distance [mm],clogged,{name}\n5,1,a\n6,0,b\n7,1,a\n8,0,b\n")
+            for command in (["lengths", "own.csv"], ["compare", "own.csv", "--by", name]):
+                self.refuse("clogfit", *command, words=[f"own.csv line 1: column '{name}'", "outcome", "delete it"])
+
+    def test_labels_with_only_clogged_or_only_moving_droplets_are_told(self):
+        """A concentration at which nothing clogs is honest, so this is no error."""
+        def told(*lines):
+            self.write("own.csv", "distance [mm],clogged,x,y\n" + "".join(f"{line}\n" for line in lines))
+            return self.succeed("clogfit", "lengths", "own.csv").stderr
+
+        note = "clogfit: own.csv: each value of 'x' has only clogged or only moving droplets; if the column restates the outcome, delete it\n"
+        outcomes = ["5,1,c,1", "6,0,f,1", "7,1,c,1", "8,0,f,1"]
+        self.assertEqual(told(*outcomes), note)
+        self.assertEqual(told(*outcomes, "9,0,alone,2"), note)
+        for line in ("9,0,c,1", "9,1,f,1"):
+            self.assertEqual(told(*outcomes, line), "")
+        self.assertEqual(told("5,1,c,1", "6,1,f,1", "7,1,c,1", "8,1,f,1"), "")
+        self.assertEqual(told("5,1,c,1", "7,1,c,1"), "")
 
     def test_a_diameter_of_each_group_is_its_sigma(self):
         self.write("lab.cfg", LAB)

@@ -84,6 +84,9 @@ void append_left_out(Comparisons& comparisons, const std::string& side, const st
 /// and the log-rank tests.
 void correct_tests(std::vector<Comparison>& comparisons);
 
+/// `column=value`, or `no column` for an unset value.
+std::string named_value(const std::string& column, const Value& value);
+
 /// @throws Error if the side has no runs, or runs without a clogging length
 void require_lengths(const Side& side);
 
