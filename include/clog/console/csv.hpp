@@ -31,8 +31,8 @@ struct UnitsComment {
 /// Anything else in a comment is skipped.
 UnitsComment units_in(std::string comment);
 
-/// Whether a cell is an error of a spreadsheet: `#N/A`, `#DIV/0!`, `#REF!`, `#WERT!`, `Err:502`, and the like in other
-/// languages. All of them consist of upper case; most begin with # and end with ! or ?.
+/// Whether a cell is an error of a spreadsheet: `#N/A`, `#DIV/0!`, `#REF!`, `#WERT!`, `Err:502`, and the like
+/// in other languages. All of them consist of upper case; most begin with # and end with ! or ?.
 bool is_error_word(std::string_view cell);
 
 /// A line of a table.
