@@ -168,7 +168,7 @@ class Sweep(ProgramTest):
         self.assertRegex(expected, self.EXPECTED + "in s.h5, 6 of them ended$")
         self.assertEqual(self.snapshot(), before)
         hours = table(self.folder / "s.h5").processor_seconds.sum() / 3600
-        self.assertRegex(left, r"^# s.h5 has 6 of 60 tasks; 54 to go: expected \S+ core-hours more \(95 %: \S+ to \S+\)$")
+        self.assertRegex(left, r"^# s.h5 has 6 of 60 runs; 54 to go: expected \S+ core-hours more \(95 %: \S+ to \S+\)$")
         of_all, more = (float(re.search("expected ([^ ]+) ", line)[1]) for line in (expected, left))
         self.assertAlmostEqual(more / of_all, 1 - hours / of_all, delta=0.1)
         # Nothing remains for an estimate.
@@ -185,7 +185,7 @@ class Sweep(ProgramTest):
 
         stored_rows.change(self.folder / "s.h5", edit)
         told = self.succeed("clogsweep", *sweep, "line-tension=0.5,1", "seeds=1..6", "--dry-run").stdout.splitlines()[-1]
-        self.assertIn(f"9 of 12 tasks; 3 to go: expected {3 / 3600:.2g} core-hours more ", told)
+        self.assertIn(f"9 of 12 runs; 3 to go: expected {3 / 3600:.2g} core-hours more ", told)
 
     def test_the_expected_cost_is_within_its_interval_and_its_limit(self):
         sweep = [*QUICK, "--output", "s.h5"]

@@ -134,10 +134,12 @@ class Groups:
             return "lattice_angle"
         known = [name for name in self.columns if self._is_number(name) and None not in self.values(name)]  # to both models
         if usual not in known:
-            usual = next(iter(known), usual)
+            usual = next((name for name in known if not self.varies(name)), usual)
         elif self.varies(usual) and not self._is_automatic(usual):
             return usual
-        return max(filter(self.varies, known), key=lambda name: (not self._is_automatic(name), len(self.values(name))), default=usual)
+        # Values that follow from the model, such as the one vertex of a disk, are no abscissa.
+        varied = [name for name in known if self.varies(name) and not self.follows(name, ["model"])]
+        return max(varied, key=lambda name: (not self._is_automatic(name), len(self.values(name))), default=usual)
 
     def _is_number(self, name: str) -> bool:
         return self.columns[name]["kind"] != "word"
@@ -172,7 +174,7 @@ class Groups:
     def curve_parameters(self) -> list[str]:
         """Names of the parameters in which the curves differ."""
         # Other values, such as the place of an exit, follow from the laboratory or the circles, so they are not needed.
-        told = [name for name in ("laboratory", "obstacles") if self.varies(name)]
+        told = [name for name in ("model", "laboratory", "obstacles") if self.varies(name)]
         if self.are_in_mm:
             droplet = [name for name in fits.DROPLETS if self.varies(name) and name != self.abscissa]
             told = droplet + [name for name in told if not self.follows(name, fits.DROPLETS)]
