@@ -421,7 +421,7 @@ class Sizes(LaboratoryTest):
         command = [sys.executable, "-m", "clogsweep", "critical-angle", "s.h5"]
         around = {"cwd": self.folder, "capture_output": True, "text": True, "env": {**os.environ, "PYTHONPATH": str(ROOT / "analysis"), "PATH": str(BIN)}}
         done = subprocess.run([*command, "--format", "csv"], **around)
-        self.assertEqual(done.stdout, "diameter_mm,line_tension,lower,upper,runs\n0.8,1,,,2\n0.8,3,,,2\n1.6,1,,,2\n1.6,3,,,2\n", done.stderr)
+        self.assertEqual(done.stdout, "diameter_mm,line_tension,lower,upper,runs\n0.8,1,,,0\n0.8,3,,,0\n1.6,1,,,0\n1.6,3,,,0\n", done.stderr)
         empty = subprocess.run(command, **around)
         self.assertEqual((empty.returncode, empty.stderr), (2, "python3 -m clogsweep critical-angle: cannot draw critical angles (the paths within max-time=1 are too short: "
                                                                "straight on, they would cross fewer than two rows) try a larger max-time or lattice-angle\n"))
