@@ -36,6 +36,7 @@ std::string short_text(const sweep::Value& value, int digits = few_digits);
 template <class ValueOf>
 int digits_in(const std::vector<Group>& groups, const ValueOf& value_of) {
   std::vector<Value> values;
+  values.reserve(groups.size());
   for (const Group& group : groups) values.push_back(value_of(group));
   return distinct_digits(values);
 }
@@ -47,6 +48,7 @@ std::vector<std::vector<std::string>> label_texts(const std::vector<Group>& grou
   std::vector<std::vector<std::string>> texts(groups.size());
   for (std::size_t column = 0; !groups.empty() && column < (groups[0].*labels).size(); ++column) {
     std::vector<Value> values;
+    values.reserve(groups.size());
     for (const Group& group : groups) values.push_back((group.*labels)[column]);
     const int digits = distinct_digits(values);
     for (std::size_t i = 0; i < groups.size(); ++i) texts[i].push_back(short_text(values[i], digits));
