@@ -194,6 +194,7 @@ std::vector<std::vector<std::size_t>> strata_of(const std::vector<Size>& sizes, 
   std::map<std::set<std::size_t>, std::vector<std::size_t>> strata;
   for (std::size_t seed = 0; seed < num_seeds; ++seed) strata[sizes_of[seed]].push_back(seed);
   std::vector<std::vector<std::size_t>> all;
+  all.reserve(strata.size());
   for (auto& [key, seeds] : strata) all.push_back(std::move(seeds));
   return all;
 }
