@@ -38,6 +38,10 @@ def fit(distances: Numbers, speeds: Numbers) -> dict[str, float | None]:
     return {"near_wall_exponent": float(line.slope), "near_wall_exponent_error": errors[0], "near_wall_drag": drag, "near_wall_drag_error": errors[1]}
 
 
+def with_error(value: float | None, error: float | None) -> str:
+    return f"{value:.4g}" if error is None else f"{value:.4g} +- {error:.2g}"
+
+
 def body() -> int:
     parser = command_line.Parser(__doc__)
     parser.add_argument("file", nargs="?", help="CSV file with speeds along a wall")
@@ -55,11 +59,8 @@ def body() -> int:
     except UserError as error:
         raise UserError(f"{arguments.file} cannot be fitted ({error})") from error
     if arguments.format == "text":
-        exponent, its_error, drag, drag_error = (None if value is None else f"{value:.{digits}g}" for value, digits in zip(found.values(), (4, 2, 4, 2)))
-        if its_error is None:
-            print(f"alpha = {exponent}, b_0/b_inf = {drag}, from {len(speeds)} speeds, which are too few for errors")
-        else:
-            print(f"alpha = {exponent} +- {its_error}, b_0/b_inf = {drag} +- {drag_error}, from {len(speeds)} speeds")
+        exponent, drag = (with_error(found[name], found[f"{name}_error"]) for name in ("near_wall_exponent", "near_wall_drag"))
+        print(f"alpha = {exponent}, b_0/b_inf = {drag}, from {len(speeds)} speeds{', which are too few for errors' if len(speeds) < 3 else ''}")
     else:
         laboratory.print_json(answer, {**found, "speeds": len(speeds)})
     return 0
