@@ -970,6 +970,67 @@ class OtherTools(Analysis):
                 np.testing.assert_allclose(self.svg(f"<style>{sheet}</style>{left}{post.format(attributes)}"), [(1600, 900, 100)], rtol=1e-3)
                 self.assertEqual(self.drawing.notes, [])
 
+    def test_svg_values_that_css_drops_leave_the_value_before_them(self):
+        # CSS 2.1, 4.2: a declaration with a value that its property does not have is dropped.
+        circle = '<circle cx="800" cy="300" r="50" {}/>'
+        for dropped, attributes in [("display:foo", 'style="display:none;display:foo"'), ("fill:foo", 'style="fill:none;fill:foo"'), ("opacity:none", 'style="opacity:0;opacity:none"'),
+                                    ("visibility:none", 'style="visibility:hidden; visibility:none"'), ("fill-opacity:#1", 'style="fill-opacity:0;fill-opacity:#1"'), ('fill="foo"', 'fill="foo" style="opacity:0"'),
+                                    ("r:70", 'style="r:0px;r:70"'), ("r:bogus", 'style="r:0px;r:bogus"'), ("r:-3px", 'style="r:0;r:-3px"'), ("fill:var(--a)", 'style="fill:var(--a)" opacity="0"'),
+                                    ("clip-path:foo", 'clip-path="url(#none)" style="clip-path:foo"')]:
+            with self.subTest(attributes):
+                clip = '<clipPath id="none"/>'
+                np.testing.assert_allclose(self.svg(clip + circle.format(attributes) + '<circle cx="400" cy="300" r="50"/>'), [(400, 900, 100)], rtol=1e-3)
+                self.assertEqual(self.drawing.notes, [f"styles ignored, which this command cannot apply: {dropped}"])
+        for dropped, attributes in [("cy:bogus", 'style="cy:300px;cy:bogus"'), ("fill:foo", 'fill="red" style="fill:foo"'), ('stroke-width="null"', 'stroke-width="null"'), ("translate:5px", 'style="translate:5px"'),
+                                    ("rotate:3deg", 'style="rotate:3deg"'), ("scale:2", 'style="scale:2"'), ('display="inherit"', 'display="inherit"'), ('visibility="none"', 'visibility="none"')]:
+            with self.subTest(attributes):
+                np.testing.assert_allclose(self.svg(circle.format(attributes)), [(800, 900, 100)], rtol=1e-3)
+                self.assertEqual(self.drawing.notes, [f"styles ignored, which this command cannot apply: {dropped}"])
+
+    def test_svg_paints_in_every_notation(self):
+        circle = '<circle cx="800" cy="300" r="50" {}/>'
+        grid = '<linearGradient id="grid"/>'
+        for paint in ("none", "NONE", " none ", "transparent", "rgba(0,0,0,0)", "#1230", "currentColor", "CURRENTCOLOR", "context-fill", "url(#nope) none", "url(#nope)", "url('#nope') transparent", "initial none"):
+            is_valid = paint != "initial none"
+            for attributes in (f'fill="{paint}" color="transparent"', f'style="fill:{paint}; color:#0000"'):
+                with self.subTest(attributes):
+                    self.assertEqual(len(self.svg(grid + circle.format(attributes) + '<circle cx="400" cy="300" r="50"/>')), 1 if is_valid else 2)
+        for paint in ("red", "RED", "initial", "url(#grid) none", "url(#grid)", "url('#grid')", "url(#nope) red", "currentColor"):
+            for attributes in (f'fill="{paint}"', f'style="fill:{paint}"'):
+                with self.subTest(attributes):
+                    self.assertEqual(len(self.svg(f'{grid}<g fill="none">{circle.format(attributes)}</g>')), 1)
+                    self.assertEqual(self.drawing.notes, [])
+        for opacity, count in [("0%", 0), ("0.0", 0), ("-1", 0), ("1e-1", 1), ("50%", 1), ("7", 1), ("initial", 1)]:
+            for name in ("fill-opacity", "opacity"):
+                with self.subTest(f"{name} {opacity}"):
+                    self.assertEqual(len(self.svg('<circle cx="400" cy="300" r="50"/>' + circle.format(f'{name}="{opacity}"'))), 1 + count)
+
+    def test_svg_shows_the_first_alternative_that_a_browser_knows(self):
+        # SVG 1.1, 5.8: an empty list is false. Illustrator stores its own data as the first alternative.
+        circle = '<circle cx="{}" cy="300" r="50"/>'
+        own = '<foreignObject requiredExtensions="http://ns.adobe.com/AdobeIllustrator/10.0/"/>'
+        for body in [f"<switch>{own}<g>{circle.format(800)}</g></switch>", f'<switch><g systemLanguage="de">{circle.format(400)}</g>{circle.format(800)}{circle.format(1200)}</switch>',
+                     f'<switch><g systemLanguage="de, en-GB">{circle.format(800)}</g><g>{circle.format(1200)}</g></switch>', f'<g requiredExtensions="x">{circle.format(400)}</g>{circle.format(800)}',
+                     f'<g systemLanguage="">{circle.format(400)}</g>{circle.format(800)}', f'<defs><switch id="s"><g systemLanguage="de"/>{circle.format(0)}</switch></defs><use href="#s" x="800"/>']:
+            with self.subTest(body):
+                np.testing.assert_allclose(self.svg(body), [(800, 900, 100)], rtol=1e-3)
+
+    def test_svg_sizes_below_zero_are_not_drawn(self):
+        # SVG 2, 7.2: such a value is invalid and ignored. A radius of a corner is then automatic.
+        seen = '<circle cx="400" cy="300" r="50"/>'
+        for attributes in ('circle cx="800" cy="300" r="-50"', 'rect x="750" y="250" width="-100" height="100" rx="50"', 'rect x="750" y="250" width="100" height="-100"', 'ellipse cx="800" cy="300" rx="-50" ry="-50"'):
+            with self.subTest(attributes):
+                np.testing.assert_allclose(self.svg(f"<{attributes}/>{seen}"), [(400, 900, 100)], rtol=1e-3)
+                self.assertIn("styles ignored", self.drawing.notes[0])
+        for attributes in ('ellipse cx="800" cy="300" rx="-50" ry="50"', 'rect x="750" y="250" width="100" height="100" rx="-3" ry="50"'):
+            np.testing.assert_allclose(self.svg(f"<{attributes}/>"), [(800, 900, 100)], rtol=1e-3)
+
+    def test_svg_transforms_of_the_whole_drawing_are_refused(self):
+        for attributes in ('transform="scale(2)"', 'style="transform:rotate(90deg)"'):
+            self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace("<svg", f"<svg {attributes}", 1))
+            self.refused("device.svg", "transform=", "<svg ", "ungrouping")
+        np.testing.assert_allclose(self.svg('<svg transform="translate(100 0)" width="3600" height="1200"><circle cx="700" cy="300" r="50"/></svg>'), [(800, 900, 100)], rtol=1e-3)
+
     def test_svg_style_rules_that_cannot_be_applied_are_named(self):
         sheet = '@import "other.css"; circle:unheard-of{display:none} @media (max-width: 9px){circle{display:none}} g{circle{display:none}} @layer base{circle{display:none}}'
         self.assertEqual(len(self.svg(f'<style>{sheet}</style><circle cx="800" cy="300" r="50"/>')), 1)
@@ -1041,7 +1102,7 @@ class OtherTools(Analysis):
         percent = 50 / np.sqrt((3600**2 + 1200**2) / 2) * 100
         for shape in [f'<circle cx="800" cy="300" r="{percent}%"/>', '<circle cx="22.2222222%" cy="25%" r="50"/>', '<ellipse cx="800" cy="300" rx="50"/>', '<ellipse cx="800" cy="300" ry="50" rx="auto"/>',
                       '<rect x="750" y="250" width="2.7777778%" height="8.333333%" rx="50"/>', '<circle cx="800px" cy="225pt" r="0.5208333333in"/>', '<circle style="cx:800px; cy:300px; r:50px"/>',
-                      '<rect/><circle cx="800" cy="300" r="50"/>', '<circle cx="8e2" cy="+300." r="50"/>', f'<svg x="0" y="0" width="3600" height="1200" viewBox="0 0 36 12"><circle cx="22.2222222%" cy="25%" r="{percent}%"/></svg>',
+                      '<rect/><circle cx="200" cy="300"/><circle cx="800" cy="300" r="50"/>', '<circle cx="8e2" cy="+300." r="50"/>', f'<svg x="0" y="0" width="3600" height="1200" viewBox="0 0 36 12"><circle cx="22.2222222%" cy="25%" r="{percent}%"/></svg>',
                       '<use href="#c" x="50%" y="0"/><defs><circle id="c" cx="-1000" cy="300" r="50"/></defs>', '<g display="none"><circle r="1em"/></g><circle cx="800" cy="300" r="50"/>']:
             with self.subTest(shape):
                 np.testing.assert_allclose(self.svg(shape), [(800, 900, 100)], rtol=1e-4)

@@ -6,14 +6,12 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from . import values
 from .libraries import library
+from .values import PACKAGE
 
-PACKAGE = "python3-cssselect2"
 STYLE = "{http://www.w3.org/2000/svg}style"
 SIZES = ("width", "height")
-# The properties that decide where a shape is, and whether it is visible.
-PROPERTIES = ("display", "visibility", "opacity", "color", "fill", "fill-opacity", "fill-rule", "stroke", "stroke-opacity", "stroke-width", "clip-path", "clip-rule", "mask", "overflow",
-              "transform", "transform-origin", "transform-box", "x", "y", "cx", "cy", "r", "rx", "ry", "d", *SIZES)
 # At-rules that have no effect on shapes. Selectors with the prefix of a @namespace are reported themselves.
 HARMLESS = ("charset", "namespace", "font-face", "font-feature-values", "keyframes", "-webkit-keyframes", "page", "property", "counter-style")
 SEEN_ON = ("all", "screen")
@@ -31,23 +29,30 @@ def apply(root: Any, notes: list[str]) -> None:
     wrapper = library("cssselect2", PACKAGE).ElementWrapper
     # All selectors look at the unchanged drawing, because [fill="red"] means the attribute.
     found = [(wrapped.etree_element, sheets.declared(wrapped)) for wrapped in wrapper.from_xml_root(root).iter_subtree()]
+    ids = {element.get("id") for element in root.iter()}
     for element, declarations in found:
         element.attrib.pop("style", None)
-        for name, value in declarations:
-            set_property(element, name, value, element is root)
+        attributes = [(name, value, f'{name}="{value}"') for name, value in element.attrib.items() if name in values.FORMS]
+        for name, text, words in [*attributes, *((name, text, "") for name, text in declarations)]:
+            value = values.value_of(name, text, ids, bool(words))
+            if value is not None:
+                set_property(element, name, value, element is root)
+            else:
+                sheets.unknown.append(words or f"{name}:{text}")
+                if words:
+                    del element.attrib[name]
     if sheets.unknown:
         notes.append(f"styles ignored, which this command cannot apply: {', '.join(dict.fromkeys(sheets.unknown))}")
 
 
 def set_property(element: Any, name: str, value: str, is_root: bool) -> None:
-    """Writes a property into the attribute of the same name."""
-    if is_root and name in SIZES and not re.fullmatch(r"[0-9.e+-]+[a-z]+", value, re.IGNORECASE):
+    """Writes a property into the attribute of the same name, or removes the attribute if the value is empty."""
+    if is_root and name in SIZES and not re.fullmatch(r"[0-9.e+-]+[a-z]*", value, re.IGNORECASE):
         return  # Such a size, for example 100%, is that of a window, and not that of the drawing.
-    if value.lower() in ("inherit", "unset"):
-        element.attrib.pop(name, None)
+    if value:
+        element.set(name, value)
     else:
-        path = re.fullmatch(r"path\(\s*(?:\w+\s*,\s*)?[\"'](.*)[\"']\s*\)", value, re.DOTALL)
-        element.set(name, path[1] if name == "d" and path else value)
+        element.attrib.pop(name, None)
 
 
 class Sheets:
@@ -76,7 +81,7 @@ class Sheets:
 
     def _declarations(self, content: Any) -> list[Any]:
         found = self._css.parse_declaration_list(content, skip_comments=True, skip_whitespace=True)
-        return [item for item in found if item.type == "declaration" and item.lower_name in PROPERTIES]
+        return [item for item in found if item.type == "declaration" and item.lower_name in values.FORMS]
 
     def _add(self, rules: Any) -> None:
         for rule in rules:

@@ -24,6 +24,7 @@ LENGTHS = {"circle": ("cx", "cy", "r"), "ellipse": ("cx", "cy", "rx", "ry"), "re
 # What the library understands in a transform. Other units depend on a font, a window or the size of an object.
 FUNCTIONS = ("matrix", "translate", "translatex", "translatey", "scale", "scalex", "scaley", "rotate", "skew", "skewx", "skewy")
 UNITS = ("px", "mm", "cm", "in", "pt", "pc", "deg", "grad", "rad", "turn", "e")  # e: of an exponent
+UNREADABLE = "cannot be read); apply transforms in the drawing program, such as by ungrouping"
 
 
 @dataclasses.dataclass
@@ -44,6 +45,8 @@ class Viewport:
 
 def prepare(root: Any, path: pathlib.Path) -> None:
     """Prepares all elements of a drawing. @param path  for messages. @throws UserError"""
+    if root.get("transform", "none").strip() not in ("", "none"):
+        raise refusal(path, root, "transform", UNREADABLE)
     originals = {element.get("id"): element for element in copy.deepcopy(root).iter()}
     Preparation(originals, path).prepare(root, viewport_of(root))
 
@@ -83,6 +86,22 @@ def kind(element: Any) -> str:
     return str(element.tag).removeprefix(NAMESPACE)
 
 
+def is_shown(element: Any) -> bool:
+    """Whether a browser in English shows an element according to its conditions."""
+    languages = element.get("systemLanguage", "en").lower().split(",")
+    return element.get("requiredExtensions") is None and any(re.fullmatch(r"en(-.*)?", language.strip()) for language in languages)
+
+
+def children_of(element: Any) -> list[Any]:
+    """The elements within an element that may be drawn. A <switch> draws the first of them."""
+    found = [child for child in element if child.tag not in TEMPLATES and is_shown(child)]
+    return found[:1] if kind(element) == "switch" else found
+
+
+def refusal(path: pathlib.Path, element: Any, attribute: str, reason: str) -> UserError:
+    return UserError(f"cannot read {path} ({attribute}=\"{element.get(attribute)[:60]}\" of {named(element)} {reason}")
+
+
 class Preparation:
     def __init__(self, originals: dict[str | None, Any], path: pathlib.Path) -> None:
         self._originals = originals
@@ -90,7 +109,7 @@ class Preparation:
 
     def prepare(self, element: Any, viewport: Viewport) -> None:
         """Prepares the elements within an element. @param viewport  to which percentages refer"""
-        element[:] = [self._prepared(child, viewport) for child in element if child.tag not in TEMPLATES]
+        element[:] = [self._prepared(child, viewport) for child in children_of(element)]
 
     def _prepared(self, element: Any, viewport: Viewport) -> Any:
         """The element, or what is drawn in its place."""
@@ -106,9 +125,6 @@ class Preparation:
         self.prepare(drawn, viewport)
         return drawn
 
-    def _refusal(self, element: Any, attribute: str, reason: str) -> UserError:
-        return UserError(f"cannot read {self._path} ({attribute}=\"{element.get(attribute)[:60]}\" of {named(element)} {reason}")
-
     def _set_lengths(self, element: Any, viewport: Viewport) -> None:
         """Writes lengths without units. @throws UserError  for units that depend on a font or a window"""
         for attribute in LENGTHS.get(kind(element), ()):
@@ -118,7 +134,7 @@ class Preparation:
                 continue
             value = pixels(text, viewport.whole(attribute))
             if value is None:
-                raise self._refusal(element, attribute, "is no length in px, mm, cm, in, pt or pc); give it in one of these or without a unit, or convert the object to a path")
+                raise refusal(self._path, element, attribute, "is no length in px, mm, cm, in, pt or pc); give it in one of these or without a unit, or convert the object to a path")
             element.set(attribute, text if text[-1].isdigit() else repr(value))
         if kind(element) == "svg":
             for attribute in ("width", "height"):
@@ -128,8 +144,8 @@ class Preparation:
                     element.set(attribute, repr(viewport.whole(attribute)))
             # The library ignores x and y of an <svg> without a viewBox.
             element.set("viewBox", element.get("viewBox") or f"0 0 {element.get('width')} {element.get('height')}")
-        elif kind(element) == "rect":  # The library draws a <rect> without a size as one of size 1.
-            for attribute in ("width", "height"):
+        elif kind(element) in ("rect", "circle"):  # The library draws one without a size as one of size 1.
+            for attribute in ("width", "height") if kind(element) == "rect" else ("r",):
                 element.set(attribute, element.get(attribute, "0"))
         elif kind(element) == "ellipse":
             for attribute, other in (("rx", "ry"), ("ry", "rx")):
@@ -145,12 +161,12 @@ class Preparation:
         function = r"([a-z0-9]+)\s*\(([^()]*)\)"
         is_known = all(name.lower() in FUNCTIONS and all(unit in UNITS for unit in re.findall("[a-z%]+", numbers.lower())) for name, numbers in re.findall(function, transform, re.IGNORECASE))
         if not is_known or re.sub(function, "", transform, flags=re.IGNORECASE).strip(" ,\t\r\n"):
-            raise self._refusal(element, "transform", "cannot be read); apply transforms in the drawing program, such as by ungrouping")
+            raise refusal(self._path, element, "transform", UNREADABLE)
         origin = element.get("transform-origin", "0 0")
         x, y = origin_of(origin, viewport)
         if x is None or y is None or element.get("transform-box", "view-box") != "view-box":
             attribute = "transform-box" if element.get("transform-box", "view-box") != "view-box" else "transform-origin"
-            raise self._refusal(element, attribute, "depends on sizes that this command does not know); give x and y of transform-origin in px, or apply transforms in the drawing program")
+            raise refusal(self._path, element, attribute, "depends on sizes that this command does not know); give x and y of transform-origin in px, or apply transforms in the drawing program")
         if x or y:
             element.set("transform", f"translate({x!r}, {y!r}) {transform} translate({-x!r}, {-y!r})")
 
