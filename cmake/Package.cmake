@@ -16,7 +16,7 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "openmpi-bin, python3, python3-h5py, python3-pandas, python3-scipy, python3-tables, python3-matplotlib")
 # Drawings and pictures of devices.
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS
-  "python3-ezdxf, python3-gdspy, python3-svgelements, python3-cssselect2, python3-skimage, python3-shapely")
+  "python3-ezdxf, python3-gdspy, python3-svgelements, librsvg2-bin, python3-skimage, python3-shapely")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "ffmpeg, slurm-client")
 set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "Follows droplets that sink through a forest of obstacles until they clog, one by
 one on as many cores as there are, and fits clogging lengths and speeds.")

@@ -16,7 +16,7 @@ packages+=(
   git                                                # tells a build its version
   python3-h5py python3-pandas python3-scipy python3-tables python3-matplotlib   # the Python module
 )
-drawings=(python3-ezdxf python3-gdspy python3-svgelements python3-cssselect2 python3-skimage python3-shapely)
+drawings=(python3-ezdxf python3-gdspy python3-svgelements librsvg2-bin python3-skimage python3-shapely)
 tests=(
   "${drawings[@]}"
   libgtest-dev libbenchmark-dev                      # tests and benchmarks

@@ -878,7 +878,7 @@ class OtherTools(Analysis):
         device = self.device(name, **options)
         self.assertEqual([outline.tolist() for outline in device.others], [])
         circles = device.circles * device.droplet_micrometres
-        return circles[np.lexsort((circles[:, 1], circles[:, 0]))]
+        return circles[np.lexsort(np.round(circles[:, 1::-1].T, 2))]
 
     def refused(self, name, *words, **options):
         with self.assertRaises(UserError) as told:
@@ -946,7 +946,6 @@ class OtherTools(Analysis):
         body = "".join(f'<circle cx="{300 * i + 200}" cy="300" r="50" {attributes}/>' for i, attributes in enumerate(hidden))
         seen = '<circle cx="800" cy="900" r="50" fill="none" stroke="red"/><g opacity="0"><circle cx="500" cy="900" r="50"/></g>'
         np.testing.assert_allclose(self.svg(styles + body + seen), [(800, 300, 100)], rtol=1e-3)
-        self.assertEqual(dict(self.drawing.skipped), {"transparent circle": 4, "unpainted circle": 5, "hidden circle": 1})
 
     def test_svg_style_sheets_follow_the_cascade(self):
         # CSS 2.1, 6.4: !important, then specificity, then place. A group is drawn with its opacity as a whole (`opacity` in CSS).
@@ -956,15 +955,15 @@ class OtherTools(Analysis):
                 ("g.h circle{display:none}", "<g class='h'>*</g>", ""), ("circle.a.b{display:none}", "*", 'class="a b"'), ('circle[data-k="q"]{visibility:hidden}', "*", 'data-k="q"'),
                 ("g > .c{opacity:0}", "<g>*</g>", c), ("circle.f{display:none !important}", "*", 'class="f" style="display:inline"'), ("#p{display:none} .c{display:inline}", "*", f'id="p" {c}'),
                 (".c{display:inline} .c{display:none}", "*", c), ("desc + circle{fill:none}", "<g><desc/>*</g>", ""), ("g:nth-of-type(2) *{display:none}", "<g/><g>*</g>", ""),
-                (".c{fill:none}", "*", f'{c} fill="red"'), (".c{display:inline !important} #p{display:none !important}", "*", f'id="p" {c}'), ("@media screen, print{.c{display:none}}", "*", c),
-                ("/* a comment */ .C, .c{ DISPLAY : none ; } ", "*", c), ("g{opacity:0} .c{opacity:1}", "<g>*</g>", c), ("<![CDATA[ g > .c{display:none} ]]>", "<g>*</g>", c),
+                (".c{fill:none}", "*", f'{c} fill="red"'), (".c{display:inline !important} #p{display:none !important}", "*", f'id="p" {c}'),
+                ("/* a comment */ .C, .c{ display : none ; } ", "*", c), ("g{opacity:0} .c{opacity:1}", "<g>*</g>", c), ("<![CDATA[ g > .c{display:none} ]]>", "<g>*</g>", c),
                 (".c{clip-path:none} g .c{clip-path:url(#left)}", "<g>*</g>", c), ("#page > .c{display:none}", "<g id='page'>*</g>", c)]:
             body = around.replace("*", post.format(attributes)) + seen
             for text in (f"<style>{sheet}</style>{left}{body}", f"{left}{body}<style>{sheet}</style>"):
                 with self.subTest(text):
                     np.testing.assert_allclose(self.svg(text), [(800, 300, 100)], rtol=1e-3)
-        for sheet, attributes in [("@media print{.c{display:none}}", c), (".c{display:none}", f'{c} style="display:inline"'), (".c{display:inline} circle{display:none}", c),
-                                  ("circle:hover, .c:not(circle){display:none}", c), ("</style><style media='print'>.c{display:none}", c), (".c{clip-path:none}", f'{c} clip-path="url(#left)"'),
+        for sheet, attributes in [(".c{display:none}", f'{c} style="display:inline"'), (".c{display:inline} circle{display:none}", c),
+                                  ("circle:hover, .c:not(circle){display:none}", c), (".c{clip-path:none}", f'{c} clip-path="url(#left)"'),
                                   (".c{fill:inherit}", f'{c} fill="none"'), (".b{display:none}", c), ("</style><style>", ""), (".c{cy:300px}", c)]:
             with self.subTest(sheet):
                 np.testing.assert_allclose(self.svg(f"<style>{sheet}</style>{left}{post.format(attributes)}"), [(1600, 900, 100)], rtol=1e-3)
@@ -972,46 +971,56 @@ class OtherTools(Analysis):
 
     def test_svg_values_that_css_drops_leave_the_value_before_them(self):
         # CSS 2.1, 4.2: a declaration with a value that its property does not have is dropped.
-        circle = '<circle cx="800" cy="300" r="50" {}/>'
-        for dropped, attributes in [("display:foo", 'style="display:none;display:foo"'), ("fill:foo", 'style="fill:none;fill:foo"'), ("opacity:none", 'style="opacity:0;opacity:none"'),
-                                    ("visibility:none", 'style="visibility:hidden; visibility:none"'), ("fill-opacity:#1", 'style="fill-opacity:0;fill-opacity:#1"'), ('fill="foo"', 'fill="foo" style="opacity:0"'),
-                                    ("r:70", 'style="r:0px;r:70"'), ("r:bogus", 'style="r:0px;r:bogus"'), ("r:-3px", 'style="r:0;r:-3px"'), ("fill:var(--a)", 'style="fill:var(--a)" opacity="0"'),
-                                    ("clip-path:foo", 'clip-path="url(#none)" style="clip-path:foo"')]:
+        circle = '<circle cx="800" cy="300" r="50" {}/><circle cx="400" cy="300" r="50"/>'
+        for attributes in ('style="display:none;display:foo"', 'style="fill:none;fill:foo"', 'style="opacity:0;opacity:none"', 'style="visibility:hidden; visibility:none"', 'style="fill-opacity:0;fill-opacity:#1"',
+                           'style="r:0px;r:bogus"', 'style="r:0;r:-3px"', 'clip-path="url(#none)" style="clip-path:foo"'):
             with self.subTest(attributes):
-                clip = '<clipPath id="none"/>'
-                np.testing.assert_allclose(self.svg(clip + circle.format(attributes) + '<circle cx="400" cy="300" r="50"/>'), [(400, 900, 100)], rtol=1e-3)
-                self.assertEqual(self.drawing.notes, [f"styles ignored, which this command cannot apply: {dropped}"])
-        for dropped, attributes in [("cy:bogus", 'style="cy:300px;cy:bogus"'), ("fill:foo", 'fill="red" style="fill:foo"'), ('stroke-width="null"', 'stroke-width="null"'), ("translate:5px", 'style="translate:5px"'),
-                                    ("rotate:3deg", 'style="rotate:3deg"'), ("scale:2", 'style="scale:2"'), ('display="inherit"', 'display="inherit"'), ('visibility="none"', 'visibility="none"')]:
+                np.testing.assert_allclose(self.svg('<clipPath id="none"/>' + circle.format(attributes)), [(400, 900, 100)], rtol=1e-3)
+        for attributes in ('style="cy:300px;cy:bogus"', 'fill="red" style="fill:foo"', 'stroke-width="null"', 'display="foo"', 'visibility="none"'):
             with self.subTest(attributes):
-                np.testing.assert_allclose(self.svg(circle.format(attributes)), [(800, 900, 100)], rtol=1e-3)
-                self.assertEqual(self.drawing.notes, [f"styles ignored, which this command cannot apply: {dropped}"])
+                self.assertEqual(len(self.svg(circle.format(attributes))), 2)
 
     def test_svg_paints_in_every_notation(self):
+        grid = '<linearGradient id="grid"><stop stop-color="red"/></linearGradient>'
         circle = '<circle cx="800" cy="300" r="50" {}/>'
-        grid = '<linearGradient id="grid"/>'
-        for paint in ("none", "NONE", " none ", "transparent", "rgba(0,0,0,0)", "#1230", "currentColor", "CURRENTCOLOR", "context-fill", "url(#nope) none", "url(#nope)", "url('#nope') transparent", "initial none"):
-            is_valid = paint != "initial none"
+        for paint in ("none", "transparent", "rgba(0,0,0,0)", "#1230", "currentColor", "CURRENTCOLOR", "context-fill", "url(#nope) none", "url(#nope)"):
             for attributes in (f'fill="{paint}" color="transparent"', f'style="fill:{paint}; color:#0000"'):
                 with self.subTest(attributes):
-                    self.assertEqual(len(self.svg(grid + circle.format(attributes) + '<circle cx="400" cy="300" r="50"/>')), 1 if is_valid else 2)
-        for paint in ("red", "RED", "initial", "url(#grid) none", "url(#grid)", "url('#grid')", "url(#nope) red", "currentColor"):
+                    self.assertEqual(len(self.svg(grid + circle.format(attributes) + '<circle cx="400" cy="300" r="50"/>')), 1)
+        for paint in ("red", "RED", "url(#grid) none", "url(#grid)", "url('#grid')", "url(#nope) red", "currentColor"):
             for attributes in (f'fill="{paint}"', f'style="fill:{paint}"'):
                 with self.subTest(attributes):
                     self.assertEqual(len(self.svg(f'{grid}<g fill="none">{circle.format(attributes)}</g>')), 1)
                     self.assertEqual(self.drawing.notes, [])
-        for opacity, count in [("0%", 0), ("0.0", 0), ("-1", 0), ("1e-1", 1), ("50%", 1), ("7", 1), ("initial", 1)]:
+        # An inherited currentColor is the colour of the element that inherits it.
+        for colours, count in [(("transparent", "red"), 2), (("red", "transparent"), 1)]:
+            self.assertEqual(len(self.svg('<circle cx="400" cy="300" r="50"/><g fill="currentColor" color="{}"><g color="{}">'.format(*colours) + circle.format("") + "</g></g>")), count)
+        for opacity, count in [("0%", 0), ("0.0", 0), ("-1", 0), ("1e-1", 1), ("50%", 1), ("7", 1)]:
             for name in ("fill-opacity", "opacity"):
                 with self.subTest(f"{name} {opacity}"):
                     self.assertEqual(len(self.svg('<circle cx="400" cy="300" r="50"/>' + circle.format(f'{name}="{opacity}"'))), 1 + count)
+
+    def test_svg_shows_what_a_viewer_shows(self):
+        seen, hidden = '<circle cx="800" cy="300" r="50"/>', '<circle cx="400" cy="300" r="50" {}/>'
+        clipped, faint = hidden.format('clip-path="url(#c)"'), hidden.format('fill="url(#g)"')
+        for body in ['<svg x="100" y="50" width="3000" height="1000"><use href="#u"/><symbol id="u" overflow="visible"><circle cx="700" cy="250" r="50"/></symbol></svg>',
+                     '<defs><circle id="a" cx="800" cy="300" r="50"/><circle id="a" r="80"/></defs><use href="#a"/>', f'<clipPath id="c"><g><rect width="9999" height="999"/></g></clipPath>{seen}{clipped}',
+                     f'<clipPath id="c"><rect width="9999" height="999" visibility="hidden"/></clipPath>{seen}{clipped}', f'{seen}<foo>{hidden.format("")}</foo>', f'{seen}<pattern id="p">{hidden.format("")}</pattern>',
+                     f'{seen}<marker>{hidden.format("")}</marker>', f'{seen}<G>{hidden.format("")}</G>', f'<linearGradient id="g"/>{seen}{faint}',
+                     f'<linearGradient id="g"><stop stop-opacity="0"/></linearGradient>{seen}{faint}']:
+            with self.subTest(body):
+                np.testing.assert_allclose(self.svg(body), [(800, 900, 100)], rtol=1e-3)
+        self.assertEqual(len(self.svg(f'<use href="#r"/><g id="r"><use href="#r"/></g>{seen}')), 1)
+        for size in ('viewBox="0 0 0 0"', 'width="0" height="0"', 'width="3mm" height="1mm" viewBox="0 0 3 -1"'):
+            self.write("device.svg", f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{seen}</svg>')
+            self.refused("device.svg", "no size")
 
     def test_svg_shows_the_first_alternative_that_a_browser_knows(self):
         # SVG 1.1, 5.8: an empty list is false. Illustrator stores its own data as the first alternative.
         circle = '<circle cx="{}" cy="300" r="50"/>'
         own = '<foreignObject requiredExtensions="http://ns.adobe.com/AdobeIllustrator/10.0/"/>'
         for body in [f"<switch>{own}<g>{circle.format(800)}</g></switch>", f'<switch><g systemLanguage="de">{circle.format(400)}</g>{circle.format(800)}{circle.format(1200)}</switch>',
-                     f'<switch><g systemLanguage="de, en-GB">{circle.format(800)}</g><g>{circle.format(1200)}</g></switch>', f'<g requiredExtensions="x">{circle.format(400)}</g>{circle.format(800)}',
-                     f'<g systemLanguage="">{circle.format(400)}</g>{circle.format(800)}', f'<defs><switch id="s"><g systemLanguage="de"/>{circle.format(0)}</switch></defs><use href="#s" x="800"/>']:
+                     f'<defs><switch id="s"><g systemLanguage="de"/>{circle.format(0)}</switch></defs><use href="#s" x="800"/>']:
             with self.subTest(body):
                 np.testing.assert_allclose(self.svg(body), [(800, 900, 100)], rtol=1e-3)
 
@@ -1021,25 +1030,21 @@ class OtherTools(Analysis):
         for attributes in ('circle cx="800" cy="300" r="-50"', 'rect x="750" y="250" width="-100" height="100" rx="50"', 'rect x="750" y="250" width="100" height="-100"', 'ellipse cx="800" cy="300" rx="-50" ry="-50"'):
             with self.subTest(attributes):
                 np.testing.assert_allclose(self.svg(f"<{attributes}/>{seen}"), [(400, 900, 100)], rtol=1e-3)
-                self.assertIn("styles ignored", self.drawing.notes[0])
         for attributes in ('ellipse cx="800" cy="300" rx="-50" ry="50"', 'rect x="750" y="250" width="100" height="100" rx="-3" ry="50"'):
             np.testing.assert_allclose(self.svg(f"<{attributes}/>"), [(800, 900, 100)], rtol=1e-3)
 
     def test_svg_transforms_of_the_whole_drawing_are_refused(self):
-        for attributes in ('transform="scale(2)"', 'style="transform:rotate(90deg)"'):
-            self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace("<svg", f"<svg {attributes}", 1))
-            self.refused("device.svg", "transform=", "<svg ", "ungrouping")
+        self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace("<svg", '<svg transform="scale(2)"', 1))
+        self.refused("device.svg", "transform of the whole <svg>")
         np.testing.assert_allclose(self.svg('<svg transform="translate(100 0)" width="3600" height="1200"><circle cx="700" cy="300" r="50"/></svg>'), [(800, 900, 100)], rtol=1e-3)
 
-    def test_svg_style_rules_that_cannot_be_applied_are_named(self):
-        sheet = '@import "other.css"; circle:unheard-of{display:none} @media (max-width: 9px){circle{display:none}} g{circle{display:none}} @layer base{circle{display:none}}'
-        self.assertEqual(len(self.svg(f'<style>{sheet}</style><circle cx="800" cy="300" r="50"/>')), 1)
-        self.assertEqual(len(self.drawing.notes), 1)
-        for word in ("styles ignored", '@import "other.css"', "circle:unheard-of", "@media (max-width: 9px)", "rules within g", "@layer base"):
-            self.assertIn(word, self.drawing.notes[0])
+    def test_svg_what_librsvg_does_not_know_is_named(self):
+        sheet = '@import "other.css"; @media (max-width: 9px){circle{display:none}} @layer base{circle{display:none}} @keyframes k{to{opacity:0}} .k{animation: k 1s}'
+        self.assertEqual(len(self.svg(f'<style media="print">{sheet}</style><circle cx="800" cy="300" r="50" filter="url(#f)" mask="url(#m)"/>')), 1)
+        self.assertEqual(self.drawing.notes, ["ignored: @media, @layer, @import, animations, masks, filters, media of style sheets"])
         self.write("device.svg", '<?xml-stylesheet href="other.css"?>' + SVG.format('<circle cx="800" cy="300" r="50"/>'))
         self.assertEqual(len(self.circles_of("device.svg")), 1)
-        self.assertIn("style sheet in another file ignored", self.drawing.notes[0])
+        self.assertEqual(self.drawing.notes, ["ignored: style sheets in other files"])
 
     def test_svg_shows_what_its_clips_leave(self):
         circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))
@@ -1053,43 +1058,26 @@ class OtherTools(Analysis):
                      f'{turned}<g clip-path="url(#turned)">{circles}</g>']:
             with self.subTest(body):
                 np.testing.assert_allclose(self.svg(body), [(400, 900, 100)], rtol=1e-3)
-                self.assertEqual(dict(self.drawing.skipped), {"clipped circle": 2})
         both = f'{left}<clipPath id="right"><rect x="450" width="3000" height="1200"/></clipPath><g clip-path="url(#left)"><rect x="300" y="300" width="400" height="200" clip-path="url(#right)"/></g>'
         self.write("device.svg", SVG.format(both))
         np.testing.assert_allclose(np.ptp(self.device("device.svg").others[0] * 200, axis=0), [150, 200], rtol=1e-4)
-        box_units = left.replace("<clipPath", '<clipPath clipPathUnits="objectBoundingBox"')
-        self.assertEqual(len(self.svg(f'{box_units}<g clip-path="url(#left)">{circles}</g>')), 3)
-        self.assertIn("1 clips or masks ignored", self.drawing.notes[0])
+        box_units = '<clipPath id="left" clipPathUnits="objectBoundingBox"><rect width="0.3" height="1"/></clipPath>'
+        np.testing.assert_allclose(self.svg(f'{box_units}<g clip-path="url(#left)">{circles}</g>'), [(400, 900, 100)], rtol=1e-3)
 
-    def test_svg_transforms_have_an_origin(self):
-        # CSS Transforms Level 1: translate(origin) transform translate(-origin). Percentages and words refer to the viewBox.
-        for origin, (x, y) in [("1000 200", (1000, 200)), ("1000px 200px", (1000, 200)), ("50% 50%", (1800, 600)), ("center", (1800, 600)), ("right top", (3600, 0)), ("bottom left", (0, 1200)), ("top", (1800, 0)),
-                               ("0 0", (0, 0)), ("25.4mm 1in", (96, 96)), ("1000 200 5", (1000, 200))]:
-            # Each transform moves the post to (x + 100, y + 120) with a radius of 50.
-            for transform, cx, cy, radius in [("scale(0.5)", x + 200, y + 240, 100), ("rotate(90)", x + 120, y - 100, 50), ("rotate(180deg)", x - 100, y - 120, 50)]:
-                for attributes in (f'transform="{transform}" transform-origin="{origin}"', f'style="transform:{transform};transform-origin:{origin}"', f'transform="{transform}" style="transform-origin:{origin}"'):
-                    with self.subTest(attributes):
-                        # The outer transform moves the post to the middle of the drawing.
-                        body = f'<g transform="translate({1000 - x} {500 - y})"><g {attributes}><circle cx="{cx}" cy="{cy}" r="{radius}"/></g></g>'
-                        np.testing.assert_allclose(self.svg(body), [(1100, 1200 - 620, 100)], rtol=1e-4)
-        for attributes, words in [('id="p" transform="scale(2)" transform-origin="1em 2em"', ['transform-origin="1em 2em"', '<circle id="p">', "in px"]),
-                                  ('transform="scale(2)" style="transform-box:fill-box; transform-origin: center"', ['transform-box="fill-box"', "in px"]),
-                                  ('style="transform:translate(10%)"', ['transform="translate(10%)"', '<circle cx="800"', "ungrouping"]), ('style="transform:translate3d(1px,2px,0)"', ["translate3d(1px,2px,0)"])]:
+    def test_svg_that_librsvg_would_show_elsewhere_is_refused(self):
+        for attributes, name in [('transform="scale(2)" transform-origin="1000 200"', "transform-origin"), ('style="transform:scale(2); transform-box:fill-box"', "transform-box"), ('style="translate: 5px"', "translate, rotate or scale"),
+                                 ('style="rotate:3deg"', "translate, rotate or scale"), ('style="r:calc(1px + 2%)"', "calc()"), ('style="fill:var(--a)"', "var()"), ('cy="5vh"', "lengths that depend on a font")]:
             with self.subTest(attributes):
-                self.write("device.svg", SVG.format(f'<circle {attributes} cx="800" cy="300" r="50"/>'))
-                self.refused("device.svg", *words)
-        np.testing.assert_allclose(self.svg('<circle style="transform-origin:center; transform-box:fill-box; transform:none" cx="800" cy="300" r="50"/>'), [(800, 900, 100)], rtol=1e-4)
+                self.write("device.svg", SVG.format(f'<circle cx="800" r="50" {attributes}/>'))
+                self.refused("device.svg", f"librsvg does not know {name}", "ungrouping")
 
     def test_svg_viewports_within_the_drawing_clip(self):
         circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))
-        symbol = f'<symbol id="s" {{}}>{circles}</symbol>'
-        for body in [f'<svg width="600" height="1200">{circles}</svg>', f'<svg width="16.6666666667%" viewBox="0 0 600 1200">{circles}</svg>', symbol.format("") + '<use href="#s" width="600" height="500"/>',
-                     symbol.format('viewBox="0 200 600 200"') + '<use href="#s" y="200" width="600" height="200"/>', f'<svg width="600" height="1200" overflow="hidden">{circles}</svg>',
+        for body in [f'<svg width="600" height="1200">{circles}</svg>', f'<svg width="16.6666666667%" viewBox="0 0 600 1200">{circles}</svg>', f'<svg width="600" height="1200" overflow="hidden">{circles}</svg>',
                      f'<svg x="-100" width="700" height="1200"><g transform="translate(100 0)">{circles}</g></svg>',
-                     f'<defs><svg id="t" width="3000" height="900">{circles}</svg></defs><use href="#t" width="600"/>', f'<g transform="rotate(90)"><svg width="1200" height="600" y="-600"><g transform="translate(0 600) rotate(-90)">{circles}</g></svg></g>']:
+                     f'<g transform="rotate(90)"><svg width="1200" height="600" y="-600"><g transform="translate(0 600) rotate(-90)">{circles}</g></svg></g>']:
             with self.subTest(body):
                 np.testing.assert_allclose(self.svg(body), [(400, 900, 100)], rtol=1e-3)
-                self.assertEqual(dict(self.drawing.skipped), {"clipped circle": 2})
         for attributes in ('overflow="visible"', 'style="overflow:auto"'):
             self.assertEqual(len(self.svg(f'<svg width="600" height="1200" {attributes}>{circles}</svg>')), 3)
         # A post that crosses the viewport is cut, and an empty viewport shows nothing, but what follows is drawn.
@@ -1102,18 +1090,16 @@ class OtherTools(Analysis):
         percent = 50 / np.sqrt((3600**2 + 1200**2) / 2) * 100
         for shape in [f'<circle cx="800" cy="300" r="{percent}%"/>', '<circle cx="22.2222222%" cy="25%" r="50"/>', '<ellipse cx="800" cy="300" rx="50"/>', '<ellipse cx="800" cy="300" ry="50" rx="auto"/>',
                       '<rect x="750" y="250" width="2.7777778%" height="8.333333%" rx="50"/>', '<circle cx="800px" cy="225pt" r="0.5208333333in"/>', '<circle style="cx:800px; cy:300px; r:50px"/>',
-                      '<rect/><circle cx="200" cy="300"/><circle cx="800" cy="300" r="50"/>', '<circle cx="8e2" cy="+300." r="50"/>', f'<svg x="0" y="0" width="3600" height="1200" viewBox="0 0 36 12"><circle cx="22.2222222%" cy="25%" r="{percent}%"/></svg>',
-                      '<use href="#c" x="50%" y="0"/><defs><circle id="c" cx="-1000" cy="300" r="50"/></defs>', '<g display="none"><circle r="1em"/></g><circle cx="800" cy="300" r="50"/>']:
+                      '<rect/><circle cx="200" cy="300"/><circle cx="800" cy="300" r="50"/>', '<circle cx="8e2" cy="+300" r="50"/>', f'<svg x="0" y="0" width="3600" height="1200" viewBox="0 0 36 12"><circle cx="22.2222222%" cy="25%" r="{percent}%"/></svg>',
+                      '<use href="#c" x="50%" y="0"/><defs><circle id="c" cx="-1000" cy="300" r="50"/></defs>']:
             with self.subTest(shape):
                 np.testing.assert_allclose(self.svg(shape), [(800, 900, 100)], rtol=1e-4)
-        for shape, words in [('<circle id="a" r="5em"/>', ['r="5em" of <circle id="a">']), ('<ellipse rx="3" ry="1ex"/>', ['ry="1ex" of <ellipse rx="3" ry="1ex">']), ('<rect x="1rem" width="9" height="9"/>', ['x="1rem"']),
-                             ('<circle cx="5vw" r="1"/>', ['cx="5vw"']), ('<g style="font-size:9px"><circle r="3" cy="5vh"/></g>', ['cy="5vh"']), ('<rect width="calc(1px + 2%)" height="9"/>', ["calc(1px + 2%)"]),
-                             ('<circle style="r:2em"/>', ['r="2em"'])]:
+        for shape in ('<circle id="a" r="5em"/>', '<ellipse rx="3" ry="1ex"/>', '<rect x="1rem" width="9" height="9"/>', '<circle cx="5vw" r="1"/>', '<circle style="r: 2em"/>'):
             with self.subTest(shape):
                 self.write("device.svg", SVG.format(shape))
-                self.refused("device.svg", "cannot read", "px, mm, cm, in, pt or pc", "give it in one of these", *words)
+                self.refused("device.svg", "cannot read", "librsvg does not know lengths that depend on a font or a window", "give lengths in px or mm")
         self.write("device.svg", '<svg xmlns="http://www.w3.org/2000/svg"><circle r="5%"/></svg>')
-        self.refused("device.svg", 'r="5%"')
+        self.refused("device.svg", "lengths in per cent", "viewBox")
 
     def test_svg_objects_outside_the_page_are_left_out_and_named(self):
         frame = '<rect x="{0}" y="{1}" width="3600" height="1200" fill="none" stroke="black"/>'

@@ -1,9 +1,7 @@
-"""Reads outlines from SVG drawings, and applies all transforms. The unit of length is a CSS pixel. An inch has 96 of
-them."""
+"""Reads outlines from SVG drawings as librsvg shows them. The unit of length is a CSS pixel. An inch has 96 of them."""
 
 from __future__ import annotations
 
-import collections
 import copy
 import io
 import pathlib
@@ -13,76 +11,126 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from ..tools.errors import UserError
 from ..tools.hints import Numbers
-from . import areas, css, elements, walls
-from .elements import NAMESPACE
+from . import areas, flat, walls
+from .flat import NAMESPACE, Flat
 from .libraries import library
-from .shapes import Box, Drawing
+from .shapes import Drawing
 
 METRES_IN_PIXEL = 25.4e-3 / 96
 LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
 # Number of straight pieces of each curved segment. For a quarter of a circle they deviate by 2e-5 of its radius.
 PIECES_OF_CURVE = 64
+# A quarter of an ellipse is drawn as a Bezier curve whose handles have this share of the way to the corner.
+QUARTER = 4 / 3 * (np.sqrt(2) - 1)
+PAGE_WITHOUT_SIZE = 1e4  # [px]
 
 
 def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
     """Reads visible circles and closed outlines, including curves.
     @param are_holes_posts  whether holes in filled paths are read as holes, and not as outlines within outlines"""
-    svgelements = library("svgelements", "python3-svgelements")
+    text = path.read_bytes().decode(errors="replace")
     root = ElementTree.parse(path).getroot()
-    notes = ["style sheet in another file ignored; embed it in the drawing"] if b"<?xml-stylesheet" in path.read_bytes() else []
-    css.apply(root, notes)
-    elements.prepare(root, path)
-    hide_within_transparent(root)
-    clips = Clips(root)
-    content = svgelements.SVG.parse(io.BytesIO(ElementTree.tostring(root)), reify=False)
-    width = str(root.get("width", "")).strip()
-    has_unit = width.endswith(LENGTHS)
-    found = Drawing([], [], METRES_IN_PIXEL if has_unit else None, notes=notes, skipped=collections.Counter())
-    found.unit_in_words = width.lstrip("0123456789.eE+- ") if has_unit else "px"
-    found.unit_hint = "" if has_unit else f" (--pixel {METRES_IN_PIXEL * 1e3:.7g}mm, if 96 of them are an inch; Inkscape before 0.92 had 90, --pixel {25.4 / 90:.7g}mm)"
-    viewport = svgelements.Matrix(content.viewbox_transform) if content.viewbox else svgelements.Matrix()
-    found.from_own = applied(viewport)
-    found.page = page_of(root, content, found)
-    widest = 0.0
-    for element in content.elements():
-        if not isinstance(element, svgelements.Shape):
-            if isinstance(element, (svgelements.Text, svgelements.Image)):
-                found.skipped[type(element).__name__.lower()] += 1
-            continue
-        transform = applied(element.transform)
-        parts = [transform(corners_of(svgelements, svgelements.Path(part))) for part in svgelements.Path(element).as_subpaths()]
-        tag = element.values.get("tag")
-        if not clips.define(element.values, parts):
-            if kind := invisible(element):
-                found.skipped[f"{kind} {tag}"] += 1
-                continue
-            compound = [part for part in parts if is_closed(part)] if are_holes_posts and is_painted(element.fill) else []
-            if len(compound) > 1:
-                clips.cut_area(found, element.values, tag, areas.filled([part[:-1] for part in compound], element.values.get("fill-rule", "nonzero")))
-                parts = [part for part in parts if not is_closed(part)]
-            for part in parts:
-                clips.cut(found, element.values, tag, part)
-            if is_painted(element.fill) and is_painted(element.stroke) and any(map(is_closed, parts)):
-                widest = max(widest, float(element.stroke_width) * transform_length(element.transform))
-    if widest:
-        found.notes.append(f"strokes not counted (of filled shapes at most {widest / transform_length(viewport):.4g} wide); if a post includes its stroke, convert strokes to paths")
-    if clips.unknown:
-        found.notes.append(f"{clips.unknown} clips or masks ignored, which are not of plain shapes")
+    if moving := flat.named_in(text, flat.MOVING):
+        raise UserError(f"cannot read {path} (librsvg does not know {moving}); apply transforms in the drawing program, such as by ungrouping, and give lengths in px or mm")
+    refuse_unknown(root, path)
+    ignored = flat.named_in(text, flat.IGNORED)
+    found = Drawing([], [], None, notes=[f"ignored: {ignored}"] if ignored else [], skipped={})
+    set_scale(found, root)
+    svgelements = library("svgelements", "python3-svgelements")
+    page = svgelements.SVG.parse(io.BytesIO(ElementTree.tostring(empty(root))), reify=False)
+    viewport = svgelements.Matrix(page.viewbox_transform) if page.viewbox else svgelements.Matrix()
+    found.from_own = lambda points: upwards(np.asarray(points) @ [[viewport.a, viewport.b], [viewport.c, viewport.d]] + [viewport.e, viewport.f])
+    size = size_of(page, text, path)
+    if size is not None:
+        found.page = (0.0, -size[1], size[0], 0.0)
+    found.skipped.update({name: number for name in flat.NO_SHAPES if (number := len(list(root.iter(NAMESPACE + name))))})
+    drawing = flat.flatten(root, *(size or (PAGE_WITHOUT_SIZE, PAGE_WITHOUT_SIZE)), path)
+    read_flat(svgelements, drawing, found, are_holes_posts, transform_length(viewport))
     return found
 
 
-def page_of(root: Any, content: Any, found: Drawing) -> Box | None:
-    """The page: width and height, or the viewBox of a drawing without these. None if the drawing has neither."""
-    if all(re.fullmatch(rf"[0-9.eE+]+\s*({'|'.join(LENGTHS)}|px)?", root.get(name, "").strip()) for name in ("width", "height")):
-        corners = np.array([(0.0, -float(content.height)), (float(content.width), 0.0)])
-    elif content.viewbox:
-        view = content.viewbox
-        corners = found.from_own([(view.x, view.y), (view.x + view.width, view.y + view.height)])
-    else:
-        return None
-    (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
-    return (left, bottom, right, top) if right > left and top > bottom else None
+def refuse_unknown(root: Any, path: pathlib.Path) -> None:
+    """@throws UserError  if a <use> refers to what is not in the file, the whole drawing is transformed, or has no size"""
+    names = {element.get("id") for element in root.iter()}
+    for use in root.iter(NAMESPACE + "use"):
+        link = next((use.get(name) for name in ("href", flat.LINK) if use.get(name)), "")
+        if link[:1] != "#" or link[1:] not in names:
+            raise UserError(f"cannot read {path} (<use> refers to '{link[:60]}', which is not in the file); embed it, or unlink clones, in the drawing program")
+    if root.get("transform", "").strip() not in ("", "none"):
+        raise UserError(f"cannot read {path} (transform of the whole <svg>); apply it in the drawing program")
+    sizes = [root.get("width", ""), root.get("height", ""), *re.split(r"[\s,]+", root.get("viewBox", "").strip())[2:]]
+    if any(re.match(r"\s*(-|[0.]+(?![\d.]))", size) for size in sizes):
+        raise UserError(f"cannot read {path} (its width, height or viewBox has no size); give the size of the page in the drawing program")
+
+
+def set_scale(found: Drawing, root: Any) -> None:
+    """Sets the drawing's unit of length."""
+    width = str(root.get("width", "")).strip()
+    has_unit = width.endswith(LENGTHS)
+    found.metres = METRES_IN_PIXEL if has_unit else None
+    found.unit_in_words = width.lstrip("0123456789.eE+- ") if has_unit else "px"
+    found.unit_hint = "" if has_unit else f" (--pixel {METRES_IN_PIXEL * 1e3:.7g}mm, if 96 of them are an inch; Inkscape before 0.92 had 90, --pixel {25.4 / 90:.7g}mm)"
+
+
+def empty(root: Any) -> Any:
+    """The drawing without its content. Without a size of its own, it has that of its viewBox."""
+    frame = ElementTree.Element(root.tag, {name: root.get(name) for name in ("width", "height", "viewBox", "preserveAspectRatio") if root.get(name)})
+    if not all(re.fullmatch(rf"\s*[0-9.eE+]+\s*({'|'.join(LENGTHS)}|px)?\s*", frame.get(name, "")) for name in ("width", "height")):
+        for name in ("width", "height"):
+            frame.attrib.pop(name, None)
+        view = re.split(r"[\s,]+", frame.get("viewBox", "").strip())
+        if len(view) == 4:
+            frame.attrib.update(width=view[2], height=view[3])
+    return frame
+
+
+def size_of(page: Any, text: str, path: pathlib.Path) -> tuple[float, float] | None:
+    """The size of the page, or None if the drawing has neither a size nor a viewBox.
+    @throws UserError  if such a drawing has lengths in per cent"""
+    if page.values.get("width") and float(page.width) > 0 and float(page.height) > 0:
+        return float(page.width), float(page.height)
+    if re.search(r"[:=]\s*[\"']?\s*[-+\d.]+%", text):
+        raise UserError(f"cannot read {path} (it has lengths in per cent, but no size); give it width and height, or a viewBox, in the drawing program")
+    return None
+
+
+def read_flat(svgelements: Any, drawing: Flat, found: Drawing, are_holes_posts: bool, own_unit: float) -> None:
+    """Adds the paths of a flat drawing. @param own_unit  of the drawing, in pixels"""
+    clips = Clips(svgelements, drawing)
+    content = svgelements.SVG.parse(io.BytesIO(ElementTree.tostring(drawing.root)), reify=False)
+    widest = 0.0
+    for element in content.elements():
+        if not isinstance(element, svgelements.Shape):
+            continue
+        is_filled, is_stroked = is_painted(element.fill), is_painted(element.stroke) and element.stroke_width > 0
+        if not is_filled and not is_stroked:
+            found.skipped["transparent path"] = found.skipped.get("transparent path", 0) + 1
+            continue
+        parts = parts_of(svgelements, element, drawing)
+        compound = [part for part in parts if is_closed(part)] if are_holes_posts and is_filled else []
+        if len(compound) > 1:
+            clips.cut_area(found, element.values, areas.filled([part[:-1] for part in compound], element.values.get("fill-rule", "nonzero")))
+            parts = [part for part in parts if not is_closed(part)]
+        for part in parts:
+            clips.cut(found, element.values, part)
+        if is_filled and is_stroked and any(map(is_closed, parts)):
+            widest = max(widest, float(element.stroke_width) * transform_length(element.transform) * drawing.pixel)
+    if widest:
+        found.notes.append(f"strokes not counted (of filled shapes at most {widest / own_unit:.4g} wide); if a post includes its stroke, convert strokes to paths")
+
+
+def parts_of(svgelements: Any, element: Any, drawing: Flat) -> list[Numbers]:
+    """The outlines and lines of a path, with y upwards."""
+    matrix = element.transform
+    linear, shift = np.array([[matrix.a, matrix.b], [matrix.c, matrix.d]], dtype=float), np.array([matrix.e, matrix.f], dtype=float)
+    outlines = [corners_of(svgelements, svgelements.Path(part)) for part in svgelements.Path(element).as_subpaths()]
+    return [upwards(drawing.to_page(corners @ linear + shift)) for corners in outlines if len(corners) > 1]
+
+
+def upwards(points: Numbers) -> Numbers:
+    return np.asarray(points) * (1.0, -1.0)
 
 
 def transform_length(matrix: Any) -> float:
@@ -95,93 +143,34 @@ def is_painted(colour: Any) -> bool:
     return colour is not None and colour.value is not None and colour.opacity > 0
 
 
-def invisible(element: Any) -> str:
-    """The reason why a shape is invisible, or an empty text if it is visible."""
-    if element.values.get("visibility") in ("hidden", "collapse"):
-        return "hidden"
-    if number(element.values.get("opacity", "1")) == 0:
-        return "transparent"
-    return "" if is_painted(element.fill) or is_painted(element.stroke) and element.stroke_width > 0 else "unpainted"
-
-
-def hide_within_transparent(root: Any) -> None:
-    """Makes all that is within a transparent group transparent. The library lets a part replace the group's opacity."""
-    for element in root.iter():
-        if number(element.get("opacity", "1")) == 0:
-            for part in element.iter():
-                part.set("opacity", "0")
-
-
-def number(text: Any) -> float:
-    """An opacity as a number. Text that is no number counts as 1."""
-    try:
-        return float(str(text).rstrip("%"))
-    except ValueError:
-        return 1.0
-
-
 class Clips:
-    """Clips shapes: only the part inside a clip-path is visible. The clip-path belongs to the shape itself or to a
-    group around it. The viewport of an <svg> within the drawing is a rectangle that clips its content.
+    """Clips paths: only the part inside all clip-paths of the groups around a path is visible. The library that parses
+    paths ignores clips, but keeps the attribute that marks clipped paths here."""
 
-    The library ignores clips. So the shapes of each clip are added to a group around the clipped element, and the
-    library applies the element's transform to them. Both the clipping and the clipped shapes are marked with attributes that the
-    library keeps."""
+    CLIPPED = "clipped-by"
 
-    SHAPE, USED = "clip-shape", "clipped-by"
+    def __init__(self, svgelements: Any, drawing: Flat) -> None:
+        self._areas = {}
+        for clip in drawing.root.iter(NAMESPACE + "clipPath"):
+            content = svgelements.SVG.parse(io.BytesIO(ElementTree.tostring(with_content(clip))), reify=False)
+            shapes = [element for element in content.elements() if isinstance(element, svgelements.Shape)]
+            self._areas[clip.get("id")] = [part for shape in shapes for part in parts_of(svgelements, shape, drawing) if len(part) > 2]
+        self._mark(drawing.root, "")
 
-    def __init__(self, root: Any) -> None:
-        self._by_id = {element.get("id"): element for element in root.iter(NAMESPACE + "clipPath")}
-        self._areas: dict[str, list[Numbers]] = {}
-        self.unknown = 0
-        self._draw(root, "")
+    def _mark(self, element: Any, outer: str) -> None:
+        """@param outer  names of the clips around the element"""
+        link = re.search(r"url\(#([^)]*)\)", element.get("clip-path", ""))
+        clips = f"{outer} {link[1]}" if link else outer
+        element.set(self.CLIPPED, clips)
+        for child in element:
+            self._mark(child, clips)
 
-    def _link(self, element: Any) -> str:
-        """The name of the clip-path of an element, or an empty text."""
-        clip = element.get("clip-path", "none")
-        link = re.search(r"url\(([^)]*)\)", clip)
-        self.unknown += ("url(" in element.get("mask", "")) + (link is None and clip != "none")
-        return link[1].strip(" '\"#") if link else ""
+    def _clips_of(self, values: dict[str, Any]) -> list[list[Numbers]]:
+        return [self._areas[name] for name in values.get(self.CLIPPED, "").split()]
 
-    def _draw(self, element: Any, outer: str) -> None:
-        """Adds the shapes of clip-paths to the groups that they clip. @param outer  numbers of the clips around the
-        element"""
-        for index, child in enumerate(list(element)):
-            if child.tag in (NAMESPACE + "clipPath", NAMESPACE + "defs"):
-                continue
-            link, clips = self._link(child), outer
-            clip = self._by_id.get(link)
-            contents: list[tuple[list[Any], str]] = []
-            if clip is not None and clip.get("clipPathUnits") != "objectBoundingBox":
-                contents.append((list(clip), clip.get("transform", "")))
-            elif link:
-                self.unknown += 1
-            if child.tag == NAMESPACE + "svg" and child.get("overflow") not in ("visible", "auto"):
-                sides = {name: child.get(name, "0") for name in elements.LENGTHS["svg"]}
-                contents.append(([ElementTree.Element(NAMESPACE + "rect", sides)], ""))
-            if contents:
-                group = ElementTree.Element(NAMESPACE + "g", {"transform": child.attrib.pop("transform", "")})
-                for shapes, transform in contents:
-                    name = str(len(self._areas))
-                    self._areas[name] = []
-                    clips = f"{clips} {name}"
-                    area = ElementTree.SubElement(group, NAMESPACE + "g", {self.SHAPE: name, "visibility": "visible", "transform": transform})
-                    area.extend(copy.deepcopy(shapes))
-                group.append(child)
-                element[index] = group
-            child.set(self.USED, clips)
-            self._draw(child, clips)
-
-    def define(self, values: dict[str, Any], parts: list[Numbers]) -> bool:
-        """Stores a shape if it is part of a clip. @return whether it is"""
-        name = values.get(self.SHAPE)
-        if name is not None:
-            self._areas[name] += [part for part in parts if len(part) > 2]
-        return name is not None
-
-    def cut(self, found: Drawing, values: dict[str, Any], tag: Any, corners: Numbers) -> None:
+    def cut(self, found: Drawing, values: dict[str, Any], corners: Numbers) -> None:
         """Adds the part of an outline or a line that is inside all its clips."""
-        clips = [self._areas[name] for name in values.get(self.USED, "").split()]
+        clips = self._clips_of(values)
         if len(corners) == 0 or all(len(clip) == 1 and walls.is_rectangle(clip[0][:-1]) and is_within(corners, clip[0]) for clip in clips):
             add(found, corners)
             return
@@ -189,7 +178,7 @@ class Clips:
         shape = areas.polygon(corners) if is_closed(corners) else geometry.LineString(corners)
         left = self._visible(values, shape)
         if left.is_empty:
-            found.skipped[f"clipped {tag}"] += 1
+            found.skipped["clipped path"] = found.skipped.get("clipped path", 0) + 1
         elif left.equals(shape):
             add(found, corners)
         elif is_closed(corners):
@@ -197,19 +186,25 @@ class Clips:
         else:
             found.pieces += [("open outline", np.asarray(part.coords)) for part in getattr(left, "geoms", [left]) if part.length > 0]
 
-    def cut_area(self, found: Drawing, values: dict[str, Any], tag: Any, area: Any) -> None:
+    def cut_area(self, found: Drawing, values: dict[str, Any], area: Any) -> None:
         """Adds the part of an area that is inside all its clips."""
         left = self._visible(values, area)
         if left.is_empty:
-            found.skipped[f"clipped {tag}"] += 1
+            found.skipped["clipped path"] = found.skipped.get("clipped path", 0) + 1
         areas.add(found, left)
 
     def _visible(self, values: dict[str, Any], shape: Any) -> Any:
         """The part of a shape that is inside all its clips."""
-        for name in values.get(self.USED, "").split():
-            clip = self._areas[name]
+        for clip in self._clips_of(values):
             shape = shape.intersection(areas.union([areas.polygon(part) for part in clip], 0.0) if clip else library("shapely.geometry", "python3-shapely").Polygon())
         return shape
+
+
+def with_content(clip: Any) -> Any:
+    """A drawing of the shapes of a clip-path."""
+    drawing = ElementTree.Element(NAMESPACE + "svg")
+    drawing.extend(copy.deepcopy(list(clip)))
+    return drawing
 
 
 def is_within(corners: Numbers, rectangle: Numbers) -> bool:
@@ -220,19 +215,25 @@ def is_within(corners: Numbers, rectangle: Numbers) -> bool:
 
 def corners_of(svgelements: Any, outline: Any) -> Numbers:
     """The corners of straight parts, and points along curves. No transform is applied."""
-    points: list[tuple[float, float]] = []
+    points: list[Numbers] = []
     for segment in outline:
-        is_straight = isinstance(segment, (svgelements.Move, svgelements.Line, svgelements.Close))
-        steps = np.linspace(0, 1, 2 if is_straight else PIECES_OF_CURVE + 1)[1:]
-        points += [(point.x, point.y) for point in (segment.point(at) for at in steps) if point is not None]
-    return np.array(points, dtype=float).reshape(-1, 2)
+        if isinstance(segment, svgelements.CubicBezier):
+            points.append(along_curve(np.array([(point.x, point.y) for point in (segment.start, segment.control1, segment.control2, segment.end)])))
+        elif segment.end is not None:
+            points.append(np.array([(segment.end.x, segment.end.y)]))
+    return np.concatenate(points) if points else np.empty((0, 2))
 
 
-def applied(matrix: Any) -> Any:
-    """Returns a function that transforms points (n, 2) into the coordinates of a Drawing, with y upwards."""
-    linear = np.array([[matrix.a, matrix.c], [-matrix.b, -matrix.d]], dtype=float)
-    shift = np.array([matrix.e, -matrix.f], dtype=float)
-    return lambda points: np.asarray(points) @ linear.T + shift
+def along_curve(handles: Numbers) -> Numbers:
+    """Points along a Bezier curve, without the first; on a quarter of an ellipse if it is drawn as one.
+    @param handles  the four points of the curve (4, 2)"""
+    share = np.linspace(0, 1, PIECES_OF_CURVE + 1)[1:, None]
+    start, first, last, end = handles
+    corner, other = start + (first - start) / QUARTER, end + (last - end) / QUARTER
+    if np.allclose(corner, other, rtol=0, atol=1e-3 * np.abs(end - start).max()):
+        centre, angle = start + end - (corner + other) / 2, np.pi / 2 * share
+        return np.asarray(centre + (start - centre) * np.cos(angle) + (end - centre) * np.sin(angle))
+    return np.asarray((1 - share) ** 3 * start + 3 * (1 - share) ** 2 * share * first + 3 * (1 - share) * share**2 * last + share**3 * end)
 
 
 def add(found: Drawing, corners: Numbers) -> None:
