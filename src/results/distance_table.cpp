@@ -82,7 +82,8 @@ void refuse_entry(const std::string& cell, const std::string& name, const std::s
 
 /// @throws Error if the column would separate droplets by their outcomes, so that lengths mean nothing
 void refuse_outcome(const std::string& cell) {
-  std::string name = column_name(console::in_lower_case(cell));
+  const std::string without_unit = console::trimmed(cell.substr(0, cell.find_first_of("[(")));
+  std::string name = column_name(console::in_lower_case(without_unit));
   std::ranges::replace(name, ' ', '_');
   static const std::set<std::string> words = {"censored", "event", "outcome"};
   const bool is_result = std::ranges::any_of(sweep::columns(), [&](const sweep::Column& column) {
@@ -323,22 +324,35 @@ void hint_at_lone_droplets(const DistanceTable& table) {
       table.source, joined(unique.empty() ? table.labels : unique)));
 }
 
-/// Names columns whose values with two droplets or more have only clogged, or only moving droplets.
+/// Whether the label is a quantity that was set before the run: a key, or a column of the laboratory.
+bool is_quantity(const std::string& label) {
+  return label == "diameter" || label == "angle" ||
+         std::ranges::any_of(sweep::keys(), [&](const sweep::Key& key) {
+           return column_name(key.name) == column_name(label);
+         });
+}
+
+/// Names columns each of whose values has only clogged, or only moving droplets. If half of the droplets or
+/// more have a value of their own, the column may number the droplets, and is not named. Nor are quantities
+/// that were set before the run.
 void hint_at_outcomes(const DistanceTable& table) {
   for (std::size_t i = 0; i < table.labels.size(); ++i) {
+    if (is_quantity(table.labels[i])) continue;
     std::map<Value, std::pair<int, int>> counts;  // of moving and clogged droplets
     for (const DistanceGroup& group : table.groups)
       for (const fit::Observation& run : group.runs)
         ++(run.clogged ? counts[group.labels[i]].second : counts[group.labels[i]].first);
     bool is_any_moving = false, is_any_clogged = false, is_any_mixed = false;
+    int num_alone = 0, num_together = 0;
     for (const auto& [value, number] : counts) {
       const auto& [num_moving, num_clogged] = number;
-      if (num_moving + num_clogged < 2) continue;
+      const int num_droplets = num_moving + num_clogged;
+      (num_droplets > 1 ? num_together : num_alone) += num_droplets;
       is_any_mixed |= num_moving > 0 && num_clogged > 0;
       is_any_moving |= num_moving > 0;
       is_any_clogged |= num_clogged > 0;
     }
-    if (is_any_moving && is_any_clogged && !is_any_mixed)
+    if (is_any_moving && is_any_clogged && !is_any_mixed && num_alone < num_together)
       console::say(fmt::format(
           "clogfit: {}: each value of '{}' has only clogged or only moving droplets; if the column restates "
           "the outcome, delete it",

@@ -95,6 +95,11 @@ bool has_clogging_length(const sweep::RunRow& row) {
   return scene_of(row.parameters).finding == Finding::clogging_length;
 }
 
+std::string outcome_of(const sweep::RunRow& row) {
+  const bool is_on_wall = scene_of(row.parameters).finding == Finding::sag;
+  return is_on_wall && row.status == RunStatus::clogged ? "at rest" : name(row.status);
+}
+
 std::vector<Field> result_fields(const Group& group) {
   std::string doubts;
   for (const Doubt doubt : group.doubts)

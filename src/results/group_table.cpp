@@ -77,6 +77,15 @@ std::string legend(const std::vector<Group>& groups) {
   return legend_of(all);
 }
 
+/// Explains the stars of parameters that follow from others. @param shown  parameters that are columns
+std::string note_of_automatic(const std::vector<Group>& groups, const std::vector<bool>& shown) {
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    for (const Group& group : groups)
+      if (shown[i] && is_automatic(*group_columns()[i], group.first_row))
+        return "*: the automatic value, which follows from other parameters\n";
+  return "";
+}
+
 /// Explains columns whose heads are not enough.
 std::string column_notes(const std::vector<Group>& groups) {
   if (!has_clogging_length(groups.front().first_row)) return "";
@@ -262,11 +271,14 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
   return shown;
 }
 
-/// The parameters that all groups, or all with a model, share and that need a mention.
-std::vector<std::string> shared_words(const std::vector<Group>& groups, const std::vector<bool>& varies,
-                                      const std::vector<bool>& shown, SharedParameters shared) {
+/// The parameters that need a mention and that all groups share, or all groups of the one model that has
+/// them, by the name of this model.
+std::map<std::string, std::vector<std::string>> shared_words(const std::vector<Group>& groups,
+                                                             const std::vector<bool>& varies,
+                                                             const std::vector<bool>& shown,
+                                                             SharedParameters shared) {
   std::map<const Group*, std::vector<Value>> all_usual;
-  std::vector<std::string> words;
+  std::map<std::string, std::vector<std::string>> words;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const sweep::Column& column = *group_columns()[i];
     const Group* group = varies[i] ? group_of_only_model(column, groups) : &groups.front();
@@ -279,7 +291,8 @@ std::vector<std::string> shared_words(const std::vector<Group>& groups, const st
     const bool tells_all =
         column.name == "model" || (column.name == "preset" && text != sweep::find_key("preset").default_text);
     if (!text.empty() && text != "none" && (tells_all || usual.empty() || value != usual[i]))
-      words.push_back(fmt::format("{}={}", column.name, rounded_text(*group, groups, column)));
+      words[varies[i] ? name(row.parameters.model) : ""].push_back(
+          fmt::format("{}={}", column.name, rounded_text(*group, groups, column)));
   }
   return words;
 }
@@ -318,7 +331,7 @@ ParameterColumns parameter_columns(const std::vector<Group>& groups, const std::
     const auto value_of = [&](const Group& group) { return without_round_off(column.get(group.first_row)); };
     const int digits = digits_in(groups, value_of);
     const auto cell = [&groups, &column, digits](const Group& group) {
-      return rounded_text(group, groups, column, digits);
+      return rounded_text(group, groups, column, digits) + (is_automatic(column, group.first_row) ? "*" : "");
     };
     if (columns.droplets.empty() || !follows(groups, cell, droplet_of))
       columns.others.push_back({column.name, cell});
@@ -438,7 +451,10 @@ std::string definition_of_clogs(const std::vector<Group>& groups) {
 std::string text_of_kind(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
   const std::vector<bool> varies = varying_columns(groups);
   const std::vector<bool> shown = shown_columns(groups, varies);
-  std::string text = "all runs:" + wrapped(shared_words(groups, varies, shown, shared));
+  auto words = shared_words(groups, varies, shown, shared);
+  std::string text = "all runs:" + wrapped(words[""]);
+  words.erase("");
+  for (const auto& [model, own] : words) text += fmt::format("\nruns with model={}:", model) + wrapped(own);
   if (shared == SharedParameters::unusual) text += "\n(the rest as by default; --all-parameters names it)";
   text += definition_of_clogs(groups);
   const ParameterColumns parameters = parameter_columns(groups, shown);
@@ -446,8 +462,8 @@ std::string text_of_kind(const std::vector<Group>& groups, double confidence, Sh
   std::vector<std::vector<std::string>> lines = {heads(columns)};
   for (const Group& group : groups) lines.push_back(cells(group, columns));
   return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, parameters.first(), confidence) +
-         legend(groups) + column_notes(groups) + note_of_rest(groups) + note_of_displaced(groups) +
-         left_out(groups);
+         legend(groups) + note_of_automatic(groups, shown) + column_notes(groups) + note_of_rest(groups) +
+         note_of_displaced(groups) + left_out(groups);
 }
 
 }  // namespace

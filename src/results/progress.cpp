@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clog/console/duration.hpp"
+#include "clog/results/groups.hpp"
 
 namespace clog::results {
 namespace {
@@ -16,7 +17,20 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+std::int64_t count_in(const std::map<std::string, std::int64_t>& numbers, const std::string& outcome) {
+  const auto found = numbers.find(outcome);
+  return found == numbers.end() ? 0 : found->second;
+}
+
 }  // namespace
+
+std::string text_of_clogs(const std::map<std::string, std::int64_t>& by_outcome) {
+  const std::int64_t num_clogged = count_in(by_outcome, name(RunStatus::clogged));
+  const std::int64_t num_at_rest = count_in(by_outcome, "at rest");
+  if (num_at_rest == 0) return fmt::format("{} clogged", num_clogged);
+  return (num_clogged > 0 ? fmt::format("{} clogged, ", num_clogged) : "") +
+         fmt::format("{} at rest", num_at_rest);
+}
 
 Progress::Progress(std::ostream& out, Screen screen, int num_computing_ranks, sweep::GroupOf set_of)
     : status_(out, screen), number_of_set_(std::move(set_of)), num_ranks_(num_computing_ranks) {}
@@ -37,7 +51,7 @@ void Progress::started(std::int64_t task) { running_[task] = Clock::now(); }
 
 void Progress::ended(const sweep::RunRow& row) {
   running_.erase(row.task);
-  ++ended_by_status_[row.status];
+  ++ended_by_outcome_[outcome_of(row)];
   if (row.status == RunStatus::interrupted) return;
   ++num_ended_;
   SetTimes& set = set_of(row.task);
@@ -47,7 +61,7 @@ void Progress::ended(const sweep::RunRow& row) {
 }
 
 void Progress::not_ended(const sweep::RunRow& failed) {
-  --ended_by_status_[failed.status];
+  --ended_by_outcome_[outcome_of(failed)];
   --num_ended_;
   SetTimes& set = set_of(failed.task);
   --set.num_finished;
@@ -64,13 +78,10 @@ void Progress::finish() {
 }
 
 std::string Progress::line() const {
-  const auto count = [this](RunStatus status) {
-    const auto found = ended_by_status_.find(status);
-    return found == ended_by_status_.end() ? std::int64_t{0} : found->second;
-  };
+  const auto count = [this](RunStatus status) { return count_in(ended_by_outcome_, name(status)); };
   std::string text = fmt::format("{}/{} done, ", num_before_ + num_ended_, num_before_ + num_tasks_);
   if (num_before_ > 0) text += fmt::format("{} of them before; now ", num_before_);
-  text += fmt::format("{} running, {} clogged, {} flowing", running_.size(), count(RunStatus::clogged),
+  text += fmt::format("{} running, {}, {} flowing", running_.size(), text_of_clogs(ended_by_outcome_),
                       count(RunStatus::flowing));
   for (const RunStatus status :
        {RunStatus::broken, RunStatus::passed, RunStatus::failed, RunStatus::interrupted})

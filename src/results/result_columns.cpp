@@ -165,7 +165,7 @@ ResultColumn column_of_run(const char* name, double sweep::RunRow::*value) {
 
 std::vector<ResultColumn> columns_of_channels() {
   using sweep::RunRow;
-  return {{"outcome", [](const Group& group) { return std::string(name(group.first_row.status)); }},
+  return {{"outcome", [](const Group& group) { return outcome_of(group.first_row); }},
           column_of_run("largest A", &RunRow::largest_shape_parameter),
           column_of_run("at h", &RunRow::largest_shape_parameter_at),
           column_of_run("least v/v_t", &RunRow::smallest_relative_speed),
@@ -176,11 +176,7 @@ std::vector<ResultColumn> columns_of_channels() {
 
 std::vector<ResultColumn> columns_of_walls() {
   using sweep::RunRow;
-  return {{"outcome",
-           [](const Group& group) {
-             const RunStatus status = group.first_row.status;
-             return std::string(status == RunStatus::clogged ? "at rest" : name(status));
-           }},
+  return {{"outcome", [](const Group& group) { return outcome_of(group.first_row); }},
           column_of_run("sag", &RunRow::sag),
           column_of_run("top sag", &RunRow::top_sag),
           column_of_run("A", &RunRow::shape_parameter)};

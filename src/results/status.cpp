@@ -8,6 +8,7 @@
 
 #include "clog/console/json_text.hpp"
 #include "clog/console/printable.hpp"
+#include "clog/results/progress.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -49,6 +50,7 @@ Status status_of(const std::string& path, const store::SweepFile& file, double c
   status.is_alive = store::Journal::is_open(store::journal_path(path));
   for (const RunRow& row : file.rows) {
     ++status.by_status[row.status];
+    ++status.by_outcome[outcome_of(row)];
     status.core_hours += sweep::cost_seconds(row) / 3600;
   }
   const std::int64_t num_wanted = status.runs.num_runs - status.runs.num_beyond;
@@ -61,9 +63,9 @@ Status status_of(const std::string& path, const store::SweepFile& file, double c
 std::string to_text(const std::string& path, const Status& status, double confidence,
                     SharedParameters shared) {
   std::string text = fmt::format(
-      "{}: {} of {} finished{}, {} clogged, {} flowing, {} failed", console::printable(path),
-      status.num_finished(), sweep::counted(status.runs.num_runs, "run"), status.runs.text_of_beyond(),
-      status.count(RunStatus::clogged), status.count(RunStatus::flowing), status.count(RunStatus::failed));
+      "{}: {} of {} finished{}, {}, {} flowing, {} failed", console::printable(path), status.num_finished(),
+      sweep::counted(status.runs.num_runs, "run"), status.runs.text_of_beyond(),
+      text_of_clogs(status.by_outcome), status.count(RunStatus::flowing), status.count(RunStatus::failed));
   for (const RunStatus rare : {RunStatus::passed, RunStatus::broken})
     if (const std::int64_t number = status.count(rare); number > 0)
       text += fmt::format(", {} {}", number, name(rare));

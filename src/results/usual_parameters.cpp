@@ -78,10 +78,20 @@ bool is_automatic_with(Others others, const sweep::Column& column, const sweep::
   return false;
 }
 
+/// Whether all values that may follow from the column's value follow from the row's other values.
+bool are_followers_automatic(const sweep::Column& column, const sweep::RunRow& row) {
+  return std::ranges::all_of(sweep::columns(), [&](const sweep::Column& other) {
+    return !other.parameter || !follows(*other.parameter, *column.parameter) ||
+           is_automatic_with(Others::all, other, row);
+  });
+}
+
 }  // namespace
 
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row) {
-  return is_automatic_with(Others::all, column, row) || is_automatic_with(Others::independent, column, row);
+  // The time step follows from a given stiffness of walls, and an automatic stiffness from the time step.
+  return is_automatic_with(Others::independent, column, row) ||
+         (is_automatic_with(Others::all, column, row) && !are_followers_automatic(column, row));
 }
 
 Value separating_value(const sweep::Column& column, const sweep::RunRow& row) {
@@ -105,8 +115,7 @@ std::vector<Value> usual_parameters(const sweep::RunRow& row) try {
     if (column.name == "obstacle_density")
       usual[i] = run.obstacles.density.per_area ? usual_density(run) : column.get(row);
     if (is_of_own_circles(column, run)) usual[i] = column.parameter->get(RunParameters());
-    if (column.may_be_automatic(run))
-      usual[i] = is_automatic_with(Others::independent, column, row) ? column.get(row) : Value();
+    if (column.may_be_automatic(run)) usual[i] = is_automatic(column, row) ? column.get(row) : Value();
   }
   return usual;
 } catch (const Error&) {

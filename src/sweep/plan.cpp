@@ -43,6 +43,21 @@ std::string hint_at_list(const Settings& branch, const Settings& lists, const Ke
                                         : "";
 }
 
+/// Completes the refusal of a key that is given for all points and has no effect on one of them.
+/// @param common  settings with the points
+std::string hint_at_column(const Settings& common, const std::string& message) {
+  const bool has_no_effect = message.find("leave it out") != std::string::npos ||
+                             message.find("leave this key out") != std::string::npos;
+  for (const Key& key : keys())
+    if (has_no_effect && common.is_given(key.name) &&
+        message.find("invalid " + key.name + "=") != std::string::npos)
+      return fmt::format(
+          "; to give {} for some points, make it a column of the points file, with empty cells "
+          "for the others",
+          key.name);
+  return "";
+}
+
 /// Calls check() for one branch of the settings, and returns its result. If a list may be the reason why the
 /// check refuses a value, the message says what may have been meant.
 /// @param lists  as in hint_at_list(); @param where  beginning of the message
@@ -100,7 +115,7 @@ class Plan::Builder {
       if (point < 0)
         add_branch(branch, settings, "");
       else
-        add_branch(branch, branch, fmt::format("point {}", point + 1));
+        add_point(branch, settings, point);
     });
     if (!settings.shard().is_whole()) keep(settings.shard());
     find_twins();
@@ -114,6 +129,13 @@ class Plan::Builder {
   std::vector<std::string> names_;                       // names of products, for messages; empty for lists
   std::int64_t num_runs_ = 0;                            // number of runs of all shards
   Seeds last_seeds_;                                     // shared by branches with the same seeds
+
+  /// @param common  settings with the points
+  void add_point(const Settings& branch, const Settings& common, std::int64_t point) try {
+    add_branch(branch, branch, fmt::format("point {}", point + 1));
+  } catch (const Error& error) {
+    throw Error(error.what() + hint_at_column(common, error.what()));
+  }
 
   /// @param lists  as in hint_at_list(); @param name  of the branch, for messages
   void add_branch(const Settings& branch, const Settings& lists, const std::string& name) {

@@ -115,7 +115,14 @@ class GivenKeys(ProgramTest):
 
     def test_one_given_value_among_automatic_ones_is_a_column(self):
         _, lines = self.table_of("line-tension,vertices\n1,32\n2,\n")
-        self.assertEqual([line["vertices"] for line in lines], ["32", "128"])
+        self.assertEqual([line["vertices"] for line in lines], ["32", "128*"])
+        self.assertIn("\n*: the automatic value", self.succeed("clogfit", "s.h5").stdout)
+
+    def test_values_that_follow_from_given_ones_are_not_told(self):
+        for given in (["wall-stiffness=1"], ["time-step=0.001"], ["time-step=0.0005", "wall-stiffness=0.5"]):
+            shared, _ = self.table_of("line-tension\n1\n", *given)
+            told = {word.split("=")[0] for word in shared.split()} & {"time_step", "wall_stiffness", "vertices"}
+            self.assertEqual(told, {word.split("=")[0].replace("-", "_") for word in given})
 
     def test_a_given_ratio_of_stiffness_and_tension_is_told(self):
         _, lines = self.table_of("line-tension\n1\n2\n", "perimeter-spring=rest", "perimeter-stiffness-ratio=3")
@@ -126,6 +133,11 @@ class GivenKeys(ProgramTest):
         before = list(lines[0])[:list(lines[0]).index("runs")]
         self.assertEqual(before, ["model", "obstacle_gap", "line_tension", "wall_stiffness"])
         self.assertIn("near_wall_drag=0.2", shared.split())
+        self.assertEqual([line["wall_stiffness"][-1] == "*" for line in lines], [True, True, False])
+        shared, _ = self.table_of("model,line-tension,vertices,wall-stiffness\nsp,,,5\ndp,1,32,\n")
+        for_all, of_polygons = shared.split("\n")[:2]
+        self.assertNotIn("vertices", for_all)
+        self.assertEqual(of_polygons, "runs with model=dp: vertices=32")
         shared, lines = self.table_of("model,line-tension,near-wall-drag,wall-stiffness\nsp,,,5\ndp,1,0.2,\ndp,2,0.3,\n")
         self.assertEqual([line["near_wall_drag"] for line in lines], ["0.2", "0.3", "0"])
 

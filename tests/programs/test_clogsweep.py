@@ -1,3 +1,5 @@
+import contextlib
+import glob
 import json
 import os
 import pathlib
@@ -356,7 +358,11 @@ class Isolated(ProgramTest):
 
     def children_of(self, pid):
         # `pgrep` is not used here, because on a busy machine a run might end before `pgrep` has looked.
-        return [int(child) for thread in pathlib.Path(f"/proc/{pid}/task").glob("*/children") for child in thread.read_text().split()]
+        children = []
+        for thread in glob.glob(f"/proc/{pid}/task/*/children"):
+            with contextlib.suppress(FileNotFoundError, ProcessLookupError):  # the thread may have ended since
+                children += [int(child) for child in pathlib.Path(thread).read_text().split()]
+        return children
 
     def computing_process(self, rank):
         """The process that the helper of the rank has started."""

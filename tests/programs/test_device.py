@@ -555,13 +555,25 @@ class Drawings(Analysis):
     def test_holes_that_were_cut_into_pieces_are_counted_as_at_least(self):
         import gdspy
 
-        # Two pieces, whose border cuts the third of five holes.
+        # Two pieces, whose border cuts the third of five holes. With a gap between them, they are not united.
         holes = [gdspy.Round((400 + 500 * i, 600), 50, number_of_points=64) for i in range(5)]
-        pieces = [gdspy.boolean(gdspy.Rectangle((left, 0), (left + 1400, 1200)), holes, "not", max_points=10000) for left in (0, 1400)]
-        self.gdsii(DEVICE=pieces)
-        self.refused(words=["the drawing has at least 4 round holes", "--holes"])
+        for gap, number in ((1, "at least 4"), (0, "5")):
+            pieces = [gdspy.boolean(gdspy.Rectangle((left, 0), (left + 1400 - gap, 1200)), holes, "not", max_points=10000)
+                      for left in (0, 1400)]
+            self.gdsii(DEVICE=pieces)
+            self.refused(words=[f"the drawing has {number} round holes", "--holes"])
         self.gdsii(DEVICE=gdspy.boolean(gdspy.Rectangle((0, 0), (2800, 1200)), holes, "not", max_points=10000))
         self.refused(words=["the drawing has 5 round holes", "--holes"])
+        # Six pieces, with borders through the centres of all holes
+        pieces = [gdspy.boolean(gdspy.Rectangle((left, 0), (min(left + 500, 2800), 1200)), holes, "not", max_points=0)
+                  for left in range(-100, 2800, 500)]
+        self.gdsii(DEVICE=pieces)
+        for option in ([], ["--as-circles"]):
+            self.refused(*option, words=["the drawing has 5 round holes", "--holes"])
+        self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--holes")
+        posts = np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)
+        np.testing.assert_allclose(posts[:, 2], 100, atol=0.2)  # circles of the area of polygons with 64 corners
+        np.testing.assert_allclose(np.diff(np.sort(posts[:, 0])), 500, atol=0.2)
 
     def test_holes_that_touch_the_outer_edge_do_not_vanish(self):
         import gdspy

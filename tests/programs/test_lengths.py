@@ -144,7 +144,7 @@ class Lengths(ProgramTest):
             results = [name for name in file["runs"].dtype.names if name not in results]
         self.assertLess({"status", "mechanism", "clogged_by", "time"}, set(results))
         circumstances = {"task", "seed", "wall_seconds", "processor_seconds", "rank", "instruction_set", "host", "attempt", "message", "preset", "obstacle_density", "distance"}
-        for name in ["Status", "Clogged by", "clogged-by", "censored", "event", "Outcome", *sorted(set(results) - circumstances)]:
+        for name in ["Status", "Clogged by", "clogged-by", "censored", "event", "event [x]", "Event (0/1)", "Outcome", *sorted(set(results) - circumstances)]:
             self.write("own.csv", f"distance [mm],clogged,{name}\n5,1,a\n6,0,b\n7,1,a\n8,0,b\n")
             for command in (["lengths", "own.csv"], ["compare", "own.csv", "--by", name]):
                 self.refuse("clogfit", *command, words=[f"own.csv line 1: column '{name}'", "outcome", "delete it"])
@@ -159,10 +159,20 @@ class Lengths(ProgramTest):
         outcomes = ["5,1,c,1", "6,0,f,1", "7,1,c,1", "8,0,f,1"]
         self.assertEqual(told(*outcomes), note)
         self.assertEqual(told(*outcomes, "9,0,alone,2"), note)
+        # A table of few droplets
+        for lines in (outcomes[:3], outcomes[1:], ["5,1,c,1", "6,0,f,1", "7,0,f,1"]):
+            self.assertEqual(told(*lines), note)
+        # A column that numbers the droplets, and one with few droplets of equal values
+        self.assertNotIn("restates", told("5,1,1,1", "6,0,2,1", "7,1,3,1", "8,0,4,1"))
+        self.assertEqual(told("4,0,0,1", *(f"{5 + i},{i % 2},{i},1" for i in range(9))), "")
         for line in ("9,0,c,1", "9,1,f,1"):
             self.assertEqual(told(*outcomes, line), "")
         self.assertEqual(told("5,1,c,1", "6,1,f,1", "7,1,c,1", "8,1,f,1"), "")
         self.assertEqual(told("5,1,c,1", "7,1,c,1"), "")
+        # Quantities that were set before the run
+        for name in ("line-tension", "line_tension", "diameter [mm]", "angle"):
+            self.write("own.csv", f"distance [mm],clogged,{name}\n5,1,1\n6,0,2\n7,1,1\n8,0,2\n")
+            self.assertEqual(self.succeed("clogfit", "lengths", "own.csv").stderr, "")
 
     def test_a_diameter_of_each_group_is_its_sigma(self):
         self.write("lab.cfg", LAB)
@@ -440,7 +450,7 @@ class Beside(ProgramTest):
                                                          "clogfit compare: own.csv: left out, 2 of 3 groups match no runs of sweep.h5, such as line-tension=7, wall=glass"])
 
     def test_a_column_of_numbers_of_droplets_gets_a_hint(self):
-        for rows, hint in [("1,glass,3,1\n2,glass,4,1\n3,steel,5,0\n", "clogfit: own.csv: each droplet is a group of its own; delete columns such as no to join droplets\n"),
+        for rows, hint in [("1,glass,3,1\n2,glass,4,0\n3,steel,5,0\n", "clogfit: own.csv: each droplet is a group of its own; delete columns such as no to join droplets\n"),
                            ("1,glass,3,1\n1,glass,4,1\n3,steel,5,0\n4,steel,6,1\n", "")]:
             self.write("own.csv", "no,wall,distance [mm],clogged\n" + rows)
             self.assertEqual(self.succeed("clogfit", "lengths", "own.csv").stderr, hint)

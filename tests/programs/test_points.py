@@ -115,6 +115,20 @@ class Points(PointsTest):
                 ("obstacle-gap\n0.001\n", ["point 1", "obstacle-gap"])]:
             self.write("p.csv", text)
             self.refuse("clogsweep", *QUICK, "--points", "p.csv", "--output", "s.h5", words=words)
+        # Keys of some points, given for all of them
+        self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.6\n")
+        for setting in ("seeds=1..3", "box=20", "obstacle-gap=0.5"):
+            key = setting.split("=")[0]
+            self.refuse("clogsweep", "vertices=64", setting, "--points", "p.csv", "--output", "s.h5",
+                        words=[f"point 2: invalid {setting}", f"to give {key} for some points, make it a column of the points file"])
+        self.write("p.csv", "obstacle-layout,orifice,seeds,box\nrandom,,1..3,20\nchannel,0.6,,\n")
+        told = self.succeed("clogsweep", "vertices=64", "--points", "p.csv", "--dry-run", "--output", "s.h5").stdout
+        self.assertEqual([line.split()[1] for line in told.splitlines()[1:5]], ["density", "channel", "density", "density"])
+        self.write("p.csv", "model,vertices\ndp,32\nsp,\n")
+        self.refuse("clogsweep", "vertices=64", "wall-stiffness=5", "--points", "p.csv", "--output", "s.h5", words=["point 2: invalid vertices=64", "make it a column"])
+        self.write("p.csv", "obstacle-layout,orifice,box\nrandom,,20\nchannel,0.6,20\n")
+        done = self.run_program("clogsweep", "--points", "p.csv", "--output", "s.h5")
+        self.assertNotIn("make it a column", done.stderr)
         self.write("p.csv", "line-tension\n1\n")
         self.refuse("clogsweep", *QUICK, "--points", "p.csv", "line-tension=2", "--output", "s.h5", words=["p.csv", "line-tension"])
         self.refuse("clogsweep", *QUICK, "--points", "none.csv", "--output", "s.h5", words=["none.csv"])

@@ -219,18 +219,22 @@ class Channels(Analysis):
 class Walls(Analysis):
     def test_a_sweep_has_the_sags_that_clogrun_prints(self):
         keys = ["line-tension=0.1,1", "vertices=64"]
-        self.succeed("clogsweep", "obstacle-layout=wall", *keys, "--output", "s.h5")
+        told = self.succeed("clogsweep", "obstacle-layout=wall", *keys, "--output", "s.h5").stderr
+        self.assertIn(" 2 at rest, 0 flowing, ", told)
         printed = [line.split(",") for line in self.succeed("clogrun", "sag", *keys).stdout.splitlines()[1:]]
         rows = read_rows(self.folder / "s.h5")
         self.assertEqual([f"{row.sag:.6g}" for row in rows], [words[3] for words in printed])
         self.assertEqual([f"{row.top_sag:.6g}" for row in rows], [words[4] for words in printed])
         self.assertIn("at rest", self.succeed("clogfit", "s.h5").stdout)
+        status = self.succeed("clogsweep", "status", "s.h5").stdout
+        self.assertIn("2 of 2 runs finished, 2 at rest, 0 flowing, 0 failed;", status)
         self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
         page = (self.folder / "r.html").read_text()
         for row in rows:
             cells = [f"{row.line_tension:g}", "at rest", *(f"{value:.4g}" for value in (row.sag, row.top_sag, row.shape_parameter))]
             self.assertIn("".join(f"<td>{cell}</td>" for cell in cells), page)
         self.assertIn("<li>2 of 2 at rest</li>", page)
+        self.assertIn("2 of 2 runs finished (2 at rest)", page)
         self.assertEqual((page.count("<svg"), page.count("<img")), (5, 0))
         self.refuse_analysis("clogging-length", "s.h5", "--programs", BIN, words=["on a wall", "clogfit report"])
 

@@ -46,6 +46,17 @@ TEST_F(ProgressTest, CountsWhatIsOver) {
   EXPECT_EQ(line().find("2/4 done, 1 running, 1 clogged, 1 flowing, "), 0) << line();
 }
 
+TEST_F(ProgressTest, CountsDropletsOnAWallAsAtRest) {
+  expect(4, 4);
+  sweep::RunRow on_wall = row(0, RunStatus::clogged);
+  on_wall.parameters.obstacles.layout = ObstacleLayout::wall;
+  progress_.started(0);
+  progress_.ended(on_wall);
+  EXPECT_EQ(line().find("1/4 done, 0 running, 1 at rest, 0 flowing, "), 0) << line();
+  end(1, RunStatus::clogged);
+  EXPECT_EQ(line().find("2/4 done, 0 running, 1 clogged, 1 at rest, 0 flowing, "), 0) << line();
+}
+
 TEST_F(ProgressTest, TakesNoInterruptedRunForDone) {
   expect(4, 4);
   end(0, RunStatus::clogged);

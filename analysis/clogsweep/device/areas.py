@@ -182,15 +182,26 @@ def unite(drawing: Drawing, circle_tolerance: float) -> None:
 
 def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
     """Pairs of outlines whose bounding boxes touch. Outlines as long and as wide as the drawing are left out, because
-    they are edges of the device. Rectangles as long as the drawing are left out, because they are walls."""
+    they are edges of the device. Rectangles as long as the drawing are walls, which meet no other outlines. Only where
+    two of them lie side by side and one has notches, as pieces of an area with holes have, do they meet."""
     if len(outlines) < 2:
         return []
     lows, highs = (np.array([end(outline, axis=0) for outline in outlines]) for end in (np.min, np.max))
     is_long = highs - lows >= SHARE * np.ptp(np.vstack(outlines), axis=0)
-    is_post = ~is_long.all(axis=1) & ~(is_long.any(axis=1) & [is_rectangle(outline) for outline in outlines])
+    is_wall = ~is_long.all(axis=1) & is_long.any(axis=1) & [is_rectangle(outline) for outline in outlines]
+    is_post = ~is_long.all(axis=1) & ~is_wall
+    is_notched = is_wall & [not is_rectangle(outline, 1 - NEAR) for outline in outlines]
     near = NEAR * np.abs(np.ptp(np.vstack(outlines), axis=0)).max()
-    return [(i, int(j)) for i in np.flatnonzero(is_post).tolist()
-            for j in np.flatnonzero(is_post[:i] & (lows[:i] <= highs[i] + near).all(axis=1) & (highs[:i] >= lows[i] - near).all(axis=1))]
+
+    def may_meet(i: int) -> Any:
+        """Whether each outline before the i-th may be united with it if they touch."""
+        if is_post[i]:
+            return is_post[:i]
+        are_pieces = is_wall[:i] & (is_long[:i] == is_long[i]).all(axis=1) & (is_notched[:i] | is_notched[i])
+        return are_pieces if is_wall[i] else np.zeros(i, dtype=bool)
+
+    return [(i, int(j)) for i in range(len(outlines))
+            for j in np.flatnonzero(may_meet(i) & (lows[:i] <= highs[i] + near).all(axis=1) & (highs[:i] >= lows[i] - near).all(axis=1))]
 
 
 def leave_out_beyond(drawing: Drawing, page: Box) -> None:

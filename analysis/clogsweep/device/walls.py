@@ -52,6 +52,7 @@ def centroid(outline: Numbers) -> Numbers:
     return outline.mean(axis=0) + ((near + following) * cross[:, None]).sum(axis=0) / (3 * cross.sum())
 
 
-def is_rectangle(outline: Numbers) -> bool:
-    """Whether the outline is a rectangle with sides parallel to the axes."""
-    return abs(area(outline)) >= 0.98 * float(np.ptp(outline, axis=0).prod())
+def is_rectangle(outline: Numbers, share: float = 0.98) -> bool:
+    """Whether the outline is a rectangle with sides parallel to the axes.
+    @param share  smallest fraction of the bounding box that the outline may fill"""
+    return abs(area(outline)) >= share * float(np.ptp(outline, axis=0).prod())

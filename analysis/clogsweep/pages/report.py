@@ -294,7 +294,8 @@ def example_pictures(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pat
 def progress_of(status: dict[str, Any], rows: pandas.DataFrame) -> str:
     """The progress of the sweep in words. @param status  output of clogsweep status; @param rows  rows of the tasks
     that have begun"""
-    counts = ", ".join(f"{count} {name}" for name, count in rows.status.value_counts().items())
+    outcomes = rows.status.mask((rows.status == "clogged") & (rows.obstacle_filling == "wall"), "at rest")
+    counts = ", ".join(f"{count} {name}" for name, count in outcomes.value_counts().items())
     return f"{status['finished']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
 
 

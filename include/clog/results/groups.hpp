@@ -255,6 +255,8 @@ Finding finding_of(const Group& group);
 /// Whether the results include a clogging length. They do not in a channel and on a wall, where nothing is
 /// random: there each group is one run, whose row has the results.
 bool has_clogging_length(const sweep::RunRow& row);
+/// How a run ended: the status in words. A droplet that stops on a bare wall is at rest, not clogged.
+std::string outcome_of(const sweep::RunRow& row);
 /// The results of a group, by name.
 std::vector<Field> result_fields(const Group& group);
 /// The unit of one of these fields, e.g. "sigma"; empty for counts, words and numbers without a unit.

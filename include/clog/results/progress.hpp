@@ -15,6 +15,10 @@
 
 namespace clog::results {
 
+/// The number of clogged droplets and of those at rest on a wall. Only numbers above 0 are named, and one at
+/// least. @param by_outcome  see outcome_of()
+std::string text_of_clogs(const std::map<std::string, std::int64_t>& by_outcome);
+
 /// Reports the progress of a sweep on a StatusLine.
 class Progress {
  public:
@@ -50,7 +54,7 @@ class Progress {
   int num_ranks_;
   Clock::time_point begin_ = Clock::now();
   std::map<std::int64_t, Clock::time_point> running_;
-  std::map<RunStatus, std::int64_t> ended_by_status_;
+  std::map<std::string, std::int64_t> ended_by_outcome_;
   std::int64_t num_ended_ = 0;  // number of ended tasks of all sets
 
   SetTimes& set_of(std::int64_t task);

@@ -16,6 +16,7 @@ namespace clog::results {
 struct Status {
   RunCount runs;
   std::map<RunStatus, std::int64_t> by_status;
+  std::map<std::string, std::int64_t> by_outcome;  ///< see outcome_of()
   bool is_alive = false;
   double core_hours = 0;
   TimeLeft left;
