@@ -210,8 +210,18 @@ std::map<std::vector<Value>, Flaws> flaws_by_parameters(const std::vector<RunRow
   std::map<std::vector<Value>, Flaws> all;
   for (Group& group : group_runs(rows, confidence))
     all[parameter_values(group.first_row)] = {
-        .num_failed = group.num_failed, .doubts = std::move(group.doubts), .weibull = group.weibull};
+        .num_failed = group.num_failed,
+        .doubts = std::move(group.doubts),
+        .weibull = group.weibull,
+        .runs = runs_of(group.first_row)};
   return all;
+}
+
+int number_of(const Flaws& group, std::map<std::string, int>& known, int& num_groups) {
+  if (group.runs.empty()) return num_groups++;
+  const auto [place, is_new] = known.emplace(group.runs, num_groups);
+  num_groups += is_new ? 1 : 0;
+  return place->second;
 }
 
 std::string named_value(const std::string& column, const Value& value) {
@@ -237,9 +247,14 @@ void append_left_out(Comparisons& comparisons, const std::string& side, const st
 void correct_tests(std::vector<Comparison>& comparisons) {
   std::map<int, fit::WeibullTest> groups;
   std::vector<double> log_rank;
+  std::map<std::pair<int, int>, std::size_t> tests_of_pairs;
+  std::vector<std::size_t> test_of;
   for (const Comparison& one : comparisons) {
     for (const Flaws* flaws : {&one.flaws_here, &one.flaws_there}) groups[flaws->group] = flaws->weibull;
-    log_rank.push_back(one.log_rank_p);
+    const auto [known, is_new] =
+        tests_of_pairs.emplace(std::pair(one.flaws_here.group, one.flaws_there.group), log_rank.size());
+    if (is_new) log_rank.push_back(one.log_rank_p);
+    test_of.push_back(known->second);
   }
   std::vector<fit::WeibullTest> tests;
   tests.reserve(groups.size());
@@ -247,7 +262,7 @@ void correct_tests(std::vector<Comparison>& comparisons) {
   const std::vector<bool> are_not = fit::are_not_exponential(tests);
   const std::vector<double> adjusted = fit::holm_adjusted(log_rank);
   for (std::size_t i = 0; i < comparisons.size(); ++i) {
-    comparisons[i].log_rank_p_holm = adjusted[i];
+    comparisons[i].log_rank_p_holm = adjusted[test_of[i]];
     for (Flaws* flaws : {&comparisons[i].flaws_here, &comparisons[i].flaws_there}) {
       const auto place = std::distance(groups.begin(), groups.find(flaws->group));
       const bool is_marked = std::ranges::find(flaws->doubts, Doubt::not_exponential) != flaws->doubts.end();
@@ -271,7 +286,7 @@ bool follows_from_droplet(const sweep::Column& column, const std::vector<const s
 }
 
 void require_lengths(const Side& side) {
-  if (side.rows.empty()) throw Error(side.name + " has no runs yet; let the sweep finish some first");
+  if (side.rows.empty()) throw Error(side.name + " has no runs yet; start its sweep, or resume it");
   if (!std::ranges::all_of(side.rows, has_clogging_length))
     throw Error("cannot compare " + side.name +
                 " (droplets in a channel or on a wall have no clogging length); clogsweep select takes the "
@@ -322,7 +337,8 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
   int num_groups = 0;
   const auto numbered_flaws = [&](const Side& side) {
     auto all = flaws_by_parameters(side.rows, confidence);
-    for (auto& [values, flaws] : all) flaws.group = num_groups++;
+    std::map<std::string, int> known;
+    for (auto& [values, flaws] : all) flaws.group = number_of(flaws, known, num_groups);
     return all;
   };
   const auto flaws_there = numbered_flaws(there);

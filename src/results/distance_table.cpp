@@ -553,7 +553,8 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
   int num_groups = 0;
   const auto numbered_flaws = [&](const DistanceTable& table) {
     std::vector<Flaws> all = flaws_of(table);
-    for (Flaws& flaws : all) flaws.group = num_groups++;
+    std::map<std::string, int> known;
+    for (Flaws& flaws : all) flaws.group = number_of(flaws, known, num_groups);
     return all;
   };
   const std::vector<Flaws> flaws_there = numbered_flaws(there);

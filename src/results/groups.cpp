@@ -76,13 +76,19 @@ std::vector<Doubt> doubts_about(const Group& group) {
   return doubts;
 }
 
+/// The same runs in several laboratories are one test.
 void doubt_exponentiality(std::vector<Group>& groups) {
+  std::map<std::string, std::size_t> first;  // groups by their runs
   std::vector<fit::WeibullTest> tests;
-  tests.reserve(groups.size());
-  for (const Group& group : groups) tests.push_back(group.weibull);
+  std::vector<std::size_t> test_of;
+  for (const Group& group : groups) {
+    const auto [known, is_new] = first.emplace(runs_of(group.first_row), tests.size());
+    if (is_new) tests.push_back(group.weibull);
+    test_of.push_back(known->second);
+  }
   const std::vector<bool> are_not = fit::are_not_exponential(tests);
   for (std::size_t i = 0; i < groups.size(); ++i)
-    if (are_not[i]) groups[i].doubts.push_back(Doubt::not_exponential);
+    if (are_not[test_of[i]]) groups[i].doubts.push_back(Doubt::not_exponential);
 }
 
 std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
@@ -367,6 +373,11 @@ std::map<std::vector<Value>, Runs> members_of_groups(std::span<const sweep::RunR
 }
 
 }  // namespace
+
+std::string runs_of(sweep::RunRow row) {
+  row.parameters.seed = 0;
+  return sweep::identity_in_any_laboratory(std::move(row));
+}
 
 const DoubtText& text_of(Doubt doubt) {
   return *std::find_if(std::begin(doubt_texts), std::end(doubt_texts),

@@ -139,7 +139,7 @@ void SweepState::find_runs(Known& known, std::int64_t num_tasks) {
     if (const auto other = others.find(run); other != others.end() && known.contains(other->second))
       found = std::move(known.extract(other->second).mapped());
     else if (const auto shared = in_plan.find(run); shared != in_plan.end())
-      found = std::make_unique<Entry>(*shared->second);
+      found = copy_of(*shared->second);
     else
       continue;
     found->row.parameters.laboratory = row.parameters.laboratory;

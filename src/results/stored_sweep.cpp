@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <set>
 
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
+#include "clog/store/journal.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -59,9 +61,30 @@ sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& ta
   return row;
 }
 
+/// Counts runs that have ended according to the journal of a stopped sweep, but not according to its table.
+static std::int64_t num_ended_in_journal(const std::string& path, const store::SweepFile& file) try {
+  const std::string journal = store::journal_path(path);
+  if (store::Journal::is_open(journal)) return 0;
+  const auto contents = store::Journal::look(journal);
+  if (!contents) return 0;
+  std::set<std::string> ended;
+  for (const store::Journal::Entry& entry : contents->entries)
+    if (sweep::is_final(entry.row)) ended.insert(sweep::identity(entry.row));
+  if (ended.empty()) return 0;
+  for (const sweep::RunRow& row : file.rows)
+    if (sweep::is_final(row)) ended.erase(sweep::identity(row));
+  return static_cast<std::int64_t>(ended.size());
+} catch (const Error&) {  // the journal of another version, or another kind of file: the sweep's command reports it
+  return 0;
+}
+
 store::SweepFile read_with_caution(const std::string& path) {
   store::SweepFile file = store::read_sweep(path);
   if (const std::string words = store::caution(path, file); !words.empty()) console::say(words);
+  if (const std::int64_t number = num_ended_in_journal(path, file); number > 0)
+    console::say(fmt::format("{}: {} ended that only the journal of the stopped sweep has; the sweep's own "
+                             "command adds {}",
+                             path, sweep::counted(number, "run"), number == 1 ? "it" : "them"));
   for (const store::CircleFile& one : file.circles) {
     const OwnCircles named(one.circles.circles(), one.name);
     for (sweep::RunRow& row : file.rows)

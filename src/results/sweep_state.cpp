@@ -103,27 +103,35 @@ void SweepState::request(std::int64_t task) {
   const std::optional<std::int64_t> twin = plan_->twin(task);
   const Entry* const run = twin ? entry(*twin) : nullptr;
   if (run && is_over(run->row))
-    copy_to(task, *run);
+    write_down(copy_to(task, *run));
   else if (twin && std::ranges::binary_search(tasks_left_, *twin))
     waiting_[*twin].push_back(task);
   else
     tasks_left_.push_back(task);
 }
 
-void SweepState::copy_to(std::int64_t task, const Entry& twin) {
+/// A copy costs nothing.
+std::unique_ptr<SweepState::Entry> SweepState::copy_of(const Entry& twin) {
+  auto copy = std::make_unique<Entry>(twin);
+  copy->row.wall_seconds = copy->row.processor_seconds = 0;
+  return copy;
+}
+
+/// Gives a task the row of its twin.
+SweepState::Entry& SweepState::copy_to(std::int64_t task, const Entry& twin) {
+  std::unique_ptr<Entry> copy = copy_of(twin);
+  copy->row.parameters.laboratory = plan_->task(task).laboratory;
+  copy->row.task = task;
   std::unique_ptr<Entry>& run = place_of(task);
-  std::unique_lock lock(changing_);
+  const std::lock_guard lock(changing_);
   if (!run) run = std::make_unique<Entry>();
-  *run = twin;
-  run->row.parameters.laboratory = plan_->task(task).laboratory;
-  run->row.task = task;
-  lock.unlock();
-  write_down(*run);
+  *run = std::move(*copy);
+  return *run;
 }
 
 void SweepState::pass_on(const Entry& twin) {
   if (const auto waiting = waiting_.find(twin.row.task); waiting != waiting_.end())
-    for (const std::int64_t task : waiting->second) copy_to(task, twin);
+    for (const std::int64_t task : waiting->second) write_down(copy_to(task, twin));
 }
 
 std::int64_t SweepState::num_waiting() const {
@@ -173,7 +181,7 @@ sweep::Start SweepState::start(std::int64_t task, int rank) {
   std::unique_ptr<Entry>& run = place_of(task);
   const bool is_new = !run;
   if (is_new) run = std::make_unique<Entry>();
-  const std::lock_guard lock(changing_);
+  std::unique_lock lock(changing_);
   Entry& entry = *run;
   sweep::Start start{entry.snapshot, entry.row.attempt};
   const bool failed = !is_new && entry.row.status == RunStatus::failed;
@@ -188,6 +196,8 @@ sweep::Start SweepState::start(std::int64_t task, int rank) {
   entry.row.status = RunStatus::running;
   entry.row.rank = rank;
   is_published_ = false;
+  lock.unlock();
+  pass_on(entry);
   return start;
 }
 
@@ -211,7 +221,7 @@ void SweepState::report(const sweep::Report& report) {
   if (entry.row.status == RunStatus::failed) past_[entry.row.task].take_costs(entry.row);
   lock.unlock();
   write_down(entry);
-  if (is_over(entry.row)) pass_on(entry);
+  pass_on(entry);
 }
 
 const sweep::RunRow* SweepState::first_if_all_failed() const {

@@ -19,6 +19,7 @@ LIBRARY_THAT_HANDLES_HANGUPS = """#include <signal.h>
 static void ignore(int number) { (void)number; }
 __attribute__((constructor)) static void begin(void) { signal(SIGHUP, ignore); }
 """
+SEVERAL_SLOW = [word.replace("seeds=1", "seeds=1..3").replace("max-time=2e4", "max-time=8e3") for word in SLOW]
 
 
 class Resumed(SweepTest):
@@ -209,6 +210,28 @@ class Resumed(SweepTest):
         self.wait_for(lambda: process.poll() is not None or self.journal()[0] >= number)
         self.kill_all(process)
         return self.journal()[0] >= number
+
+    def killed_behind_its_table(self):
+        """Kills a sweep after some runs have ended, and puts back the table as it was at the start. @return whether the
+        sweep had a journal, because it was not over"""
+        process = self.start(*SEVERAL_SLOW)
+        self.wait_for((self.folder / "s.h5").exists)
+        before = (self.folder / "s.h5").read_bytes()
+        self.wait_for(lambda: process.poll() is not None or (~table(self.folder / "s.h5").status.isin(["running", "interrupted"])).any())
+        self.kill_all(process)
+        if not (self.folder / "s.h5.journal").exists():
+            return False
+        (self.folder / "s.h5").write_bytes(before)
+        return "only the journal" in self.run_program("clogsweep", "status", "s.h5").stderr
+
+    def test_runs_that_only_the_journal_of_a_dead_sweep_has_are_counted(self):
+        self.until_in_time(self.killed_behind_its_table)
+        for command in (("clogsweep", "status", "s.h5"), ("clogfit", "s.h5")):
+            told = self.run_program(*command).stderr
+            self.assertRegex(told, r"s.h5: \d+ runs? ended that only the journal of the stopped sweep has; the sweep's own command adds (it|them)\n")
+        self.succeed("clogsweep", *SEVERAL_SLOW, ranks=2)
+        self.assertNotIn("journal", self.run_program("clogsweep", "status", "s.h5").stderr)
+        self.check_equal("s.h5", undisturbed(SEVERAL_SLOW))
 
     def test_a_damaged_record_costs_no_other(self):
         self.until_in_time(lambda: self.kill_with_records(2))

@@ -35,8 +35,12 @@ struct Flaws {
   int num_failed = 0;
   std::vector<Doubt> doubts;
   fit::WeibullTest weibull{};
-  int group = 0;  ///< number of the group; two comparisons may have a group in common
+  std::string runs{};  ///< of simulated runs, see runs_of()
+  /// Number of the group. Two comparisons may have a group in common, also as copies in two laboratories.
+  int group = 0;
 };
+/// A new number for a group, or that of a group with the same runs in another laboratory.
+int number_of(const Flaws& group, std::map<std::string, int>& known, int& num_groups);
 /// The flaws of each group of the runs, see group_runs(); the key is parameter_values().
 std::map<std::vector<Value>, Flaws> flaws_by_parameters(const std::vector<sweep::RunRow>& rows,
                                                         double confidence);

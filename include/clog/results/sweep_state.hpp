@@ -145,7 +145,8 @@ class SweepState {
   sweep::RunRow published(const sweep::RunRow& row) const;
   void write_down(const Entry& entry);
   void request(std::int64_t task);
-  void copy_to(std::int64_t task, const Entry& twin);
+  static std::unique_ptr<Entry> copy_of(const Entry& twin);
+  Entry& copy_to(std::int64_t task, const Entry& twin);
   void pass_on(const Entry& twin);
   /// Publishes the rows of all runs, also of those outside this plan.
   std::optional<std::string> publish_to(const store::OutputPath& place, const std::string& stamp,
