@@ -209,11 +209,10 @@ const LaboratoryScale& scale_in(const Scales& scales, const RunRow& row) {
 std::map<std::vector<Value>, Flaws> flaws_by_parameters(const std::vector<RunRow>& rows, double confidence) {
   std::map<std::vector<Value>, Flaws> all;
   for (Group& group : group_runs(rows, confidence))
-    all[parameter_values(group.first_row)] = {
-        .num_failed = group.num_failed,
-        .doubts = std::move(group.doubts),
-        .weibull = group.weibull,
-        .runs = runs_of(group.first_row)};
+    all[parameter_values(group.first_row)] = {.num_failed = group.num_failed,
+                                              .doubts = std::move(group.doubts),
+                                              .weibull = group.weibull,
+                                              .runs = runs_of(group.first_row)};
   return all;
 }
 

@@ -74,7 +74,8 @@ static std::int64_t num_ended_in_journal(const std::string& path, const store::S
   for (const sweep::RunRow& row : file.rows)
     if (sweep::is_final(row)) ended.erase(sweep::identity(row));
   return static_cast<std::int64_t>(ended.size());
-} catch (const Error&) {  // the journal of another version, or another kind of file: the sweep's command reports it
+} catch (const Error&) {  // the journal of another version, or another kind of file: the sweep's command
+                          // reports it
   return 0;
 }
 
@@ -82,9 +83,10 @@ store::SweepFile read_with_caution(const std::string& path) {
   store::SweepFile file = store::read_sweep(path);
   if (const std::string words = store::caution(path, file); !words.empty()) console::say(words);
   if (const std::int64_t number = num_ended_in_journal(path, file); number > 0)
-    console::say(fmt::format("{}: {} ended that only the journal of the stopped sweep has; the sweep's own "
-                             "command adds {}",
-                             path, sweep::counted(number, "run"), number == 1 ? "it" : "them"));
+    console::say(
+        fmt::format("{}: {} ended that only the journal of the stopped sweep has; the sweep's own "
+                    "command adds {}",
+                    path, sweep::counted(number, "run"), number == 1 ? "it" : "them"));
   for (const store::CircleFile& one : file.circles) {
     const OwnCircles named(one.circles.circles(), one.name);
     for (sweep::RunRow& row : file.rows)

@@ -16,7 +16,8 @@ bool is_doubted(const Group& group) {
   return std::ranges::find(group.doubts, Doubt::not_exponential) != group.doubts.end();
 }
 
-/// Twelve clogs that are Weibull-distributed with the exponent 1.6: p = 0.042 (scipy.stats, likelihood ratio).
+/// Twelve clogs that are Weibull-distributed with the exponent 1.6: p = 0.042 (SciPy, likelihood
+/// ratio).
 std::vector<sweep::RunRow> clogged_runs(RunParameters run) {
   constexpr double distances[] = {1.4, 2.8, 4.0, 5.1, 6.2, 7.4, 8.6, 9.9, 11.4, 13.2, 15.8, 20.6};
   std::vector<sweep::RunRow> rows;
