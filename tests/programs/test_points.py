@@ -125,10 +125,20 @@ class Points(PointsTest):
         told = self.succeed("clogsweep", "vertices=64", "--points", "p.csv", "--dry-run", "--output", "s.h5").stdout
         self.assertEqual([line.split()[1] for line in told.splitlines()[1:5]], ["density", "channel", "density", "density"])
         self.write("p.csv", "model,vertices\ndp,32\nsp,\n")
-        self.refuse("clogsweep", "vertices=64", "wall-stiffness=5", "--points", "p.csv", "--output", "s.h5", words=["point 2: invalid vertices=64", "make it a column"])
+        self.refuse("clogsweep", "vertices=64", "wall-stiffness=5", "--points", "p.csv", "--output", "s.h5", words=["point 2: invalid vertices=64", "to give vertices for some points, leave it out elsewhere"])
         self.write("p.csv", "obstacle-layout,orifice,box\nrandom,,20\nchannel,0.6,20\n")
         done = self.run_program("clogsweep", "--points", "p.csv", "--output", "s.h5")
         self.assertNotIn("make it a column", done.stderr)
+        self.write("p.csv", "obstacle-layout,pitch,seeds,obstacle-gap\nlattice,0.6,1..2,\nrandom,,1..2,0.3\n")
+        for setting in ("lattice-angle=5", "lattice=triangular"):
+            key = setting.split("=")[0]
+            self.refuse("clogsweep", "vertices=64", setting, "--points", "p.csv", "--output", "s.h5",
+                        words=[f"point 2: invalid {setting} (a random array has no rows) to give {key} for some points, make it a column of the points file"])
+        self.refuse("clogsweep", "vertices=64", "pitch=0.7", "--points", "p.csv", "--output", "s.h5",
+                    words=["point 2: invalid pitch=0.7", "to give pitch for some points, leave it out elsewhere and write it in their cells"])
+        self.write("p.csv", "pitch,friction\n0.6,0\n,0\n")
+        self.refuse("clogsweep", "vertices=64", "obstacle-layout=lattice", "obstacle-gap=0.3", "--points", "p.csv", "--output", "s.h5",
+                    words=["point 1: invalid pitch=0.6 (obstacle-gap=0.3 is given as well)", "to give obstacle-gap for some points, make it a column"])
         self.write("p.csv", "line-tension\n1\n")
         self.refuse("clogsweep", *QUICK, "--points", "p.csv", "line-tension=2", "--output", "s.h5", words=["p.csv", "line-tension"])
         self.refuse("clogsweep", *QUICK, "--points", "none.csv", "--output", "s.h5", words=["none.csv"])
