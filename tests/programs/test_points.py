@@ -149,6 +149,23 @@ class Points(PointsTest):
         self.refuse("clogsweep", *QUICK, "--shard", "3/5", "seeds=1", "--output", "s.h5", words=["3/5", "is empty"])
 
 
+    def test_points_without_chance_have_one_run(self):
+        self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.7\nwall,\n")
+        told = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv", "--dry-run").stdout
+        self.assertIn("# 14 tasks: 3 parameter sets, 1 to 12 seeds each", told)
+        told = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "obstacle-layout=channel,wall", "--dry-run").stdout
+        self.assertIn("# 2 tasks: 2 parameter sets", told)
+        self.write("c.csv", "x,y\n5,5\n")
+        self.write("p.csv", "obstacles,release\nc.csv,centre\nc.csv,anywhere\n")
+        told = self.succeed("clogsweep", "vertices=64", "box=10", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv", "--dry-run").stdout
+        self.assertIn("# 13 tasks: 2 parameter sets, 1 to 12 seeds each", told)
+        self.refuse("clogsweep", "vertices=64", "box=10", "--until-precision", "20%", "--points", "p.csv", "--output", "s.h5",
+                    words=["no place for --until-precision (nothing is random with release=centre"])
+        self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.7\n")
+        self.refuse("clogsweep", "vertices=64", "--until-precision", "20%", "--points", "p.csv", "--output", "s.h5",
+                    words=["no place for --until-precision (nothing is random with obstacle-layout=channel", "apart"])
+
+
 class Merged(PointsTest):
     LISTS = ["obstacle-gap=0.4,0.5", "line-tension=0.5,2", "seeds=1..5"]
 
