@@ -184,6 +184,7 @@ std::vector<std::string> names_of_lengths() {
                                                 units_of(one_group, 1.0), any_confidence);
   std::vector<std::string> names;
   for (const auto& [name, value] : entry.items()) names.push_back(name);
+  names.insert(names.end(), {"lambda", "note"});  // of the printed table
   return names;
 }
 
@@ -199,6 +200,7 @@ std::string lengths_json(const DistanceTable& table, double confidence, std::opt
                              {"confidence", confidence},
                              {"source", table.source},
                              {"unit", table.unit},
+                             {"from_distance", table.from},
                              {"labels", table.labels},
                              {"groups", list}});
 }

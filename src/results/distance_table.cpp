@@ -80,11 +80,31 @@ void refuse_entry(const std::string& cell, const std::string& name, const std::s
         console::printable(cell)));
 }
 
-/// @throws Error if the column would separate droplets by their outcomes, so that lengths mean nothing
-void refuse_outcome(const std::string& cell) {
-  const std::string without_unit = console::trimmed(cell.substr(0, cell.find_first_of("[(")));
+/// The name of a cell of the first line as a column of results.
+/// @param around_unit  what may begin the unit
+std::string result_name(const std::string& cell, const char* around_unit) {
+  const std::string without_unit = console::trimmed(cell.substr(0, cell.find_first_of(around_unit)));
   std::string name = column_name(console::in_lower_case(without_unit));
   std::ranges::replace(name, ' ', '_');
+  return name;
+}
+
+/// @throws Error if the column has the name of a result, which the printed table would contain twice
+/// @param taken  names of results
+void refuse_result(const std::string& cell, const std::vector<std::string>& taken) {
+  const std::string name = result_name(cell, "[(/");
+  const auto end = name.rfind('_');
+  const bool has_unit = end != std::string::npos && console::metres_of(name.substr(end + 1));
+  const bool is_confidence =
+      name.ends_with('%') && name.find_first_not_of("0123456789.,_") == name.size() - 1 && name.size() > 1;
+  const auto is_taken = [&](const std::string& one) { return std::ranges::find(taken, one) != taken.end(); };
+  if (is_confidence || is_taken(name) || (has_unit && is_taken(name.substr(0, end))))
+    throw Error(fmt::format("column '{}' has the name of a result; rename it", console::printable(cell)));
+}
+
+/// @throws Error if the column would separate droplets by their outcomes, so that lengths mean nothing
+void refuse_outcome(const std::string& cell) {
+  const std::string name = result_name(cell, "[(");
   static const std::set<std::string> words = {"censored", "event", "outcome"};
   const bool is_result = std::ranges::any_of(sweep::columns(), [&](const sweep::Column& column) {
     return column.role == sweep::ColumnRole::result && column.name == name;
@@ -154,8 +174,7 @@ Head head_of(std::vector<std::string> cells, DistanceTable& table, const std::ve
     const std::string& label = table.labels.emplace_back(factor ? name : console::printable(cells[i]));
     if (std::ranges::count(table.labels, label) > 1)
       throw Error(fmt::format("there are two columns named {}; delete one", label));
-    if (std::ranges::find(taken, column_name(label)) != taken.end())
-      throw Error(fmt::format("column '{}' has the name of a result; rename it", label));
+    refuse_result(cells[i], taken);
     refuse_outcome(cells[i]);
   }
   return head;
@@ -248,7 +267,8 @@ bool are_alike(const Value& one, const Value& other) {
 
 bool has_diameter_like(const DistanceTable& table, double sigma_mm) {
   return std::ranges::all_of(table.groups, [&](const DistanceGroup& group) {
-    return are_alike(Value(diameter_of(table, group, sigma_mm).value()), Value(sigma_mm));
+    const std::optional<double> own = diameter_of(table, group, sigma_mm);
+    return own && are_alike(Value(*own), Value(sigma_mm));
   });
 }
 
@@ -366,9 +386,7 @@ std::optional<double> diameter_of(const DistanceTable& table, const DistanceGrou
                                   std::optional<double> sigma_mm) {
   const auto place = std::ranges::find(table.labels, "diameter");
   if (place == table.labels.end()) return sigma_mm;
-  const std::optional<double> own =
-      number_in(group.labels[static_cast<std::size_t>(place - table.labels.begin())]);
-  return own && *own > 0 ? own : sigma_mm;
+  return number_in(group.labels[static_cast<std::size_t>(place - table.labels.begin())]);
 }
 
 std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other) {
@@ -429,6 +447,7 @@ DistanceTable counted_from(double from, DistanceTable table) {
         std::erase_if(group.runs, [=](const fit::Observation& run) { return run.distance < from; }));
     for (fit::Observation& run : group.runs) run.distance -= from;
   }
+  table.from = from;
   if (num_left_out > 0)
     console::say(fmt::format("clogfit lengths: {}: left out, {} that ended before --from-distance={} {}",
                              table.source, sweep::counted(num_left_out, "droplet"), shortest(from),
@@ -524,19 +543,23 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
       std::ranges::all_of(tables, [&](const DistanceTable& table) { return table.unit == there.unit; });
   // Distances in droplet diameters do not say which of several droplets of a sweep is meant.
   const auto knows_diameters = [&](const DistanceTable& table) {
-    return table.is_measured && std::ranges::all_of(table.groups, [&](const DistanceGroup& group) {
+    return (sigma_mm || table.is_measured) &&
+           std::ranges::all_of(table.groups, [&](const DistanceGroup& group) {
              return diameter_of(table, group, sigma_mm).has_value();
            });
   };
-  for (const DistanceTable& table : tables)
-    if (table.unit != there.unit && !sigma_mm && !knows_diameters(table.unit == "mm" ? table : there)) {
-      const bool is_sweep_in_mm = !(table.unit == "mm" ? table : there).is_measured;
-      throw Error(fmt::format(
-          "cannot compare {} with {} (one is in mm, the other in droplet diameters); {}", table.source,
-          there.source,
-          is_sweep_in_mm ? "the sweep has several droplets: give distances in mm, and a column diameter [mm]"
-                         : "give the droplet's diameter by --lab lab.cfg"));
-    }
+  for (const DistanceTable& table : tables) {
+    const DistanceTable& in_mm = table.unit == "mm" ? table : there;
+    if (table.unit == there.unit || knows_diameters(in_mm)) continue;
+    throw Error(
+        fmt::format("cannot compare {} with {} (one is in mm, the other in droplet diameters); {}",
+                    table.source, there.source,
+                    !in_mm.is_measured
+                        ? "the sweep has several droplets: give distances in mm, and a column diameter [mm]"
+                    : has_label(in_mm.labels, "diameter")
+                        ? "fill the empty cells of the column diameter, or delete these rows"
+                        : "give the droplet's diameter by --lab lab.cfg"));
+  }
   if (sigma_mm && !std::ranges::all_of(tables, [&](const DistanceTable& table) {
         return has_diameter_like(table, *sigma_mm);
       }))

@@ -97,7 +97,7 @@ bool has_clogging_length(const sweep::RunRow& row) {
 
 std::string outcome_of(const sweep::RunRow& row) {
   const bool is_on_wall = scene_of(row.parameters).finding == Finding::sag;
-  return is_on_wall && row.status == RunStatus::clogged ? "at rest" : name(row.status);
+  return is_on_wall && row.status == RunStatus::clogged ? outcome_at_rest : name(row.status);
 }
 
 std::vector<Field> result_fields(const Group& group) {

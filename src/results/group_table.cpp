@@ -70,6 +70,11 @@ std::string rounded_text(const Group& group, const std::vector<Group>& groups, c
   return short_text(without_round_off(column.get(row)), digits);
 }
 
+/// Marks an automatic value.
+const char* star_of(const sweep::Column& column, const sweep::RunRow& row) {
+  return is_automatic(column, row) ? "*" : "";
+}
+
 /// Explains the letters in the last column.
 std::string legend(const std::vector<Group>& groups) {
   std::vector<Doubt> all;
@@ -77,11 +82,12 @@ std::string legend(const std::vector<Group>& groups) {
   return legend_of(all);
 }
 
-/// Explains the stars of parameters that follow from others. @param shown  parameters that are columns
-std::string note_of_automatic(const std::vector<Group>& groups, const std::vector<bool>& shown) {
-  for (std::size_t i = 0; i < shown.size(); ++i)
+/// Explains the stars of parameters that follow from others.
+/// @param named  parameters that are columns or words above the table
+std::string note_of_automatic(const std::vector<Group>& groups, const std::vector<bool>& named) {
+  for (std::size_t i = 0; i < named.size(); ++i)
     for (const Group& group : groups)
-      if (shown[i] && is_automatic(*group_columns()[i], group.first_row))
+      if (named[i] && is_automatic(*group_columns()[i], group.first_row))
         return "*: the automatic value, which follows from other parameters\n";
   return "";
 }
@@ -272,11 +278,13 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
 }
 
 /// The parameters that need a mention and that all groups share, or all groups of the one model that has
-/// them, by the name of this model.
+/// them, by the name of this model. Automatic values have a star.
+/// @param named  parameters that are named above or in the table; the function adds its own
 std::map<std::string, std::vector<std::string>> shared_words(const std::vector<Group>& groups,
                                                              const std::vector<bool>& varies,
                                                              const std::vector<bool>& shown,
-                                                             SharedParameters shared) {
+                                                             SharedParameters shared,
+                                                             std::vector<bool>& named) {
   std::map<const Group*, std::vector<Value>> all_usual;
   std::map<std::string, std::vector<std::string>> words;
   for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -290,9 +298,10 @@ std::map<std::string, std::vector<std::string>> shared_words(const std::vector<G
     const std::string text = sweep::text_of(value);
     const bool tells_all =
         column.name == "model" || (column.name == "preset" && text != sweep::find_key("preset").default_text);
-    if (!text.empty() && text != "none" && (tells_all || usual.empty() || value != usual[i]))
-      words[varies[i] ? name(row.parameters.model) : ""].push_back(
-          fmt::format("{}={}", column.name, rounded_text(*group, groups, column)));
+    if (text.empty() || text == "none" || !(tells_all || usual.empty() || value != usual[i])) continue;
+    words[varies[i] ? name(row.parameters.model) : ""].push_back(
+        fmt::format("{}={}{}", column.name, rounded_text(*group, groups, column), star_of(column, row)));
+    named[i] = true;
   }
   return words;
 }
@@ -331,7 +340,7 @@ ParameterColumns parameter_columns(const std::vector<Group>& groups, const std::
     const auto value_of = [&](const Group& group) { return without_round_off(column.get(group.first_row)); };
     const int digits = digits_in(groups, value_of);
     const auto cell = [&groups, &column, digits](const Group& group) {
-      return rounded_text(group, groups, column, digits) + (is_automatic(column, group.first_row) ? "*" : "");
+      return rounded_text(group, groups, column, digits) + star_of(column, group.first_row);
     };
     if (columns.droplets.empty() || !follows(groups, cell, droplet_of))
       columns.others.push_back({column.name, cell});
@@ -451,18 +460,22 @@ std::string definition_of_clogs(const std::vector<Group>& groups) {
 std::string text_of_kind(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
   const std::vector<bool> varies = varying_columns(groups);
   const std::vector<bool> shown = shown_columns(groups, varies);
-  auto words = shared_words(groups, varies, shown, shared);
-  std::string text = "all runs:" + wrapped(words[""]);
-  words.erase("");
-  for (const auto& [model, own] : words) text += fmt::format("\nruns with model={}:", model) + wrapped(own);
-  if (shared == SharedParameters::unusual) text += "\n(the rest as by default; --all-parameters names it)";
+  std::vector<bool> named = shown;
+  const auto words = shared_words(groups, varies, shown, shared, named);
+  std::vector<std::string> lines_above;
+  for (const auto& [model, own] : words)
+    lines_above.push_back((model.empty() ? "all runs:" : fmt::format("runs with model={}:", model)) +
+                          wrapped(own));
+  if (shared == SharedParameters::unusual)
+    lines_above.emplace_back("(the rest as by default; --all-parameters names it)");
+  std::string text = joined(lines_above, "\n");
   text += definition_of_clogs(groups);
   const ParameterColumns parameters = parameter_columns(groups, shown);
   const std::vector<ResultColumn> columns = columns_of(groups, confidence, parameters);
   std::vector<std::vector<std::string>> lines = {heads(columns)};
   for (const Group& group : groups) lines.push_back(cells(group, columns));
   return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, parameters.first(), confidence) +
-         legend(groups) + note_of_automatic(groups, shown) + column_notes(groups) + note_of_rest(groups) +
+         legend(groups) + note_of_automatic(groups, named) + column_notes(groups) + note_of_rest(groups) +
          note_of_displaced(groups) + left_out(groups);
 }
 

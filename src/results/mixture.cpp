@@ -91,15 +91,22 @@ class Key {
   const sweep::Column* column_ = nullptr;
 };
 
-/// The parameters in which groups differ, except those that are automatic.
+bool has_parameter(const sweep::Column& column, const RunParameters& run) {
+  return column.name == "preset" ? run.model == Model::dp
+                                 : !column.parameter || column.parameter->applies_to(run);
+}
+
+/// The parameters in which groups differ, except those that are automatic. A parameter that some groups lack,
+/// as those of another model do, counts only if it differs between the other groups.
 std::string differences(const std::vector<const Group*>& groups) {
   std::vector<std::string> names;
-  for (const sweep::Column* column : group_columns())
-    if (std::ranges::any_of(groups, [&](const Group* group) {
-          return separating_value(*column, group->first_row) !=
-                 separating_value(*column, groups.front()->first_row);
-        }))
-      names.push_back(column->name);
+  for (const sweep::Column* column : group_columns()) {
+    std::set<Value> values;
+    for (const Group* group : groups)
+      if (has_parameter(*column, group->first_row.parameters))
+        values.insert(separating_value(*column, group->first_row));
+    if (values.size() > 1) names.push_back(column->name);
+  }
   return names.empty() ? "automatic values" : joined(names);
 }
 
@@ -107,11 +114,22 @@ const Group& find_group(const Key& key, const std::string& value, const std::vec
                         const std::string& text) {
   std::vector<const Group*> found;
   std::set<std::string> known;
+  bool is_without_length = false;
   for (const Group& group : groups) {
     const std::string name = key.of(group);
+    if (!has_clogging_length(group.first_row)) {
+      is_without_length = is_without_length || name == value;
+      continue;
+    }
     if (name == value) found.push_back(&group);
     if (!name.empty()) known.insert(name);
   }
+  if (found.empty() && is_without_length)
+    refuse(
+        text,
+        fmt::format("droplets with {} = {} are in a channel or on a wall, where they have no clogging length",
+                    key.name(), value),
+        "mix droplets in arrays");
   if (found.empty())
     refuse(text, fmt::format("no group has {} = {}", key.name(), value),
            known.empty() ? "the runs have no laboratory" : "the groups have " + joined(known));

@@ -17,19 +17,19 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-std::int64_t count_in(const std::map<std::string, std::int64_t>& numbers, const std::string& outcome) {
-  const auto found = numbers.find(outcome);
-  return found == numbers.end() ? 0 : found->second;
-}
-
 }  // namespace
+
+std::int64_t count_in(const std::map<std::string, std::int64_t>& by_outcome, const std::string& outcome) {
+  const auto found = by_outcome.find(outcome);
+  return found == by_outcome.end() ? 0 : found->second;
+}
 
 std::string text_of_clogs(const std::map<std::string, std::int64_t>& by_outcome) {
   const std::int64_t num_clogged = count_in(by_outcome, name(RunStatus::clogged));
-  const std::int64_t num_at_rest = count_in(by_outcome, "at rest");
+  const std::int64_t num_at_rest = count_in(by_outcome, outcome_at_rest);
   if (num_at_rest == 0) return fmt::format("{} clogged", num_clogged);
   return (num_clogged > 0 ? fmt::format("{} clogged, ", num_clogged) : "") +
-         fmt::format("{} at rest", num_at_rest);
+         fmt::format("{} {}", num_at_rest, outcome_at_rest);
 }
 
 Progress::Progress(std::ostream& out, Screen screen, int num_computing_ranks, sweep::GroupOf set_of)

@@ -47,8 +47,9 @@ bool are_mechanisms_shown(const std::vector<Group>& groups) {
   for (const Group& group : groups)
     for (const Group::EndsBy& cause : group.causes)
       if (cause.text->is_clog && cause.ends.num_clogs > 0) seen.insert(cause.text->cause);
-  return seen.size() > 1 ||
-         std::ranges::any_of(groups, [](const Group& group) { return group.num_left_out > 0; });
+  return seen.size() > 1 || (!seen.empty() && std::ranges::any_of(groups, [](const Group& group) {
+           return group.num_left_out > 0;
+         }));
 }
 
 bool have_some_broken(const std::vector<Group>& groups) {

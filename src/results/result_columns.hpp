@@ -26,8 +26,8 @@ std::string interval_text(const fit::CloggingLength& clogging);
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
                                               bool has_laboratory);
 
-/// Whether the table shows the mechanisms: it does if clogs differ in them, or if some clogs have been
-/// excluded.
+/// Whether the table shows the mechanisms: it does if clogs differ in them, or if there are clogs and some
+/// runs have been excluded.
 bool are_mechanisms_shown(const std::vector<Group>& groups);
 bool have_some_broken(const std::vector<Group>& groups);
 

@@ -100,7 +100,7 @@ RunList::ParameterSet& RunList::set_of(const sweep::Plan& plan, const sweep::Run
                       name));
   }
   const auto [place, is_new] = places_.emplace(identity_without_seed(run), sets_.size());
-  if (is_new) sets_.push_back({std::move(texts), {}});
+  if (is_new) sets_.push_back({std::move(texts), {}, sweep::why_nothing_is_random(run.parameters).empty()});
   return sets_[place->second];
 }
 
@@ -113,7 +113,7 @@ bool RunList::add_seed(const sweep::RunRow& row) {
 
 void RunList::fill_seeds(std::size_t number) {
   for (ParameterSet& set : sets_)
-    for (std::uint32_t seed = 1; set.seeds.size() < number; ++seed) set.seeds.insert(seed);
+    for (std::uint32_t seed = 1; set.is_random && set.seeds.size() < number; ++seed) set.seeds.insert(seed);
 }
 
 bool RunList::add(const sweep::Plan& plan, const sweep::RunRow& row) try {

@@ -112,6 +112,12 @@ GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, st
   const std::vector<std::string>& seeds = settings.values("seeds");
   const auto first_seeds = static_cast<std::int64_t>(seeds.size());
   const sweep::Plan plan(settings);
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group)
+    if (const std::string why = sweep::why_nothing_is_random(plan.group(group)); !why.empty())
+      throw Error(fmt::format(
+          "no place for --until-precision (nothing is random with {}, so more seeds repeat the same "
+          "run); sweep parameter sets with {} apart, without it",
+          why, why));
   if (!plan.has_equal_seeds() || plan.size() != plan.num_groups() * first_seeds ||
       !settings.shard().is_whole())
     throw Error(

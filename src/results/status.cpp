@@ -91,7 +91,8 @@ std::string to_json(const Status& status, double confidence) {
   all["finished"] = status.num_finished();
   for (const RunStatus one :
        {RunStatus::clogged, RunStatus::broken, RunStatus::passed, RunStatus::flowing, RunStatus::failed})
-    all[name(one)] = status.count(one);
+    all[name(one)] = count_in(status.by_outcome, name(one));
+  all["at_rest"] = count_in(status.by_outcome, outcome_at_rest);
   all["unfinished"] = status.num_unfinished();
   all["alive"] = status.is_alive;
   all["core_hours"] = status.core_hours;

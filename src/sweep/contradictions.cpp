@@ -90,6 +90,17 @@ void refuse_contradictions(const Settings& settings) {
                     settings.text("seeds")));
 }
 
+std::string why_nothing_is_random(const RunParameters& run) {
+  const Scene& scene = scene_of(run);
+  const ObstacleParameters& obstacles = run.obstacles;
+  if (scene.walls_from == WallsFrom::droplet) return std::string("obstacle-layout=") + name(obstacles.layout);
+  if (scene.walls_from != WallsFrom::circles) return "";
+  if (obstacles.release == Release::centre) return "release=centre";
+  const bool is_at_point = obstacles.release == Release::entrance && obstacles.entrance_to > 0 &&
+                           obstacles.entrance_from == obstacles.entrance_to;
+  return is_at_point ? "entrance-from equal to entrance-to" : "";
+}
+
 std::string possible_decimal(const Key& key, const Settings& settings) {
   const std::string& text = settings.text(key.name);
   const std::string meant = with_decimal_point(text);

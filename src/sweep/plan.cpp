@@ -43,19 +43,40 @@ std::string hint_at_list(const Settings& branch, const Settings& lists, const Ke
                                         : "";
 }
 
-/// Completes the refusal of a key that is given for all points and has no effect on one of them.
+/// The key that a message refuses although the point does not set it: it is given for all points.
 /// @param common  settings with the points
-std::string hint_at_column(const Settings& common, const std::string& message) {
-  const bool has_no_effect = message.find("leave it out") != std::string::npos ||
-                             message.find("leave this key out") != std::string::npos;
-  for (const Key& key : keys())
-    if (has_no_effect && common.is_given(key.name) &&
-        message.find("invalid " + key.name + "=") != std::string::npos)
-      return fmt::format(
-          "; to give {} for some points, make it a column of the points file, with empty cells "
-          "for the others",
-          key.name);
-  return "";
+const Key* refused_for_point(const Settings& common, std::size_t point, const std::string& message) {
+  const Points& points = common.points();
+  for (const Key& key : keys()) {
+    if (!common.is_given(key.name)) continue;
+    const auto column =
+        static_cast<std::size_t>(std::ranges::find(points.keys, key.name) - points.keys.begin());
+    if (column < points.keys.size() && !points.rows[point][column].empty()) continue;
+    const std::string given = fmt::format("{}={} ", key.name, common.text(key.name));
+    for (const std::string& part :
+         {fmt::format("invalid {}=", key.name), "(" + given + "is given", "and " + given + "contradict"})
+      if (message.find(part) != std::string::npos) return &key;
+  }
+  return nullptr;
+}
+
+/// The refusal of a point. If it is about a key that is given for all points, the remedy is a column of it,
+/// in place of a value that other points have.
+/// @param common  settings with the points
+std::string refusal_of_point(const Settings& common, std::size_t point, std::string message) {
+  const Points& points = common.points();
+  const Key* const key = refused_for_point(common, point, message);
+  if (!key || points.rows.size() == 1) return message;
+  const bool is_column = std::ranges::find(points.keys, key->name) != points.keys.end();
+  const auto remedy = message.find(") add ");
+  const bool has_value =
+      remedy != std::string::npos && std::ranges::any_of(points.keys, [&](const auto& other) {
+        return message.compare(remedy, other.size() + 7, ") add " + other + "=") == 0;
+      });
+  if (has_value) message.resize(remedy + 1);
+  return fmt::format("{}{}to give {} for some points, {}", message, has_value ? " " : "; ", key->name,
+                     is_column ? "leave it out elsewhere and write it in their cells of the points file"
+                               : "make it a column of the points file, with empty cells for the others");
 }
 
 /// Calls check() for one branch of the settings, and returns its result. If a list may be the reason why the
@@ -134,7 +155,7 @@ class Plan::Builder {
   void add_point(const Settings& branch, const Settings& common, std::int64_t point) try {
     add_branch(branch, branch, fmt::format("point {}", point + 1));
   } catch (const Error& error) {
-    throw Error(error.what() + hint_at_column(common, error.what()));
+    throw Error(refusal_of_point(common, static_cast<std::size_t>(point), error.what()));
   }
 
   /// @param lists  as in hint_at_list(); @param name  of the branch, for messages

@@ -79,6 +79,25 @@ class Mixtures(ProgramTest):
         self.refuse("clogfit", "report", "all.h5", words=["arrays", "clogsweep select"])
         self.refuse("clogfit", *self.parts[1:], "--dwell=5", words=["--dwell", "on a wall"])
         self.assertIn("clogged: has not moved", self.fit(*self.parts[::-1], "--dwell=30"))
+        self.refuse("clogfit", *self.parts, "--mixture=orifice=0.6:1,0.8:1", words=["orifice = 0.6 are in a channel", "no clogging length"])
+
+    def test_automatic_values_above_the_table_have_a_star(self):
+        for file in self.parts[:2]:
+            usual, text = self.fit(file), self.fit(file, "--all-parameters")
+            self.assertRegex(text.split("\n\n")[0], r" perimeter_stiffness=0\.1\*\s")
+            self.assertRegex(text.split("\n\n")[0], r" near_wall_drag=[^\s*]+\s")
+            self.assertIn("*: the automatic value", text)
+            self.assertNotIn("*", usual.split("\n\n")[0])
+
+    def test_models_differ_in_the_model_and_in_what_both_have(self):
+        far = ["seeds=1", "max-time=1", "obstacle-gap=0.3,0.5"]
+        self.succeed("clogsweep", *QUICK[:1], *far, "box=20", "--output", "dp.h5")
+        self.succeed("clogsweep", "model=sp", "wall-stiffness=5", *far, "box=20", "--output", "sp.h5")
+        mixture = "--mixture=obstacle-gap=0.3:1,0.5:1"
+        self.refuse("clogfit", "dp.h5", "sp.h5", mixture, words=["2 groups have obstacle_gap = 0.3 and differ in model"])
+        done = self.run_program("clogfit", "dp.h5", "sp.h5", mixture)
+        for name in ("friction", "vertices", "near_wall_drag", "preset"):
+            self.assertNotIn(name, done.stderr)
 
 
 class GivenKeys(ProgramTest):
@@ -449,7 +468,9 @@ class Fit(ProgramTest):
         group, = self.fit("--from-distance", 100)["groups"]
         self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (0, 0, 8))
         self.assertIsNone(group["doubts"])  # There are no runs.
-        self.assertNotIn("> 0", self.succeed("clogfit", "sweep.h5", "--from-distance=100").stdout)
+        text = self.succeed("clogfit", "sweep.h5", "--from-distance=100").stdout
+        for words in ("> 0", "w/s/h/o"):
+            self.assertNotIn(words, text)
 
     def test_each_mechanism_has_a_length_of_its_own(self):
         self.sweep("seeds=1..10", *FAR)

@@ -116,6 +116,8 @@ class Lengths(ProgramTest):
     def test_distances_count_from_a_given_distance_on(self):
         self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
         done = self.succeed("clogfit", "lengths", "aml.csv", "--from-distance", "12", "--format", "json")
+        self.assertEqual(json.loads(done.stdout)["from_distance"], 12)
+        self.assertEqual(self.lengths("aml.csv")["from_distance"], 0)
         maintained, not_maintained = json.loads(done.stdout)["groups"]
         # From R: the sum of time - 12 divided by the number of events, for times of 12 or more.
         for group, runs, clogs, length in [(maintained, 10, 6, 49), (not_maintained, 8, 7, 19)]:
@@ -178,17 +180,19 @@ class Lengths(ProgramTest):
         self.write("lab.cfg", LAB)
         rows = [("", 60), (1, 10), (2, 10), (2, 30), (2.5, 50)]
         for unit, to_mm in (("mm", dict.fromkeys((1, 2, 2.5, ""), 1)), ("sigma", {1: 1, 2: 2, 2.5: 2.5, "": 2})):
+            unknown = (60, None) if unit == "mm" else (None, 30)
             self.write("own.csv", f"diameter [um],distance [{unit}],clogged\n" + "".join(
                 f"{diameter and 1000 * diameter},{way / to_mm[diameter]!r},1\n" for diameter, way in rows))
-            for lab in ([], ["--lab", "lab.cfg"]):  # The laboratory's droplet of 2 mm serves where the table has none.
+            for lab in ([], ["--lab", "lab.cfg"]):  # The laboratory's droplet of 2 mm need not be the one of an empty cell.
                 found = {group["diameter"]: (group["clogging_length_mm"], group["clogging_length"]) for group in self.lengths("own.csv", *lab)["groups"]}
-                unknown = (60, 30) if lab else (60, None) if unit == "mm" else (None, 30)
                 self.assertEqual(found, {None: unknown, 1: (10, 10), 2: (20, 10), 2.5: (50, 20)})
                 text = self.succeed("clogfit", "lengths", "own.csv", *lab).stdout
                 self.assertRegex(text, r"lambda/mm|lambda/sigma")
         self.write("own.csv", "diameter [um],distance [mm],clogged\n,5,1\n")
         group, = self.lengths("own.csv")["groups"]
         self.assertNotIn("clogging_length", group)
+        self.write("other.csv", "distance [sigma],clogged\n5,1\n")
+        self.refuse("clogfit", "compare", "own.csv", "other.csv", "--lab", "lab.cfg", words=["one is in mm", "fill the empty cells of the column diameter"])
 
     def test_a_diameter_or_an_angle_needs_a_unit_and_numbers(self):
         for head, words in [("diameter", ["column 'diameter' has no unit", "diameter [mm]"]), ("Diameter", ["column 'Diameter' has no unit"]),
@@ -224,9 +228,11 @@ class Lengths(ProgramTest):
             told = json.loads(self.succeed("clogfit", *arguments, "--format", "json").stdout)
             names = [name for name in (told.get("groups") or told["comparisons"])[0] if name not in labels]
             self.assertGreater(len(names), 10)
-            for name in (*names, names[-1].replace("_", "-")):
+            in_any_form = [form(name) for name in names for form in (str.title, "{} [mm]".format, lambda name: name.replace("_", "-"))]
+            in_table = ["note", "Note", "95 %", "99%", "lambda/mm", "lambda [sigma]"] if arguments[0] == "lengths" else []
+            for name in dict.fromkeys((*names, *in_any_form, *in_table)):
                 self.write("taken.csv", f"distance [sigma],clogged,wall,{name}\n3,1,a,7\n5,1,b,7\n6,1,c,8\n")
-                for form in ("text", "csv"):
+                for form in ("text", "csv") if name in names else ["text"]:
                     self.refuse("clogfit", *(word.replace("own.csv", "taken.csv") for word in arguments), "--format", form,
                                 words=[f"taken.csv line 1: column '{name}' has the name of a result; rename it"])
         # A result of one command is a label of the other one.

@@ -125,10 +125,20 @@ class Points(PointsTest):
         told = self.succeed("clogsweep", "vertices=64", "--points", "p.csv", "--dry-run", "--output", "s.h5").stdout
         self.assertEqual([line.split()[1] for line in told.splitlines()[1:5]], ["density", "channel", "density", "density"])
         self.write("p.csv", "model,vertices\ndp,32\nsp,\n")
-        self.refuse("clogsweep", "vertices=64", "wall-stiffness=5", "--points", "p.csv", "--output", "s.h5", words=["point 2: invalid vertices=64", "make it a column"])
+        self.refuse("clogsweep", "vertices=64", "wall-stiffness=5", "--points", "p.csv", "--output", "s.h5", words=["point 2: invalid vertices=64", "to give vertices for some points, leave it out elsewhere"])
         self.write("p.csv", "obstacle-layout,orifice,box\nrandom,,20\nchannel,0.6,20\n")
         done = self.run_program("clogsweep", "--points", "p.csv", "--output", "s.h5")
         self.assertNotIn("make it a column", done.stderr)
+        self.write("p.csv", "obstacle-layout,pitch,seeds,obstacle-gap\nlattice,0.6,1..2,\nrandom,,1..2,0.3\n")
+        for setting in ("lattice-angle=5", "lattice=triangular"):
+            key = setting.split("=")[0]
+            self.refuse("clogsweep", "vertices=64", setting, "--points", "p.csv", "--output", "s.h5",
+                        words=[f"point 2: invalid {setting} (a random array has no rows) to give {key} for some points, make it a column of the points file"])
+        self.refuse("clogsweep", "vertices=64", "pitch=0.7", "--points", "p.csv", "--output", "s.h5",
+                    words=["point 2: invalid pitch=0.7", "to give pitch for some points, leave it out elsewhere and write it in their cells"])
+        self.write("p.csv", "pitch,friction\n0.6,0\n,0\n")
+        self.refuse("clogsweep", "vertices=64", "obstacle-layout=lattice", "obstacle-gap=0.3", "--points", "p.csv", "--output", "s.h5",
+                    words=["point 1: invalid pitch=0.6 (obstacle-gap=0.3 is given as well)", "to give obstacle-gap for some points, make it a column"])
         self.write("p.csv", "line-tension\n1\n")
         self.refuse("clogsweep", *QUICK, "--points", "p.csv", "line-tension=2", "--output", "s.h5", words=["p.csv", "line-tension"])
         self.refuse("clogsweep", *QUICK, "--points", "none.csv", "--output", "s.h5", words=["none.csv"])
@@ -137,6 +147,23 @@ class Points(PointsTest):
         for shard in ("6/5", "0/5", "2", "x"):
             self.refuse("clogsweep", *QUICK, "--shard", shard, "--output", "s.h5", words=[f"--shard={shard}", "2/5"])
         self.refuse("clogsweep", *QUICK, "--shard", "3/5", "seeds=1", "--output", "s.h5", words=["3/5", "is empty"])
+
+
+    def test_points_without_chance_have_one_run(self):
+        self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.7\nwall,\n")
+        told = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv", "--dry-run").stdout
+        self.assertIn("# 14 tasks: 3 parameter sets, 1 to 12 seeds each", told)
+        told = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "obstacle-layout=channel,wall", "--dry-run").stdout
+        self.assertIn("# 2 tasks: 2 parameter sets", told)
+        self.write("c.csv", "x,y\n5,5\n")
+        self.write("p.csv", "obstacles,release\nc.csv,centre\nc.csv,anywhere\n")
+        told = self.succeed("clogsweep", "vertices=64", "box=10", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv", "--dry-run").stdout
+        self.assertIn("# 13 tasks: 2 parameter sets, 1 to 12 seeds each", told)
+        self.refuse("clogsweep", "vertices=64", "box=10", "--until-precision", "20%", "--points", "p.csv", "--output", "s.h5",
+                    words=["no place for --until-precision (nothing is random with release=centre"])
+        self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.7\n")
+        self.refuse("clogsweep", "vertices=64", "--until-precision", "20%", "--points", "p.csv", "--output", "s.h5",
+                    words=["no place for --until-precision (nothing is random with obstacle-layout=channel", "apart"])
 
 
 class Merged(PointsTest):

@@ -228,6 +228,8 @@ class Walls(Analysis):
         self.assertIn("at rest", self.succeed("clogfit", "s.h5").stdout)
         status = self.succeed("clogsweep", "status", "s.h5").stdout
         self.assertIn("2 of 2 runs finished, 2 at rest, 0 flowing, 0 failed;", status)
+        told = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
+        self.assertEqual([told[name] for name in ("finished", "clogged", "at_rest")], [2, 0, 2])
         self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
         page = (self.folder / "r.html").read_text()
         for row in rows:

@@ -24,9 +24,11 @@ struct DistanceTable {
   std::vector<std::string> labels;  ///< columns that separate groups
   std::vector<DistanceGroup> groups;
   bool is_measured = false;
+  double from = 0;  ///< the distance from which on the runs are counted, see counted_from()
 };
 
-/// The diameter of a group's droplets [mm]: the label `diameter` or, without a number there, `sigma_mm`.
+/// The diameter of a group's droplets [mm]: the label `diameter`, which may be unknown; without this label,
+/// `sigma_mm`.
 std::optional<double> diameter_of(const DistanceTable& table, const DistanceGroup& group,
                                   std::optional<double> sigma_mm);
 
@@ -36,7 +38,7 @@ bool is_distance_table(const std::string& path);
 /// with the same values in all other columns form a group. The columns `diameter [UNIT]` and `angle [deg]`
 /// become the labels `diameter` [mm] and `angle` [degrees]. Prints a hint if each droplet is a group of its
 /// own.
-/// @param taken  names of results, which no other column may have
+/// @param taken  names of results, which no other column may have, in any case and with any unit
 /// @throws Error that names file and line
 DistanceTable read_distances(const std::string& path, const std::vector<std::string>& taken);
 /// The table with distances that count from `from` on, in the table's unit; droplets that ended before are

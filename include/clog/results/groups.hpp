@@ -258,6 +258,7 @@ Finding finding_of(const Group& group);
 /// Whether the results include a clogging length. They do not in a channel and on a wall, where nothing is
 /// random: there each group is one run, whose row has the results.
 bool has_clogging_length(const sweep::RunRow& row);
+inline constexpr const char* outcome_at_rest = "at rest";
 /// How a run ended: the status in words. A droplet that stops on a bare wall is at rest, not clogged.
 std::string outcome_of(const sweep::RunRow& row);
 /// The results of a group, by name.

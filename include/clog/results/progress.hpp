@@ -15,6 +15,8 @@
 
 namespace clog::results {
 
+/// The number of runs with an outcome, see outcome_of().
+std::int64_t count_in(const std::map<std::string, std::int64_t>& by_outcome, const std::string& outcome);
 /// The number of clogged droplets and of those at rest on a wall. Only numbers above 0 are named, and one at
 /// least. @param by_outcome  see outcome_of()
 std::string text_of_clogs(const std::map<std::string, std::int64_t>& by_outcome);

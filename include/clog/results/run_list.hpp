@@ -25,7 +25,8 @@ class RunList {
 
   /// Adds the seed of a run whose parameter set is known. Returns whether it is.
   bool add_seed(const sweep::RunRow& row);
-  /// Gives every parameter set the smallest unused seeds until it has `number` seeds.
+  /// Gives every parameter set the smallest unused seeds until it has `number` seeds, unless nothing in it is
+  /// random.
   void fill_seeds(std::size_t number);
 
   bool empty() const { return sets_.empty(); }
@@ -37,6 +38,7 @@ class RunList {
   struct ParameterSet {
     std::vector<std::string> texts;  // texts by place in sweep::keys(); empty for the seeds
     std::set<std::uint32_t> seeds;
+    bool is_random = true;  // whether runs depend on the seed
   };
   std::vector<ParameterSet> sets_;
   std::unordered_map<std::string, std::size_t> places_;  // places in sets_, by the content of the set

@@ -109,6 +109,8 @@ class Settings {
 /// check_each() refuses.
 /// @param settings  a branch, which has one value for each key of kind `word` @throws Error
 void refuse_contradictions(const Settings& settings);
+/// The setting because of which all seeds lead to the same run; empty if something is random.
+std::string why_nothing_is_random(const RunParameters& run);
 /// A question about a list that may be a mistyped decimal below one, such as 0,5; empty for any other list.
 std::string possible_decimal(const Key& key, const Settings& settings);
 
