@@ -229,7 +229,9 @@ def holder_among(outlines: list[Numbers], centres: Numbers) -> int | None:
     """The index of the outline that contains everything else, or None."""
     if len(outlines) + len(centres) < 2:
         return None
-    return next((index for index, outline in enumerate(outlines) if holds(outline, [*outlines, centres])), None)
+    ends = np.array([(outline.min(axis=0), outline.max(axis=0)) for outline in [*outlines, centres] if len(outline)])
+    box = np.array([ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)])
+    return next((index for index, outline in enumerate(outlines) if holds(outline, [box])), None)
 
 
 def holds(outline: Numbers, others: list[Numbers]) -> bool:
