@@ -252,6 +252,16 @@ class Looks(Analysis):
         ticks = [line.get_xydata().tolist() for line in drawing.axes[0].lines if line.get_marker() == "|"]
         self.assertEqual(ticks, [[[40, 1]], [[3, 0.75], [9, 0.75]]])
 
+    def test_automatic_values_are_no_abscissa_beside_a_parameter_that_was_varied(self):
+        for name, rows, abscissa, note in [
+                ("gaps", "dp,1,,0.3,32\ndp,2,,0.4,32\nsp,,10,0.3,\nsp,,10,0.4,\n", "obstacle_gap", []),
+                ("gap", "dp,1,,0.3,32\ndp,2,,0.3,32\nsp,,10,0.3,\n", "wall_stiffness", ["automatic: the wall stiffness of 2 of 3 points follows from other parameters"])]:
+            self.write("p.csv", f"model,line-tension,wall-stiffness,obstacle-gap,vertices\n{rows}")
+            self.succeed("clogsweep", "--points", "p.csv", "box=20", "max-time=1", "seeds=1", "--output", f"{name}.h5")
+            groups = Sweep(self.folder / f"{name}.h5", BIN).fit().known
+            self.assertEqual(groups.abscissa, abscissa)
+            self.assertEqual(lengths.automatic_notes(groups), note)
+
     def test_clogs_of_arrays_are_drawn_beside_rows_of_channels_and_walls(self):
         self.write("kinds.csv", "obstacle-layout,obstacle-gap,obstacle-density,box,max-time\nwall,,,,1000\nrandom,0.3,saturated,20,60\n")
         self.succeed("clogsweep", "--points", "kinds.csv", "line-tension=3", "vertices=64", "seeds=1", "--output", "s.h5")

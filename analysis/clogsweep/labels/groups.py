@@ -126,7 +126,8 @@ class Groups:
         return fits.follows(self.members, name, others)
 
     def _choose_abscissa(self) -> str:
-        """Chooses the abscissa: the usual one if it varies, otherwise the numeric parameter with the most values."""
+        """Chooses the abscissa: the usual one if it varies, otherwise the numeric parameter with the most values.
+        Parameters without an automatic value come first."""
         usual = "line_tension" if self.are_polygons else "wall_stiffness"
         if self.are_in_mm and self.follows(usual, fits.DROPLETS):
             return max(fits.DROPLETS, key=lambda name: len(self.values(name)))
@@ -135,11 +136,15 @@ class Groups:
         known = [name for name in self.columns if self._is_number(name) and None not in self.values(name)]  # to both models
         if usual not in known:
             usual = next((name for name in known if not self.varies(name)), usual)
-        elif self.varies(usual) and not self._is_automatic(usual):
+        elif self.varies(usual) and not self._is_automatic(usual) and not self.num_automatic(usual):
             return usual
         # Values that follow from the model, such as the one vertex of a disk, are no abscissa.
         varied = [name for name in known if self.varies(name) and not self.follows(name, ["model"])]
-        return max(varied, key=lambda name: (not self._is_automatic(name), len(self.values(name))), default=usual)
+        return max(varied, key=lambda name: (not self.num_automatic(name), not self._is_automatic(name), len(self.values(name))), default=usual)
+
+    def num_automatic(self, name: str) -> int:
+        """The number of groups whose value of the parameter is automatic."""
+        return sum(name in group["automatic"] for group in self.members)
 
     def _is_number(self, name: str) -> bool:
         return self.columns[name]["kind"] != "word"
