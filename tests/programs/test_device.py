@@ -1054,9 +1054,18 @@ class OtherTools(Analysis):
         sheet = '@import "other.css"; @media (max-width: 9px){circle{display:none}} @layer base{circle{display:none}} @keyframes k{to{opacity:0}} .k{animation: k 1s}'
         self.assertEqual(len(self.svg(f'<style media="print">{sheet}</style><circle cx="800" cy="300" r="50" filter="url(#f)" mask="url(#m)"/>')), 1)
         self.assertEqual(self.drawing.notes, ["ignored: @media, @layer, @import, animations, masks, filters, media of style sheets"])
+        self.assertEqual(len(self.svg('<pattern id="p" width="9" height="9"><path d="M0 0h9"/></pattern><path d="M0 0h9" marker="none"/><circle cx="800" cy="300" r="50" style="marker-end:url(#m)"/>')), 1)
+        self.assertEqual(self.drawing.notes, ["ignored: patterns, markers"])
         self.write("device.svg", '<?xml-stylesheet href="other.css"?>' + SVG.format('<circle cx="800" cy="300" r="50"/>'))
         self.assertEqual(len(self.circles_of("device.svg")), 1)
         self.assertEqual(self.drawing.notes, ["ignored: style sheets in other files"])
+
+    def test_svg_shapes_that_are_blended_stay(self):
+        circle = '<circle cx="800" cy="300" r="50"{}/>'
+        for body in (circle.format(' style="mix-blend-mode:multiply"'), f'<g style="isolation:isolate">{circle.format("")}</g>', f'<style>circle{{mix-blend-mode:screen}}</style>{circle.format("")}',
+                     f'<g enable-background="new">{circle.format("")}</g>', f'<g style="enable-background:new; opacity:0.5">{circle.format("")}</g>'):
+            with self.subTest(body):
+                np.testing.assert_allclose(self.svg(body), [(800, 900, 100)], rtol=1e-3)
 
     def test_svg_shows_what_its_clips_leave(self):
         circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))
