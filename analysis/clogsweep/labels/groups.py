@@ -24,6 +24,17 @@ def has_results(group: Group) -> bool:
     return group["status"] in FINISHED if "status" in group else group["runs"] + group["met_none"] > 0
 
 
+def refuse_mixed(fillings: Iterable[str], message: str) -> None:
+    """@param fillings  values of obstacle_filling; @param message  with {} for the kinds of places
+    @throws UserError  if the results are of different kinds: those of arrays, channels and walls"""
+    kinds: dict[str, list[str]] = {}
+    for filling in sorted(fillings, key=lambda filling: (filling in PLACES, filling)):
+        kinds.setdefault(PLACES.get(filling, "arrays"), []).append(filling)
+    if len(kinds) > 1:
+        raise UserError(f"{message.format(' and '.join(kinds))}; keep one kind, as by "
+                        f"clogsweep select FILE obstacle_filling={','.join(next(iter(kinds.values())))} --output ONE_KIND.h5")
+
+
 class Groups:
     """Those groups of one sweep that have runs. The groups are drawn against one parameter of the sweep."""
 
@@ -54,12 +65,7 @@ class Groups:
         those of arrays, channels and walls cannot share a picture"""
         if not self.members:
             raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
-        fillings: dict[str, list[str]] = {}
-        for filling in sorted(self.values("obstacle_filling"), key=lambda filling: (filling in PLACES, filling)):
-            fillings.setdefault(PLACES.get(filling, "arrays"), []).append(filling)
-        if len(fillings) > 1:
-            raise UserError(f"cannot draw droplets in {' and '.join(fillings)} in one picture ({source}); keep one kind, as by "
-                            f"clogsweep select FILE obstacle_filling={','.join(next(iter(fillings.values())))} --output ONE_KIND.h5")
+        refuse_mixed(self.values("obstacle_filling"), f"cannot draw droplets in {{}} in one picture ({source})")
         return self
 
     def with_lengths(self, source: object = "the sweep") -> Groups:
