@@ -1060,6 +1060,12 @@ class OtherTools(Analysis):
         self.assertEqual(len(self.circles_of("device.svg")), 1)
         self.assertEqual(self.drawing.notes, ["ignored: style sheets in other files"])
 
+    def test_svg_filled_paths_that_are_open_are_outlines(self):
+        self.write("device.svg", SVG.format('<path d="M800 300h100v80h-100"/><polyline points="1200,300 1300,300 1300,380"/><path d="M100 100h100"/><path d="M500 300h100v80h-100" fill="none" stroke="black"/>'))
+        device = self.device("device.svg")
+        np.testing.assert_allclose(sorted(abs(shapes.area(outline)) * 200**2 for outline in device.others), [4000, 8000], rtol=1e-3)
+        self.assertEqual(len(device.lines), 1)
+
     def test_svg_shapes_that_are_blended_stay(self):
         circle = '<circle cx="800" cy="300" r="50"{}/>'
         for body in (circle.format(' style="mix-blend-mode:multiply"'), f'<g style="isolation:isolate">{circle.format("")}</g>', f'<style>circle{{mix-blend-mode:screen}}</style>{circle.format("")}',
