@@ -1066,6 +1066,10 @@ class OtherTools(Analysis):
         np.testing.assert_allclose(sorted(abs(shapes.area(outline)) * 200**2 for outline in device.others), [4000, 8000], rtol=1e-3)
         self.assertEqual(len(device.lines), 1)
 
+    def test_an_outline_that_crosses_itself_becomes_no_circle(self):
+        self.write("device.svg", SVG.format('<path d="M2200 300L2320 660L2010 440H2390L2080 660z"/>'))
+        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--as-circles", words=["crosses itself", "in the drawing"])
+
     def test_svg_shapes_that_are_blended_stay(self):
         circle = '<circle cx="800" cy="300" r="50"{}/>'
         for body in (circle.format(' style="mix-blend-mode:multiply"'), f'<g style="isolation:isolate">{circle.format("")}</g>', f'<style>circle{{mix-blend-mode:screen}}</style>{circle.format("")}',
