@@ -23,6 +23,7 @@ from support import BIN, table
 
 import clogsweep
 from clogsweep import style
+from clogsweep.commands import circles
 from clogsweep.device import areas, gds, lines, readers, shapes
 from clogsweep.drawing import device as drawn
 from clogsweep.drawing import device_plan
@@ -1069,6 +1070,15 @@ class OtherTools(Analysis):
     def test_an_outline_that_crosses_itself_becomes_no_circle(self):
         self.write("device.svg", SVG.format('<path d="M2200 300L2320 660L2010 440H2390L2080 660z"/>'))
         self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--as-circles", words=["crosses itself", "in the drawing"])
+
+    def test_posts_that_touch_get_a_remedy_that_fits(self):
+        circle = '<circle cx="800" cy="{}" r="{}"/>'
+        for inner, words in [(circle.format(300, 30), ["1 pair of posts touch", "1 of them is one outline within another", "remove the inner one", "--holes"]),
+                             ('<path d="M770 300a30 30 0 0 1 60 0a30 30 0 0 1 -60 0z"/>', ["remove the inner one"])]:
+            with self.subTest(inner):
+                self.write("device.svg", SVG.format(circle.format(300, 50) + inner))
+                self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", words=words)
+        self.assertEqual(circles.remedy_of_touching(mock.Mock(circles=np.array([(1.0, 1, 1), (1.8, 1, 1)])), [(0, 1)], False), "Separate them in the drawing")
 
     def test_svg_shapes_that_are_blended_stay(self):
         circle = '<circle cx="800" cy="300" r="50"{}/>'
