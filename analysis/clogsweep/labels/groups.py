@@ -169,8 +169,10 @@ class Groups:
 
     def _is_of_preset(self, name: str) -> bool:
         """Whether the parameter's value follows from the abscissa and the preset, because the value is automatic for
-        some presets and a number for others."""
-        return any(name in group["automatic"] for group in self.members) and self.follows(name, [self.abscissa, "preset"])
+        some presets and a number for others. Several numbers for a model without automatic values were chosen."""
+        models = {group["model"] for group in self.members if name in group["automatic"]}
+        chosen = {group[name] for group in self.members if group["model"] not in models}
+        return bool(models) and len(chosen) < 2 and self.follows(name, [self.abscissa, "preset"])
 
     def _share_of_saturated(self) -> str:
         """The filling of all random arrays, such as `12%`. The text is empty if the arrays have different fillings."""
