@@ -1106,11 +1106,14 @@ class OtherTools(Analysis):
         np.testing.assert_allclose(self.svg(f'{box_units}<g clip-path="url(#left)">{circles}</g>'), [(400, 900, 100)], rtol=1e-3)
 
     def test_svg_that_librsvg_would_show_elsewhere_is_refused(self):
-        for attributes, name in [('transform="scale(2)" transform-origin="1000 200"', "transform-origin"), ('style="transform:scale(2); transform-box:fill-box"', "transform-box"), ('style="translate: 5px"', "translate, rotate or scale"),
-                                 ('style="rotate:3deg"', "translate, rotate or scale"), ('style="r:calc(1px + 2%)"', "calc()"), ('style="fill:var(--a)"', "var()"), ('cy="5vh"', "lengths that depend on a font")]:
+        for attributes, name, remedy in [
+                ('transform="scale(2)" transform-origin="1000 200"', "transform-origin", "ungrouping"), ('style="transform:scale(2); transform-box:fill-box"', "transform-box", "ungrouping"),
+                ('style="translate: 5px"', "translate, rotate or scale", "ungrouping"), ('style="rotate:3deg"', "translate, rotate or scale", "ungrouping"),
+                ('style="stroke:red; r:calc(1px + 2%)"', "calc() in r", "write the value itself"), ('style="fill:var(--a)"', "var() in fill", "write the value itself"), ('fill="var(--a)"', "var() in fill", "write the value itself"),
+                ('style="stroke: 1px rgb(0 0 var(--a))"', "var() in stroke", "write the value itself"), ("style='fill: url(\"#g\") var(--a)'", "var())", "write the value itself"), ('cy="5vh"', "lengths that depend on a font", "px or mm")]:
             with self.subTest(attributes):
                 self.write("device.svg", SVG.format(f'<circle cx="800" r="50" {attributes}/>'))
-                self.refused("device.svg", f"librsvg does not know {name}", "ungrouping")
+                self.refused("device.svg", f"librsvg does not know {name}", remedy)
 
     def test_svg_viewports_within_the_drawing_clip(self):
         circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))

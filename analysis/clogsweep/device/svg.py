@@ -33,8 +33,7 @@ def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
     @param are_holes_posts  whether holes in filled paths are read as holes, and not as outlines within outlines"""
     text = path.read_bytes().decode(errors="replace")
     root = ElementTree.parse(path).getroot()
-    if moving := flat.named_in(text, flat.MOVING):
-        raise UserError(f"cannot read {path} (librsvg does not know {moving}); apply transforms in the drawing program, such as by ungrouping, and give lengths in px or mm")
+    flat.refuse_unknown_css(text, path)
     refuse_unknown(root, path)
     ignored = flat.named_in(text, flat.IGNORED)
     found = Drawing([], [], None, notes=[f"ignored: {ignored}"] if ignored else [], skipped={})
