@@ -23,6 +23,7 @@ from support import BIN, table
 
 import clogsweep
 from clogsweep import style
+from clogsweep.commands import circles
 from clogsweep.device import areas, gds, lines, readers, shapes
 from clogsweep.drawing import device as drawn
 from clogsweep.drawing import device_plan
@@ -1054,9 +1055,37 @@ class OtherTools(Analysis):
         sheet = '@import "other.css"; @media (max-width: 9px){circle{display:none}} @layer base{circle{display:none}} @keyframes k{to{opacity:0}} .k{animation: k 1s}'
         self.assertEqual(len(self.svg(f'<style media="print">{sheet}</style><circle cx="800" cy="300" r="50" filter="url(#f)" mask="url(#m)"/>')), 1)
         self.assertEqual(self.drawing.notes, ["ignored: @media, @layer, @import, animations, masks, filters, media of style sheets"])
+        self.assertEqual(len(self.svg('<pattern id="p" width="9" height="9"><path d="M0 0h9"/></pattern><path d="M0 0h9" marker="none"/><circle cx="800" cy="300" r="50" style="marker-end:url(#m)"/>')), 1)
+        self.assertEqual(self.drawing.notes, ["ignored: patterns, markers"])
         self.write("device.svg", '<?xml-stylesheet href="other.css"?>' + SVG.format('<circle cx="800" cy="300" r="50"/>'))
         self.assertEqual(len(self.circles_of("device.svg")), 1)
         self.assertEqual(self.drawing.notes, ["ignored: style sheets in other files"])
+
+    def test_svg_filled_paths_that_are_open_are_outlines(self):
+        self.write("device.svg", SVG.format('<path d="M800 300h100v80h-100"/><polyline points="1200,300 1300,300 1300,380"/><path d="M100 100h100"/><path d="M500 300h100v80h-100" fill="none" stroke="black"/>'))
+        device = self.device("device.svg")
+        np.testing.assert_allclose(sorted(abs(shapes.area(outline)) * 200**2 for outline in device.others), [4000, 8000], rtol=1e-3)
+        self.assertEqual(len(device.lines), 1)
+
+    def test_an_outline_that_crosses_itself_becomes_no_circle(self):
+        self.write("device.svg", SVG.format('<path d="M2200 300L2320 660L2010 440H2390L2080 660z"/>'))
+        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--as-circles", words=["crosses itself", "in the drawing"])
+
+    def test_posts_that_touch_get_a_remedy_that_fits(self):
+        circle = '<circle cx="800" cy="{}" r="{}"/>'
+        for inner, words in [(circle.format(300, 30), ["1 pair of posts touch", "1 of them is one outline within another", "remove the inner one", "--holes"]),
+                             ('<path d="M770 300a30 30 0 0 1 60 0a30 30 0 0 1 -60 0z"/>', ["remove the inner one"])]:
+            with self.subTest(inner):
+                self.write("device.svg", SVG.format(circle.format(300, 50) + inner))
+                self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", words=words)
+        self.assertEqual(circles.remedy_of_touching(mock.Mock(circles=np.array([(1.0, 1, 1), (1.8, 1, 1)])), [(0, 1)], False), "Separate them in the drawing")
+
+    def test_svg_shapes_that_are_blended_stay(self):
+        circle = '<circle cx="800" cy="300" r="50"{}/>'
+        for body in (circle.format(' style="mix-blend-mode:multiply"'), f'<g style="isolation:isolate">{circle.format("")}</g>', f'<style>circle{{mix-blend-mode:screen}}</style>{circle.format("")}',
+                     f'<g enable-background="new">{circle.format("")}</g>', f'<g style="enable-background:new; opacity:0.5">{circle.format("")}</g>'):
+            with self.subTest(body):
+                np.testing.assert_allclose(self.svg(body), [(800, 900, 100)], rtol=1e-3)
 
     def test_svg_shows_what_its_clips_leave(self):
         circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))
@@ -1077,11 +1106,14 @@ class OtherTools(Analysis):
         np.testing.assert_allclose(self.svg(f'{box_units}<g clip-path="url(#left)">{circles}</g>'), [(400, 900, 100)], rtol=1e-3)
 
     def test_svg_that_librsvg_would_show_elsewhere_is_refused(self):
-        for attributes, name in [('transform="scale(2)" transform-origin="1000 200"', "transform-origin"), ('style="transform:scale(2); transform-box:fill-box"', "transform-box"), ('style="translate: 5px"', "translate, rotate or scale"),
-                                 ('style="rotate:3deg"', "translate, rotate or scale"), ('style="r:calc(1px + 2%)"', "calc()"), ('style="fill:var(--a)"', "var()"), ('cy="5vh"', "lengths that depend on a font")]:
+        for attributes, name, remedy in [
+                ('transform="scale(2)" transform-origin="1000 200"', "transform-origin", "ungrouping"), ('style="transform:scale(2); transform-box:fill-box"', "transform-box", "ungrouping"),
+                ('style="translate: 5px"', "translate, rotate or scale", "ungrouping"), ('style="rotate:3deg"', "translate, rotate or scale", "ungrouping"),
+                ('style="stroke:red; r:calc(1px + 2%)"', "calc() in r", "write the value itself"), ('style="fill:var(--a)"', "var() in fill", "write the value itself"), ('fill="var(--a)"', "var() in fill", "write the value itself"),
+                ('style="stroke: 1px rgb(0 0 var(--a))"', "var() in stroke", "write the value itself"), ("style='fill: url(\"#g\") var(--a)'", "var())", "write the value itself"), ('cy="5vh"', "lengths that depend on a font", "px or mm")]:
             with self.subTest(attributes):
                 self.write("device.svg", SVG.format(f'<circle cx="800" r="50" {attributes}/>'))
-                self.refused("device.svg", f"librsvg does not know {name}", "ungrouping")
+                self.refused("device.svg", f"librsvg does not know {name}", remedy)
 
     def test_svg_viewports_within_the_drawing_clip(self):
         circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))

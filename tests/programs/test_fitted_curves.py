@@ -162,6 +162,20 @@ class WhichPoints(unittest.TestCase):
             with self.subTest(words), self.assertRaisesRegex(UserError, words):
                 curves_of(groups)
 
+    def test_only_a_key_with_enough_values_is_suggested(self):
+        many = [group(tension, friction=friction) for tension in TENSIONS for friction in (0.1, 0.2)]
+        for groups, words in ((many, "try --key line-tension$"), (many[2:], "several keys vary, line-tension, friction, .* give the sweep 4 values of one of them, with clogs at 3")):
+            with self.subTest(words), self.assertRaisesRegex(UserError, words):
+                answer.of_fit(fit_of(groups), [{i} for i in range(len(groups))])
+        rarely = [group(tension, friction=friction, clogs=6 if tension == 1 else 0) for tension in (1.0, 2.0) for friction in (0.1, 0.2, 0.3, 0.4)]
+        with self.assertRaisesRegex(UserError, "try --key friction$"):
+            answer.of_fit(fit_of(rarely), [{i} for i in range(len(rarely))])
+
+    def test_arrays_and_channels_share_no_curve(self):
+        groups = [*(group(tension) for tension in TENSIONS), group(1.0, obstacle_filling="channel", status="passed")]
+        with self.assertRaisesRegex(UserError, "arrays and channels; .*clogsweep select FILE obstacle_filling=saturated"):
+            curves_of(groups)
+
     def test_numerics_that_differ_between_values_do_not_split_a_curve(self):
         curve, = curves_of([group(tension, inertia=4.0 if tension > 2 else 1.0) for tension in TENSIONS])["curves"]
         self.assertEqual((len(curve["points"]), curve["shared"]), (4, {}))

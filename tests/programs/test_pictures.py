@@ -12,7 +12,7 @@ from PIL import Image
 from matplotlib.text import Text
 
 from drawing import Analysis
-from support import BIN, FEW, QUICK, SMALL, shared_sweep
+from support import BIN, FEW, QUICK, SMALL, shared_sweep, table
 
 import stored_rows
 from clogsweep import labels, style
@@ -251,6 +251,30 @@ class Looks(Analysis):
         self.assertTrue(all(curve[0, 0] > 0 and curve[0, 1] == 1 for curve in curves), "it begins where the scale does")
         ticks = [line.get_xydata().tolist() for line in drawing.axes[0].lines if line.get_marker() == "|"]
         self.assertEqual(ticks, [[[40, 1]], [[3, 0.75], [9, 0.75]]])
+
+    def test_automatic_values_are_no_abscissa_beside_a_parameter_that_was_varied(self):
+        for name, rows, abscissa, note in [
+                ("gaps", "dp,1,,0.3,32\ndp,2,,0.4,32\nsp,,10,0.3,\nsp,,10,0.4,\n", "obstacle_gap", []),
+                ("gap", "dp,1,,0.3,32\ndp,2,,0.3,32\nsp,,10,0.3,\n", "wall_stiffness", ["automatic: the wall stiffness of 2 of 3 points follows from other parameters"])]:
+            self.write("p.csv", f"model,line-tension,wall-stiffness,obstacle-gap,vertices\n{rows}")
+            self.succeed("clogsweep", "--points", "p.csv", "box=20", "max-time=1", "seeds=1", "--output", f"{name}.h5")
+            groups = Sweep(self.folder / f"{name}.h5", BIN).fit().known
+            self.assertEqual(groups.abscissa, abscissa)
+            self.assertEqual(lengths.automatic_notes(groups), note)
+
+    def test_clogs_of_arrays_are_drawn_beside_rows_of_channels_and_walls(self):
+        self.write("kinds.csv", "obstacle-layout,obstacle-gap,obstacle-density,box,max-time\nwall,,,,1000\nrandom,0.3,saturated,20,60\n")
+        self.succeed("clogsweep", "--points", "kinds.csv", "line-tension=3", "vertices=64", "seeds=1", "--output", "s.h5")
+        self.assertEqual(table(self.folder / "s.h5").status.tolist(), 2 * ["clogged"])
+        self.assertIn("left out: 1 clog in a channel or on a wall", self.draw("clogs", "s.h5", "--programs", BIN).stderr)
+        self.assert_picture("s-clogs")
+
+    def test_a_complete_sweep_without_clogs_is_not_to_be_resumed(self):
+        self.succeed("clogsweep", *SMALL, "line-tension=1", "max-time=1", "seeds=1", "--output", "s.h5")
+        done = self.analyse("clogs", "s.h5", "--programs", BIN)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no clogged polygon", done.stderr)
+        self.assertNotIn("resume", done.stderr)
 
     def test_a_soft_disk_can_be_seen(self):
         self.succeed("clogrun", "array", "model=sp", "wall-stiffness=1", "box=20", "max-time=30", "--polygon-interval", 10, "--output", "run.h5")

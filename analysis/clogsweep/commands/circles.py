@@ -173,6 +173,17 @@ def named_slender(device: shapes.Device) -> list[str]:
     return [f"{rounded.counted(len(found), 'post')} {are} at least three times as long as wide, at {places}{more}; if this is a scale bar or a label, cut it away by --region or in the drawing"] if found else []
 
 
+def remedy_of_touching(device: shapes.Device, pairs: list[tuple[int, int]], are_holes_read: bool) -> str:
+    """The remedy for posts that touch. Rings are drawn as a circle within another one."""
+    one, other = (device.circles[[pair[side] for pair in pairs]] for side in (0, 1))
+    is_within = np.hypot(*(one - other)[:, :2].T) <= np.abs(one - other)[:, 2] / 2
+    if not is_within.any():
+        return "Separate them in the drawing"
+    holes = "" if are_holes_read else ", or give --holes if the posts are the holes of drawn areas"
+    separate = "" if is_within.all() else "; separate the others"
+    return f"{int(is_within.sum())} of them {'is' if is_within.sum() == 1 else 'are'} one outline within another, as a ring has: remove the inner one in the drawing{holes}{separate}"
+
+
 def body() -> int:
     arguments = options()
     droplet = shapes.length_in_metres(arguments.droplet, "--droplet")
@@ -206,7 +217,7 @@ def body() -> int:
         micrometres = device.droplet_micrometres
         raise UserError(f"{rounded.counted(len(touching), 'pair')} of posts touch, the first at x={x:.4g}, y={y:.4g} in droplet diameters "
                         f"({x * micrometres:.5g} um, {y * micrometres:.5g} um from the device's lower left corner); no {table} was written. "
-                        "Separate them in the drawing")
+                        f"{remedy_of_touching(device, touching, arguments.holes)}")
     outside = device.circles[np.any((device.circles[:, :2] < 0) | (device.circles[:, :2] >= (device.length, device.width)), axis=1)]
     if len(outside):
         raise UserError(f"{rounded.counted(len(outside), 'post')} with the centre outside the edge of the device; no {table} was written. Draw a wider edge, cut these posts away, or choose another --region")

@@ -78,7 +78,12 @@ def find_keys(fit: Fit, names: Sequence[str] = ()) -> list[Column]:
         if not keys:
             raise UserError("cannot fit a curve (no number of the physics has several values); give the sweep a list")
         if len(keys) > 1:
-            raise UserError(f"no --key is given, and several vary ({', '.join(key['key'] for key in keys)}); try --key {keys[0]['key']}")
+            varied = ", ".join(key["key"] for key in keys)
+            enough = [key["key"] for key in keys if min(group[key["name"]] for group in groups) > 0 and split(fit, [key])[0]]
+            if not enough:
+                raise UserError(f"cannot fit a curve (several keys vary, {varied}, and none has enough values while the others are the same); "
+                                f"give the sweep {FEWEST_VALUES} values of one of them, with clogs at {FEWEST_CLOGGING}")
+            raise UserError(f"no --key is given, and several vary ({varied}); try --key {enough[0]}")
     for key in keys:
         values = {group[key["name"]] for group in groups}
         if len(values) < 2:

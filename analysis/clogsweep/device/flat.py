@@ -17,14 +17,16 @@ from ..tools.hints import Numbers
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
 LINK = "{http://www.w3.org/1999/xlink}href"
-# What is no shape, and attributes and properties that would make librsvg draw pixels, or ends of lines.
+# What is no shape, and attributes and properties that would make librsvg draw pixels, or markers.
 NO_SHAPES = ("text", "image", "foreignObject")
-PIXELS = ("filter", "mask", "marker", "marker-start", "marker-mid", "marker-end")
-# CSS that librsvg does not know. The first would move shapes or give them another size.
-MOVING = {"transform-origin": r"(?<![\w-])transform-origin\s*[:=]", "transform-box": r"(?<![\w-])transform-box\s*[:=]", "translate, rotate or scale": r"(?<![\w-])(?:translate|rotate|scale)\s*:",
-          "var()": r"\bvar\(", "calc()": r"\bcalc\(", "lengths that depend on a font or a window": r"(?<![\w-])(?:[cr]?[xy]|r|width|height|[xy][12])\s*[:=]\s*[\"']?\s*[-+\d.]+(?:r?em|ex|ch|v[wh]|vmin|vmax)\b"}
+PIXELS = ("filter", "mask", "marker", "marker-start", "marker-mid", "marker-end", "mix-blend-mode", "isolation", "enable-background")
+# CSS that librsvg does not know, and that would move shapes or give them another size or colour.
+TRANSFORMS = {"transform-origin": r"(?<![\w-])transform-origin\s*[:=]", "transform-box": r"(?<![\w-])transform-box\s*[:=]", "translate, rotate or scale": r"(?<![\w-])(?:translate|rotate|scale)\s*:"}
+LENGTHS = {"lengths that depend on a font or a window": r"(?<![\w-])(?:[cr]?[xy]|r|width|height|[xy][12])\s*[:=]\s*[\"']?\s*[-+\d.]+(?:r?em|ex|ch|v[wh]|vmin|vmax)\b"}
+FUNCTION = r"(?:([\w-]+)\s*[:=]\s*[\"']?[^;:=\"'{}<>]*?)?\b(var|calc)\("  # the property, if it can be found, and the function
 IGNORED = {"@media": r"@media\b", "@layer": r"@layer\b", "@import": r"@import\b", "animations": r"<(?:\w+:)?(?:animate|set)|(?<![\w-])animation(?:-name)?\s*:",
-           "masks": r"(?<![\w-])mask\s*[:=]", "filters": r"(?<![\w-])filter\s*[:=]", "media of style sheets": r"<(?:\w+:)?style[^>]*\smedia\s*=", "style sheets in other files": r"<\?xml-stylesheet|<(?:\w+:)?link\b"}
+           "masks": r"(?<![\w-])mask\s*[:=]", "filters": r"(?<![\w-])filter\s*[:=]", "patterns": r"<(?:\w+:)?pattern\b",
+           "markers": r"(?<![\w-])marker(?:-start|-mid|-end)?\s*[:=](?!\s*[\"']?\s*none\b)", "media of style sheets": r"<(?:\w+:)?style[^>]*\smedia\s*=", "style sheets in other files": r"<\?xml-stylesheet|<(?:\w+:)?link\b"}
 # The longer side of the page, and the canvas around it with what is outside the page. librsvg has single precision, in
 # which powers of two are exact.
 PAGE, CANVAS, BEFORE = 2**16, 2**20, 2**19
@@ -114,3 +116,12 @@ def replace_uses(flat: Any) -> None:
 def named_in(text: str, patterns: dict[str, str]) -> str:
     """Names of the patterns that a drawing's text contains."""
     return ", ".join(name for name, pattern in patterns.items() if re.search(pattern, text, re.IGNORECASE))
+
+
+def refuse_unknown_css(text: str, path: pathlib.Path) -> None:
+    """@param text  of a drawing. @throws UserError  if librsvg would draw it in another way than a browser"""
+    functions = dict.fromkeys(f"{function.lower()}()" + (f" in {name}" if name else "") for name, function in re.findall(FUNCTION, text, re.IGNORECASE))
+    for unknown, remedy in [(named_in(text, TRANSFORMS), "apply transforms in the drawing program, such as by ungrouping"), (", ".join(functions), "write the value itself in the drawing"),
+                            (named_in(text, LENGTHS), "give lengths in px or mm")]:
+        if unknown:
+            raise UserError(f"cannot read {path} (librsvg does not know {unknown}); {remedy}")

@@ -12,7 +12,7 @@ import numpy as np
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from .libraries import library
-from .shapes import Device
+from .shapes import Device, valid
 
 # Distance between neighbouring circles of a row, divided by their radius. The roughness of the row is then 1.4 % of the
 # radius.
@@ -60,14 +60,6 @@ def as_rows(device: Device, corner: float) -> Rows:
     rough = corner * (1 - np.sqrt(1 - SPACING**2 / 4))
     made_of_them = dataclasses.replace(device, circles=np.vstack(circles), others=[], post_of=np.concatenate(posts), replaced=device.others)
     return Rows(made_of_them, corner, farthest, float(rough))
-
-
-def valid(polygon: Any) -> Any:
-    """@throws UserError  if its outline crosses itself"""
-    if not polygon.is_valid:
-        x, y = np.asarray(polygon.exterior.coords).mean(axis=0)
-        raise UserError(f"the outline around x={x:.4g}, y={y:.4g} in droplet diameters crosses itself; correct it in the drawing")
-    return polygon
 
 
 def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:

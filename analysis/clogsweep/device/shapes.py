@@ -15,6 +15,7 @@ from ..tools import rounded
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from . import walls
+from .libraries import library
 from .walls import area, centroid
 
 METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3, "mil": 25.4e-6}
@@ -229,7 +230,9 @@ def holder_among(outlines: list[Numbers], centres: Numbers) -> int | None:
     """The index of the outline that contains everything else, or None."""
     if len(outlines) + len(centres) < 2:
         return None
-    return next((index for index, outline in enumerate(outlines) if holds(outline, [*outlines, centres])), None)
+    ends = np.array([(outline.min(axis=0), outline.max(axis=0)) for outline in [*outlines, centres] if len(outline)])
+    box = np.array([ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)])
+    return next((index for index, outline in enumerate(outlines) if holds(outline, [box])), None)
 
 
 def holds(outline: Numbers, others: list[Numbers]) -> bool:
@@ -404,9 +407,21 @@ def slender(outlines: list[Numbers]) -> list[Numbers]:
     return [outline for outline in outlines if is_slender(outline)]
 
 
+def valid(polygon: Any) -> Any:
+    """@throws UserError  if its outline crosses itself"""
+    if not polygon.is_valid:
+        x, y = np.asarray(polygon.exterior.coords).mean(axis=0)
+        raise UserError(f"the outline around x={x:.4g}, y={y:.4g} in droplet diameters crosses itself; correct it in the drawing")
+    return polygon
+
+
 def as_circles(device: Device) -> Device:
-    """The device with a circle in place of each outline that is not round. The circle has the same area as the
-    outline."""
+    """The device with a circle in place of each outline that is not round. The circle has the same area as the outline.
+    @throws UserError  if an outline crosses itself, because the signs of its parts differ"""
+    if device.others:
+        geometry = library("shapely.geometry", "python3-shapely")
+        for outline in device.others:
+            valid(geometry.Polygon(outline))
     made = [(*centroid(outline), 2 * np.sqrt(abs(area(outline)) / np.pi)) for outline in device.others]
     return dataclasses.replace(device, circles=np.vstack([device.circles, np.array(made or np.empty((0, 3)))]), others=[])
 

@@ -24,6 +24,7 @@ LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
 PIECES_OF_CURVE = 64
 # A quarter of an ellipse is drawn as a Bezier curve whose handles have this share of the way to the corner.
 QUARTER = 4 / 3 * (np.sqrt(2) - 1)
+NO_AREA = 1e-6  # A path is a line if it encloses at most this fraction of the square of its size.
 PAGE_WITHOUT_SIZE = 1e4  # [px]
 
 
@@ -32,8 +33,7 @@ def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
     @param are_holes_posts  whether holes in filled paths are read as holes, and not as outlines within outlines"""
     text = path.read_bytes().decode(errors="replace")
     root = ElementTree.parse(path).getroot()
-    if moving := flat.named_in(text, flat.MOVING):
-        raise UserError(f"cannot read {path} (librsvg does not know {moving}); apply transforms in the drawing program, such as by ungrouping, and give lengths in px or mm")
+    flat.refuse_unknown_css(text, path)
     refuse_unknown(root, path)
     ignored = flat.named_in(text, flat.IGNORED)
     found = Drawing([], [], None, notes=[f"ignored: {ignored}"] if ignored else [], skipped={})
@@ -109,6 +109,8 @@ def read_flat(svgelements: Any, drawing: Flat, found: Drawing, are_holes_posts: 
             found.skipped["transparent path"] = found.skipped.get("transparent path", 0) + 1
             continue
         parts = parts_of(svgelements, element, drawing)
+        if is_filled and not is_stroked:
+            parts = [closed(part) for part in parts]
         compound = [part for part in parts if is_closed(part)] if are_holes_posts and is_filled else []
         if len(compound) > 1:
             clips.cut_area(found, element.values, areas.filled([part[:-1] for part in compound], element.values.get("fill-rule", "nonzero")))
@@ -246,6 +248,14 @@ def add(found: Drawing, corners: Numbers) -> None:
         found.outlines.append(corners[:-1])
     else:
         found.pieces.append(("open outline", corners))
+
+
+def closed(corners: Numbers) -> Numbers:
+    """A filled outline with its last corner at the first: viewers fill open paths as if they were closed. Lines stay as
+    they are, because they have no area to fill."""
+    ends = np.vstack([corners, corners[:1]])
+    size = float(np.ptp(corners, axis=0).max())
+    return corners if is_closed(corners) or abs(walls.area(ends)) <= NO_AREA * size**2 else ends
 
 
 def is_closed(corners: Numbers) -> bool:

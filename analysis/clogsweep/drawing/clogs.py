@@ -5,11 +5,13 @@ from __future__ import annotations
 import concurrent.futures
 import dataclasses
 import pathlib
+import sys
 import tempfile
 from collections.abc import Collection, Iterator, Sequence
 from typing import overload
 
 import numpy as np
+import numpy.typing as npt
 import scipy.spatial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -26,12 +28,28 @@ MARGIN = 0.15  # free height above the panels of a sheet [inches]
 MECHANISMS = ("wrapped", "squeezed", "hybrid", "other")
 
 
+def are_passages(rows: Records) -> npt.NDArray[np.bool_]:
+    """Whether the droplet of each row was in a channel or on a wall."""
+    return np.isin(rows["obstacle_filling"], (b"channel", b"wall"))
+
+
+def are_clogged_polygons(rows: Records) -> npt.NDArray[np.bool_]:
+    return np.asarray((rows["status"] == b"clogged") & (rows["model"] == b"dp"))
+
+
 def of_polygons(rows: Records, path: object) -> list[np.void]:
-    """The rows of the polygons that have clogged. @param path  the sweep's file. @throws UserError  if the droplets
-    were in a channel or on a wall"""
-    if len(rows) > 0 and rows["obstacle_filling"][0] in (b"channel", b"wall"):
+    """The rows of the polygons that have clogged in arrays. @param path  the sweep's file. @throws UserError  if no
+    droplet was in an array"""
+    if len(rows) > 0 and are_passages(rows).all():
         raise UserError(f"cannot draw clogs of {path} (its droplets were in a channel or on a wall); clogfit report draws their results")
-    return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"]
+    return list(rows[are_clogged_polygons(rows) & ~are_passages(rows)])
+
+
+def tell_left_out(rows: Records) -> None:
+    """Prints how many clogs of_polygons() leaves out, if any."""
+    if number := int((are_clogged_polygons(rows) & are_passages(rows)).sum()):
+        print(f"left out: {rounded.counted(number, 'clog')} in a channel or on a wall; clogfit report draws them, after clogsweep select "
+              "has made a sweep of one kind", file=sys.stderr)
 
 
 def mechanism_of(row: np.void) -> str:
@@ -40,11 +58,16 @@ def mechanism_of(row: np.void) -> str:
     return name if name in MECHANISMS else "other"
 
 
+def lacking(path: object, has_unfinished: bool) -> UserError:
+    """The error for a sweep without a clogged polygon in an array.
+    @param has_unfinished  whether the sweep can be resumed"""
+    resume = "resume it, or " if has_unfinished else ""
+    return UserError(f"{path} holds no clogged polygon in an array (soft disks do not count); {resume}sweep with a longer max-time into another file")
+
+
 def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: Collection[int] | None, most: int) -> list[np.void]:
-    """Chooses the clogs to draw. @param rows  clogs of the sweep. @throws UserError  if there are none, or if one of
-    `tasks` has no clog"""
-    if not rows:
-        raise UserError(f"{path} holds no clogged polygon (soft disks do not count); resume it, or sweep with a longer max-time into another file")
+    """Chooses the clogs to draw. @param rows  clogs of the sweep. @throws UserError  if one of `tasks` has no clog, or
+    no clog has the mechanism"""
     if mechanism not in (None, *MECHANISMS):
         raise UserError(f"no mechanism {mechanism}; they are {', '.join(MECHANISMS)}")
     left = [row for row in rows if mechanism in (None, mechanism_of(row))]

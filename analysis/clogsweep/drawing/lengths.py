@@ -76,6 +76,13 @@ def failure_notes(groups: Collection[Group], noun: str = "point") -> list[str]:
     return lines
 
 
+def automatic_notes(groups: Groups) -> list[str]:
+    """States how many points are at an automatic value of the abscissa, which the user has not chosen."""
+    number = groups.num_automatic(groups.abscissa) if groups.varies(groups.abscissa) else 0
+    key = groups.abscissa_key().replace("_", " ")
+    return [f"automatic: the {key} of {number} of {rounded.counted(len(groups.members), 'point')} follows from other parameters"] if number else []
+
+
 def excluded_notes(groups: Groups) -> list[str]:
     """Names the points that belong to no fitted curve."""
     excluded = groups.excluded_from_curves()
@@ -87,7 +94,7 @@ def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: 
     @param drawn  all groups that were passed to draw_lengths()
     @param other, title  see style.legend()"""
     style.logarithmic_ordinate(axes)
-    style.finish(axes, (LABORATORY if groups.are_in_mm else AXES)["length"], groups.caption(), [*length_notes(drawn, groups.confidence, [axes]), *excluded_notes(groups)], drawn,
+    style.finish(axes, (LABORATORY if groups.are_in_mm else AXES)["length"], groups.caption(), [*length_notes(drawn, groups.confidence, [axes]), *automatic_notes(groups), *excluded_notes(groups)], drawn,
                  other, title)
 
 
@@ -233,4 +240,4 @@ def draw_speeds_on(axes: Axes, groups: Groups) -> None:
     add_laboratory(axes, groups, "speed")
     has_points = any(curve.lines[0].get_xdata().size for curve in axes.containers)
     of_all = " of all runs" if speed_column(groups.members) == OF_ALL_RUNS else ""
-    style.finish(axes, AXES["speed"] + of_all, groups.caption(), speed_notes(groups.members) if has_points else [], title=groups.legend_title())
+    style.finish(axes, AXES["speed"] + of_all, groups.caption(), [*speed_notes(groups.members), *automatic_notes(groups)] if has_points else [], title=groups.legend_title())

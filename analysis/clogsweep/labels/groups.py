@@ -24,6 +24,17 @@ def has_results(group: Group) -> bool:
     return group["status"] in FINISHED if "status" in group else group["runs"] + group["met_none"] > 0
 
 
+def refuse_mixed(fillings: Iterable[str], message: str) -> None:
+    """@param fillings  values of obstacle_filling; @param message  with {} for the kinds of places
+    @throws UserError  if the results are of different kinds: those of arrays, channels and walls"""
+    kinds: dict[str, list[str]] = {}
+    for filling in sorted(fillings, key=lambda filling: (filling in PLACES, filling)):
+        kinds.setdefault(PLACES.get(filling, "arrays"), []).append(filling)
+    if len(kinds) > 1:
+        raise UserError(f"{message.format(' and '.join(kinds))}; keep one kind, as by "
+                        f"clogsweep select FILE obstacle_filling={','.join(next(iter(kinds.values())))} --output ONE_KIND.h5")
+
+
 class Groups:
     """Those groups of one sweep that have runs. The groups are drawn against one parameter of the sweep."""
 
@@ -54,12 +65,7 @@ class Groups:
         those of arrays, channels and walls cannot share a picture"""
         if not self.members:
             raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
-        fillings: dict[str, list[str]] = {}
-        for filling in sorted(self.values("obstacle_filling"), key=lambda filling: (filling in PLACES, filling)):
-            fillings.setdefault(PLACES.get(filling, "arrays"), []).append(filling)
-        if len(fillings) > 1:
-            raise UserError(f"cannot draw droplets in {' and '.join(fillings)} in one picture ({source}); keep one kind, as by "
-                            f"clogsweep select FILE obstacle_filling={','.join(next(iter(fillings.values())))} --output ONE_KIND.h5")
+        refuse_mixed(self.values("obstacle_filling"), f"cannot draw droplets in {{}} in one picture ({source})")
         return self
 
     def with_lengths(self, source: object = "the sweep") -> Groups:
@@ -126,7 +132,8 @@ class Groups:
         return fits.follows(self.members, name, others)
 
     def _choose_abscissa(self) -> str:
-        """Chooses the abscissa: the usual one if it varies, otherwise the numeric parameter with the most values."""
+        """Chooses the abscissa: the usual one if it varies, otherwise the numeric parameter with the most values.
+        Parameters without an automatic value come first."""
         usual = "line_tension" if self.are_polygons else "wall_stiffness"
         if self.are_in_mm and self.follows(usual, fits.DROPLETS):
             return max(fits.DROPLETS, key=lambda name: len(self.values(name)))
@@ -135,11 +142,15 @@ class Groups:
         known = [name for name in self.columns if self._is_number(name) and None not in self.values(name)]  # to both models
         if usual not in known:
             usual = next((name for name in known if not self.varies(name)), usual)
-        elif self.varies(usual) and not self._is_automatic(usual):
+        elif self.varies(usual) and not self._is_automatic(usual) and not self.num_automatic(usual):
             return usual
         # Values that follow from the model, such as the one vertex of a disk, are no abscissa.
         varied = [name for name in known if self.varies(name) and not self.follows(name, ["model"])]
-        return max(varied, key=lambda name: (not self._is_automatic(name), len(self.values(name))), default=usual)
+        return max(varied, key=lambda name: (not self.num_automatic(name), not self._is_automatic(name), len(self.values(name))), default=usual)
+
+    def num_automatic(self, name: str) -> int:
+        """The number of groups whose value of the parameter is automatic."""
+        return sum(name in group["automatic"] for group in self.members)
 
     def _is_number(self, name: str) -> bool:
         return self.columns[name]["kind"] != "word"
@@ -158,8 +169,10 @@ class Groups:
 
     def _is_of_preset(self, name: str) -> bool:
         """Whether the parameter's value follows from the abscissa and the preset, because the value is automatic for
-        some presets and a number for others."""
-        return any(name in group["automatic"] for group in self.members) and self.follows(name, [self.abscissa, "preset"])
+        some presets and a number for others. Several numbers for a model without automatic values were chosen."""
+        models = {group["model"] for group in self.members if name in group["automatic"]}
+        chosen = {group[name] for group in self.members if group["model"] not in models}
+        return bool(models) and len(chosen) < 2 and self.follows(name, [self.abscissa, "preset"])
 
     def _share_of_saturated(self) -> str:
         """The filling of all random arrays, such as `12%`. The text is empty if the arrays have different fillings."""

@@ -107,7 +107,11 @@ class Sweep:
 
         checked.whole("most", most, 1)
         checked.whole("jobs", jobs, 1)
-        rows = clogs.chosen(clogs.of_polygons(self._records, self.path), self.path, mechanism=mechanism, tasks=tasks, most=most)
+        clogged = clogs.of_polygons(self._records, self.path)
+        if not clogged:
+            raise clogs.lacking(self.path, self.status()["unfinished"] > 0)
+        clogs.tell_left_out(self._records)
+        rows = clogs.chosen(clogged, self.path, mechanism=mechanism, tasks=tasks, most=most)
         return clogs.run_all(self._program("clogrun"), self.path, rows, jobs)
 
     def device(self, *, ways: int = 3, map: int = 6, jobs: int = 2) -> Picture:
