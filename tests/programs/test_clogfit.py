@@ -90,9 +90,10 @@ class Mixtures(ProgramTest):
             self.assertNotIn("*", usual.split("\n\n")[0])
 
     def test_models_differ_in_the_model_and_in_what_both_have(self):
-        far = ["seeds=1", "max-time=1", "obstacle-gap=0.3,0.5"]
-        self.succeed("clogsweep", *QUICK[:1], *far, "box=20", "--output", "dp.h5")
-        self.succeed("clogsweep", "model=sp", "wall-stiffness=5", *far, "box=20", "--output", "sp.h5")
+        gaps = ["seeds=1", "obstacle-gap=0.3,0.5"]
+        self.succeed("clogsweep", *QUICK[:1], *gaps, "box=20", "max-time=1", "--output", "dp.h5")
+        self.succeed("clogsweep", "model=sp", "wall-stiffness=5", *gaps, "box=30", "max-time=2", "--output", "sp.h5")
+        self.assertTrue(self.fit("dp.h5", "sp.h5").startswith("runs with model=dp: "))  # All runs share nothing unusual.
         mixture = "--mixture=obstacle-gap=0.3:1,0.5:1"
         self.refuse("clogfit", "dp.h5", "sp.h5", mixture, words=["2 groups have obstacle_gap = 0.3 and differ in model"])
         done = self.run_program("clogfit", "dp.h5", "sp.h5", mixture)

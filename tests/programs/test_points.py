@@ -148,7 +148,6 @@ class Points(PointsTest):
             self.refuse("clogsweep", *QUICK, "--shard", shard, "--output", "s.h5", words=[f"--shard={shard}", "2/5"])
         self.refuse("clogsweep", *QUICK, "--shard", "3/5", "seeds=1", "--output", "s.h5", words=["3/5", "is empty"])
 
-
     def test_points_without_chance_have_one_run(self):
         self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.7\nwall,\n")
         told = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv", "--dry-run").stdout
