@@ -501,7 +501,7 @@ class Drawings(Analysis):
         self.gdsii(DEVICE=[*self.rounds(), *marks])
         self.refused("--layer", "2", words=["layer 2", f"1/0 with {len(ROW)} objects", "1/7 with 3 objects"])
         self.gdsii(DEVICE=[*self.rounds(), edge])
-        for layer in ("1", None):
+        for layer in ("1", "1/0", None):
             self.assert_posts(self.circles("device.gds", *(["--layer", layer] if layer else [])), 2e-3)
             (self.folder / "posts.csv").unlink()
 
@@ -1053,8 +1053,8 @@ class OtherTools(Analysis):
 
     def test_svg_what_librsvg_does_not_know_is_named(self):
         sheet = '@import "other.css"; @media (max-width: 9px){circle{display:none}} @layer base{circle{display:none}} @keyframes k{to{opacity:0}} .k{animation: k 1s}'
-        self.assertEqual(len(self.svg(f'<style media="print">{sheet}</style><circle cx="800" cy="300" r="50" filter="url(#f)" mask="url(#m)"/>')), 1)
-        self.assertEqual(self.drawing.notes, ["ignored: @media, @layer, @import, animations, masks, filters, media of style sheets"])
+        self.assertEqual(len(self.svg(f'<style media="print">{sheet}</style><circle cx="800" cy="300" r="50" filter="url(#f)" mask="url(#m)" style="mix-blend-mode: multiply"/>')), 1)
+        self.assertEqual(self.drawing.notes, ["ignored: @media, @layer, @import, animations, blend modes, masks, filters, media of style sheets"])
         self.assertEqual(len(self.svg('<pattern id="p" width="9" height="9"><path d="M0 0h9"/></pattern><path d="M0 0h9" marker="none"/><circle cx="800" cy="300" r="50" style="marker-end:url(#m)"/>')), 1)
         self.assertEqual(self.drawing.notes, ["ignored: patterns, markers"])
         self.write("device.svg", '<?xml-stylesheet href="other.css"?>' + SVG.format('<circle cx="800" cy="300" r="50"/>'))

@@ -88,6 +88,10 @@ class Names(Analysis):
             with Image.open(self.folder / f"{name}.png") as picture:
                 pictures.append(picture.tobytes())
         self.assertEqual(len(set(pictures)), 1)
+        for backend in ("inline", "module://matplotlib_inline.backend_inline"):
+            report = subprocess.run([*command[:3], "report", self.folder / SWEEP, "--examples", "0", "--programs", str(BIN), "--output", self.folder / "r.html"], cwd=ROOT,
+                                    env={**usual, "MPLBACKEND": backend}, capture_output=True, text=True, check=False)
+            self.assertEqual(report.returncode, 0, report.stderr)
 
     def test_a_name_is_drawn_as_it_is(self):
         sweep = clogsweep.open(self.folder / SWEEP, BIN)

@@ -269,6 +269,16 @@ class Looks(Analysis):
         self.assertIn("left out: 1 clog in a channel or on a wall", self.draw("clogs", "s.h5", "--programs", BIN).stderr)
         self.assert_picture("s-clogs")
 
+    def test_a_run_of_several_laboratories_is_drawn_once(self):
+        self.write("lab.cfg", "diameter = 1 mm\ndensity = 970 kg/m^3, 1000 kg/m^3\ntension = 0.5 mN/m\nangle = 10 deg, 20 deg\n")
+        self.succeed("clogsweep", "--lab", "lab.cfg", "line-tension=3", "terminal-speed=0.03", "obstacle-gap=0.3sigma", "obstacle-density=saturated", "box=20sigma", "vertices=64", "max-time=60",
+                     "seeds=1..2", "--output", "s.h5")
+        rows = clogs.of_polygons(stored.read_rows(self.folder / "s.h5", BIN), "s.h5")
+        drawn = clogs.chosen(rows, "s.h5", mechanism=None, tasks=None, most=12)
+        self.assertEqual((len(rows), len(drawn)), (4, 2))
+        self.assertEqual({row["seed"] for row in drawn}, {1, 2})
+        self.assertEqual(len(clogs.chosen(rows, "s.h5", mechanism=None, tasks=[row["task"] for row in rows], most=1)), 4)
+
     def test_a_complete_sweep_without_clogs_is_not_to_be_resumed(self):
         self.succeed("clogsweep", *SMALL, "line-tension=1", "max-time=1", "seeds=1", "--output", "s.h5")
         done = self.analyse("clogs", "s.h5", "--programs", BIN)

@@ -358,14 +358,18 @@ class Sizes(LaboratoryTest):
         self.assertAlmostEqual(np.nanmax(drawn), bound)
 
     def test_a_curve_runs_over_the_diameter_in_millimetres(self):
-        self.sweep("obstacle-gap=0.24mm", "obstacle-diameter=0.24mm", "obstacle-density=1.6/mm^2", "vertices=64", "box=12", "max-time=400", "seeds=1..4",
-                   diameter="0.8 mm, 1 mm, 1.2 mm, 1.6 mm", angle="20 deg")
+        keys = ["obstacle-gap=0.24mm", "obstacle-diameter=0.24mm", "obstacle-density=1.6/mm^2", "vertices=64", "box=12", "max-time=400", "seeds=1..4"]
+        self.sweep(*keys, diameter="0.8 mm, 1 mm, 1.2 mm, 1.6 mm", angle="20 deg")
         found = json.loads(self.succeed("clogfit", "curve", "s.h5", "--format", "json").stdout)
         self.assertEqual((found["keys"], found["units"]["clogging_length"]), (["diameter_mm"], "mm"))
         groups = {group["diameter_mm"]: group for group in self.fit("s.h5")["groups"]}
         for point in found["curves"][0]["points"]:
             self.assertAlmostEqual(point["total_distance"], point["diameter_mm"] * groups[point["diameter_mm"]]["total_distance"])
         self.assertEqual(json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)["keys"], found["keys"])
+        # The same laboratory in other words is one curve, with the same points.
+        self.assertIn("nothing left to do", self.sweep(*keys, diameter="800 um, 1.0 mm, 1200 um, 0.16 cm", angle="20.0 deg").stderr)
+        again = json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)
+        self.assertEqual(again["curves"], found["curves"])
 
         text = self.succeed("clogfit", "curve", "s.h5", "--crossing", "3").stdout
         for pattern in (r"highest at diameter_mm .* mm\n", r"cross(es)? 3 mm", "lambda/mm"):

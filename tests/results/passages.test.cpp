@@ -113,6 +113,16 @@ TEST(Passages, LengthsOfADeviceCountFromTheFirstObstacle) {
   EXPECT_NEAR(group.clogging_met.length, group.clogging.length, 1e-12);
 }
 
+TEST(Passages, LengthsOfADisplacedReleaseCountFromThere) {
+  std::vector<sweep::RunRow> rows = {row(1, RunStatus::clogged, 1.5, 1.2),
+                                     row(2, RunStatus::clogged, 2.5, 0.5)};
+  rows[1].release_x = entrance + 3;
+  EXPECT_EQ(sweep::fault_of(rows[1]), "");
+  const Group group = group_runs(rows, 0.95).at(0);
+  EXPECT_EQ(group.displaced, std::vector<double>{entrance + 3});
+  EXPECT_NEAR(group.clogging.length, (0.3 + 2) / 2, 1e-12);
+}
+
 TEST(Passages, AreNotAskedForWithoutADevice) {
   std::vector<sweep::RunRow> rows = five_rows();
   for (sweep::RunRow& row : rows) {

@@ -110,6 +110,23 @@ TEST_P(EveryKey, MakesTwoIdentities) {
   EXPECT_NE(sweep::identity(sweep::describe(runs[0])), sweep::identity(sweep::describe(runs[1])));
 }
 
+/// Lengths that differ by round-off are the same length.
+TEST_P(EveryKey, IsComparedToTwelveDigitsIfItIsALength) {
+  const Parameter& parameter = GetParam();
+  if (parameter.unit != std::string("sigma")) return;
+  const RunParameters run = sweep::Plan(settings_for(parameter)).task(0);
+  const ParameterValue value = parameter.get(run);
+  const auto* const length = std::get_if<double>(&value);
+  if (!length || *length == 0) return;
+  const auto identity_with = [&](double factor) {
+    RunParameters other = run;
+    parameter.set(other, *length * factor);
+    return sweep::identity(sweep::describe(other));
+  };
+  EXPECT_EQ(identity_with(1 + 4e-16), identity_with(1));
+  EXPECT_NE(identity_with(1 + 1e-9), identity_with(1));
+}
+
 TEST_P(EveryKey, MakesTwoGroups) {
   std::vector<sweep::RunRow> rows;
   for (const RunParameters& run : both_runs(GetParam())) rows.push_back(sweep::describe(run));

@@ -250,10 +250,10 @@ using Field = std::pair<std::string, Value>;
 std::span<const sweep::Column* const> group_columns();
 /// The values of a row in these columns.
 std::vector<Value> parameter_values(const sweep::RunRow& row);
-/// The kind of the group's results.
 /// Text that is the same for the runs of a parameter set and for their copies in other laboratories.
 /// @param row  of one of the runs
 std::string runs_of(sweep::RunRow row);
+/// The kind of the group's results.
 Finding finding_of(const Group& group);
 /// Whether the results include a clogging length. They do not in a channel and on a wall, where nothing is
 /// random: there each group is one run, whose row has the results.
