@@ -19,6 +19,7 @@
 #include "clog/core/tools/number_text.hpp"
 #include "clog/fit/log_rank.hpp"
 #include "clog/results/usual_parameters.hpp"
+#include "clog/sweep/keys.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
 

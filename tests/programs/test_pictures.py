@@ -270,7 +270,7 @@ class Looks(Analysis):
         self.assert_picture("s-clogs")
 
     def test_a_run_of_several_laboratories_is_drawn_once(self):
-        self.write("lab.cfg", "diameter = 1 mm\ndensity = 970 kg/m^3, 1000 kg/m^3\ntension = 0.5 mN/m\nangle = 10 deg, 20 deg\n")
+        self.write("lab.cfg", "diameter = 0.8 mm\nangle = 20 deg, 45 deg\nspeed = 1 mm/s\ntension = 2 mN/m\n")
         self.succeed("clogsweep", "--lab", "lab.cfg", "line-tension=3", "terminal-speed=0.03", "obstacle-gap=0.3sigma", "obstacle-density=saturated", "box=20sigma", "vertices=64", "max-time=60",
                      "seeds=1..2", "--output", "s.h5")
         rows = clogs.of_polygons(stored.read_rows(self.folder / "s.h5", BIN), "s.h5")

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from ..labels.groups import refuse_mixed
 from ..reading import fits, stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group, Numbers
@@ -40,7 +39,7 @@ def of_sweep(clogfit: pathlib.Path, paths: Sequence[AnyPath], keys: Sequence[str
 def of_fit(fit: points.Fit, seeds: Sequence[set[int]], names: Sequence[str] = (), crossing: Sequence[float] = ()) -> dict[str, Any]:
     """Fits the curves. @param fit  the JSON output of clogfit; @param seeds  seeds of the runs of each group. @throws
     UserError  if there is no curve"""
-    refuse_mixed({group["obstacle_filling"] for group in fit["groups"]}, "cannot fit a curve to droplets in {}")
+    fits.refuse_mixed({group["obstacle_filling"] for group in fit["groups"]}, "cannot fit a curve to droplets in {}")
     if any("status" in group for group in fit["groups"]):
         raise UserError("cannot fit a curve (droplets in a channel or on a wall have no clogging length)")
     fit = fits.in_millimetres(fit)

@@ -80,7 +80,7 @@ def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: C
 
 def computed_once(rows: list[np.void]) -> list[np.void]:
     """Each run once, although several laboratories may have it."""
-    return list({tuple(row[name] for name in ("line_tension", "seed", "release_x", "release_y", "distance", "time", "steps")): row for row in reversed(rows)}.values())[::-1]
+    return list({tuple(row[name].tobytes() for name in ("line_tension", "seed", "release_x", "release_y", "distance", "time", "steps")): row for row in reversed(rows)}.values())[::-1]
 
 
 @dataclasses.dataclass(frozen=True)

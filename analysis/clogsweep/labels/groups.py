@@ -15,24 +15,12 @@ from . import AXES, INTERFACES, axis_label, interface_of, is_number, runs_a_poin
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
 LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # names by obstacle_filling
-PLACES = {"channel": "channels", "wall": "a flat wall"}  # where droplets have no clogging length, by obstacle_filling
 FINISHED = ("passed", "clogged", "broken", "flowing")
 
 
 def has_results(group: Group) -> bool:
     """Whether a group has finished runs. In a channel or on a wall each group is one run, with a status."""
     return group["status"] in FINISHED if "status" in group else group["runs"] + group["met_none"] > 0
-
-
-def refuse_mixed(fillings: Iterable[str], message: str) -> None:
-    """@param fillings  values of obstacle_filling; @param message  with {} for the kinds of places
-    @throws UserError  if the results are of different kinds: those of arrays, channels and walls"""
-    kinds: dict[str, list[str]] = {}
-    for filling in sorted(fillings, key=lambda filling: (filling in PLACES, filling)):
-        kinds.setdefault(PLACES.get(filling, "arrays"), []).append(filling)
-    if len(kinds) > 1:
-        raise UserError(f"{message.format(' and '.join(kinds))}; keep one kind, as by "
-                        f"clogsweep select FILE obstacle_filling={','.join(next(iter(kinds.values())))} --output ONE_KIND.h5")
 
 
 class Groups:
@@ -65,7 +53,7 @@ class Groups:
         those of arrays, channels and walls cannot share a picture"""
         if not self.members:
             raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
-        refuse_mixed(self.values("obstacle_filling"), f"cannot draw droplets in {{}} in one picture ({source})")
+        fits.refuse_mixed(self.values("obstacle_filling"), f"cannot draw droplets in {{}} in one picture ({source})")
         return self
 
     def with_lengths(self, source: object = "the sweep") -> Groups:

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable
 from typing import Any
 
 from ..tools import lists
+from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
 from . import programs, stored
 
@@ -13,6 +14,20 @@ from . import programs, stored
 def told(clogfit: pathlib.Path, *words: object) -> dict[str, Any]:
     """The answer of clogfit for these sweeps and options. @throws ProgramFailed  with clogfit's reason"""
     return json.loads(programs.run_program(clogfit, *words, "--format", "json"))
+
+
+PLACES = {"channel": "channels", "wall": "a flat wall"}  # where droplets have no clogging length, by obstacle_filling
+
+
+def refuse_mixed(fillings: Iterable[str], message: str) -> None:
+    """@param fillings  values of obstacle_filling; @param message  with {} for the kinds of places
+    @throws UserError  if the results are of different kinds: those of arrays, channels and walls"""
+    kinds: dict[str, list[str]] = {}
+    for filling in sorted(fillings, key=lambda filling: (filling in PLACES, filling)):
+        kinds.setdefault(PLACES.get(filling, "arrays"), []).append(filling)
+    if len(kinds) > 1:
+        raise UserError(f"{message.format(' and '.join(kinds))}; keep one kind, as by "
+                        f"clogsweep select FILE obstacle_filling={','.join(next(iter(kinds.values())))} --output ONE_KIND.h5")
 
 
 # The droplets of one sweep may differ in these quantities if a lab file lists several values.
