@@ -463,6 +463,7 @@ std::string text_of_kind(const std::vector<Group>& groups, double confidence, Sh
   std::vector<bool> named = shown;
   const auto words = shared_words(groups, varies, shown, shared, named);
   std::vector<std::string> lines_above;
+  lines_above.reserve(words.size() + 1);
   for (const auto& [model, own] : words)
     lines_above.push_back((model.empty() ? "all runs:" : fmt::format("runs with model={}:", model)) +
                           wrapped(own));
