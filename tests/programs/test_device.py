@@ -501,9 +501,11 @@ class Drawings(Analysis):
         self.gdsii(DEVICE=[*self.rounds(), *marks])
         self.refused("--layer", "2", words=["layer 2", f"1/0 with {len(ROW)} objects", "1/7 with 3 objects"])
         self.gdsii(DEVICE=[*self.rounds(), edge])
-        for layer in ("1", "1/0", None):
+        for layer in ("1", None):
             self.assert_posts(self.circles("device.gds", *(["--layer", layer] if layer else [])), 2e-3)
             (self.folder / "posts.csv").unlink()
+        alone = self.draw("circles", "device.gds", "--droplet", "200um", "--layer", "1/0", "--output", "alone").stdout
+        self.assertIn(f"{len(ROW)} posts, device 10.5 x 5.5 droplet diameters (no edge is drawn)", alone)
 
     def test_posts_that_cross_the_rim_of_a_reservoir_do_not_vanish(self):
         import gdspy

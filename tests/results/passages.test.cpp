@@ -119,7 +119,8 @@ TEST(Passages, LengthsOfADisplacedReleaseCountFromThere) {
   rows[1].release_x = entrance + 3;
   EXPECT_EQ(sweep::fault_of(rows[1]), "");
   const Group group = group_runs(rows, 0.95).at(0);
-  EXPECT_EQ(group.displaced, std::vector<double>{entrance + 3});
+  ASSERT_FALSE(group.displaced.empty());
+  EXPECT_EQ(group.displaced.back(), entrance + 3);
   EXPECT_NEAR(group.clogging.length, (0.3 + 2) / 2, 1e-12);
 }
 
