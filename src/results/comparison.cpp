@@ -243,7 +243,8 @@ void append_left_out(Comparisons& comparisons, const std::string& side, const st
                                   .example = joined(words)});
 }
 
-void correct_tests(std::vector<Comparison>& comparisons) {
+void correct_tests(Comparisons& all) {
+  std::vector<Comparison>& comparisons = all.all;
   std::map<int, fit::WeibullTest> groups;
   std::vector<double> log_rank;
   std::map<std::pair<int, int>, std::size_t> tests_of_pairs;
@@ -260,6 +261,7 @@ void correct_tests(std::vector<Comparison>& comparisons) {
   for (const auto& [group, test] : groups) tests.push_back(test);
   const std::vector<bool> are_not = fit::are_not_exponential(tests);
   const std::vector<double> adjusted = fit::holm_adjusted(log_rank);
+  all.num_tests = std::ranges::count_if(log_rank, [](double p) { return !std::isnan(p); });
   for (std::size_t i = 0; i < comparisons.size(); ++i) {
     comparisons[i].log_rank_p_holm = adjusted[test_of[i]];
     for (Flaws* flaws : {&comparisons[i].flaws_here, &comparisons[i].flaws_there}) {
@@ -377,7 +379,7 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
     throw Error(fmt::format(
         "cannot compare {} with {} (no parameter set of one has the values of any set of the other)",
         sides[1].name, there.name));
-  correct_tests(comparisons.all);
+  correct_tests(comparisons);
   comparisons.differing = differing_columns(compared);
   if (scales.size() > 1) name_droplets(comparisons, compared, scales);
   return comparisons;

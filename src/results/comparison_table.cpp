@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -157,10 +156,7 @@ std::string to_text(const Comparisons& comparisons, double confidence) {
   if (!have_pairs) {
     text += "\nno runs have the same seed, so intervals are those of independent runs\n";
     text += "log-rank p: probability that curves P(r) of one law differ as much";
-    std::set<std::pair<int, int>> tests;  // copies of runs in several laboratories are one test
-    for (const Comparison& one : comparisons.all)
-      if (!std::isnan(one.log_rank_p)) tests.emplace(one.flaws_here.group, one.flaws_there.group);
-    const std::size_t number = tests.size();
+    const std::ptrdiff_t number = comparisons.num_tests;
     return text + (number > 1 ? fmt::format(", corrected for {} comparisons (Holm)\n", number) : "\n");
   }
   text +=

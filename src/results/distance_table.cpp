@@ -622,7 +622,7 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
                     "both need the same values of {}",
                     tables[1].source, there.source, joined(common)));
   }
-  correct_tests(comparisons.all);
+  correct_tests(comparisons);
   return comparisons;
 }
 

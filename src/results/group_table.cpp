@@ -225,11 +225,9 @@ bool follows_from_shown(std::size_t place, const std::vector<bool>& shown, const
 
 /// Whether the row lacks a value because the other model alone has this parameter.
 bool lacks_as_model(const sweep::Column& column, const sweep::RunRow& row) {
-  if (column.name == "preset") return row.parameters.model != Model::dp;
   RunParameters of_other_model = row.parameters;
   of_other_model.model = row.parameters.model == Model::dp ? Model::sp : Model::dp;
-  return column.parameter && !column.parameter->applies_to(row.parameters) &&
-         column.parameter->applies_to(of_other_model);
+  return !has_parameter(column, row.parameters) && has_parameter(column, of_other_model);
 }
 
 /// A group with the column's value if one model alone has this parameter, with the same value in all of its

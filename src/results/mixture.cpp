@@ -91,11 +91,6 @@ class Key {
   const sweep::Column* column_ = nullptr;
 };
 
-bool has_parameter(const sweep::Column& column, const RunParameters& run) {
-  return column.name == "preset" ? run.model == Model::dp
-                                 : !column.parameter || column.parameter->applies_to(run);
-}
-
 /// The parameters in which groups differ, except those that are automatic. A parameter that some groups lack,
 /// as those of another model do, counts only if it differs between the other groups.
 std::string differences(const std::vector<const Group*>& groups) {

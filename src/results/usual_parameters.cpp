@@ -94,6 +94,11 @@ bool is_automatic(const sweep::Column& column, const sweep::RunRow& row) {
          (is_automatic_with(Others::all, column, row) && !are_followers_automatic(column, row));
 }
 
+bool has_parameter(const sweep::Column& column, const RunParameters& run) {
+  if (column.name == "preset") return run.model == Model::dp;
+  return !column.parameter || column.parameter->applies_to(run);
+}
+
 Value separating_value(const sweep::Column& column, const sweep::RunRow& row) {
   if (column.name == "obstacle_density" && has_derived_density(row)) return {};
   if (column.parameter && !column.parameter->applies_to(row.parameters)) return {};

@@ -1062,6 +1062,8 @@ class OtherTools(Analysis):
         self.write("device.svg", '<?xml-stylesheet href="other.css"?>' + SVG.format('<circle cx="800" cy="300" r="50"/>'))
         self.assertEqual(len(self.circles_of("device.svg")), 1)
         self.assertEqual(self.drawing.notes, ["ignored: style sheets in other files"])
+        self.assertEqual(len(self.svg('<!-- @import, transform-origin: 0 --><settings/><circle cx="800" cy="300" r="50"/>')), 1)
+        self.assertEqual(self.drawing.notes, [])
 
     def test_svg_filled_paths_that_are_open_are_outlines(self):
         self.write("device.svg", SVG.format('<path d="M800 300h100v80h-100"/><polyline points="1200,300 1300,300 1300,380"/><path d="M100 100h100"/><path d="M500 300h100v80h-100" fill="none" stroke="black"/>'))

@@ -450,7 +450,7 @@ class Pictures(Analysis):
         self.assertEqual(self.run_program("clogsweep", *FEW[:-1], "seeds=1..20", "--max-hours=1e-9", "--output", "s.h5").returncode, 75)
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
         self.assertEqual(status["runs"], 40)
-        self.assertIn(f"{status['finished']} of 40 runs finished", report.progress_of(status, table(self.folder / "s.h5")))
+        self.assertIn(f"{status['finished']} of 40 runs finished", report.progress_of(status))
 
     def test_a_report_says_which_programs_made_it(self):
         self.copy_sweep("s.h5", *FEW)

@@ -24,7 +24,7 @@ PIXELS = ("filter", "mask", "marker", "marker-start", "marker-mid", "marker-end"
 TRANSFORMS = {"transform-origin": r"(?<![\w-])transform-origin\s*[:=]", "transform-box": r"(?<![\w-])transform-box\s*[:=]", "translate, rotate or scale": r"(?<![\w-])(?:translate|rotate|scale)\s*:"}
 LENGTHS = {"lengths that depend on a font or a window": r"(?<![\w-])(?:[cr]?[xy]|r|width|height|[xy][12])\s*[:=]\s*[\"']?\s*[-+\d.]+(?:r?em|ex|ch|v[wh]|vmin|vmax)\b"}
 FUNCTION = r"(?:([\w-]+)\s*[:=]\s*[\"']?[^;:=\"'{}<>]*?)?\b(var|calc)\("  # the property, if it can be found, and the function
-IGNORED = {"@media": r"@media\b", "@layer": r"@layer\b", "@import": r"@import\b", "animations": r"<(?:\w+:)?(?:animate|set)|(?<![\w-])animation(?:-name)?\s*:",
+IGNORED = {"@media": r"@media\b", "@layer": r"@layer\b", "@import": r"@import\b", "animations": r"<(?:\w+:)?(?:animate\w*|set)\b|(?<![\w-])animation(?:-name)?\s*:",
            "blend modes": r"mix-blend-mode\s*:\s*(?!normal)\w", "masks": r"(?<![\w-])mask\s*[:=]", "filters": r"(?<![\w-])filter\s*[:=]", "patterns": r"<(?:\w+:)?pattern\b",
            "markers": r"(?<![\w-])marker(?:-start|-mid|-end)?\s*[:=](?!\s*[\"']?\s*none\b)", "media of style sheets": r"<(?:\w+:)?style[^>]*\smedia\s*=", "style sheets in other files": r"<\?xml-stylesheet|<(?:\w+:)?link\b"}
 # The longer side of the page, and the canvas around it with what is outside the page. librsvg has single precision, in

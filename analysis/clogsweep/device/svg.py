@@ -31,7 +31,7 @@ PAGE_WITHOUT_SIZE = 1e4  # [px]
 def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
     """Reads visible circles and closed outlines, including curves.
     @param are_holes_posts  whether holes in filled paths are read as holes, and not as outlines within outlines"""
-    text = path.read_bytes().decode(errors="replace")
+    text = re.sub(r"<!--.*?-->", "", path.read_bytes().decode(errors="replace"), flags=re.DOTALL)
     root = ElementTree.parse(path).getroot()
     flat.refuse_unknown_css(text, path)
     refuse_unknown(root, path)

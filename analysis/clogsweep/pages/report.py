@@ -291,11 +291,11 @@ def example_pictures(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pat
     return side_by_side(framed(charts.draw(clog.picture().figure, caption), caption) for clog in again)
 
 
-def progress_of(status: dict[str, Any], rows: pandas.DataFrame) -> str:
-    """The progress of the sweep in words. @param status  output of clogsweep status; @param rows  rows of the tasks
-    that have begun"""
-    outcomes = rows.status.mask((rows.status == "clogged") & (rows.obstacle_filling == "wall"), "at rest")
-    counts = ", ".join(f"{count} {name}" for name, count in outcomes.value_counts().items())
+def progress_of(status: dict[str, Any]) -> str:
+    """The progress of the sweep in words. @param status  output of clogsweep status"""
+    numbers = {name: status[name] for name in ("clogged", "at_rest", "broken", "passed", "flowing", "failed")}
+    numbers["running" if status["alive"] else "interrupted"] = status["unfinished"]
+    counts = ", ".join(f"{number} {name.replace('_', ' ')}" for name, number in numbers.items() if number)
     return f"{status['finished']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
 
 
@@ -441,5 +441,5 @@ def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: path
                      *pictures,
                      ("How busy the ranks were", busy_ranks(about, charts))])
     with outputs.replaced(output) as fresh:
-        fresh.write_text(page(sweep.name, groups, sections, progress_of(status, rows), about, charts, stored.writer(told)), encoding="utf-8")
+        fresh.write_text(page(sweep.name, groups, sections, progress_of(status), about, charts, stored.writer(told)), encoding="utf-8")
     return output

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -75,6 +76,7 @@ struct Comparisons {
   std::vector<LeftOut> left_out;
   std::string unit = "sigma";      ///< unit of lengths: "sigma" or "mm"
   std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are wanted in mm, too
+  std::ptrdiff_t num_tests = 0;    ///< log-rank tests; copies of runs in several laboratories are one test
   double within = 0;  ///< clogs at most this far apart count as at the same place [sigma]; 0: half a spacing
 };
 
@@ -86,7 +88,7 @@ void append_left_out(Comparisons& comparisons, const std::string& side, const st
 
 /// Corrects the tests of all comparisons for their number (Holm): the doubt not_exponential of each group,
 /// and the log-rank tests.
-void correct_tests(std::vector<Comparison>& comparisons);
+void correct_tests(Comparisons& all);
 
 /// `column=value`, or `no column` for an unset value.
 std::string named_value(const std::string& column, const Value& value);
