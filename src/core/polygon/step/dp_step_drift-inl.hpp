@@ -124,25 +124,30 @@ struct CouplingVectors {
   }
 };
 
-Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
-            const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays) {
+template <bool elastic, bool coupled, bool on_area, bool varying_rate, bool implicit_pressure>
+Power power_with(int n, const KickTerms& terms, const InterfaceKick& interface,
+                 const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays) {
   const StepArrays a = arrays;
   const double one_s =
       coefficients.closing_ratio / (1 + coefficients.h1 * terms.rate);  // 0: w is the velocity
   const CouplingVectors all_vertices(coupling);
+  const V same_s = all(one_s), same_rate = all(terms.rate), closing_ratio = all(coefficients.closing_ratio);
   const V spreading = all(interface.spreading);
   V drag = all(0), spread_power = all(0), spread_x = all(0), spread_y = all(0);
   for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
-    V s = all(one_s), rate = all(terms.rate);
-    if (terms.varying_rate) {
-      s = hn::Mul(all(coefficients.closing_ratio), load(a.damping + i));
+    V s = same_s, rate = same_rate;
+    if constexpr (varying_rate) {
+      s = hn::Mul(closing_ratio, load(a.damping + i));
       rate = load(a.rate + i);
     }
-    const Pair pull = all_vertices.pull(i, terms.on_area, coupling.half_pressure != 0, a);
-    const V vx = hn::MulAdd(s, pull.x, load(a.kicked.x + i));
-    const V vy = hn::MulAdd(s, pull.y, load(a.kicked.y + i));
+    V vx = load(a.kicked.x + i), vy = load(a.kicked.y + i);
+    if constexpr (coupled || implicit_pressure) {
+      const Pair pull = all_vertices.pull(i, on_area, implicit_pressure, a);
+      vx = hn::MulAdd(s, pull.x, vx);
+      vy = hn::MulAdd(s, pull.y, vy);
+    }
     drag = hn::Add(drag, keep(hn::Mul(rate, hn::MulAdd(vx, vx, hn::Mul(vy, vy)))));
-    if (terms.elastic) return;
+    if constexpr (elastic) return;
     const V length = load(a.length + i), length_before = load_at(a.length + i - 1);
     const V tx = load(a.tangent.x + i), tx_before = load_at(a.tangent.x + i - 1);
     const V ty = load(a.tangent.y + i), ty_before = load_at(a.tangent.y + i - 1);
@@ -157,6 +162,10 @@ Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
   });
   const auto s = sums(drag, spread_power, spread_x, spread_y);
   return {.drag = s[0], .spreading = s[1], .spread_x = s[2], .spread_y = s[3]};
+}
+
+decltype(StepKernel::power) power_version(const KickTerms& terms) {
+  return version(terms, [](auto... chosen) { return &power_with<chosen...>; });
 }
 
 template <bool elastic, bool coupled, bool on_area, bool varying_rate, bool implicit_pressure>

@@ -24,7 +24,7 @@ StepKernel make_kernel(const KickTerms& terms) {
           .push_off_wedges = push_off_wedges,
           .near_wall_rates = near_wall_rates,
           .kick = kick_version(terms),
-          .power = power,
+          .power = power_version(terms),
           .drift = drift_version(terms)};
 }
 

@@ -316,7 +316,7 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
                                    total.template total<implicit_pressure>(n, force, one_s));
 }
 
-/// Calls make() with the terms of kicks and drifts as compile-time constants: elastic, coupled, on_area,
+/// Calls make() with the terms of a kick as compile-time constants: elastic, coupled, on_area,
 /// varying_rate, implicit_pressure. Only constant rates occur together with implicit_pressure.
 template <class Make>
 auto version(const KickTerms& terms, Make make) {

@@ -197,7 +197,7 @@ void DpStepper::kick_and_drift(DropletState& state, double half_step, double dri
   const kernel::StepKernel& kernel = open_.pressure == Pressure::implicit ? implicit_kernel_ : kernel_;
   const kernel::Coupling coupling = kernel.kick(n_, terms_, interface, force, coefficients, a);
   if (work != nullptr) {
-    const Droplet::Work now = power(interface, coefficients, coupling);
+    const Droplet::Work now = power(kernel, interface, coefficients, coupling);
     if (open_.length != 0) {
       work->dissipated += h_before * (open_.power.dissipated + now.dissipated);
       work->spreading += h_before * (open_.power.spreading + now.spreading);
@@ -341,11 +341,11 @@ void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::W
 double DpStepper::vertex_mass() const { return run_.dp.inertia * units::droplet_mass / n_; }
 
 /// The power of the drag and of the springs along the interface at the end of a time step.
-Droplet::Work DpStepper::power(const kernel::InterfaceKick& interface,
+Droplet::Work DpStepper::power(const kernel::StepKernel& kernel, const kernel::InterfaceKick& interface,
                                const kernel::KickCoefficients& coefficients,
                                const kernel::Coupling& coupling) const {
   const kernel::Power vertices =
-      kernel_.power(n_, terms_, interface, coefficients, coupling, memory_.arrays());
+      kernel.power(n_, terms_, interface, coefficients, coupling, memory_.arrays());
   const double mean2 = coupling.mean_x * coupling.mean_x + coupling.mean_y * coupling.mean_y;
   const double area2 = coupling.area_x * coupling.area_x + coupling.area_y * coupling.area_y;
   const double reaction = vertices.spread_x * coupling.area_x + vertices.spread_y * coupling.area_y;

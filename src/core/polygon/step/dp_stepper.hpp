@@ -106,8 +106,8 @@ class DpStepper {
   void add_wetting(DropletState& state, double impulse, Droplet::Work* work);
   void hold_by_friction(DropletState& state, double impulse, Droplet::Work* work);
   double vertex_mass() const;  // inertial mass of a vertex
-  Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,
-                      const kernel::Coupling& coupling) const;
+  Droplet::Work power(const kernel::StepKernel& kernel, const kernel::InterfaceKick& interface,
+                      const kernel::KickCoefficients& coefficients, const kernel::Coupling& coupling) const;
 };
 
 }  // namespace clog
