@@ -1,6 +1,7 @@
 #include "clog/core/disk/sp_droplet.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -77,10 +78,12 @@ Eigen::Array2d SpForces::force_at(const Eigen::Array2d& place, const LocalFrame&
 }
 
 void SpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) const {
+  assert(listed_);
   force = force_at(state.position.head<2>(), state.frame);
 }
 
 PotentialEnergy SpForces::energy(const DropletState& state) const {
+  assert(listed_);
   PotentialEnergy energy;
   energy.gravity = -weight_[0] * state.position[0];
   const auto add_wall = [&](double distance) {

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -82,6 +83,7 @@ class Stiffness {
   }
   /// Whether the shape resists all displacements by more than `bound`; otherwise solve() must not be called.
   bool resists(double bound) {
+    assert(shape_.size() > 0);
     if (!is_stable(bound, shape_, has_energy_)) return false;
     shape_factor_.compute(shape_);
     return true;
@@ -89,6 +91,7 @@ class Stiffness {
   /// Smallest stiffness of the shape: the slowest rate at which a displacement decays under drag, or minus
   /// the largest one at which it grows.
   double smallest() const {
+    assert(shape_.size() > 0);
     if (has_energy_)
       return Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric(shape_), Eigen::EigenvaluesOnly)
           .eigenvalues()[0];
@@ -116,7 +119,10 @@ class Stiffness {
     corrections_.push_back({step, excess / step.dot(step + excess)});
   }
   /// Updates a displacement that solve() gave before the last correction.
-  void correct(VectorXd& move) const { corrections_.back().apply_to(move); }
+  void correct(VectorXd& move) const {
+    assert(!corrections_.empty());
+    corrections_.back().apply_to(move);
+  }
 
  private:
   struct Correction {

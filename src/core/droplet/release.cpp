@@ -1,6 +1,7 @@
 #include "clog/core/droplet/release.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -86,6 +87,7 @@ int num_enclosed(const DropletState& state, const ObstacleArray& obstacles) {
 
 DropletState state_at_rest(const Eigen::ArrayXd& droplet, const Eigen::Array2d& place,
                            const Eigen::Array2d& period) {
+  assert((period > 0).all());
   DropletState state;
   state.frame.period = period;
   state.frame.shift(place.floor());

@@ -1,6 +1,7 @@
 #include "clog/core/droplet/shape.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -147,6 +148,7 @@ Eigen::Array2d area_centroid_velocity(const Eigen::ArrayXd& position, const Eige
   const auto cross = [](const Eigen::Array2d& a, const Eigen::Array2d& b) {
     return a[0] * b[1] - a[1] * b[0];
   };
+  assert(velocity.size() == position.size());
   const Eigen::Array2d centroid = area_centroid(position);
   double twice_area = 0;
   Eigen::Array2d change{0, 0};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -18,6 +19,7 @@ constexpr double shortest_travel = 0.5;   // [sigma]
 }  // namespace
 
 void DisplacementRecord::add(double time, double displacement) {
+  assert(samples_.empty() || time > samples_.back().time);
   if (count_++ % stride_ != 0) return;
   if (samples_.size() == capacity) {
     for (std::size_t i = 0; i < capacity / 2; ++i) samples_[i] = samples_[2 * i];

@@ -1,6 +1,7 @@
 #include "clog/core/world/bare_stretch.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <vector>
 
 namespace clog {
@@ -14,6 +15,7 @@ constexpr double droplet = 1;  // diameter [sigma]
 /// of the period.
 std::vector<Stretch> bare_stretches(std::span<const Obstacle> circles, double Obstacle::*centre,
                                     double period) {
+  assert(!circles.empty());
   std::vector<Stretch> shadows;
   for (const Obstacle& circle : circles)
     shadows.push_back({circle.*centre - circle.radius, circle.*centre + circle.radius});

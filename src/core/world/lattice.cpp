@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/random/uniform_01.hpp>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -34,6 +35,7 @@ double tangent_unit(LatticeKind kind) { return kind == LatticeKind::triangular ?
 /// Length of the shortest vector of a triangular lattice in the direction (u, sqrt(3) w), in spacings.
 /// @param u,w  without a common divisor
 double triangular_period(long long u, long long w) {
+  assert(std::gcd(u, w) == 1);
   return std::sqrt(static_cast<double>(u * u + 3 * w * w)) / ((u - w) % 2 == 0 ? 2 : 1);
 }
 

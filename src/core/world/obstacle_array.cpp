@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -67,6 +68,10 @@ int crossings_of_axis(const Eigen::Array2d& from, const Eigen::Array2d& to) {
 
 ObstacleArray::ObstacleArray(const Period& period, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges)
     : wedges_(std::move(wedges)) {
+  assert(std::ranges::all_of(wedges_, [](const Wedge& wedge) {
+    return wedge.half_angle.cos >= 0 && wedge.half_angle.sin > 0 &&
+           std::abs(wedge.axis.matrix().norm() - 1) < 1e-9;
+  }));
   binned_.period = period;
   for (Obstacle& obstacle : obstacles) {
     if (!(obstacle.radius > 0) || !std::isfinite(obstacle.radius) || !std::isfinite(obstacle.x) ||
@@ -92,7 +97,10 @@ ObstacleArray::ObstacleArray(const Period& period, std::vector<Obstacle> obstacl
 }
 
 ObstacleArray::ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory)
-    : binned_(binned), memory_(std::move(memory)) {}
+    : binned_(binned), memory_(std::move(memory)) {
+  assert(binned.cell_start.size() == num_cells(binned.period) + 1);
+  assert(binned.cell_start.back() == binned.obstacles.size());
+}
 
 std::size_t ObstacleArray::num_cells(const Period& period) {
   return static_cast<std::size_t>(columns_of(period).number) * rows_of(period).number;

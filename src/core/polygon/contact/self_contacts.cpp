@@ -1,6 +1,7 @@
 #include "clog/core/polygon/contact/self_contacts.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +20,7 @@ constexpr double contour_exclusion = 3;
 }  // namespace
 
 void SelfContacts::set_rest_edge(double length) {
+  assert(length > 0);
   rest_edge_ = length;
   exclusion_ = std::max(1, static_cast<int>(std::ceil(contour_exclusion * range_ / rest_edge_)));
   invalidate();
@@ -26,6 +28,7 @@ void SelfContacts::set_rest_edge(double length) {
 
 bool SelfContacts::are_neighbours(int a, int b) const {
   const int n = static_cast<int>(along_.size()) - 1;
+  assert(std::min(a, b) >= 0 && std::max(a, b) < n);
   const int steps = std::abs(a - b);
   if (std::min(steps, n - steps) >= exclusion_) return false;
   const double way = std::abs(along_[a] - along_[b]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -180,6 +181,7 @@ void SelfCrossings::renew(const Contour& contour, std::vector<SelfCrossing>& cro
 
 bool SelfCrossings::follow(const Contour& contour, const Drift& drift, const SelfContacts& contacts,
                            DropletState& state) {
+  assert(contour.size == state.size());
   std::vector<SelfContacts::Pair> passed;
   const auto add_if_passed = [&](const SelfContacts::Pair& pair) {
     if (!is_muted(pair) && passes_through(pair, contour, drift)) passed.push_back(pair);

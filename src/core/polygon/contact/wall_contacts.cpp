@@ -1,6 +1,7 @@
 #include "clog/core/polygon/contact/wall_contacts.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -26,7 +27,9 @@ constexpr double layer_tolerance = 0.25;
 }  // namespace
 
 WallContacts::WallContacts(const ObstacleArray& array, double range, Keep keep, double film)
-    : array_(&array), range_(range), film_(film), keep_(keep) {}
+    : array_(&array), range_(range), film_(film), keep_(keep) {
+  assert(film == 0 || keep == Keep::touched_by_edge);
+}
 
 void WallContacts::update(const DropletState& state, const Travel& travel) {
   const Eigen::Index n = state.size();

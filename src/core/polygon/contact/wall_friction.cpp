@@ -1,6 +1,7 @@
 #include "clog/core/polygon/contact/wall_friction.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -20,6 +21,7 @@ void WallFriction::add_force(const WallAnchor& anchor, const WallFoot& at, Eigen
 }
 
 void WallFriction::add_forces(const DropletState& state, Eigen::ArrayXd& force) const {
+  assert(force.size() == state.position.size());
   for (const WallAnchor& anchor : state.anchors) add_force(anchor, foot(state, anchor), force);
 }
 
@@ -58,6 +60,7 @@ double WallFriction::use(const DropletState& state, std::span<const WallTouch> t
 /// hold_group() in dp_step_holds-inl.hpp is the version of this function for circles in contact with edges.
 WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
                                KnownAnchors& known, Eigen::ArrayXd* force) const {
+  assert(force == nullptr || force->size() == state.position.size());
   WallYield yield;
   if (state.anchors.empty() && touches.empty()) return yield;
   known.take(state.anchors, state.size());

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -45,6 +46,7 @@ std::vector<Rate> polygon_rates(const RunParameters& run) {
 
 /// The automatic time step [t0]. K_a and K_l must be set.
 double automatic_time_step(const RunParameters& run, double sharpest_bend) {
+  assert(run.dp.area_stiffness && run.dp.perimeter_stiffness);
   const double drag = drag_time_step(run);
   constexpr double depth = 0.02;  // overlap of obstacle and contact range, divided by the vertex diameter
   const double vertex_mass = run.dp.inertia * units::droplet_mass / *run.dp.vertices;

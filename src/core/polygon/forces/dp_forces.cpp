@@ -1,6 +1,7 @@
 #include "clog/core/polygon/forces/dp_forces.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "clog/core/droplet/shape.hpp"
@@ -25,6 +26,7 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
       self_(dp_.self_contact_range, vertex_diameter_),
       friction_(dp_.friction, dp_.yield_traction, friction_stiffness_ratio * contact_stiffness_,
                 obstacles.wedges()) {
+  assert(run.dp.vertices && run.dp.perimeter_stiffness);
   set_rest_area(units::rest_area);
 }
 

@@ -1,6 +1,7 @@
 #include "clog/core/polygon/forces/stability.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "clog/core/polygon/contact/wall_friction.hpp"
@@ -67,11 +68,13 @@ double largest_step_with_implicit_pressure(const StiffModes& modes) {
 }
 
 Steps stable_steps(const StiffModes& modes, int steps, double time_step, Pressure most) {
+  assert(steps > 0 && time_step > 0);
   Steps stable{num_steps(largest_stable_step(modes), steps, time_step), time_step};
   if (most == Pressure::implicit) {
     const int num = num_steps(largest_step_with_implicit_pressure(modes), steps, time_step);
     if (num < stable.num) stable = {num, time_step, Pressure::implicit};
   }
+  assert(stable.num >= steps && stable.num <= most_substeps * steps);
   if (stable.num != steps) stable.length = steps * time_step / stable.num;
   return stable;
 }

@@ -1,6 +1,7 @@
 #include "rest_forces.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "clog/core/droplet/shape.hpp"
 #include "core/polygon/step/step_input.hpp"
@@ -43,6 +44,7 @@ void RestForces::look(const DropletState& state, const Travel& travel) {
 /// Computes the force by a kick from rest, without drag. The time of the kick is such that the velocity
 /// gained equals the force.
 void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
+  assert(looked_at_.size() > 0);
   const kernel::StepArrays& a = memory_.arrays();
   memory_.load(state.position, a.position);
   const kernel::Sums sums = kernel_.measure(n_, a);

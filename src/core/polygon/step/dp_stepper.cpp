@@ -1,6 +1,7 @@
 #include "dp_stepper.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 #include <vector>
 
@@ -161,6 +162,8 @@ void DpStepper::keep_near_contacts() {
 /// Leaves the last half kick open: positions belong to the end of the steps, velocities to half a step
 /// earlier.
 void DpStepper::advance(DropletState& state, const Steps& steps, Droplet::Work* work) {
+  assert(forces_->has_contact_lists());
+  assert(run_.drag.near_wall == 0 || steps.pressure == Pressure::present);
   open_.pressure = steps.pressure;
   for (int step = 0; step < steps.num; ++step) kick_and_drift(state, 0.5 * steps.length, steps.length, work);
 }
@@ -180,6 +183,7 @@ void DpStepper::kick_and_drift(DropletState& state, double half_step, double dri
   kernel::StepArrays& a = memory_.arrays();
   const double h_before = 0.5 * open_.length, closing_ratio = h_before / half_step;
   const bool only_closes = drift_time == 0;
+  assert(half_step > 0 && (open_.length != 0 || !only_closes));
   const kernel::KickCoefficients coefficients{
       .closing_ratio = closing_ratio,
       .h1 = h_before,
@@ -344,6 +348,7 @@ double DpStepper::vertex_mass() const { return run_.dp.inertia * units::droplet_
 Droplet::Work DpStepper::power(const kernel::StepKernel& kernel, const kernel::InterfaceKick& interface,
                                const kernel::KickCoefficients& coefficients,
                                const kernel::Coupling& coupling) const {
+  assert(coefficients.keeps_kicked);
   const kernel::Power vertices =
       kernel.power(n_, terms_, interface, coefficients, coupling, memory_.arrays());
   const double mean2 = coupling.mean_x * coupling.mean_x + coupling.mean_y * coupling.mean_y;

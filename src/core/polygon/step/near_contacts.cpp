@@ -1,6 +1,7 @@
 #include "near_contacts.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,6 +21,7 @@ void NearContacts::keep(const kernel::StepKernel& kernel, const DpForces& forces
                         double self_way) {
   walls_.clear();
   const auto& walls = forces.walls().items();
+  assert(wall_gaps_.size() == walls.size() * std::size_t{kernel::edges_per_group});
   for (std::size_t k = 0; k < walls.size(); ++k) {
     const std::uint8_t edges =
         kernel.edges_within(&wall_gaps_[k * std::size_t{kernel::edges_per_group}], wall_way);
@@ -29,6 +31,7 @@ void NearContacts::keep(const kernel::StepKernel& kernel, const DpForces& forces
   }
   self_.clear();
   const auto& self = forces.self_contacts().items();
+  assert(self_gaps_.size() == self.size());
   for (std::size_t k = 0; k < self.size(); ++k)
     if (self_gaps_[k] <= self_way) self_.push_back(self[k]);
 }

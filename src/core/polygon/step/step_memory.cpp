@@ -1,11 +1,13 @@
 #include "step_memory.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 
 namespace clog {
 
 StepMemory::StepMemory(int num_vertices) : n_(num_vertices) {
+  assert(n_ >= kernel::edges_per_group);
   // Arrays begin on cache lines, with room for an entry before and a group after each.
   constexpr int line = 8;
   const int stride = (n_ + line - 1) / line * line + 3 * line;
@@ -21,6 +23,7 @@ StepMemory::StepMemory(int num_vertices) : n_(num_vertices) {
 }
 
 void StepMemory::load(const Eigen::ArrayXd& from, const kernel::ContourPair& to) const {
+  assert(from.size() == 2 * n_);
   const double* source = from.data();
   for (const kernel::ContourArray& array : {to.x, to.y}) {
     std::copy_n(source, n_, array.first);
@@ -31,6 +34,7 @@ void StepMemory::load(const Eigen::ArrayXd& from, const kernel::ContourPair& to)
 }
 
 void StepMemory::store(const kernel::ContourPair& from, Eigen::ArrayXd& to) const {
+  assert(to.size() == 2 * n_);
   std::copy_n(from.x.first, n_, to.data());
   std::copy_n(from.y.first, n_, to.data() + n_);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 #include "wall_windows.hpp"
@@ -125,6 +126,7 @@ void WallHold::arrange_anchors() {
 
 /// Returns whether one of the circles can hold the anchor.
 bool WallHold::take(const WallAnchor& anchor) {
+  assert(anchor.holder >= 0 && anchor.holder < num_vertices_);
   const auto vertex = static_cast<int>(anchor.holder);
   for (const kernel::HoldingCircle& circle : all_) {
     if (!anchor.wall.is({.x = circle.x, .y = circle.y, .radius = circle.radius})) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 namespace clog {
 namespace {
@@ -17,6 +18,8 @@ void list_windows(const std::vector<WallContacts::Item>& near, int num_groups,
   windows.clear();
   for (const WallContacts::Item& item : near) {
     const int begin = item.group * kernel::edges_per_group;
+    assert(item.group >= 0 && item.group < num_groups);
+    assert(windows.empty() || !is_same_circle(windows.back(), item) || windows.back().first < begin);
     for (unsigned edges = item.edges; edges != 0;) {
       const int edge = begin + std::countr_zero(edges);
       const bool is_inside = !windows.empty() && is_same_circle(windows.back(), item) &&
@@ -38,6 +41,7 @@ void list_windows(const std::vector<WallContacts::Item>& near, int num_groups,
 void mark_pushed_groups(const kernel::WallWindow& window, std::vector<std::uint8_t>& is_pushed) {
   const auto first =
       is_pushed.begin() + (window.first - 1 + kernel::edges_per_group) / kernel::edges_per_group;
+  assert((window.first + kernel::edges_per_group + 1) / kernel::edges_per_group + 2 <= std::ssize(is_pushed));
   std::fill(first,
             is_pushed.begin() + (window.first + kernel::edges_per_group + 1) / kernel::edges_per_group + 2,
             std::uint8_t{1});

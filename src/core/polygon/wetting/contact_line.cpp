@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -144,6 +145,7 @@ void ContactLine::find_ends(const VertexPlaces& vertices, const LocalFrame& fram
 }
 
 void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends& ends) const {
+  assert(std::ranges::is_sorted(zone.vertices, {}, &Zone::Vertex::vertex));
   const Index n = vertices.size;
   const auto num = static_cast<Index>(zone.vertices.size());
   const auto vertex = [&](Index k) -> const Zone::Vertex& {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -164,6 +165,7 @@ WallYield WettedWalls::follow_and_find_forces(const VertexPlaces& vertices, cons
 
 void WettedWalls::add_up(const VertexPlaces& vertices, const LocalFrame& frame,
                          std::span<const WallAnchor> anchors, Forces& forces) const {
+  assert(forces.gradient.size() == 2 * vertices.size);
   forces.clear();
   if (extra_tension_ != 0) {
     find_near(vertices, frame, forces);
