@@ -58,7 +58,8 @@ def flaws_of(one: Comparison) -> Group:
     """The doubts and failures of both sides, as those of one group."""
     sides = ("here", "there")
     doubts = dict.fromkeys(word for side in sides for word in (one[f"doubts_{side}"] or "").split())
-    return {"doubts": " ".join(doubts), "clogs": min(one[f"clogs_{side}"] for side in sides), "failed": sum(one[f"failed_{side}"] for side in sides)}
+    return {"doubts": " ".join(doubts), "clogs": min(one[f"clogs_{side}"] for side in sides),
+            "failed": sum(one[f"failed_{side}"] for side in sides)}
 
 
 def draw_curve(axes: Axes, places: Sequence[float], curve: Sequence[Comparison], index: int, label: str) -> None:
@@ -66,19 +67,23 @@ def draw_curve(axes: Axes, places: Sequence[float], curve: Sequence[Comparison],
     known = [(places[i], curve[i]) for i in order if curve[i]["ratio_lower"] is not None]
     looks = style.curve_style(index)
     drawn = axes.errorbar([x for x, _ in known], [one["ratio"] for _, one in known],
-                          yerr=[[abs(one["ratio"] - one[end]) for _, one in known] for end in ("ratio_lower", "ratio_upper")],
-                          color=looks["color"], linestyle=looks["linestyle"], linewidth=1, elinewidth=1, capsize=2.5, label=label if known else "_")
+                          yerr=[[abs(one["ratio"] - one[end]) for _, one in known]
+                                for end in ("ratio_lower", "ratio_upper")], color=looks["color"],
+                          linestyle=looks["linestyle"], linewidth=1, elinewidth=1, capsize=2.5,
+                          label=label if known else "_")
     for bars in drawn.lines[2]:
         bars.set_linestyle([PAIRED if one["interval"] == "paired" else UNPAIRED for _, one in known])
     for x, one in known:
         face = "white" if lengths.reasons_for_hollow_marker(flaws_of(one)) else "auto"
-        axes.plot(x, one["ratio"], color=looks["color"], marker=looks["marker"], markerfacecolor=face, markersize=5.5, zorder=3)
+        axes.plot(x, one["ratio"], color=looks["color"], marker=looks["marker"],
+                  markerfacecolor=face, markersize=5.5, zorder=3)
 
 
 def note_lines(told: dict[str, Any]) -> list[str]:
     kinds = {one["interval"] for one in told["comparisons"] if one["ratio_lower"] is not None}
     lines = [f"bars: {100 * told['confidence']:g} % confidence intervals"]
-    meanings = {"paired": "solid bars: from pairs of the same seed", "unpaired": "dashed bars: from numbers of clogs alone"}
+    meanings = {"paired": "solid bars: from pairs of the same seed",
+                "unpaired": "dashed bars: from numbers of clogs alone"}
     lines += ["; ".join(meaning for kind, meaning in meanings.items() if kind in kinds)]
     unknown = sum(one["ratio_lower"] is None for one in told["comparisons"])
     identical = sum(one["interval"] == "identical" for one in told["comparisons"])
@@ -93,7 +98,8 @@ def draw_on(axes: Axes, told: dict[str, Any]) -> None:
     """Draws the ratios. @param told  the JSON output of clogfit compare. @throws UserError  if there is no ratio"""
     comparisons = told["comparisons"]
     if all(one["ratio_lower"] is None for one in comparisons):
-        raise UserError("no ratio to draw: in every comparison one side has no clogs, or both sides have identical runs")
+        raise UserError("no ratio to draw: in every comparison one side has no clogs, "
+                        "or both sides have identical runs")
     abscissa = abscissa_of(told)
     curves = curves_of(told, abscissa)
     values = [one[abscissa] for one in comparisons] if abscissa else []
@@ -117,7 +123,8 @@ def draw_on(axes: Axes, told: dict[str, Any]) -> None:
         axes.set_xticks([])
     reference = side(told, comparisons[0]["there"])
     names = {side(told, one["here"]) for one in comparisons}
-    axes.set_ylabel(rf"$\lambda$ of {names.pop()} / $\lambda$ of {reference}" if len(names) == 1 else rf"$\lambda$ / $\lambda$ of {reference}")
+    axes.set_ylabel(rf"$\lambda$ of {names.pop()} / $\lambda$ of {reference}" if len(names) ==
+                    1 else rf"$\lambda$ / $\lambda$ of {reference}")
     style.grid(axes)
     if len(curves) > 1 or not abscissa:
         style.legend(axes)
