@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks that lines of prose in *.md have at most 120 characters. Tables, code, and words that cannot be broken may be
-longer. Also counts longer lines in *.py: their number may only fall, and LONG_PYTHON_LINES follows it."""
+longer. Also counts longer lines in `*.py`: their number may only fall, and LONG_PYTHON_LINES follows it."""
 
 import sys
 

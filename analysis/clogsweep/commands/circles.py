@@ -124,7 +124,7 @@ def call_of(device: shapes.Device, drawing: shapes.Drawing, output: pathlib.Path
             f"{walls}release=entrance {ends} ...")
 
 
-def told(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> list[str]:
+def description(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> list[str]:
     """Lines that describe the content of the drawing."""
     if drawing.frame and not drawing.is_picture:
         edge = "the region"
@@ -246,7 +246,7 @@ def body() -> int:
     picture = Picture(device_plan.understood(device, arguments.drawing.name),
                       f"python3 -m clogsweep circles {arguments.drawing}")
     command_line.tell(f"{picture.save(arguments.output)} (and .pdf)")
-    command_line.tell("\n".join(told(device, drawing, metres) + made))
+    command_line.tell("\n".join(description(device, drawing, metres) + made))
     if device.others:
         uneven = "; if the picture is lit unevenly, even it out and make it black and white first"
         light = uneven if drawing.is_picture else ""

@@ -36,6 +36,6 @@ def body() -> int:
     options = [word for name in ("by", "within", "confidence") if (value := getattr(arguments, name)) is not None
                for word in (f"--{name}", value)]
     clogfit = programs.programs_in(arguments.programs) / "clogfit"
-    told = json.loads(programs.run_with_warnings(clogfit, "compare", *arguments.sweeps, *options, "--format", "json"))
+    answer = json.loads(programs.run_with_warnings(clogfit, "compare", *arguments.sweeps, *options, "--format", "json"))
     source = f"clogfit compare {' '.join(map(str, [*arguments.sweeps, *options]))}"
-    return save(style.Picture(style.figure_of(ratios.draw_on, told), source), arguments)
+    return save(style.Picture(style.figure_of(ratios.draw_on, answer), source), arguments)

@@ -48,7 +48,7 @@ def parse() -> argparse.Namespace:
 OF_DROPLET = {"terminal-speed": "speed of the droplet", "line-tension": "tension of the droplet"}
 
 
-def told(length: float) -> str:
+def as_number(length: float) -> str:
     return f"{length:.4g}" if math.isfinite(length) else ""
 
 
@@ -88,8 +88,8 @@ def body() -> int:
         found = list(prediction.predict(droplets, array))
     print("line_tension,clogging_length,squeezed,wrapped,doubts" + (",clogging_length_mm" if droplet else ""))
     for one in found:
-        print(f"{one.tension:g}", *map(told, one[1:]), " ".join(prediction.doubts_of(one.tension, one.length)),
-              *([told(one.length * droplet["diameter_mm"])] if droplet else []), sep=",")
+        print(f"{one.tension:g}", *map(as_number, one[1:]), " ".join(prediction.doubts_of(one.tension, one.length)),
+              *([as_number(one.length * droplet["diameter_mm"])] if droplet else []), sep=",")
     if arguments.output:
         fit: dict[str, Any] = {"groups": [], "confidence": 0.95}
         if arguments.measured:

@@ -33,8 +33,8 @@ def body() -> int:
         if arguments.mixture:
             raise UserError("no place for --mixture (measured distances have no seeds); leave it out")
         clogfit = programs.programs_in(arguments.programs) / "clogfit"
-        told = json.loads(programs.run_program(clogfit, "lengths", arguments.sweep, "--format", "json"))
-        curves, unit, source = survival_curve.of_table(told), told["unit"], f"clogfit lengths {arguments.sweep}"
+        answer = json.loads(programs.run_program(clogfit, "lengths", arguments.sweep, "--format", "json"))
+        curves, unit, source = survival_curve.of_table(answer), answer["unit"], f"clogfit lengths {arguments.sweep}"
     else:
         options = ["--mixture", arguments.mixture] if arguments.mixture else []
         fitted = fit.read(arguments.sweep, arguments.programs, *options)

@@ -318,7 +318,8 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
     command = ["ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo",
                "-pix_fmt", "rgba", "-video_size", f"{width}x{height}", "-framerate", str(rate),
                "-i", "pipe:", "-c:v", "libx264", "-preset", "veryfast", "-pix_fmt", "yuv420p", f"file:{path}"]
-    with tempfile.TemporaryFile() as said, subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said) as process:
+    with (tempfile.TemporaryFile() as messages,
+          subprocess.Popen(command, stdin=subprocess.PIPE, stderr=messages) as process):
         assert process.stdin is not None
         try:
             for pixels in film.play_and_hold():
@@ -327,8 +328,8 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
         except BrokenPipeError:
             pass  # ffmpeg has ended, and prints the reason.
         if process.wait() != 0:
-            said.seek(0)
-            raise UserError(f"cannot write {path.name} (ffmpeg: {' '.join(said.read().decode(errors='replace').split())}); look at the folder and its disk")
+            messages.seek(0)
+            raise UserError(f"cannot write {path.name} (ffmpeg: {' '.join(messages.read().decode(errors='replace').split())}); look at the folder and its disk")
 
 
 def palette_of(first: Pixels) -> Image.Image:

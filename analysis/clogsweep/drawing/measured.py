@@ -24,15 +24,15 @@ def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None,
     """The groups that clogfit lengths finds in a table of distances. Lengths are in the unit of the picture.
     @param groups  of the sweep, whose laboratory gives the diameter
     @throws UserError  if the table is in mm and no diameter is known"""
-    told = json.loads(programs.run_program(programs.programs_in(folder) / "clogfit", "lengths",
-                                           table, "--format", "json", "--confidence", groups.confidence, *options))
-    members: list[dict[str, Any]] = told["groups"]
+    answer = json.loads(programs.run_program(programs.programs_in(folder) / "clogfit", "lengths",
+                                             table, "--format", "json", "--confidence", groups.confidence, *options))
+    members: list[dict[str, Any]] = answer["groups"]
     known = {fits.DROPLETS[column]["key"] if column in fits.DROPLETS else column for column in groups.columns}
-    if unmatched := [label for label in told["labels"] if label.replace("-", "_") not in known]:
+    if unmatched := [label for label in answer["labels"] if label.replace("-", "_") not in known]:
         print(f"{table}: columns without a match in the sweep: {', '.join(unmatched)}", file=sys.stderr)
-    if told["unit"] == ("mm" if groups.are_in_mm else "sigma"):
-        return members if told["unit"] == "sigma" else [group | {name: group[f"{name}_mm"] for name in LENGTHS}
-                                                        for group in members]
+    if answer["unit"] == ("mm" if groups.are_in_mm else "sigma"):
+        return members if answer["unit"] == "sigma" else [group | {name: group[f"{name}_mm"] for name in LENGTHS}
+                                                          for group in members]
     if groups.are_in_mm:
         raise UserError(f"{table} is in droplet diameters and the sweep has several droplets; give distances in mm")
     diameter = groups.laboratory.get("length_mm")

@@ -58,20 +58,20 @@ def of_groups(groups: Groups) -> list[Curve]:
             for group in groups.members if group["runs"]]
 
 
-def of_table(told: dict[str, Any]) -> list[Curve]:
-    """The curves of measured distances. @param told  the JSON output of clogfit lengths"""
+def of_table(answer: dict[str, Any]) -> list[Curve]:
+    """The curves of measured distances. @param answer  the JSON output of clogfit lengths"""
     droplets = {column["key"]: column for column in fits.droplet_columns().values()}
 
     def words(label: str, value: Any) -> str:
         return said(droplets[label], value) if label in droplets and value is not None else literal(f"{label} {value:g}" if isinstance(value, int | float) else f"{label} {value}")
 
-    return [(", ".join(words(label, group[label]) for label in told["labels"]), group) for group in told["groups"]]
+    return [(", ".join(words(label, group[label]) for label in answer["labels"]), group) for group in answer["groups"]]
 
 
-def of_mixture(told: dict[str, Any], unit: str) -> Curve | None:
+def of_mixture(answer: dict[str, Any], unit: str) -> Curve | None:
     """The curve of clogfit --mixture, if the JSON output of clogfit has one. @throws UserError  if its distances are in
     another unit than those of the groups"""
-    mixture = told.get("mixture")
+    mixture = answer.get("mixture")
     if mixture is None:
         return None
     if mixture["unit"] != unit:

@@ -458,15 +458,15 @@ def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: path
     @return the output
     @throws UserError, ProgramFailed"""
     outputs.refuse_unwritable(output, "html", sweep)
-    told, circle_files = fits.fitted(folder / "clogfit", sweep, *options)
+    answer, circle_files = fits.fitted(folder / "clogfit", sweep, *options)
     status = json.loads(programs.run_program(folder / "clogsweep", "status", sweep, "--format", "json"))
-    groups = Groups(told, circle_files).finished(sweep).fit_curves(sweep, folder)
+    groups = Groups(answer, circle_files).finished(sweep).fit_curves(sweep, folder)
     for number, group in enumerate(groups.members):
         group["number"] = number  # identifies the group in the page (style.mark())
     rows = stored.read_table(sweep, folder)
     with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)
-    sentences = told["doubts"]
+    sentences = answer["doubts"]
     label, tell = (label_of_passage, of_passages) if groups.are_passages else (label_of_length, of_lengths)
     charts = Charts([label(groups, group) for group in groups.members])
     curves, *pictures = tell(groups, sweep, examples, folder / "clogrun", charts).items()
@@ -476,6 +476,6 @@ def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: path
                      *pictures,
                      ("How busy the ranks were", busy_ranks(about, charts))])
     with outputs.replaced(output) as fresh:
-        fresh.write_text(page(sweep.name, groups, sections, progress_of(status), about, charts, stored.writer(told)),
+        fresh.write_text(page(sweep.name, groups, sections, progress_of(status), about, charts, stored.writer(answer)),
                          encoding="utf-8")
     return output

@@ -89,7 +89,7 @@ def lay_out(figure: Figure, width: float, height: float | None, size: float) -> 
         raise UserError(f"cannot lay out a picture of {len(figure.axes)} panels for a column; draw one panel")
     axes, = figure.axes
     texts = [axes.title, *(text for text in axes.texts if text.get_gid() == NOTES)]
-    told = "\n".join(text.get_text() for text in texts if text.get_text())
+    caption = "\n".join(text.get_text() for text in texts if text.get_text())
     axes.set_title("")
     for text in texts[1:]:
         text.remove()
@@ -115,4 +115,4 @@ def lay_out(figure: Figure, width: float, height: float | None, size: float) -> 
     figure.draw_without_rendering()
     for axis in scales:
         hide_overlapping(axis)
-    return told
+    return caption
