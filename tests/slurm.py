@@ -45,7 +45,8 @@ class Slurm(SweepTest):
 
     @staticmethod
     def sweep_without_slurm(keys, path):
-        subprocess.run([MPIRUN, "2", BIN / "clogsweep", *keys, "--output", path], check=True, capture_output=True, timeout=1800)
+        subprocess.run([MPIRUN, "2", BIN / "clogsweep", *keys, "--output", path], check=True, capture_output=True,
+                       timeout=1800)
         return path
 
     def setUp(self):
@@ -165,7 +166,8 @@ class Slurm(SweepTest):
         """Lets an urgent job preempt a job. @return the number of the preempted job"""
         job = self.submit("--nodes=2", "--ntasks-per-node=1", f"--partition={partition}")
         self.wait_for_runs_with_snapshots()
-        urgent = slurm("sbatch", "--parsable", "--partition=urgent", "--nodes=2", "--ntasks-per-node=2", "--output=/dev/null", "--wrap=sleep 5").strip()
+        urgent = slurm("sbatch", "--parsable", "--partition=urgent", "--nodes=2", "--ntasks-per-node=2",
+                       "--output=/dev/null", "--wrap=sleep 5").strip()
         self.wait_for_state(urgent, "COMPLETED")
         return job
 
@@ -182,7 +184,8 @@ class Slurm(SweepTest):
     def test_a_preempted_job_queues_again(self):
         user_signal = "SlurmctldParameters=preempt_send_user_signal\n"
         # Without preempt_send_user_signal, only the daemon on the other node receives a warning.
-        for partition, removed, warned in [("requeue", "", False), ("cancel", "", True), ("cancel", user_signal, False)]:
+        for partition, removed, warned in [("requeue", "", False), ("cancel", "", True),
+                                           ("cancel", user_signal, False)]:
             with self.subTest(partition=partition, removed=removed):
                 self.setUp()  # makes an empty folder
                 self.configure(removed, "")
@@ -194,7 +197,8 @@ class Slurm(SweepTest):
     def test_a_suspended_job_goes_on(self):
         self.configure("PreemptMode=REQUEUE", "PreemptMode=SUSPEND,GANG")
         # Slurm suspends a job only if both partitions may share processors.
-        self.configure("PartitionName=requeue Nodes=ALL", "PartitionName=DEFAULT OverSubscribe=FORCE:1\nPartitionName=requeue Nodes=ALL")
+        self.configure("PartitionName=requeue Nodes=ALL",
+                       "PartitionName=DEFAULT OverSubscribe=FORCE:1\nPartitionName=requeue Nodes=ALL")
         job = self.preempt("requeue")
         self.assertNotEqual(described("job", job)["SuspendTime"], "None")
         self.check_completed(job, restarts=0)

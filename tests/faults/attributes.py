@@ -45,7 +45,8 @@ class Faults:
         check_complete(case, salvaged, sample.rows, ignored=[])
         again = run(case, "clogsweep", *sample.sweep[:-1], SALVAGED)
         case.expect(again.code == 0, f"clogsweep: does not resume with a salvaged file, exit code {again.code}")
-        case.expect(run(case, "clogsweep", "verify", SALVAGED).code == 0, "clogsweep verify: finds faults in a salvaged file after a resume")
+        case.expect(run(case, "clogsweep", "verify", SALVAGED).code == 0,
+                    "clogsweep verify: finds faults in a salvaged file after a resume")
         check_complete(case, salvaged, sample.rows)
 
     @staticmethod

@@ -34,7 +34,8 @@ def join(content, records):
     """A journal that consists of these records, with correct checksums."""
     magic = RECORD_HEADER.unpack_from(content, FILE_HEADER)[2]
     payloads = [row + snapshot for row, snapshot in records]
-    return content[:FILE_HEADER] + b"".join(RECORD_HEADER.pack(len(payload), zlib.crc32(payload), magic) + payload for payload in payloads)
+    return content[:FILE_HEADER] + b"".join(RECORD_HEADER.pack(len(payload), zlib.crc32(payload), magic) + payload
+                                            for payload in payloads)
 
 
 def replaced(setting):
@@ -111,7 +112,8 @@ class Faults:
             return
         rows, undisturbed = results(found), results(self.stopped.rows)
         case.expect(undisturbed.keys() <= rows.keys(), "a run is missing")
-        case.expect(all(rows.get(other) == row for other, row in undisturbed.items() if other != task), "the row of another run has changed")
+        case.expect(all(rows.get(other) == row for other, row in undisturbed.items() if other != task),
+                    "the row of another run has changed")
 
     def put(self, case, records, table):
         (case.folder / JOURNAL).write_bytes(join(self.stopped.files[JOURNAL], records))
@@ -125,7 +127,8 @@ class Faults:
         outcome = run(case, "clogsweep", *STOPPED, exit_codes={0, 2})
         if outcome.code != 2:
             return False
-        case.expect({path.name: path.read_bytes() for path in case.folder.iterdir()} == before, "clogsweep: refuses a journal, but changes a file")
+        case.expect({path.name: path.read_bytes() for path in case.folder.iterdir()} == before,
+                    "clogsweep: refuses a journal, but changes a file")
         (case.folder / JOURNAL).unlink()
         case.expect(run(case, "clogsweep", *STOPPED).code == 0, "clogsweep: does not resume without the journal")
         return True

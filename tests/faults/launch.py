@@ -10,7 +10,8 @@ from processes import Hung, descend, kill, wait_for
 from support import BIN, MPIRUN
 
 EXIT_CODES = {0, 1, 2, 75}  # docs/reference/exit-codes.md
-SUBCOMMANDS = {"status", "verify", "replay", "salvage", "merge", "select", "doctor", "array", "channel", "sag", "calibrate", "compare", "deviation",
+SUBCOMMANDS = {"status", "verify", "replay", "salvage", "merge", "select", "doctor",
+               "array", "channel", "sag", "calibrate", "compare", "deviation",
                "drag", "report"}
 # In the output of a program, these words show that the program itself failed.
 SIGNS_OF_FAULTS = {

@@ -19,7 +19,8 @@ SALVAGED = "salvaged.h5"
 SWEEPS = {
     "polygons": [*QUICK, "obstacle-gap=0.4", "line-tension=0.05,0.5,1", "seeds=1..2"],
     "failures": [*BLOCKED, "seeds=63..64"],
-    "disks": ["model=sp", "wall-stiffness=1", "box=20", "obstacle-density=saturated", "max-time=60", "obstacle-gap=0.4,1.2", "seeds=1..2"],
+    "disks": ["model=sp", "wall-stiffness=1", "box=20", "obstacle-density=saturated",
+              "max-time=60", "obstacle-gap=0.4,1.2", "seeds=1..2"],
 }
 VERIFY = ("clogsweep", "verify", FILE)
 REPORTS = [("clogsweep", "status", FILE, "--format", "json"), ("clogfit", FILE, "--format", "json")]

@@ -12,10 +12,12 @@ import spelling
 import width
 
 # For each kind, the number of sentences to print and the files that contain them.
-KINDS = {"README": (6, ["README.md"]), "tutorial": (10, ["docs/tutorial/*.md"]), "how-to": (12, ["docs/how-to/*.md", "docs/faq.md"]),
+KINDS = {"README": (6, ["README.md"]), "tutorial": (10, ["docs/tutorial/*.md"]),
+         "how-to": (12, ["docs/how-to/*.md", "docs/faq.md"]),
          "explanation": (16, ["docs/explanation/*.md"]), "reference": (14, ["docs/reference/*.md", "docs/glossary.md"]),
          "gallery": (8, ["docs/gallery/*.md"]), "notes": (6, ["docs/notes/*.md", "CHANGELOG.md", "docs/paper/*.md"]),
-         "developer": (6, ["docs/developer/*.md"]), "help": (8, ["src/programs/*.cpp", "src/core/parameters/schema.cpp", "analysis/clogsweep/commands/*.py"]),
+         "developer": (6, ["docs/developer/*.md"]),
+         "help": (8, ["src/programs/*.cpp", "src/core/parameters/schema.cpp", "analysis/clogsweep/commands/*.py"]),
          "comment": (14, ["src/*.?pp", "include/*.?pp", "analysis/*.py", "tests/*.?pp", "tests/*.py"])}
 FEWEST_WORDS = 5
 NO_PROSE = re.compile(r"\$\$|--&?>|^\W*\w+=|\{\w*[}:]|[rf]\"")
@@ -42,7 +44,8 @@ def sentences(name, kind):
         is_new = number != before + 1 or not line.strip() or re.match(r"\s*[-*] ", line)
         if is_new and paragraph:
             whole = " ".join(" ".join(paragraph).split())
-            yield from (f"{name}:{first}: {one}" for one in END.split(whole) if len(one.split()) >= FEWEST_WORDS and not NO_PROSE.search(one))
+            yield from (f"{name}:{first}: {one}" for one in END.split(whole)
+                        if len(one.split()) >= FEWEST_WORDS and not NO_PROSE.search(one))
             paragraph = []
         if number is not None and marks.sub("", line).strip():
             first = first if paragraph else number

@@ -16,7 +16,8 @@ import time
 from selenium import webdriver
 
 WIDTHS = (360, 1440)
-PAGES = ("index.html", "reference/keys.html", "explanation/statistics.html", "gallery/notebook.html", "search.html?q=probability")
+PAGES = ("index.html", "reference/keys.html", "explanation/statistics.html", "gallery/notebook.html",
+         "search.html?q=probability")
 LOADED_FROM = re.compile(r'<(?:script|img|link rel="stylesheet")[^>]*\b(?:src|href)="(?:https?:)?//[^"]*"')
 
 
@@ -44,7 +45,8 @@ def browser(scheme):
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(options=options)
     try:
-        driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+        driver.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                               {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
         yield driver
     finally:
         driver.quit()
@@ -76,13 +78,15 @@ def faults_of_page(driver, address, page, width, scheme):
     elif driver.execute_script("return [...document.scripts].some((script) => /mathjax/i.test(script.src))"):
         wait_for(driver, "window.MathJax && document.querySelector('.MathJax, .mjx-chtml, .MathJax_CHTML')")
     yield from (entry["message"] for entry in driver.get_log("browser") if entry["level"] in ("WARNING", "SEVERE"))
-    yield from (f"asks {asked}" for asked in requests(driver) if not asked.startswith((address, "data:", "about:", "blob:")))
+    yield from (f"asks {asked}" for asked in requests(driver)
+                if not asked.startswith((address, "data:", "about:", "blob:")))
     if (wide := driver.execute_script("return document.documentElement.scrollWidth")) > width:
         yield f"is {wide} pixels wide"
     red = driver.execute_script("return Number(getComputedStyle(document.body).backgroundColor.match(/[0-9]+/)[0])")
     if (red < 128) != (scheme == "dark"):
         yield "has the background of the other colour scheme"
-    if not driver.execute_script("return [...document.querySelectorAll('.theme-toggle')].some((button) => button.getClientRects().length)"):
+    if not driver.execute_script("return [...document.querySelectorAll('.theme-toggle')].some((button) => "
+                                 "button.getClientRects().length)"):
         yield "has no button for light and dark"
     if "\\(" in driver.execute_script("return document.querySelector('[role=main]').innerText"):
         yield "shows TeX"
@@ -97,7 +101,8 @@ def faults(site):
             with browser(scheme) as driver:
                 for page in PAGES:
                     for width in WIDTHS:
-                        yield from (f"{page}, {width} pixels, {scheme}: {fault}" for fault in faults_of_page(driver, address, page, width, scheme))
+                        yield from (f"{page}, {width} pixels, {scheme}: {fault}"
+                                    for fault in faults_of_page(driver, address, page, width, scheme))
 
 
 def main():

@@ -82,8 +82,8 @@ def words_of(line):
 
 
 def main():
-    names = known.files("*.md", "*.cpp", "*.hpp", "*.py", "*.sh", "*.cmake", "*CMakeLists.txt", "*.cfg", "*.cff", ".ci/run",
-                        ".clang-tidy", ".clang-format")
+    names = known.files("*.md", "*.cpp", "*.hpp", "*.py", "*.sh", "*.cmake", "*CMakeLists.txt", "*.cfg", "*.cff",
+                        ".ci/run", ".clang-tidy", ".clang-format")
     places = {}
     for name in names:
         for number, line in prose(name):

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Checks that lines of prose in *.md have at most 120 characters. Tables, code, and words that cannot be broken may be
-longer."""
+longer. Also counts longer lines in `*.py`: their number may only fall, and LONG_PYTHON_LINES follows it."""
 
 import sys
 
 import known
 
 MOST = 120
+LONG_PYTHON_LINES = 740
 
 
 def prose(text):
@@ -33,6 +34,17 @@ def main():
                 faults += 1
     if faults:
         sys.exit(f"{faults} lines are too long")
+    texts = {name: (known.ROOT / name).read_text() for name in known.files("*.py")}
+    long = [f"{name}:{number}" for name, text in texts.items()
+            for number, line in enumerate(text.splitlines(), 1) if len(line) > MOST]
+    if len(long) > LONG_PYTHON_LINES:
+        changed = (known.changed() or (texts, ""))[0]
+        print("\n".join(place for place in long if place.partition(":")[0] in changed))
+        sys.exit(f"{len(long)} lines of Python have more than {MOST} characters, at most {LONG_PYTHON_LINES} may; "
+                 "break those that you wrote")
+    if len(long) < LONG_PYTHON_LINES:
+        sys.exit(f"only {len(long)} lines of Python have more than {MOST} characters; "
+                 f"set LONG_PYTHON_LINES = {len(long)} in tests/gates/width.py")
 
 
 if __name__ == "__main__":

@@ -19,7 +19,8 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATCH = pathlib.Path(__file__).with_name("quiet_checks.patch")
-SWEEP = ["model=sp", "wall-stiffness=30", "box=20", "obstacle-density=saturated", "seeds=1..2", "max-time=300", "clog-detection=threshold", "quiet-checks=1,50"]
+SWEEP = ["model=sp", "wall-stiffness=30", "box=20", "obstacle-density=saturated",
+         "seeds=1..2", "max-time=300", "clog-detection=threshold", "quiet-checks=1,50"]
 
 
 def output(*command, **options):
@@ -36,7 +37,8 @@ def copy_of_tree(folder):
 
 
 def build(folder):
-    subprocess.run(["cmake", "-S", folder, "-B", folder / "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS=-O0",
+    subprocess.run(["cmake", "-S", folder, "-B", folder / "build", "-G", "Ninja",
+                    "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS=-O0",
                     "-DCLOG_TESTS=OFF", "-DCLOG_BENCHMARKS=OFF"], check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", folder / "build", "--target", "clogsweep", "clogfit"], check=True)
     return folder / "build" / "bin"
@@ -45,9 +47,11 @@ def build(folder):
 def findings(programs, folder):
     """Names the places where the parameter is missing."""
     schema = json.loads(output(programs / "clogsweep", "--schema"))
-    yield "a key", any(key["key"] == "quiet-checks" and key["range"] == "at least 1, at most 1000" for key in schema["keys"])
+    yield "a key", any(key["key"] == "quiet-checks" and key["range"] == "at least 1, at most 1000"
+                       for key in schema["keys"])
     yield "a column", any(column["name"] == "quiet_checks" for column in schema["columns"])
-    refused = subprocess.run([programs / "clogsweep", *SWEEP[:-1], "quiet-checks=0", "--dry-run"], capture_output=True, text=True)
+    refused = subprocess.run([programs / "clogsweep", *SWEEP[:-1], "quiet-checks=0", "--dry-run"],
+                             capture_output=True, text=True)
     yield "a check with a remedy", refused.returncode == 2 and "use 1..1000" in refused.stderr
     listed = output(programs / "clogsweep", *SWEEP, "--dry-run").splitlines()
     yield "a place in a dry run", listed[0].split()[2:] == ["seed", "quiet_checks"] and [line.split()[2] for line in listed[1:3]] == ["1", "50"]
@@ -56,14 +60,17 @@ def findings(programs, folder):
     yield "groups of its own", sorted(group["quiet_checks"] for group in fit["groups"]) == [1, 50]
     text = output(programs / "clogfit", "s.h5", cwd=folder)
     yield "a column of the fit", "quiet_checks" in text
-    picture = subprocess.run(["/usr/bin/python3", "-m", "clogsweep", "clogging-length", "s.h5", "--programs", programs], cwd=folder,
-                             env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")})
+    picture = subprocess.run(["/usr/bin/python3", "-m", "clogsweep", "clogging-length", "s.h5", "--programs", programs],
+                             cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")})
     yield "a curve", picture.returncode == 0 and (folder / "s-clogging-length.png").exists()
-    tables = subprocess.run(["/usr/bin/python3", folder / "tests/lint/schema_tables.py", programs / "clogsweep", folder], capture_output=True)
+    tables = subprocess.run(["/usr/bin/python3", folder / "tests/lint/schema_tables.py",
+                             programs / "clogsweep", folder], capture_output=True)
     yield "a demand for documentation", tables.returncode == 1
-    subprocess.run(["/usr/bin/python3", folder / "tests/lint/schema_tables.py", programs / "clogsweep", folder, "--write"], check=True)
+    subprocess.run(["/usr/bin/python3", folder / "tests/lint/schema_tables.py", programs / "clogsweep",
+                    folder, "--write"], check=True)
     yield "documentation", "\n`quiet-checks` (`2`; " in (folder / "docs/reference/keys.md").read_text()
-    verified = subprocess.run([programs / "clogsweep", "replay", "s.h5", "1"], cwd=folder, capture_output=True, text=True)
+    verified = subprocess.run([programs / "clogsweep", "replay", "s.h5", "1"], cwd=folder,
+                              capture_output=True, text=True)
     yield "a replay", verified.returncode == 0
 
 

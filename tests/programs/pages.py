@@ -13,13 +13,15 @@ BLOCK = re.compile(r"^```(bash|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTA
 TOCTREE = re.compile(r"^```{toctree}\n(?::.*\n)*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 # Settings from the page before the tutorials. With `set` a block ends at the first command that fails.
 BEFORE = f"set -euo pipefail; . {ROOT}/jobs/mpi-settings.sh\n"
-HOW_TO = ("other-arrays", "own-obstacles", "lattice", "lateral-displacement", "compare-sweeps", "python", "contact-angles", "sizes-and-tilts")
+HOW_TO = ("other-arrays", "own-obstacles", "lattice", "lateral-displacement", "compare-sweeps", "python",
+          "contact-angles", "sizes-and-tilts")
 PAGES = ["README.md", *(f"docs/how-to/{name}.md" for name in HOW_TO)]
 
 
 def tutorial():
     """The pages of the tutorial in their order."""
-    return [f"docs/tutorial/{page}.md" for page in TOCTREE.search((ROOT / "docs/tutorial/index.md").read_text())[1].split()]
+    return [f"docs/tutorial/{page}.md"
+            for page in TOCTREE.search((ROOT / "docs/tutorial/index.md").read_text())[1].split()]
 
 
 def blocks(path):

@@ -24,7 +24,8 @@ class Calibrate(test_calibrate.OnATerminal):
         with h5py.File(self.folder / "channel.h5") as file:
             table = file["trajectory"][:]
         h = np.linspace(-1.2, 1.2, 49)
-        v = np.interp(h, table["h"], table["speed_ratio"]) * (1 + 0.02 * np.random.default_rng(2).standard_normal(len(h)))
+        noise = 0.02 * np.random.default_rng(2).standard_normal(len(h))
+        v = np.interp(h, table["h"], table["speed_ratio"]) * (1 + noise)
         self.write("noisy.csv", "\n".join(["h [sigma], v [v_t]", *(f"{a:.5g},{b:.5g}" for a, b in zip(h, v))]))
         found = self.calibrate_on_a_terminal("noisy.csv", "channel.h5", *keys)
         noisy, exact = found["trials"]
@@ -56,8 +57,8 @@ class Calibrate(test_calibrate.OnATerminal):
         ours, theirs = pty.openpty()
         self.addCleanup(os.close, ours)
         shown = []
-        with subprocess.Popen([BIN / "clogfit", "calibrate", *arguments, "--format=json"], cwd=self.folder, stdout=subprocess.PIPE,
-                              stderr=theirs, text=True) as process:
+        with subprocess.Popen([BIN / "clogfit", "calibrate", *arguments, "--format=json"], cwd=self.folder,
+                              stdout=subprocess.PIPE, stderr=theirs, text=True) as process:
             os.close(theirs)
             reader = threading.Thread(target=lambda: shown.extend(iter(lambda: self.read_some(ours), b"")))
             reader.start()

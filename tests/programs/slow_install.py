@@ -24,7 +24,8 @@ class Built(Installation):
         shutil.copytree(self.prefix / "share/doc/clogsweep/docs/examples/own-program", example)
         build_type = "-DCMAKE_BUILD_TYPE=Release"
         flags = ["-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined"] if "CLOG_SANITIZE:STRING=address" in (BIN.parent / "CMakeCache.txt").read_text() else []
-        self.called("cmake", "-G", "Ninja", "-S", example, "-B", example / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}", build_type, *flags)
+        self.called("cmake", "-G", "Ninja", "-S", example, "-B", example / "build",
+                    f"-DCMAKE_PREFIX_PATH={self.prefix}", build_type, *flags)
         self.called("cmake", "--build", example / "build")
         said = self.called(example / "build/own-program").splitlines()
         self.called("clogsweep", *KEYS, "--output", "own.h5")
@@ -37,15 +38,18 @@ class Built(Installation):
 class Handbook(Installation):
     def man_page(self, name, section):
         """The man page without its font commands."""
-        return re.sub(r"\\f[BIP]", "", (self.prefix / f"share/man/man{section}/{name}.{section}").read_text().replace("\\-", "-"))
+        return re.sub(r"\\f[BIP]", "",
+                      (self.prefix / f"share/man/man{section}/{name}.{section}").read_text().replace("\\-", "-"))
 
     def test_man_pages_have_every_option_with_its_default_and_no_other(self):
         for program, commands in COMMANDS.items():
             told = re.findall(r"^\.B (--[^\n]+)\n(.*?)(?=^\.)", self.man_page(program, 1), re.MULTILINE | re.DOTALL)
             helped = self.called(program, "--help").split("\nKeys")[0]
-            for option, default in re.findall(r"^  (?:-\w \[ )?(--[a-z][a-z-]*)(?: \])?(?: arg \(=([^)]*)\))?", helped, re.MULTILINE):
+            for option, default in re.findall(r"^  (?:-\w \[ )?(--[a-z][a-z-]*)(?: \])?(?: arg \(=([^)]*)\))?", helped,
+                                              re.MULTILINE):
                 words = f"(default: {default})" if default else ""
-                is_told = any(option in re.findall(r"--[a-z-]+", options) and words in meaning for options, meaning in told)
+                is_told = any(option in re.findall(r"--[a-z-]+", options) and words in meaning
+                              for options, meaning in told)
                 self.assertTrue(is_told or option in POSITIONAL, f"{program} {option} {words}")
             known = helped + "".join(self.called(program, command, "--help") for command in commands)
             for option in re.findall(r"--[a-z-]+", " ".join(options for options, _ in told)):

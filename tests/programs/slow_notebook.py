@@ -38,9 +38,11 @@ def numbers(outputs):
 
 class Notebook(ProgramTest):
     def test_stored_outputs_are_up_to_date(self):
-        settings = subprocess.run(["bash", "-c", f". {ROOT}/jobs/mpi-settings.sh && env -0"], check=True, capture_output=True, text=True)
+        settings = subprocess.run(["bash", "-c", f". {ROOT}/jobs/mpi-settings.sh && env -0"], check=True,
+                                  capture_output=True, text=True)
         environment = dict(line.split("=", 1) for line in settings.stdout.split("\0") if line)
-        environment |= {"PATH": f"{BIN}:{environment['PATH']}", "PYTHONPATH": str(ROOT / "analysis"), "HOME": str(self.folder)}
+        environment |= {"PATH": f"{BIN}:{environment['PATH']}", "PYTHONPATH": str(ROOT / "analysis"),
+                        "HOME": str(self.folder)}
         notebook = nbformat.read(NOTEBOOK, as_version=4)
         expected = said(notebook)
         # Another program may take a free TCP port before the kernel does, but not a Unix socket in the kernel's folder.

@@ -30,7 +30,8 @@ LAUNCHERS = {"mpirun": 3, "srun": 1}  # For each launcher, the number of words b
 # Commands that need something that this machine may lack, so they are not run
 NOT_RUN = {"docker", "spack", "sbatch", "qsub", "git", "sudo", "pydoc"}
 # Options and keys that make the runs of a command short, by the first words of the command
-SHORT = {"clogrun array": ["max-time=20", "seeds=1"], "clogrun replay": [], "clogrun channel": ["vertices=64", "start=-1.2", "end=-1"]}
+SHORT = {"clogrun array": ["max-time=20", "seeds=1"], "clogrun replay": [],
+         "clogrun channel": ["vertices=64", "start=-1.2", "end=-1"]}
 # Commands of python3 -m clogsweep that take too long are only parsed
 LONG = {"agreement": agreement, "collision": collision, "predict": predict}
 SWEEP = ["preset=elastic", "line-tension=0.5,1,2,4", "seeds=1..4", *SMALL, "max-time=60"]
@@ -63,19 +64,24 @@ class Commands(Analysis):
         self.write("lab.cfg", "diameter = 2 mm\nangle = 20 deg\n")
         self.write("angles.csv", "line_tension,lower,upper,runs\n1,18,20,3\n2,18,20,3\n")
         self.write("points.csv", "line-tension,obstacle-density\n0.5,0.4\n1,0.5\n")
-        for name, keys in {"robust": [*FEW, "preset=robust"], "elastic": [*FEW, "preset=elastic"], "monday": [*FEW, "inertia=1"],
+        for name, keys in {"robust": [*FEW,
+                                      "preset=robust"], "elastic": [*FEW, "preset=elastic"], "monday": [*FEW, "inertia=1"],
                            "tuesday": [*FEW, "inertia=2"], "sweep": SWEEP, "frictions": [*SWEEP, "friction=0,0.1"],
                            "here": [*SWEEP, "--shard", "1/2"], "there": [*SWEEP, "--shard", "2/2"],
-                           "lattice": ["obstacle-layout=lattice", "pitch=3", "obstacle-diameter=1", "vertices=64", "box=200", "max-time=600",
+                           "lattice": ["obstacle-layout=lattice", "pitch=3", "obstacle-diameter=1",
+                                       "vertices=64", "box=200", "max-time=600",
                                        "terminal-speed=0.1", "line-tension=1,2", "lattice-angle=15,25", "seeds=1"],
                            "wrapped": [*SMALL, "preset=elastic", "friction=0.2", "line-tension=0.05", "obstacle-gap=0.3", "max-time=3000", "seeds=1..2"]}.items():
             self.copy_sweep(f"{name}.h5", *keys)
         self.write("fit.json", self.succeed("clogfit", "sweep.h5", "--format", "json").stdout)
-        self.succeed("clogsweep", "obstacles=posts.csv", "box=20", "release=anywhere", "vertices=64", "max-time=20", "seeds=1..2", "--output", "device.h5")
-        self.succeed("clogrun", "array", "line-tension=0.5", *SHORT["clogrun array"], "--output", "run.h5", "--polygon-interval", "2")
+        self.succeed("clogsweep", "obstacles=posts.csv", "box=20", "release=anywhere", "vertices=64", "max-time=20",
+                     "seeds=1..2", "--output", "device.h5")
+        self.succeed("clogrun", "array", "line-tension=0.5", *SHORT["clogrun array"], "--output", "run.h5",
+                     "--polygon-interval", "2")
         angles = 2 * np.pi * np.arange(48) / 48
         post = 30 * np.column_stack([np.cos(angles), np.sin(angles)])
-        (self.folder / "mask.gds").write_bytes(gdsii([post + [200 * x, 200 * y] for x in range(4) for y in range(4)], 1e-6))
+        (self.folder / "mask.gds").write_bytes(gdsii([post + [200 * x, 200 * y] for x in range(4)
+                                                      for y in range(4)], 1e-6))
         picture = Image.new("L", (900, 900), 255)
         for x in range(100, 900, 200):
             for y in range(100, 900, 200):
@@ -176,7 +182,8 @@ class Pictures(Analysis):
             if not words or path.name.startswith("figure-") or not self.keys(words):
                 continue
             with self.subTest(picture=path.name):
-                calls = [self.keys(own_program(call)) for page in shown for call in pages.commands(page.relative_to(ROOT))]
+                calls = [self.keys(own_program(call)) for page in shown
+                         for call in pages.commands(page.relative_to(ROOT))]
                 self.assertIn(self.keys(words), calls)
                 compared += 1
         self.assertGreater(compared, 1)

@@ -7,7 +7,8 @@ import unittest
 from support import ProgramTest
 
 # Stiff disks in gaps of 1, as in figure 9a. The array is longer than any path. Nobody chose by these seeds.
-STIFF = ["model=sp", "wall-stiffness=100", "obstacle-density=saturated", "obstacle-gap=1", "obstacle-diameter=0.3", "box=45", "boxes=12"]
+STIFF = ["model=sp", "wall-stiffness=100", "obstacle-density=saturated", "obstacle-gap=1",
+         "obstacle-diameter=0.3", "box=45", "boxes=12"]
 
 
 class Speeds(ProgramTest):
@@ -24,7 +25,8 @@ class Speeds(ProgramTest):
 
     def test_the_steady_speed_does_not_depend_on_how_long_runs_are(self):
         # Each length has its own 400 seeds, so that the speeds are independent.
-        groups = [self.group(max_time, seeds) for max_time, seeds in ((500, "5001..5400"), (3000, "5401..5800"), (20000, "5801..6200"))]
+        groups = [self.group(max_time, seeds)
+                  for max_time, seeds in ((500, "5001..5400"), (3000, "5401..5800"), (20000, "5801..6200"))]
         self.assertEqual([group["relative_speed_steady_runs"] for group in groups], [400] * 3)
         self.assertLess(groups[0]["relative_speed_steady_error"], 0.008)
         short, middle, long = groups

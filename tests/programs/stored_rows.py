@@ -20,7 +20,8 @@ def edited(path, edit):
         rows = file["runs"][:]
         sums = np.array([zlib.crc32(row.tobytes()) for row in rows], dtype=np.uint32)
         file["row_checksums"][:] = sums
-        lines = [(zlib.crc32(sums.tobytes()), f"{len(rows)} rows"), *((zlib.crc32(file.attrs[name]), name) for name in names)]
+        lines = [(zlib.crc32(sums.tobytes()), f"{len(rows)} rows"),
+                 *((zlib.crc32(file.attrs[name]), name) for name in names)]
         file.attrs["checksums"] = np.bytes_("".join(f"{digits:08x} {name}\n" for digits, name in lines))
     content = path.read_bytes()
     path.write_bytes(content + b"\nclogsweep seal 1: crc32 %08x of %020d bytes\n" % (zlib.crc32(content), len(content)))

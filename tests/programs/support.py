@@ -17,7 +17,8 @@ import pandas
 BIN = pathlib.Path(os.environ["CLOG_BIN"])
 # Tests need to know whose mpirun this is, because those of Open MPI and MPICH behave differently.
 _mpi = re.search(r"^MPI: (.*) v?(\d+)",
-                 subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout, re.MULTILINE)
+                 subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout,
+                 re.MULTILINE)
 MPI, MPI_MAJOR = _mpi[1], int(_mpi[2])
 STEPS_PER_SNAPSHOT = 2**18  # Stopped runs resume from a snapshot.
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -45,7 +46,8 @@ SLOW = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05", "max-time=2e4", "se
 ENDLESS = [word.replace("max-time=2e4", "max-time=1e9") for word in SLOW]
 # The obstacles are so close to each other that for some seeds (53 and 64 of 51..70) there is no void for the release of
 # the droplet.
-BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3", "obstacle-gap=0.06", "self-contact-range=0.1"]
+BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3",
+           "obstacle-gap=0.06", "self-contact-range=0.1"]
 # Columns that may differ when the same run is recomputed. The columns state who computed the run, and how long this
 # took.
 TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]

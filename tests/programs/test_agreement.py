@@ -13,8 +13,10 @@ import stored_rows
 from drawing import Analysis
 from support import BIN
 
-from clogsweep.agreement import evidence, lengths, passages, statements
-from clogsweep.agreement.statements import AGREES, BY_MESH, DOES_NOT, FITTED, FORCED, IN_KIND, NOT_KNOWN, NOT_RUN
+from clogsweep.agreement import evidence, lengths, passages
+from clogsweep.agreement.statements import STATEMENTS
+from clogsweep.agreement.verdicts import (AGREES, BY_MESH, DOES_NOT, FITTED, FORCED, IN_KIND, NOT_KNOWN, NOT_RUN,
+                                          Finding, the_version, with_variants)
 from clogsweep.paper import dilute
 from clogsweep.tools.errors import UserError
 
@@ -58,25 +60,33 @@ class Lengths(unittest.TestCase):
         tensions = np.geomspace(0.03, 3, 13)
 
         def peaked(at, gap, clogs=100):
-            return [point(tension, 5000 * math.exp(-2 * math.log(tension / at) ** 2), gap, clogs=clogs) for tension in tensions]
+            return [point(tension, 5000 * math.exp(-2 * math.log(tension / at) ** 2), gap, clogs=clogs)
+                    for tension in tensions]
 
-        for wide, verdict in [(peaked(0.4, 0.5), AGREES), (peaked(0.1, 0.5), DOES_NOT), (peaked(0.2, 0.5, clogs=5), NOT_KNOWN),
+        for wide, verdict in [(peaked(0.4, 0.5), AGREES), (peaked(0.1, 0.5), DOES_NOT),
+                              (peaked(0.2, 0.5, clogs=5), NOT_KNOWN),
                               (curve((0.03, -4000), (0.1, 2000), (0.5, 30), (1.09, 13), gap=0.5), NOT_KNOWN)]:
             self.assertEqual(lengths.peak_moves(peaked(0.2, 0.2) + wide).verdict, verdict)
 
     def test_wide_gaps_let_droplets_travel_farther_at_every_line_tension(self):
         narrow = curve((0.1, -2000), (0.3, 10), (1, 5))
-        for wide, verdict in [(curve((0.1, -2000), (0.3, 30), (1, 15), gap=0.5), AGREES), (curve((0.3, 30), (1, 6), gap=0.5), IN_KIND),
-                              (curve((0.3, 30), (1, 1), gap=0.5), IN_KIND), (curve((0.3, 3), (1, 1), gap=0.5), DOES_NOT), (curve((0.3, 12), (1, 6), gap=0.5), NOT_KNOWN)]:
+        for wide, verdict in [(curve((0.1, -2000), (0.3, 30), (1, 15), gap=0.5),
+                               AGREES), (curve((0.3, 30), (1, 6), gap=0.5), IN_KIND),
+                              (curve((0.3, 30), (1, 1), gap=0.5),
+                               IN_KIND), (curve((0.3, 3), (1, 1), gap=0.5),
+                                          DOES_NOT), (curve((0.3, 12), (1, 6), gap=0.5), NOT_KNOWN)]:
             self.assertEqual(lengths.longer_in_wide_gaps(narrow + wide).verdict, verdict)
 
     def test_continuous_flow_lies_between_line_tensions_at_which_droplets_clog(self):
-        for points, verdict in [([(0.1, 40), (0.2, -2000), (1, 10)], AGREES), ([(0.1, -2000), (0.2, 400), (1, 10)], IN_KIND), ([(0.1, 40), (0.2, 400), (1, 10)], DOES_NOT)]:
+        for points, verdict in [([(0.1, 40), (0.2, -2000), (1, 10)], AGREES),
+                                ([(0.1, -2000), (0.2, 400), (1, 10)], IN_KIND),
+                                ([(0.1, 40), (0.2, 400), (1, 10)], DOES_NOT)]:
             self.assertEqual(lengths.flows_between(curve(*points)).verdict, verdict)
 
     def test_hybrids_are_sought_between_the_branches(self):
         def clogs(between, elsewhere):
-            return [point(0.05, 40, wrapped=10, squeezed=0, hybrid=elsewhere), point(0.1, 40, wrapped=10, squeezed=0, hybrid=between),
+            return [point(0.05, 40, wrapped=10, squeezed=0, hybrid=elsewhere),
+                    point(0.1, 40, wrapped=10, squeezed=0, hybrid=between),
                     point(0.3, 40, hybrid=between), point(1, 40, hybrid=elsewhere)]
 
         self.assertEqual(lengths.hybrids_between(clogs(6, 0)).verdict, AGREES)
@@ -91,45 +101,55 @@ class Lengths(unittest.TestCase):
 
 class Evidence(unittest.TestCase):
     def test_the_start_from_rest_is_no_minimum_before_the_orifice(self):
-        way = np.array([(-2.0, 0.0), (-1.5, 0.9), (-0.8, 0.8), (-0.3, 0.1), (-0.1, 0.4), (0.4, 0.05)], [("h", float), ("speed_ratio", float)])
+        way = np.array([(-2.0, 0.0), (-1.5, 0.9), (-0.8, 0.8), (-0.3, 0.1), (-0.1, 0.4), (0.4, 0.05)],
+                       [("h", float), ("speed_ratio", float)])
         self.assertEqual(passages.slowest_before(way), -0.3)
 
     def test_the_peak_behind_the_orifice_is_not_the_approach_to_the_terminal_speed(self):
-        way = np.array([(-0.3, 0.1), (0.1, 0.6), (0.2, 0.86), (0.3, 0.7), (0.4, 0.3), (0.55, 0.87), (0.9, 0.95)], [("h", float), ("speed_ratio", float)])
+        way = np.array([(-0.3, 0.1), (0.1, 0.6), (0.2, 0.86), (0.3, 0.7), (0.4, 0.3), (0.55, 0.87), (0.9, 0.95)],
+                       [("h", float), ("speed_ratio", float)])
         self.assertEqual(passages.top_behind(way)["speed_ratio"], 0.86)
         self.assertIsNone(passages.top_behind(way[:5]))
 
     def test_a_mesh_is_as_smooth_as_the_finest_within_a_tenth(self):
-        for noise, verdict in [({64: 0.03, 128: 0.0105, 256: 0.0095, 512: 0.01}, AGREES), ({64: 0.023, 128: 0.023, 256: 0.018, 512: 0.018}, IN_KIND),
-                               ({64: 0.018, 128: 0.018, 256: 0.018, 512: 0.018}, DOES_NOT), ({64: 0.04, 128: 0.03, 256: 0.02, 512: 0.01}, DOES_NOT)]:
+        for noise, verdict in [({64: 0.03, 128: 0.0105, 256: 0.0095, 512: 0.01}, AGREES),
+                               ({64: 0.023, 128: 0.023, 256: 0.018, 512: 0.018}, IN_KIND),
+                               ({64: 0.018, 128: 0.018, 256: 0.018, 512: 0.018}, DOES_NOT),
+                               ({64: 0.04, 128: 0.03, 256: 0.02, 512: 0.01}, DOES_NOT)]:
             runs = {count: unittest.mock.Mock(table=value) for count, value in noise.items()}
-            with unittest.mock.patch.object(passages.channels, "meshes", return_value=runs), unittest.mock.patch.object(passages, "roughness", side_effect=float):
+            with unittest.mock.patch.object(passages.channels, "meshes",
+                                            return_value=runs), unittest.mock.patch.object(passages, "roughness", side_effect=float):
                 self.assertEqual(passages.profiles_are_smooth(None).verdict, verdict)
 
     def test_variants_that_agree_say_what_makes_the_nearest_model_agree(self):
         slides, rubbed, _, pinned = dilute.FAMILIES
-        for nearest, friction, corners, verdict in [(AGREES, DOES_NOT, DOES_NOT, AGREES), (DOES_NOT, AGREES, AGREES, FORCED), (NOT_KNOWN, IN_KIND, AGREES, BY_MESH),
-                                                    (DOES_NOT, IN_KIND, DOES_NOT, DOES_NOT), (IN_KIND, AGREES, AGREES, IN_KIND)]:
-            found = {family: statements.Finding(one, "1") for family, one in zip((slides, rubbed, pinned), (nearest, friction, corners))}
-            self.assertEqual(statements.with_variants(found), statements.Finding(
+        for nearest, friction, corners, verdict in [(AGREES, DOES_NOT, DOES_NOT,
+                                                     AGREES), (DOES_NOT, AGREES, AGREES, FORCED), (NOT_KNOWN, IN_KIND, AGREES, BY_MESH),
+                                                    (DOES_NOT, IN_KIND, DOES_NOT,
+                                                     DOES_NOT), (IN_KIND, AGREES, AGREES, IN_KIND)]:
+            found = {family: Finding(one, "1")
+                     for family, one in zip((slides, rubbed, pinned), (nearest, friction, corners))}
+            self.assertEqual(with_variants(found), Finding(
                 verdict, "1", f"wall friction (0.05): {friction}, 1; no friction, corner pinning: {corners}, 1",
                 f"{friction}: all" if friction == corners else
                 f"{friction}: wall friction (0.05); {corners}: no friction, corner pinning"))
 
     def test_what_curves_say_together(self):
-        for verdicts, together in [([AGREES, AGREES], AGREES), ([AGREES, NOT_KNOWN], AGREES), ([AGREES, DOES_NOT], IN_KIND), ([DOES_NOT, IN_KIND], IN_KIND),
+        for verdicts, together in [([AGREES, AGREES], AGREES), ([AGREES, NOT_KNOWN], AGREES),
+                                   ([AGREES, DOES_NOT], IN_KIND), ([DOES_NOT, IN_KIND], IN_KIND),
                                    ([DOES_NOT, NOT_KNOWN], DOES_NOT), ([NOT_KNOWN], NOT_KNOWN), ([], NOT_KNOWN)]:
             self.assertEqual(evidence.overall(verdicts), together)
 
     def test_rows_of_several_model_versions_are_refused(self):
-        self.assertEqual(statements.the_version({"speed": [7], "clogging-sp": [7]}), 7)
+        self.assertEqual(the_version({"speed": [7], "clogging-sp": [7]}), 7)
         with self.assertRaisesRegex(UserError, "older than 7: clogging-sp$"):
-            statements.the_version({"speed": [7], "clogging-sp": [6, 7]})
+            the_version({"speed": [7], "clogging-sp": [6, 7]})
 
 
 class Table(Analysis):
     SWEEP = "reduced/sweeps/clogging-sp.h5"
-    SETTINGS = ["wall-stiffness=0.5,30", "obstacle-gap=0.2,0.4", "obstacle-density=80%", "box=20", "boxes=10", "seeds=1..10", "max-time=3000"]
+    SETTINGS = ["wall-stiffness=0.5,30", "obstacle-gap=0.2,0.4", "obstacle-density=80%",
+                "box=20", "boxes=10", "seeds=1..10", "max-time=3000"]
 
     def agreement(self, *options):
         return self.draw("agreement", "--output", ".", "--programs", BIN, *options).stdout
@@ -138,15 +158,16 @@ class Table(Analysis):
         text = " ".join(self.agreement().split())
         self.assertIn("No sweep has been run.", text)
         self.assertNotIn("model version", text)
-        self.assertEqual(text.count(f"**{NOT_RUN}**"), sum(bool(one.figures) for one in statements.STATEMENTS))
+        self.assertEqual(text.count(f"**{NOT_RUN}**"), sum(bool(one.figures) for one in STATEMENTS))
 
     def test_the_table_is_made_from_the_sweeps_that_are_there(self):
-        self.draw("figures", "7a", "--output", ".", "--programs", BIN, *(word for setting in self.SETTINGS for word in ("--set", setting)))
+        self.draw("figures", "7a", "--output", ".", "--programs", BIN,
+                  *(word for setting in self.SETTINGS for word in ("--set", setting)))
         rows = list(csv.DictReader(io.StringIO(self.agreement("--format", "csv"))))
-        self.assertEqual(len(rows), len(statements.STATEMENTS))
+        self.assertEqual(len(rows), len(STATEMENTS))
         of_disks = {row["statement"]: row for row in rows if row["where"] == "4.2, figure 7a"}
         self.assertEqual({row["verdict"] for row in of_disks.values()}, {AGREES}, of_disks)
-        for row, one in zip(rows, statements.STATEMENTS, strict=True):
+        for row, one in zip(rows, STATEMENTS, strict=True):
             if row["where"] != "4.2, figure 7a" and one.figures:
                 self.assertEqual(row["verdict"], NOT_RUN)
                 self.assertRegex(row["here"], r"^python3 -m clogsweep figures \w+")
@@ -164,7 +185,8 @@ class Table(Analysis):
         stored_rows.change(self.folder / self.SWEEP, grow_older)
         with h5py.File(self.folder / self.SWEEP) as file:
             newest = file["runs"]["model_version"].max()
-        self.refuse_analysis("agreement", "--output", ".", "--programs", BIN, words=[f"older than {newest}: clogging-sp"])
+        self.refuse_analysis("agreement", "--output", ".", "--programs", BIN,
+                             words=[f"older than {newest}: clogging-sp"])
 
 
 if __name__ == "__main__":

@@ -41,7 +41,8 @@ class Sources(unittest.TestCase):
         environment = {"PATH": os.environ["PATH"], "GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
         for who in ("AUTHOR", "COMMITTER"):
             environment |= {f"GIT_{who}_NAME": "nobody", f"GIT_{who}_EMAIL": "nobody@localhost"}
-        return subprocess.run(["git", *words], cwd=folder or self.sources, env=environment, capture_output=True, check=True).stdout
+        return subprocess.run(["git", *words], cwd=folder or self.sources, env=environment, capture_output=True,
+                              check=True).stdout
 
     def commit(self, *tags):
         if not (self.sources / ".git").exists():
@@ -60,9 +61,11 @@ class Sources(unittest.TestCase):
     def said(self, folder=None):
         """The description of the sources in a build of the folder: the output of git describe, and the hash."""
         folder, output = folder or self.sources, self.folder / "build_info.cpp"
-        subprocess.run(["cmake", f"-DSOURCE_DIR={folder}", f"-DOUTPUT={output}", f"-DTEMPLATE={folder}/cmake/build_info.cpp.in",
+        subprocess.run(["cmake", f"-DSOURCE_DIR={folder}", f"-DOUTPUT={output}",
+                        f"-DTEMPLATE={folder}/cmake/build_info.cpp.in",
                         "-DVERSION=1.2.3", "-P", folder / "cmake/write_build_info.cmake"], check=True)
-        return tuple(re.search(rf'\.{name} = "(.*)"', output.read_text()).group(1) for name in ("git_describe", "git_hash"))
+        return tuple(re.search(rf'\.{name} = "(.*)"', output.read_text()).group(1)
+                     for name in ("git_describe", "git_hash"))
 
     def test_a_release_is_called_by_its_tag(self):
         commit = self.commit("v1.2.3")

@@ -29,8 +29,9 @@ class OnATerminal(ProgramTest):
 class Calibrate(OnATerminal):
     def measure(self, **options):
         """Simulates a droplet with clogrun, and reads its profile."""
-        run = shared_sweep("channel", f"line-tension={LINE_TENSION}", f"near-wall-drag={NEAR_WALL_DRAG}", "--start=-2.5", "--end=1.3",
-                           "--sample-interval=0.3", "terminal-speed=0.05", *CHANNEL, program="clogrun")
+        run = shared_sweep("channel", f"line-tension={LINE_TENSION}", f"near-wall-drag={NEAR_WALL_DRAG}",
+                           "--start=-2.5", "--end=1.3", "--sample-interval=0.3", "terminal-speed=0.05", *CHANNEL,
+                           program="clogrun")
         with h5py.File(run) as file:
             table = file["trajectory"][:]
         h = np.linspace(-1.2, 1.2, 49)
@@ -70,17 +71,20 @@ class Calibrate(OnATerminal):
     def test_a_wrong_terminal_speed_shows_in_the_shape_of_the_residuals(self):
         h, v, _ = self.measure()
         noisy = v * (1 + 0.02 * np.random.default_rng(5).standard_normal(len(v)))
-        self.write("wrong.csv", "\n".join(["h [sigma], v [v_t]", *(f"{a:.5g},{1.25 * b:.5g}" for a, b in zip(h, noisy))]))
+        self.write("wrong.csv",
+                   "\n".join(["h [sigma], v [v_t]", *(f"{a:.5g},{1.25 * b:.5g}" for a, b in zip(h, noisy))]))
         told = self.succeed("clogfit", "calibrate", "wrong.csv", *CHANNEL, "terminal-speed=0.05").stdout
         self.assertTrue(told.startswith("channel: orifice=0.9 wedge-angle=45 "), told)
         self.assertRegex(told, r"note: wrong.csv: the speeds of successive frames differ alike .*look at V_t")
 
     def test_a_signal_ends_it_with_the_best_so_far(self):
-        self.write("trial.csv", "\n".join(["h [sigma], v [v_t]", *(f"{0.1 * i},{1 - 0.05 * (i % 3)}" for i in range(-10, 11))]))
+        self.write("trial.csv",
+                   "\n".join(["h [sigma], v [v_t]", *(f"{0.1 * i},{1 - 0.05 * (i % 3)}" for i in range(-10, 11))]))
         ours, theirs = pty.openpty()
         self.addCleanup(os.close, ours)
         # The calibration is stopped early, because it would take minutes.
-        with subprocess.Popen([BIN / "clogfit", "calibrate", "trial.csv", "--orifice=0.7", "vertices=256", "--format=json"], cwd=self.folder,
+        with subprocess.Popen([BIN / "clogfit", "calibrate", "trial.csv", "--orifice=0.7",
+                               "vertices=256", "--format=json"], cwd=self.folder,
                               stdout=subprocess.PIPE, stderr=theirs) as process:
             os.close(theirs)
             told = b""
@@ -97,26 +101,26 @@ class Calibrate(OnATerminal):
 
     def test_it_reads_only_channel_runs_of_clogrun(self):
         keys = ["vertices=32", "line-tension=0.3", "terminal-speed=0.3"]
-        self.succeed("clogrun", "channel", "--output", "channel.h5", "--orifice=0.9", "--start=-2.5", "--end=1.3", *keys)
+        self.succeed("clogrun", "channel", "--output", "channel.h5", "--orifice=0.9",
+                     "--start=-2.5", "--end=1.3", *keys)
         self.succeed("clogrun", "array", "--output", "array.h5", "box=20", "max-time=1", *keys)
         self.succeed("clogsweep", "--output", "sweep.h5", "box=20", "max-time=1", "seeds=1", *keys)
-        self.succeed("clogrun", "channel", "--output", "clogged.h5", "--orifice=0.5", "--start=-1.5", "vertices=32", "line-tension=3",
-                     "terminal-speed=0.3")
+        self.succeed("clogrun", "channel", "--output", "clogged.h5", "--orifice=0.5", "--start=-1.5", "vertices=32",
+                     "line-tension=3", "terminal-speed=0.3")
         content = bytearray((self.folder / "channel.h5").read_bytes())
         content[len(content) // 2] ^= 1
         (self.folder / "damaged.h5").write_bytes(content)
         (self.folder / "cut.h5").write_bytes(content[:len(content) // 2])
         found, = json.loads(self.succeed("clogfit", "deviation", "channel.h5", "channel.h5").stdout)["deviations"]
         self.assertEqual((found["delta_v"], found["delta_a"]), (0, 0))
-        for arguments, words in [
-            (["channel.h5", "--orifice=0.7", *keys[2:]], ["channel.h5", "orifice=0.9, not 0.7"]),
-            (["channel.h5", "--orifice=0.9", "terminal-speed=0.03"], ["channel.h5", "terminal-speed=0.3, not 0.03"]),
-            (["clogged.h5", "--orifice=0.5", "terminal-speed=0.3"], ["clogged.h5", "it clogged", "give a droplet that passed"]),
-            (["array.h5"], ["array.h5", "not a passage"]),
-            (["sweep.h5"], ["sweep.h5", "not a passage"]),
-            (["damaged.h5"], ["damaged.h5", "damaged"]),
-            (["cut.h5"], ["cut.h5", "damaged"]),
-        ]:
+        for arguments, words in [(["channel.h5", "--orifice=0.7", *keys[2:]], ["channel.h5", "orifice=0.9, not 0.7"]),
+                                 (["channel.h5", "--orifice=0.9",
+                                   "terminal-speed=0.03"], ["channel.h5", "terminal-speed=0.3, not 0.03"]),
+                                 (["clogged.h5", "--orifice=0.5",
+                                   "terminal-speed=0.3"], ["clogged.h5", "it clogged", "give a droplet that passed"]),
+                                 (["array.h5"], ["array.h5", "not a passage"]),
+                                 (["sweep.h5"], ["sweep.h5", "not a passage"]),
+                                 (["damaged.h5"], ["damaged.h5", "damaged"]), (["cut.h5"], ["cut.h5", "damaged"]),]:
             with self.subTest(arguments=arguments):
                 self.refuse("clogfit", "calibrate", *arguments, words=words)
         with h5py.File(self.folder / "clogged.h5") as file:
@@ -129,7 +133,8 @@ class Calibrate(OnATerminal):
     def test_commands_in_python_have_the_version_of_the_programs(self):
         version = self.succeed("clogfit", "--version").stdout
         for command in ("calibrate", "curve", "deviation", "drag", "report"):
-            self.assertEqual(self.succeed("clogfit", command, "--version").stdout, version.replace("clogfit", f"clogfit {command}", 1))
+            self.assertEqual(self.succeed("clogfit", command, "--version").stdout,
+                             version.replace("clogfit", f"clogfit {command}", 1))
 
     def test_its_help_says_what_the_errors_leave_out(self):
         self.assertIn("so without noise they are too small", self.succeed("clogfit", "calibrate", "--help").stdout)

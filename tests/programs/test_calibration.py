@@ -30,7 +30,8 @@ def model(tension, near_wall_drag):
     """The passage of a droplet that is slowed down by a barrier of height 1/tension, and near h = 0 also by drag."""
     h = np.arange(-2, 2, 0.013)
     near = np.exp(-4 * h**2)
-    return Profile(h, 1 / (1 + 8 * near_wall_drag * near) + 0.3 / (1 + tension) * h * near, 1 + near * 0.1 / (1 + tension))
+    return Profile(h, 1 / (1 + 8 * near_wall_drag * near) + 0.3 / (1 + tension) * h * near, 1 + near * 0.1 /
+                   (1 + tension))
 
 
 def measured(simulated, noise=0, seed=1, first=3, every=7):
@@ -54,7 +55,8 @@ def clogging(tension, near_wall_drag):
         h = h[h <= -0.1]
     neck = np.exp(-25 * h**2)
     slow = (1 - min(tension, 1)) * (1 + 0.3 * np.sin(20 * h + 12 * math.log(max(1 - tension, 1e-9)))) / (0.02 + near_wall_drag)
-    return Profile(h, 1 / (1 + near_wall_drag * (1 - neck)) * (1 - neck) + neck * np.minimum(slow, 1) + 1e-4, np.ones(len(h)))
+    return Profile(h, 1 / (1 + near_wall_drag * (1 - neck)) * (1 - neck) + neck * np.minimum(slow, 1) + 1e-4,
+                   np.ones(len(h)))
 
 
 class Deviations(unittest.TestCase):
@@ -70,7 +72,8 @@ class Deviations(unittest.TestCase):
         self.assertAlmostEqual(deviation(frames([2, 1, math.nan]), self.stuck)[0], 20, places=12)
 
     def test_frames_upstream_of_the_simulated_start_are_refused(self):
-        with self.assertRaisesRegex(UserError, "^2 measured frames, down to h = -0.75, are upstream of the simulated start at h = 0; .*start=-1.25, or delete these frames"):
+        with self.assertRaisesRegex(UserError, "^2 measured frames, down to h = -0.75, are upstream of the simulated "
+                                               "start at h = 0; .*start=-1.25, or delete these frames"):
             deviation(frames([-0.75, 1, 1], [-0.5, 1, 1], [0.5, 1, 1]), self.stuck)
         # A droplet that is pushed back has not started there.
         with self.assertRaisesRegex(UserError, "^1 measured frame, .*is upstream of"):
@@ -124,10 +127,14 @@ class Calibrations(unittest.TestCase):
         every = calibrate.means(found)
         # The scatter of 40 results is known to 11 %. The error of their mean is this scatter divided by the square root
         # of 40.
-        self.assertAlmostEqual(every["line_tension_deviation"] / np.mean([one.line_tension_error for one in found]), 1, delta=0.35)
-        self.assertAlmostEqual(every["near_wall_drag_deviation"] / np.mean([one.near_wall_drag_error for one in found]), 1, delta=0.35)
-        self.assertAlmostEqual(every["line_tension"], 0.8, delta=4 * every["line_tension_deviation"] / math.sqrt(number))
-        self.assertAlmostEqual(every["near_wall_drag"], 0.1, delta=4 * every["near_wall_drag_deviation"] / math.sqrt(number))
+        self.assertAlmostEqual(every["line_tension_deviation"] / np.mean([one.line_tension_error for one in found]),
+                               1, delta=0.35)
+        self.assertAlmostEqual(every["near_wall_drag_deviation"] / np.mean([one.near_wall_drag_error for one in found]),
+                               1, delta=0.35)
+        self.assertAlmostEqual(every["line_tension"], 0.8,
+                               delta=4 * every["line_tension_deviation"] / math.sqrt(number))
+        self.assertAlmostEqual(every["near_wall_drag"], 0.1,
+                               delta=4 * every["near_wall_drag_deviation"] / math.sqrt(number))
 
     def test_a_narrow_minimum_beside_a_clog_is_found(self):
         for tension in (0.91, 0.97, 0.985):
@@ -139,7 +146,8 @@ class Calibrations(unittest.TestCase):
                 self.assertLess(found.delta_v, 0.03)
                 self.assertTrue(found.converged)
                 self.assertAlmostEqual(found.clogging_tension, 1, delta=0.005)
-                self.assertEqual(["close to a clog" in warning for warning in found.warnings], [True] if tension > 0.95 else [])
+                self.assertEqual(["close to a clog" in warning for warning in found.warnings],
+                                 [True] if tension > 0.95 else [])
 
     def test_there_are_no_errors_where_the_profile_does_not_determine_both(self):
         found = search.calibrate(measured(model(1, 0.1), 0.01, 3), lambda _, near_wall_drag: model(1, near_wall_drag))
@@ -204,7 +212,8 @@ class Drag(unittest.TestCase):
         distances = np.array([0.05, 0.1, 0.2, 0.5, 1.0])
         speeds = np.array([0.2, 0.45, 0.6, 0.85, 0.92])
         (slope, intercept), covariance = np.polyfit(np.log(distances), np.log(speeds / (1 - speeds)), 1, cov=True)
-        expected = slope, math.sqrt(covariance[0, 0]), math.exp(-intercept), math.exp(-intercept) * math.sqrt(covariance[1, 1])
+        expected = slope, math.sqrt(covariance[0,
+                                               0]), math.exp(-intercept), math.exp(-intercept) * math.sqrt(covariance[1, 1])
         np.testing.assert_allclose(list(drag.fit(distances, speeds).values()), expected, rtol=1e-9)
 
     def test_it_is_that_of_the_recorded_program(self):
@@ -215,7 +224,8 @@ class Drag(unittest.TestCase):
         np.testing.assert_allclose(list(found.values()), recorded, rtol=1e-12)
 
     def test_what_has_no_such_line_is_refused(self):
-        for distances, speeds in (([0.1], [0.5]), ([0.1, 0.1], [0.5, 0.6]), ([0.1, -1], [0.5, 0.6]), ([0.1, 1], [0.5, 1])):
+        for distances, speeds in (([0.1], [0.5]), ([0.1,
+                                                    0.1], [0.5, 0.6]), ([0.1, -1], [0.5, 0.6]), ([0.1, 1], [0.5, 1])):
             with self.assertRaises(UserError):
                 drag.fit(np.array(distances), np.array(speeds))
 
@@ -231,13 +241,17 @@ class SpeedFiles(unittest.TestCase):
         plain = "d [sigma];v [v_t]\n0.05;0.2\n0.1;0.45\n1.25;0.9\n"
         distances, speeds = self.read(plain)
         np.testing.assert_array_equal([distances, speeds], [[0.05, 0.1, 1.25], [0.2, 0.45, 0.9]])
-        for commas in (plain.replace(".", ","), plain.replace(".", ",").replace(";", "\t"), 'd [sigma],v [v_t]\n"0,05","0,2"\n"0,1","0,45"\n"1,25","0,9"\n'):
+        for commas in (plain.replace(".", ","), plain.replace(".", ",").replace(";", "\t"),
+                       'd [sigma],v [v_t]\n"0,05","0,2"\n"0,1","0,45"\n"1,25","0,9"\n'):
             self.assertEqual(drag.fit(*self.read(commas)), drag.fit(distances, speeds))
 
     def test_ambiguous_commas_are_refused(self):
-        for text, words in (("d [sigma];v [v_t]\n1,350;1\n2,050;1\n", "'1,350' may have a decimal comma or separated thousands"),
-                            ("d [sigma];v [v_t]\n0,5;0.2\n", "line 2: v: '0.2' has a point, but '0,5' above has a comma"),
-                            ("d [sigma];v [v_t]\n1.5;0\n1,5;0\n", "line 3: d: '1,5' has a comma, but '1.5' above has a point"),
+        for text, words in (("d [sigma];v [v_t]\n1,350;1\n2,050;1\n",
+                             "'1,350' may have a decimal comma or separated thousands"),
+                            ("d [sigma];v [v_t]\n0,5;0.2\n",
+                             "line 2: v: '0.2' has a point, but '0,5' above has a comma"),
+                            ("d [sigma];v [v_t]\n1.5;0\n1,5;0\n",
+                             "line 3: d: '1,5' has a comma, but '1.5' above has a point"),
                             ("d [sigma];v [v_t]\n1.350,5;0\n", "line 2: d: '1.350,5' may have")):
             with self.subTest(text=text), self.assertRaisesRegex(UserError, words):
                 self.read(text)
@@ -261,17 +275,18 @@ class ProfileFiles(unittest.TestCase):
     def test_they_are_read_as_spreadsheets_and_other_programs_write_them(self):
         plain = "h [\u00b5m],v [\u00b5m/s],A\n-1,2,1\n0,3,\n1,4,1.5\n"
         expected = self.read(plain, Scales(1e-6, 1e-6))
-        for text, encoding in [
-            ("sep=;\n" + plain.replace(",", " ; "), "utf-16"), (plain.replace(",", "\t").replace("\n", "\r"), "latin-1"), (plain, "utf-8-sig"),
-            ('"# of R"\n"h [\u00b5m]" "v [\u00b5m/s]"  "A"\n -1 2 1\n0 3\n1 4   1.5 \n', "utf-8"),
-            (plain.replace(",", "\xa0,\xa0"), "utf-8"), ("".join(f",{line}\n" for line in plain.splitlines()), "utf-8"),
-        ]:
+        for text, encoding in [("sep=;\n" + plain.replace(",", " ; "), "utf-16"),
+                               (plain.replace(",", "\t").replace("\n", "\r"), "latin-1"), (plain, "utf-8-sig"),
+                               ('"# of R"\n"h [\u00b5m]" "v [\u00b5m/s]"  "A"\n -1 2 1\n0 3\n1 4   1.5 \n', "utf-8"),
+                               (plain.replace(",", "\xa0,\xa0"), "utf-8"),
+                               ("".join(f",{line}\n" for line in plain.splitlines()), "utf-8"),]:
             with self.subTest(text=text, encoding=encoding):
                 np.testing.assert_array_equal(self.read(text, Scales(1e-6, 1e-6), encoding), expected)
 
     def test_units_of_columns_are_those_of_clogfit_units(self):
         for unit, metres in profiles.METRES.items():
-            answer = laboratory.units({"diameter": f"1e-6 {unit}", "angle": "5 deg", "speed": f"1e-6 {unit}/s"}, folder=BIN)
+            answer = laboratory.units({"diameter": f"1e-6 {unit}", "angle": "5 deg",
+                                       "speed": f"1e-6 {unit}/s"}, folder=BIN)
             np.testing.assert_allclose([answer["diameter_mm"], answer["speed_mm_per_s"]], 1e-3 * metres, rtol=1e-12)
 
     def test_mistakes_name_the_line(self):
@@ -302,7 +317,8 @@ class Records(unittest.TestCase):
             seen = profiles.read_trial(str(path))[0]
             sought = search.Search(seen, Clogrun(BIN).past(seen, self.record["keys"]), lambda *_: None)
             place = math.log(recorded["line_tension"]), recorded["near_wall_drag"]
-            errors = np.array([recorded["line_tension_error"] / recorded["line_tension"], recorded["near_wall_drag_error"]])
+            errors = np.array([recorded["line_tension_error"] / recorded["line_tension"],
+                               recorded["near_wall_drag_error"]])
             found = sought.linearise_over(np.array(place), errors)
         np.testing.assert_array_less(np.abs(found.step), 0.1 * errors)
         np.testing.assert_allclose(found.errors, errors, rtol=0.05)

@@ -31,7 +31,8 @@ class Mixtures(ProgramTest):
     def setUp(self):
         super().setUp()
         self.parts = [str(shared_sweep(*FEW)), "channel.h5", "wall.h5"]
-        self.succeed("clogsweep", *QUICK[:1], "orifice=0.6,0.8", "start=-1.5", "end=1", "max-time=60", "--output", "channel.h5")
+        self.succeed("clogsweep", *QUICK[:1], "orifice=0.6,0.8", "start=-1.5", "end=1", "max-time=60", "--output",
+                     "channel.h5")
         self.succeed("clogsweep", *QUICK[:1], "obstacle-layout=wall", "line-tension=0.5,1", "--output", "wall.h5")
 
     def fit(self, *words, program=("clogfit",)):
@@ -67,7 +68,8 @@ class Mixtures(ProgramTest):
                 self.assertLessEqual(part["units"].items(), document["units"].items())
 
     def test_only_arrays_have_lengths_in_a_laboratory(self):
-        self.write("lab.cfg", "diameter = 2 mm\nangle = 28 deg\nspeed = 3 mm/s\ndensity-difference = 100 kg/m^3\ntension = 2 mN/m\n")
+        self.write("lab.cfg", "diameter = 2 mm\nangle = 28 deg\nspeed = 3 mm/s\ndensity-difference = 100 "
+                              "kg/m^3\ntension = 2 mN/m\n")
         text = self.fit(*self.parts[::-1], "--lab=lab.cfg")
         self.assertEqual(text.count("lambda/mm"), 1)
         for group in json.loads(self.fit(*self.parts[::-1], "--lab=lab.cfg", "--format=json"))["groups"]:
@@ -79,7 +81,8 @@ class Mixtures(ProgramTest):
         self.refuse("clogfit", "report", "all.h5", words=["arrays", "clogsweep select"])
         self.refuse("clogfit", *self.parts[1:], "--dwell=5", words=["--dwell", "on a wall"])
         self.assertIn("clogged: has not moved", self.fit(*self.parts[::-1], "--dwell=30"))
-        self.refuse("clogfit", *self.parts, "--mixture=orifice=0.6:1,0.8:1", words=["orifice = 0.6 are in a channel", "no clogging length"])
+        self.refuse("clogfit", *self.parts, "--mixture=orifice=0.6:1,0.8:1",
+                    words=["orifice = 0.6 are in a channel", "no clogging length"])
 
     def test_automatic_values_above_the_table_have_a_star(self):
         for file in self.parts[:2]:
@@ -93,9 +96,11 @@ class Mixtures(ProgramTest):
         gaps = ["seeds=1", "obstacle-gap=0.3,0.5"]
         self.succeed("clogsweep", *QUICK[:1], *gaps, "box=20", "max-time=1", "--output", "dp.h5")
         self.succeed("clogsweep", "model=sp", "wall-stiffness=5", *gaps, "box=30", "max-time=2", "--output", "sp.h5")
-        self.assertTrue(self.fit("dp.h5", "sp.h5").startswith("runs with model=dp: "))  # All runs share nothing unusual.
+        # All runs share nothing unusual.
+        self.assertTrue(self.fit("dp.h5", "sp.h5").startswith("runs with model=dp: "))
         mixture = "--mixture=obstacle-gap=0.3:1,0.5:1"
-        self.refuse("clogfit", "dp.h5", "sp.h5", mixture, words=["2 groups have obstacle_gap = 0.3 and differ in model"])
+        self.refuse("clogfit", "dp.h5", "sp.h5", mixture,
+                    words=["2 groups have obstacle_gap = 0.3 and differ in model"])
         done = self.run_program("clogfit", "dp.h5", "sp.h5", mixture)
         for name in ("friction", "vertices", "near_wall_drag", "preset"):
             self.assertNotIn(name, done.stderr)
@@ -117,18 +122,22 @@ class GivenKeys(ProgramTest):
 
     def test_given_values_are_columns_and_automatic_values_are_not(self):
         lengths = {"runs", "clogs", "lambda/sigma"}
-        for points in ("line-tension,vertices,wall-stiffness\n1,32,0.5\n2,64,0.7\n", "obstacle-gap,time-step,area-stiffness\n0.4,0.001,60\n0.5,0.0005,70\n",
+        for points in ("line-tension,vertices,wall-stiffness\n1,32,0.5\n2,64,0.7\n",
+                       "obstacle-gap,time-step,area-stiffness\n0.4,0.001,60\n0.5,0.0005,70\n",
                        "obstacle-gap,line-tension,wall-stiffness\n0.4,1,0.6\n0.5,2,0.7\n"):
             _, lines = self.table_of(points)
             head, *rows = [line.split(",") for line in points.splitlines()]
             names = [name.replace("-", "_") for name in head]
-            self.assertEqual([[float(line[name]) for name in names] for line in lines], [[float(cell) for cell in row] for row in rows])
+            self.assertEqual([[float(line[name]) for name in names] for line in lines],
+                             [[float(cell) for cell in row] for row in rows])
             before = list(lines[0])[:list(lines[0]).index("runs")]
-            self.assertEqual(set(before) - {"obstacle_gap", "line_tension"}, set(names) - {"obstacle_gap", "line_tension"})
+            self.assertEqual(set(before) - {"obstacle_gap", "line_tension"},
+                             set(names) - {"obstacle_gap", "line_tension"})
             self.assertLess(lengths, set(lines[0]))
         # The same column for merged files.
         for name, tension, stiffness in (("a.h5", 1, 0.5), ("b.h5", 2, 0.7)):
-            self.succeed("clogsweep", *self.SETTINGS, f"line-tension={tension}", f"wall-stiffness={stiffness}", "--output", name)
+            self.succeed("clogsweep", *self.SETTINGS, f"line-tension={tension}", f"wall-stiffness={stiffness}",
+                         "--output", name)
         told = self.succeed("clogfit", "a.h5", "b.h5").stdout
         self.assertIn("wall_stiffness", told)
         self.assertNotIn("vertices", told)
@@ -170,7 +179,9 @@ class Profiles(ProgramTest):
         speeds = [1 / (1 + 0.07 * d ** -1.25) for d in distances]
         self.write("reduced.csv", "\n".join(["d [sigma], v [v_t]", *(f"{d},{v}" for d, v in zip(distances, speeds))]))
         # The same profile in units of a laboratory, for a droplet of 2 mm at 0.5 mm/s.
-        self.write("mm.csv", "\n".join(["# tilt 5 deg", "frame, d [mm], v [mm/s]", *(f"7,{2 * d},{v / 2}" for d, v in zip(distances, speeds))]))
+        self.write("mm.csv",
+                   "\n".join(["# tilt 5 deg", "frame, d [mm], v [mm/s]",
+                              *(f"7,{2 * d},{v / 2}" for d, v in zip(distances, speeds))]))
         for arguments in (["reduced.csv"], ["mm.csv", "--diameter", "2mm", "--speed=0.5 mm/s"]):
             fit = json.loads(self.succeed("clogfit", "drag", *arguments, "--format", "json").stdout)
             self.assertAlmostEqual(fit["near_wall_exponent"], 1.25, places=9)
@@ -195,7 +206,8 @@ class Profiles(ProgramTest):
         found, = json.loads(self.succeed("clogfit", "deviation", "mm.csv", "simulated.csv", "--diameter", "2mm", "--speed=3mm/s").stdout)["deviations"]
         for name in ("delta_v", "delta_a"):
             self.assertAlmostEqual(found[name], reduced[name], places=12)
-        self.refuse("clogfit", "deviation", "mm.csv", "simulated.csv", words=["mm.csv line 1", "is in mm and needs --diameter"])
+        self.refuse("clogfit", "deviation", "mm.csv", "simulated.csv",
+                    words=["mm.csv line 1", "is in mm and needs --diameter"])
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         self.write("early.csv", "h [sigma], v [v_t]\n-1,1\n0,1\n1,1\n")
@@ -210,7 +222,8 @@ class Profiles(ProgramTest):
             (["drag", "fast.csv", "--format", "xml"], ["--format=xml"]),
             (["deviation", "good.csv"], ["missing profiles"]),
             (["deviation", "good.csv", "no.csv"], ["cannot read no.csv"]),
-            (["deviation", "early.csv", "good.csv"], ["good.csv: 1 measured frame, down to h = -1, is upstream of the simulated start at h = 0", "start=-1.5, or delete"]),
+            (["deviation", "early.csv", "good.csv"], ["good.csv: 1 measured frame, down to h = -1, is upstream "
+                                                      "of the simulated start at h = 0", "start=-1.5, or delete"]),
         ]:
             with self.subTest(arguments=arguments):
                 self.refuse("clogfit", *arguments, words=words)
@@ -247,9 +260,11 @@ class Fit(ProgramTest):
         # With another number of boxes the same seed gives another array. So these runs do not repeat droplets, and all
         # of them count.
         self.succeed("clogsweep", "merge", "short.h5", "wide.h5", "--output", "boxes.h5")
-        group, = json.loads(self.succeed("clogfit", "boxes.h5", "--format", "json", "--pool=boxes,max-time").stdout)["groups"]
+        group, = json.loads(self.succeed("clogfit", "boxes.h5", "--format", "json",
+                                         "--pool=boxes,max-time").stdout)["groups"]
         self.assertEqual((group["runs"], group["repeated"]), (8, 0))
-        self.refuse("clogfit", "sweep.h5", "--pool=max-time,seeds", words=["invalid --pool=max-time,seeds", "runs that differ in seeds"])
+        self.refuse("clogfit", "sweep.h5", "--pool=max-time,seeds",
+                    words=["invalid --pool=max-time,seeds", "runs that differ in seeds"])
 
     def test_it_gives_the_reference_answer(self):
         # The classic leukaemia trial has 21 runs, of which 9 end, and a total distance of 359.
@@ -317,7 +332,8 @@ class Fit(ProgramTest):
                 self.assertEqual(group["relative_speed"], of_clogs["relative_speed"])
                 stood_and_went_on += clogs - of_clogs["clogs"]
         self.assertGreater(stood_and_went_on, 0)
-        self.assertIn("hybrid, other (for instance at rest on one obstacle; or droplets that moved on)\n", self.succeed("clogfit", "sweep.h5", "--dwell=25").stdout)
+        self.assertIn("hybrid, other (for instance at rest on one obstacle; or droplets that moved on)\n",
+                      self.succeed("clogfit", "sweep.h5", "--dwell=25").stdout)
 
     def test_lengths_rise_with_the_time_to_those_of_clogs_alone(self):
         self.sweep(*self.DWELLING)
@@ -346,9 +362,12 @@ class Fit(ProgramTest):
     def test_a_fit_of_dwells_says_what_it_calls_clogged(self):
         self.sweep("seeds=1..2", "line-tension=0.05", "max-time=40,60")
         text = self.succeed("clogfit", "sweep.h5", "--dwell=50").stdout
-        self.assertIn("\nclogged: has not moved by 0.05 sigma for 50 t0; where max_time is not longer, this is the fit without --dwell\n", text)
-        self.assertIn("\nclogged: has not moved by 0.05 sigma for 20 t0\n", self.succeed("clogfit", "sweep.h5", "--dwell=20").stdout)
-        self.assertIn("\nno run lasts longer than --dwell=60, so this is the fit without --dwell\n", self.succeed("clogfit", "sweep.h5", "--dwell=60").stdout)
+        self.assertIn("\nclogged: has not moved by 0.05 sigma for 50 t0; "
+                      "where max_time is not longer, this is the fit without --dwell\n", text)
+        self.assertIn("\nclogged: has not moved by 0.05 sigma for 20 t0\n",
+                      self.succeed("clogfit", "sweep.h5", "--dwell=20").stdout)
+        self.assertIn("\nno run lasts longer than --dwell=60, so this is the fit without --dwell\n",
+                      self.succeed("clogfit", "sweep.h5", "--dwell=60").stdout)
         self.assertNotIn("clogged:", self.succeed("clogfit", "sweep.h5").stdout)
         self.assertEqual([group["dwell"] for group in self.fit("--dwell=50")["groups"]], [None, 50])
 
@@ -356,10 +375,12 @@ class Fit(ProgramTest):
         self.sweep("seeds=1..2", "line-tension=0.05", "max-time=60")
         self.refuse("clogfit", "sweep.h5", "--dwell=10", words=["--dwell=10 (the rows do not hold", "use 16.7 or more"])
         self.succeed("clogfit", "sweep.h5", "--dwell=16.7")
-        self.change(**{name: np.nan for name in stored_rows.columns(self.folder / "sweep.h5") if "dwell" in name and name != "dwell_length"})
+        self.change(**{name: np.nan for name in stored_rows.columns(self.folder / "sweep.h5")
+                       if "dwell" in name and name != "dwell_length"})
         group, = self.fit()["groups"]
         self.assertEqual((group["runs"], group["dwell_length"], group["dwells_known_from"]), (2, 0.05, None))
-        self.refuse("clogfit", "sweep.h5", "--dwell=20", words=["--dwell=20 (2 rows of a version", "compute the sweep anew"])
+        self.refuse("clogfit", "sweep.h5", "--dwell=20",
+                    words=["--dwell=20 (2 rows of a version", "compute the sweep anew"])
         self.assertIn("this is the fit without --dwell", self.succeed("clogfit", "sweep.h5", "--dwell=60").stdout)
 
     def test_numbers_have_their_unit_in_json_as_in_the_table(self):
@@ -401,11 +422,15 @@ class Fit(ProgramTest):
         self.sweep("seeds=1..12", *FAR)
         apart = np.linspace(1, 9, 12)
         met = {"contacts": 1, "first_contact_at": 0.5}
-        for clogs, distance, are_met, is_doubtful in [(12, apart, met, False), (12, np.repeat(apart[:6], 2), met, True), (6, np.repeat(apart[:6], 2), met, True),
+        for clogs, distance, are_met, is_doubtful in [(12, apart, met,
+                                                       False), (12, np.repeat(apart[:6], 2), met, True), (6, np.repeat(apart[:6], 2), met, True),
                                                       (6, np.repeat(apart[:6], 2), {"contacts": 0, "first_contact_at": np.nan}, True),
-                                                      (12, np.repeat(apart[:3], [3, 2, 7]), met, True), (12, np.append(apart[:7], [9] * 5), met, False),
-                                                      (6, np.append(apart[:6], [9] * 6), met, False),  # droplets that were still moving
-                                                      (0, np.repeat(apart[:6], 2), met, True), (0, apart, met, False), (12, np.zeros(12), met, True),
+                                                      (12, np.repeat(apart[:3], [3, 2, 7]),
+                                                       met, True), (12, np.append(apart[:7], [9] * 5), met, False),
+                                                      (6, np.append(apart[:6], [9] * 6),
+                                                       met, False),  # droplets that were still moving
+                                                      (0, np.repeat(apart[:6], 2), met,
+                                                       True), (0, apart, met, False), (12, np.zeros(12), met, True),
                                                       # Droplets that sink freely all go as far.
                                                       (0, [9.0] * 12, {"contacts": 0, "first_contact_at": np.nan}, False)]:
             self.change(distance=distance, status=[b"clogged"] * clogs + [b"flowing"] * (12 - clogs), **are_met)
@@ -461,7 +486,8 @@ class Fit(ProgramTest):
         self.assertEqual((group["squeezed"], group["wrapped"], group["clogging_length_wrapped"]), (2, 2, 5))
         self.assertEqual([step["distance"] for step in group["survival"]], [0, 1, 2, 3])
         text = self.succeed("clogfit", "sweep.h5", "--from-distance=0.5").stdout
-        self.assertIn("3 runs ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all runs", text)
+        self.assertIn("3 runs ended before --from-distance, left out of runs, clogs and lambda; "
+                      "<v_g> is still of all runs", text)
         # Mechanisms are also printed if all remaining runs clogged by the same mechanism.
         self.assertRegex(self.succeed("clogfit", "sweep.h5", "--from-distance=3").stdout, "w/s/h/o.*\n.* 1/0/0/0 ")
         group, = self.fit()["groups"]
@@ -507,7 +533,8 @@ class Fit(ProgramTest):
 
     def test_clogs_that_the_mesh_may_hold_are_marked(self):
         self.sweep("seeds=1..10", *FAR)
-        self.change(distance=3 * EXPONENTIAL, status=[b"clogged"] * 10, mechanism=[b"wrapped"] * 10, mesh_hold=[0.009] * 10)
+        self.change(distance=3 * EXPONENTIAL, status=[b"clogged"] * 10, mechanism=[b"wrapped"] * 10,
+                    mesh_hold=[0.009] * 10)
         group, = self.fit()["groups"]
         self.assertEqual((group["on_mesh"], group["doubts"]), (0, None))
         self.change(mesh_hold=[0.009] * 9 + [0.011])
@@ -517,7 +544,8 @@ class Fit(ProgramTest):
 
     def test_where_the_mesh_hold_is_unknown_all_that_hang_are_marked(self):
         self.sweep("seeds=1..10", *FAR)
-        self.change(status=[b"clogged"] * 10, distance=3 * EXPONENTIAL, mechanism=[b"hybrid"] + [b"squeezed"] * 9, mesh_hold=np.nan)
+        self.change(status=[b"clogged"] * 10, distance=3 * EXPONENTIAL, mechanism=[b"hybrid"] + [b"squeezed"] * 9,
+                    mesh_hold=np.nan)
         group, = self.fit()["groups"]
         self.assertEqual((group["on_mesh"], group["doubts"]), (1, "held_by_mesh"))
 
@@ -525,11 +553,14 @@ class Fit(ProgramTest):
         self.sweep("seeds=1..10", "break-up-neck=0.05", *FAR)
         status = [b"clogged", b"broken", b"broken", b"clogged", b"flowing"] * 2
         necks = [0.04 if one == b"broken" else np.nan for one in status]
-        self.change(distance=np.arange(1.0, 11), status=status, mechanism=[b"squeezed" if one == b"clogged" else b"none" for one in status],
-                    thinnest_neck=necks, thinnest_neck_at=necks)
+        self.change(distance=np.arange(1.0, 11), status=status,
+                    mechanism=[b"squeezed" if one == b"clogged" else b"none" for one in status], thinnest_neck=necks,
+                    thinnest_neck_at=necks)
         group, = self.fit()["groups"]
-        self.assertEqual([group[name] for name in ("runs", "clogs", "broken", "flowing", "squeezed", "other")], [10, 4, 4, 2, 4, 0])
-        self.assertEqual([group[name] for name in ("total_distance", "clogging_length", "break_up_length")], [55, 55 / 4, 55 / 4])
+        self.assertEqual([group[name] for name in ("runs", "clogs", "broken", "flowing", "squeezed", "other")],
+                         [10, 4, 4, 2, 4, 0])
+        self.assertEqual([group[name] for name in ("total_distance", "clogging_length", "break_up_length")],
+                         [55, 55 / 4, 55 / 4])
         self.assertTrue(group["break_up_length_lower"] < 55 / 4 < group["break_up_length_upper"])
         # Computed by hand: at each end, the incidence grows by the P just before the end, divided by the number of runs
         # at risk. The growth is 1/10 until the first run is censored at 5, and then 6/10 of 1/5.
@@ -545,10 +576,12 @@ class Fit(ProgramTest):
         self.assertNotIn("w/s/h/o", text)
         # The run of a droplet that rested for long ends at the place of this rest, even if the droplet broke later.
         # Otherwise the run ends where the droplet broke.
-        dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5") if name.startswith(("longest_dwell", "earlier_dwell"))]
+        dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5")
+                  if name.startswith(("longest_dwell", "earlier_dwell"))]
         self.change(**{name: np.nan for name in dwells})
         self.assertEqual(self.fit("--dwell", 0.9)["groups"][0]["broken"], 4)
-        self.change(longest_dwell=[np.nan, 0.95] + [np.nan] * 8, longest_dwell_at=[np.nan, 0.01] + [np.nan] * 8, longest_dwell_from=[np.nan, 0] + [np.nan] * 8)
+        self.change(longest_dwell=[np.nan, 0.95] + [np.nan] * 8, longest_dwell_at=[np.nan, 0.01] + [np.nan] * 8,
+                    longest_dwell_from=[np.nan, 0] + [np.nan] * 8)
         group, = self.fit("--dwell", 0.9)["groups"]
         self.assertEqual((group["broken"], group["other"]), (3, 1))
         self.change(status=[b"flowing"] * 10, mechanism=b"none", thinnest_neck=np.nan, thinnest_neck_at=np.nan)
@@ -567,7 +600,8 @@ class Fit(ProgramTest):
         before, = self.fit()["groups"]
         stored_rows.make_older(self.folder / "sweep.h5", "9", ["film_friction", "laboratory", "processor_seconds"])
         group, = self.fit()["groups"]
-        self.assertEqual((group["film_friction"], group["laboratory"], group["clogging_length"]), ("off", "none", before["clogging_length"]))
+        self.assertEqual((group["film_friction"], group["laboratory"], group["clogging_length"]),
+                         ("off", "none", before["clogging_length"]))
         self.assertEqual(len(stored.read_rows(self.folder / "sweep.h5")), 3)
         self.succeed("clogsweep", "verify", "sweep.h5")
 
@@ -597,7 +631,8 @@ class Fit(ProgramTest):
                 self.assertAlmostEqual(group["relative_speed_pooled"], ratio, places=12)
 
     def test_steady_speeds_agree_with_pandas_and_are_unset_without_their_columns(self):
-        rows = self.sweep("max-time=60", "terminal-speed=0.2", "line-tension=0.4,2", "obstacle-gap=0.4,0.8", "seeds=1..8")
+        rows = self.sweep("max-time=60", "terminal-speed=0.2", "line-tension=0.4,2", "obstacle-gap=0.4,0.8",
+                          "seeds=1..8")
         known = 0
         for group in self.fit()["groups"]:
             mine = rows[(rows.line_tension == group["line_tension"]) & (rows.obstacle_gap == group["obstacle_gap"])]
@@ -614,14 +649,16 @@ class Fit(ProgramTest):
             distance, time = mine.steady_distance / mine.terminal_speed, mine.steady_time
             self.assertAlmostEqual(group["relative_speed_steady"], distance.sum() / time.sum(), places=12)
             without = (distance.sum() - distance) / (time.sum() - time)
-            self.assertAlmostEqual(group["relative_speed_steady_error"], math.sqrt((len(mine) - 1) * without.var(ddof=0)), places=12)
+            self.assertAlmostEqual(group["relative_speed_steady_error"],
+                                   math.sqrt((len(mine) - 1) * without.var(ddof=0)), places=12)
         self.assertGreater(known, 1)
         self.assertEqual(self.fit()["units"]["relative_speed_steady_error"], "v_t")
         before = self.fit()["groups"]
         self.change(steady_distance=np.nan, steady_time=np.nan)  # as in a file of version 1.0
         for old, new in zip(self.fit()["groups"], before):
             self.assertEqual([old[f"relative_speed_steady{end}"] for end in ("", "_error", "_runs")], [None, None, 0])
-            self.assertEqual([old[name] for name in ("relative_speed", "relative_speed_all", "clogging_length")], [new[name] for name in ("relative_speed", "relative_speed_all", "clogging_length")])
+            self.assertEqual([old[name] for name in ("relative_speed", "relative_speed_all", "clogging_length")],
+                             [new[name] for name in ("relative_speed", "relative_speed_all", "clogging_length")])
         self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r"<v_g>/v_t +\+- +of +all runs")
 
     def test_interrupted_runs_are_censored(self):
@@ -629,21 +666,23 @@ class Fit(ProgramTest):
         self.change(distance=[1, 2, 3], status=[b"clogged", b"flowing", b"interrupted"])
         group, = self.fit()["groups"]
         self.assertEqual((group["clogging_length"], group["runs"], group["interrupted"]), (6, 3, 1))
-        self.assertIn("1 run is unfinished: lambda holds for the distances reached so far", self.succeed("clogfit", "sweep.h5").stdout)
+        self.assertIn("1 run is unfinished: lambda holds for the distances reached so far",
+                      self.succeed("clogfit", "sweep.h5").stdout)
 
     def test_failed_runs_are_censored_where_they_were_sound(self):
         self.sweep("seeds=1..7", *FAR)
         status = [b"clogged"] * 3 + [b"flowing"] + [b"failed"] * 3
         # What a failed droplet did after its last passed check is of no use, whatever it is.
-        self.change(distance=[1, 2.5, 7, 10, 1e300, np.nan, 12], sound_distance=[1, 2.5, 7, 10, 0.5, 4, 6.25], status=status,
-                    failed_by=[b"none"] * 4 + [b"divergence", b"crash", b"crossing"])
+        self.change(distance=[1, 2.5, 7, 10, 1e300, np.nan, 12], sound_distance=[1, 2.5, 7, 10, 0.5, 4, 6.25],
+                    status=status, failed_by=[b"none"] * 4 + [b"divergence", b"crash", b"crossing"])
         group, = self.fit()["groups"]
         # From R 4.2.2, package survival 3.5-3:
         #   d <- c(1, 2.5, 7, 10, 0.5, 4, 6.25); clog <- c(1, 1, 1, 0, 0, 0, 0)
         #   exp(coef(survreg(Surv(d, clog) ~ 1, dist="exponential", control=survreg.control(rel.tolerance=1e-14))))
         #   s <- summary(survfit(Surv(d, clog) ~ 1)); cbind(s$time, s$n.risk, s$surv)
         self.assertAlmostEqual(group["clogging_length"], 10.4166666666667, delta=1e-9)
-        self.assertEqual([(step["distance"], step["at_risk"]) for step in group["survival"]], [(1, 6), (2.5, 5), (7, 2)])
+        self.assertEqual([(step["distance"], step["at_risk"])
+                          for step in group["survival"]], [(1, 6), (2.5, 5), (7, 2)])
         for step, probability in zip(group["survival"], [0.833333333333333, 0.666666666666667, 0.333333333333333]):
             self.assertAlmostEqual(step["probability"], probability, delta=1e-9)
         self.assertEqual((group["runs"], group["clogs"], group["failed"], group["failed_somewhere"]), (7, 3, 3, 0))
@@ -661,20 +700,24 @@ class Fit(ProgramTest):
     def test_files_of_older_versions_tell_only_where_droplets_crossed_themselves(self):
         self.sweep("seeds=1..6", *FAR)
         self.change(distance=[1, 2, 3, 4, 5, 50], status=[b"clogged"] * 3 + [b"failed"] * 3,
-                    message=[b""] * 3 + [b"the interface crossed itself by t=9; try", b"diverged at t=3", b"its process was ended by SIGSEGV"])
+                    message=[b""] * 3 + [b"the interface crossed itself by t=9; try",
+                                         b"diverged at t=3", b"its process was ended by SIGSEGV"])
         new = ["sound_distance", "failed_by", "healed_crossings", "friction_use", "stability"]
         stored_rows.make_older(self.folder / "sweep.h5", "10", new)
         group, = self.fit()["groups"]
-        self.assertEqual([group[name] for name in ("runs", "total_distance", "failed", "failed_somewhere")], [4, 10, 3, 2])
+        self.assertEqual([group[name] for name in ("runs", "total_distance", "failed", "failed_somewhere")],
+                         [4, 10, 3, 2])
         self.assertIn("incomplete", group["doubts"])
-        self.assertIn("counted as not clogged up to sound_distance, except 2 without one", self.succeed("clogfit", "sweep.h5").stdout)
+        self.assertIn("counted as not clogged up to sound_distance, except 2 without one",
+                      self.succeed("clogfit", "sweep.h5").stdout)
 
     def test_failures_are_a_doubt_where_they_could_move_the_length_out_of_its_interval(self):
         self.sweep("seeds=1..10", *FAR)
         for num_failed, is_doubtful in ((0, False), (4, False), (5, True), (7, True)):
             # If failures were clogs, seven droplets would have clogged, and lambda would be 10/7.
             clogs = 7 - num_failed
-            self.change(distance=1.0, sound_distance=1.0, status=[b"clogged"] * clogs + [b"flowing"] * 3 + [b"failed"] * num_failed)
+            self.change(distance=1.0, sound_distance=1.0,
+                        status=[b"clogged"] * clogs + [b"flowing"] * 3 + [b"failed"] * num_failed)
             lower = 20 / scipy.stats.chi2.ppf(0.975, 2 * clogs + 1) if clogs else 10 / -math.log(0.05)
             self.assertEqual(10 / 7 < lower, is_doubtful, num_failed)
             self.assertEqual("failures_matter" in (self.fit()["groups"][0]["doubts"] or ""), is_doubtful)
@@ -687,7 +730,8 @@ class Fit(ProgramTest):
         clogs = np.zeros(2)
         distances = np.zeros(2)
         for _ in range(30):
-            ends = [random.exponential(10, len(rows)), np.where(may_fail, random.exponential(10, len(rows)), np.inf), np.full(len(rows), 30.0)]
+            ends = [random.exponential(10, len(rows)), np.where(may_fail, random.exponential(10, len(rows)), np.inf),
+                    np.full(len(rows), 30.0)]
             status = np.array([b"clogged", b"failed", b"flowing"])[np.argmin(ends, axis=0)]
             self.change(distance=np.min(ends, axis=0), sound_distance=np.min(ends, axis=0), status=status)
             groups = self.fit()["groups"]
@@ -702,20 +746,25 @@ class Fit(ProgramTest):
 
     def test_the_longest_run_of_a_pool_counts_even_if_it_failed(self):
         for name, time in (("short", 1), ("long", 2)):
-            self.succeed("clogsweep", *SMALL, FAR[1], "line-tension=0.5", "seeds=1..3", f"max-time={time}", "--output", f"{name}.h5")
+            self.succeed("clogsweep", *SMALL, FAR[1], "line-tension=0.5", "seeds=1..3", f"max-time={time}", "--output",
+                         f"{name}.h5")
         self.succeed("clogsweep", "merge", "short.h5", "long.h5", "--output", "sweep.h5")
         rows = stored.read_table(self.folder / "sweep.h5", BIN)
         fails = ((rows.max_time == 2) & (rows.seed > 1)).to_numpy()
         crashes = fails & (rows.seed == 3).to_numpy()
-        self.change(distance=np.where(fails, np.nan, 1.0), sound_distance=np.where(fails, 2.0, 1.0), status=np.where(fails, b"failed", b"flowing"),
+        self.change(distance=np.where(fails, np.nan, 1.0), sound_distance=np.where(fails, 2.0, 1.0),
+                    status=np.where(fails, b"failed", b"flowing"),
                     failed_by=np.where(crashes, b"crash", np.where(fails, b"crossing", b"none")))
         group, = self.fit("--pool=max-time")["groups"]
-        self.assertEqual((group["runs"], group["repeated"], group["failed"], group["total_distance"]), (3, 3, 1, 1 + 2 + 1))
+        self.assertEqual((group["runs"], group["repeated"], group["failed"], group["total_distance"]),
+                         (3, 3, 1, 1 + 2 + 1))
 
     def test_clogs_near_the_limit_of_friction_are_marked(self):
         self.sweep("seeds=1..10", *FAR)
-        for use, doubts in (([0.96] + [0.5] * 9, None), ([0.96] + [1.0] * 9, None), ([0.96] * 2 + [np.nan] * 8, "near_friction_limit")):
-            self.change(distance=3 * EXPONENTIAL, status=[b"clogged"] * 10, mechanism=[b"wrapped"] * 10, mesh_hold=0.0, friction_use=use)
+        for use, doubts in (([0.96] + [0.5] * 9,
+                             None), ([0.96] + [1.0] * 9, None), ([0.96] * 2 + [np.nan] * 8, "near_friction_limit")):
+            self.change(distance=3 * EXPONENTIAL, status=[b"clogged"] * 10, mechanism=[b"wrapped"] * 10,
+                        mesh_hold=0.0, friction_use=use)
             self.assertEqual(self.fit()["groups"][0]["doubts"], doubts)
         self.assertIn("\nh: more than 15 % of the clogs", self.succeed("clogfit", "sweep.h5").stdout)
 
@@ -726,7 +775,8 @@ class Fit(ProgramTest):
         group, = self.fit()["groups"]
         self.assertEqual((group["clogs"], group["passed"], group["flowing"]), (1, 2, 1))
         self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r"clogs +passed")
-        self.assertIn(", 1 clogged, 1 flowing, 0 failed, 2 passed;", self.succeed("clogsweep", "status", "sweep.h5").stdout)
+        self.assertIn(", 1 clogged, 1 flowing, 0 failed, 2 passed;",
+                      self.succeed("clogsweep", "status", "sweep.h5").stdout)
         self.assertEqual(json.loads(self.succeed("clogsweep", "status", "sweep.h5", "--format", "json").stdout)["passed"], 2)
 
     def test_physically_impossible_rows_are_excluded_with_a_doubt(self):
@@ -762,7 +812,8 @@ class Fit(ProgramTest):
         groups = self.fit()["groups"]
         self.assertEqual(len(lines), 2)
         for line, group in zip(lines, groups):
-            self.assertEqual(list(line), [name for name in group if name not in ("automatic", "survival", "incidence", "censored_distances")])
+            self.assertEqual(list(line), [name for name in group
+                                          if name not in ("automatic", "survival", "incidence", "censored_distances")])
             self.assertEqual(float(line["total_distance"]), group["total_distance"])
 
     def test_numbers_have_the_figures_that_their_interval_allows(self):
@@ -798,7 +849,8 @@ class Fit(ProgramTest):
             tangent = math.tan(math.radians(group["lattice_angle"]))
             self.assertAlmostEqual(group["row_share"], slope / tangent, places=12)
             self.assertAlmostEqual(group["row_share_error"], group["lateral_slope_error"] / abs(tangent), places=12)
-            self.assertEqual((group["pitch"], group["row_spacing"], group["row_angle"]), (1.5, 1.5, group["lattice_angle"]))
+            self.assertEqual((group["pitch"], group["row_spacing"], group["row_angle"]),
+                             (1.5, 1.5, group["lattice_angle"]))
         self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, "lateral/r +[+]- +along rows +[+]-")
 
     def test_own_circles_have_a_share_along_the_rows_that_are_stated(self):
@@ -807,8 +859,10 @@ class Fit(ProgramTest):
         # pitch.
         posts = [(1.5 * i + 0.1, (1.5 * (j + i / 4)) % 12) for i in range(8) for j in range(8)]
         self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x, y in posts))
-        self.succeed("clogsweep", *disks, "obstacles=posts.csv", "box=12", "seeds=1..3", "release=anywhere", "--output", "sweep.h5")
-        self.succeed("clogsweep", *disks, "obstacle-layout=lattice", "lattice=rhombic", "pitch=1.5", f"lattice-angle={math.degrees(math.atan(0.25))}",
+        self.succeed("clogsweep", *disks, "obstacles=posts.csv", "box=12", "seeds=1..3",
+                     "release=anywhere", "--output", "sweep.h5")
+        self.succeed("clogsweep", *disks, "obstacle-layout=lattice", "lattice=rhombic",
+                     "pitch=1.5", f"lattice-angle={math.degrees(math.atan(0.25))}",
                      "box=12", "seeds=1..3", "--output", "lattice.h5")
         self.assertEqual(self.fit()["groups"][0]["row_share"], None)
         share = self.fit("--row-angle", str(math.degrees(math.atan(0.25))))["groups"][0]["row_share"]

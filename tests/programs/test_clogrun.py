@@ -50,17 +50,20 @@ class Run(ProgramTest):
         self.refuse("clogrun", "replay", "s.h5", 77, "--output", "x.h5", words=["no task 77"])
         self.refuse("clogrun", "replay", "s.h5", "--output", "x.h5", words=["missing sweep file or task"])
         self.refuse("clogrun", "replay", "s.h5", 1, "line-tension=3", "--output", "x.h5", words=["remove line-tension"])
-        self.refuse("clogrun", "array", "--to-rest", "--output", "x.h5", words=["--to-rest has no meaning for clogrun array"])
+        self.refuse("clogrun", "array", "--to-rest", "--output", "x.h5",
+                    words=["--to-rest has no meaning for clogrun array"])
 
     def test_a_droplet_in_a_long_array_does_not_meet_the_same_obstacles_again(self):
         for boxes, repeats in ((1, True), (4, False)):
-            self.succeed("clogrun", "array", "vertices=64", "box=8", f"boxes={boxes}", "obstacle-density=0.3", "line-tension=0.3", "max-time=600",
-                         "--polygon-interval=20", "--seed=2", "--output", f"{boxes}.h5")
+            self.succeed("clogrun", "array", "vertices=64", "box=8", f"boxes={boxes}", "obstacle-density=0.3",
+                         "line-tension=0.3", "max-time=600", "--polygon-interval=20", "--seed=2", "--output",
+                         f"{boxes}.h5")
             with h5py.File(self.folder / f"{boxes}.h5") as file:
                 met = file["obstacles"][:, :2].round(6).tolist()
             one_box_before_the_last = [[round(x + 8, 6), y] for x, y in met if x + 8 < max(x for x, _ in met)]
             self.assertGreater(len(one_box_before_the_last), 5)
-            self.assertEqual([place in met for place in one_box_before_the_last], [repeats] * len(one_box_before_the_last))
+            self.assertEqual([place in met for place in one_box_before_the_last],
+                             [repeats] * len(one_box_before_the_last))
 
     def test_a_long_array_can_be_written_and_used_again(self):
         keys = ["vertices=64", "box=8", "boxes=3", "max-time=20"]
@@ -74,22 +77,28 @@ class Run(ProgramTest):
         self.assertAlmostEqual(again.obstacle_density, len(places) / (24 * 8), places=12)
 
     def test_what_was_not_tested_is_said_on_the_standard_error(self):
-        for system in (["array", *SMALL, "--output", "run.h5"], ["channel", "vertices=64", "--start=-1", "--output", "channel.h5"], ["sag", "vertices=64"]):
+        for system in (["array", *SMALL, "--output",
+                        "run.h5"], ["channel", "vertices=64", "--start=-1", "--output",
+                                    "channel.h5"], ["sag", "vertices=64"]):
             with self.subTest(system=system[0]):
                 keys = ["line-tension=0", "max-time=1"]
                 done = self.run_program("clogrun", *system, *keys)
-                self.assertEqual(done.stderr.splitlines()[0], "outside the range tested for soundness (handbook, Which droplets are sound): line-tension=0 "
+                self.assertEqual(done.stderr.splitlines()[0],
+                                 "outside the range tested for soundness (handbook, Which droplets are sound): line-tension=0 "
                                  "(robust is tested from 0.05 to 10)")
         self.assertEqual(self.succeed("clogrun", "array", *SMALL, "max-time=1", "--output", "sound.h5").stderr, "")
 
     def test_a_coarse_polygon_in_a_channel_is_cautioned_against(self):
-        for vertices, told in ((96, ["with vertices=96 a droplet may clog where it passes with 128 or more (corners of the polygon catch on the wedges' tips); "
+        for vertices, told in ((96, ["with vertices=96 a droplet may clog where it passes with 128 or more "
+                                     "(corners of the polygon catch on the wedges' tips); "
                                      "use vertices=128 or more"]), (128, [])):
-            done = self.succeed("clogrun", "channel", f"vertices={vertices}", "max-time=1", "--output", f"{vertices}.h5")
+            done = self.succeed("clogrun", "channel", f"vertices={vertices}", "max-time=1",
+                                "--output", f"{vertices}.h5")
             self.assertEqual(done.stderr.splitlines(), told)
 
     def test_it_writes_the_trajectory(self):
-        done = self.succeed("clogrun", "array", *QUICK, "obstacle-gap=1.2", "--sample-interval", 2, "time-step=1e-3", "--output", "run.h5")
+        done = self.succeed("clogrun", "array", *QUICK, "obstacle-gap=1.2", "--sample-interval", 2, "time-step=1e-3",
+                            "--output", "run.h5")
         self.assertRegex(done.stdout.splitlines()[-1], r"^\d+ steps, [\d.]+ s, [\d.]+ ns per vertex-step$")
         samples = pandas.read_hdf(self.folder / "run.h5", "trajectory")
         self.assertEqual(samples.time[0], 0)
@@ -116,7 +125,8 @@ class Run(ProgramTest):
         self.succeed("clogsweep", *QUICK, "seeds=2", "--output", "s.h5")
         self.succeed("clogrun", "replay", "s.h5", 0, "--write-obstacles", "replay.csv", "--output", "r.h5")
         self.succeed("clogrun", "array", *QUICK, "seeds=2", "--write-obstacles", "array.csv", "--output", "a.h5")
-        circles = [np.loadtxt(self.folder / f"{name}.csv", delimiter=",", comments=("#", "x")) for name in ("replay", "array")]
+        circles = [np.loadtxt(self.folder / f"{name}.csv", delimiter=",", comments=("#", "x"))
+                   for name in ("replay", "array")]
         np.testing.assert_array_equal(*circles)
 
     def test_it_writes_polygons_and_the_obstacles_along_the_way(self):
@@ -147,15 +157,18 @@ class Run(ProgramTest):
         self.assertLess(row.box, 40)
         self.assertAlmostEqual(row.lattice_angle, 10, delta=0.1)
         self.assertNotEqual(row.lattice_angle, 10)
-        self.succeed("clogrun", "array", *keys, f"lattice-angle={float(row.lattice_angle)!r}", f"box={float(row.box)!r}", "--output", "b.h5")
+        self.succeed("clogrun", "array", *keys, f"lattice-angle={float(row.lattice_angle)!r}",
+                     f"box={float(row.box)!r}", "--output", "b.h5")
         again = pandas.read_hdf(self.folder / "b.h5", "runs").iloc[0]
         for column in ("box", "lattice_angle", "distance", "lateral_displacement"):
             self.assertEqual(row[column], again[column], column)
 
     def test_the_posts_of_a_triangular_lattice_are_its_pitch_apart(self):
-        keys = ["model=sp", "wall-stiffness=10", "obstacle-layout=lattice", "lattice=triangular", "pitch=2", "lattice-angle=19.1", "box=10", "max-time=1"]
+        keys = ["model=sp", "wall-stiffness=10", "obstacle-layout=lattice", "lattice=triangular",
+                "pitch=2", "lattice-angle=19.1", "box=10", "max-time=1"]
         told = self.succeed("clogrun", "array", *keys, "--output", "a.h5", "--dry-run").stdout
-        self.assertIn("# triangular lattice: pitch 2 sigma, rows 1.732 sigma apart, at 19.11 degrees (tan = sqrt(3)*1/5); period 5.292 sigma along "
+        self.assertIn("# triangular lattice: pitch 2 sigma, rows 1.732 sigma apart, "
+                      "at 19.11 degrees (tan = sqrt(3)*1/5); period 5.292 sigma along "
                       "the flow, 9.165 across, 14 posts\n", told)
         self.succeed("clogrun", "array", *keys, "--write-obstacles", "posts.csv", "--output", "a.h5")
         row = pandas.read_hdf(self.folder / "a.h5", "runs").iloc[0]
@@ -168,7 +181,8 @@ class Run(ProgramTest):
             self.assertEqual(((np.hypot(x, y) - 2).abs() < 1e-9).sum(), 6)
 
     def test_a_mixture_of_obstacles_is_written(self):
-        self.succeed("clogrun", "array", *QUICK, "obstacle-diameter-spread=0.5", "--write-obstacles", "array.csv", "--output", "a.h5")
+        self.succeed("clogrun", "array", *QUICK, "obstacle-diameter-spread=0.5", "--write-obstacles", "array.csv",
+                     "--output", "a.h5")
         diameters = pandas.read_csv(self.folder / "array.csv").diameter
         self.assertGreater(diameters.max() - diameters.min(), 0.28)
         row = pandas.read_hdf(self.folder / "a.h5", "runs").iloc[0]
@@ -177,13 +191,15 @@ class Run(ProgramTest):
         self.assertTrue(np.isnan(row.lattice_angle))
 
     def test_obstacles_written_can_be_read_back(self):
-        self.succeed("clogrun", "array", *QUICK, "obstacle-gap=0.4", "seeds=2", "--write-obstacles", "array.csv", "--output", "a.h5")
+        self.succeed("clogrun", "array", *QUICK, "obstacle-gap=0.4", "seeds=2", "--write-obstacles", "array.csv",
+                     "--output", "a.h5")
         header = (self.folder / "array.csv").read_text().splitlines()[0]
         self.assertEqual(header, "x,y,diameter")
         # With --obstacles a density in the config has no effect, even if no array with this gap could have such a
         # density.
         self.write("dense.cfg", "obstacle-density = 2.5\n")
-        self.succeed("clogrun", "array", "vertices=64", "box=20", "max-time=60", "seeds=2", "--config", "dense.cfg", "obstacle-density=12.5%", "--obstacles", "array.csv", "--output", "b.h5")
+        self.succeed("clogrun", "array", "vertices=64", "box=20", "max-time=60", "seeds=2", "--config", "dense.cfg",
+                     "obstacle-density=12.5%", "--obstacles", "array.csv", "--output", "b.h5")
         first = pandas.read_hdf(self.folder / "a.h5", "runs").iloc[0]
         second = pandas.read_hdf(self.folder / "b.h5", "runs").iloc[0]
         self.assertEqual(first.distance, second.distance)
@@ -210,30 +226,34 @@ class Run(ProgramTest):
         stored = ["kinetic", "gravity", "line_tension", "area", "spring", "wall", "self_contact", "anchor"]
         for name, keys in laws.items():
             with self.subTest(name):
-                self.succeed("clogrun", "array", *keys, "vertices=64", "line-tension=0.2", "obstacle-gap=0.3", "box=20", "max-time=80", "seeds=1",
-                             "--sample-interval", 0.5, "--output", f"{name}.h5")
+                self.succeed("clogrun", "array", *keys, "vertices=64", "line-tension=0.2", "obstacle-gap=0.3", "box=20",
+                             "max-time=80", "seeds=1", "--sample-interval", 0.5, "--output", f"{name}.h5")
                 samples = pandas.read_hdf(self.folder / f"{name}.h5", "trajectory")
                 energy = sum(samples[f"{part}_energy"] for part in stored) - samples.spreading_work
                 self.assertGreater(samples.anchor_energy.max(), 0)
                 self.assertLess(energy.diff().max(), 0)
-                self.assertLess((energy + samples.dissipated_energy).pipe(np.ptp), 1e-4 * samples.dissipated_energy.iloc[-1])
+                self.assertLess((energy + samples.dissipated_energy).pipe(np.ptp),
+                                1e-4 * samples.dissipated_energy.iloc[-1])
 
     def test_a_droplet_that_creeps_along_walls_with_friction_is_not_certified(self):
         # The droplet creeps for 3000 t0, and then travels another 15 sigma. If the search for a rest began as early as
         # without friction, it would certify a clog.
-        self.succeed("clogrun", "array", "preset=elastic", "friction=0.1", "line-tension=0.3", "vertices=256", "obstacle-gap=0.3", "obstacle-density=65%",
-                     "box=50", "boxes=4", "seeds=6", "max-time=300", "--sample-interval=60", "--output", "creep.h5")
+        self.succeed("clogrun", "array", "preset=elastic", "friction=0.1", "line-tension=0.3", "vertices=256",
+                     "obstacle-gap=0.3", "obstacle-density=65%", "box=50", "boxes=4", "seeds=6", "max-time=300",
+                     "--sample-interval=60", "--output", "creep.h5")
         with h5py.File(self.folder / "creep.h5") as file:
             last = file["trajectory"][-2:]
         self.assertLess(abs(last["distance"][1] - last["distance"][0]), 1e-3)
-        self.assertTrue((last["kinetic_energy_ratio"] < 1e-7).all() and (last["kinetic_energy_ratio"] > 1e-9).all(), last["kinetic_energy_ratio"])
+        self.assertTrue((last["kinetic_energy_ratio"] < 1e-7).all() and (last["kinetic_energy_ratio"] > 1e-9).all(),
+                        last["kinetic_energy_ratio"])
         self.assertEqual(table(self.folder / "creep.h5").status[0], "flowing")
 
     def test_a_droplet_at_rest_is_certified_although_its_walls_yield_many_times(self):
         # Friction acts on both parts of the interface that are over an obstacle. The kinetic energy falls by a factor
         # of 10 in 330 t0. The search for a rest begins shortly before max-time.
-        done = self.succeed("clogrun", "array", "preset=elastic", "friction=0.2", "line-tension=0.1", "vertices=256", "obstacle-gap=0.3",
-                            "obstacle-density=saturated", "box=40", "seeds=1", "max-time=2400", "--output", "rest.h5")
+        done = self.succeed("clogrun", "array", "preset=elastic", "friction=0.2", "line-tension=0.1", "vertices=256",
+                            "obstacle-gap=0.3", "obstacle-density=saturated", "box=40", "seeds=1", "max-time=2400",
+                            "--output", "rest.h5")
         self.assertIn("clogged after r = 1.3258", done.stdout)
 
     def test_a_channel_run_writes_h_speed_shape_and_polygons(self):
@@ -265,8 +285,8 @@ class Run(ProgramTest):
 
     def test_a_droplet_is_released_whose_springs_would_keep_it_sliding(self):
         """This release was once refused, although a droplet with half the line tension could be released."""
-        done = self.succeed("clogrun", "array", "preset=robust", "vertices=64", "box=40", "line-tension=0.1", "obstacle-gap=0.4",
-                            "seeds=1", "max-time=1", "--output", "r.h5")
+        done = self.succeed("clogrun", "array", "preset=robust", "vertices=64", "box=40", "line-tension=0.1",
+                            "obstacle-gap=0.4", "seeds=1", "max-time=1", "--output", "r.h5")
         self.assertTrue(done.stdout.startswith("flowing after "), done.stdout)
 
     def test_sag_prints_how_far_the_droplet_sinks(self):
@@ -287,7 +307,8 @@ class Run(ProgramTest):
 
     def test_ctrl_c_writes_what_there_is(self):
         process = subprocess.Popen(
-            [str(BIN / "clogrun"), "array", "vertices=64", "box=20", "obstacle-gap=1.2", "--polygon-interval", "100", "--frames", "film",
+            [str(BIN / "clogrun"), "array", "vertices=64", "box=20", "obstacle-gap=1.2",
+             "--polygon-interval", "100", "--frames", "film",
              "--output", "run.h5"], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         )
         self.addCleanup(process.kill)
@@ -296,14 +317,16 @@ class Run(ProgramTest):
         output, told = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 75)
         self.assertTrue(re.match("interrupted after r = ", output), output)
-        self.assertRegex(told, r"no film is drawn; PYTHONPATH=\S+ \S+ -m clogsweep droplet run.h5 --output=film --film draws what there is\n$")
+        self.assertRegex(told, r"no film is drawn; PYTHONPATH=\S+ \S+ -m clogsweep droplet run.h5 --output=film --film "
+                               r"draws what there is\n$")
         self.assertGreater(len(pandas.read_hdf(self.folder / "run.h5", "trajectory")), 10)
 
     def test_a_terminal_is_told_how_far_it_is(self):
         master, slave = pty.openpty()
         self.addCleanup(os.close, master)
         process = subprocess.Popen(
-            [str(BIN / "clogrun"), "array", *SMALL, "obstacle-gap=1.2", "max-time=1e8", "--sample-interval", "1e4", "--output", "run.h5"],
+            [str(BIN / "clogrun"), "array", *SMALL, "obstacle-gap=1.2", "max-time=1e8",
+             "--sample-interval", "1e4", "--output", "run.h5"],
             cwd=self.folder, stdout=subprocess.DEVNULL, stderr=slave)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
@@ -316,7 +339,8 @@ class Run(ProgramTest):
 
         while told.count(b" left") < 2:
             told += read_on()
-        self.assertRegex(told.decode(), r"^\rr = \S+ sigma, t = \S+ of at most 1e\+08 t0, .+ so far, at most .+ left\x1b\[K\rr = ")
+        self.assertRegex(told.decode(),
+                         r"^\rr = \S+ sigma, t = \S+ of at most 1e\+08 t0, .+ so far, at most .+ left\x1b\[K\rr = ")
         process.send_signal(signal.SIGINT)
         while not told.endswith(b"\r\x1b[K"):
             told += read_on()
@@ -327,7 +351,8 @@ class Run(ProgramTest):
         told = self.succeed("clogrun", "array", *keys, "--dry-run", "--output", "run.h5").stdout
         self.assertEqual(self.snapshot(), {})
         self.assertIn("at most 100 t0 in ", told)
-        self.assertNotIn(": 0 s on", self.succeed("clogrun", "array", *SMALL, "max-time=0.1", "--dry-run", "--output", "run.h5").stdout)
+        self.assertNotIn(": 0 s on",
+                         self.succeed("clogrun", "array", *SMALL, "max-time=0.1", "--dry-run", "--output", "run.h5").stdout)
         self.assertIn("on this machine", told)
         samples, polygons = map(int, re.search(r"# at most (\d+) samples and (\d+) polygons", told).groups())
         # The output is a config. The same run must follow from it.
@@ -362,7 +387,8 @@ class Run(ProgramTest):
             (["channel", "--output", "r.h5", "--orifice", "wide"], ["orifice=wide"]),
             (["channel", "--output", "r.h5", "--start", "0"], ["start=0", "upstream"]),
             (["channel", "--output", "r.h5", "--start", "5"], ["start=5", "upstream"]),
-            (["channel", "--output", "r.h5", "--start", "5", "--wedge-angle", "0", "--orifice", "2"], ["start=5", "give end, too"]),
+            (["channel", "--output", "r.h5", "--start", "5", "--wedge-angle", "0", "--orifice",
+              "2"], ["start=5", "give end, too"]),
             (["channel", "--output", "r.h5", "--start", "-5", "--end", "-6"], ["end=-6", "downstream"]),
             (["channel", *out], ["box=20", "no array"]),
             (["array", "--orifice", "0.6", *out], ["obstacle-layout=channel", "clogrun channel"]),
@@ -382,12 +408,15 @@ class Run(ProgramTest):
             (["array", "--obstacles", "nan.csv", *out], ["nan.csv line 3", "nan"]),
             (["array", "--obstacles", "infinite.csv", *out], ["infinite.csv line 1", "inf"]),
             (["array", "--obstacles", "header.csv", *out], ["no obstacles"]),
-            (["array", "--obstacles", "semicolons.csv", *out], ["the columns have to be x, y", "here they are 'a,b,diameter'"]),
-            (["array", "--obstacles", "numbers.csv", *out], ["numbers.csv line 1: needs x,y or x,y,diameter, separated by commas"]),
+            (["array", "--obstacles", "semicolons.csv",
+              *out], ["the columns have to be x, y", "here they are 'a,b,diameter'"]),
+            (["array", "--obstacles", "numbers.csv",
+              *out], ["numbers.csv line 1: needs x,y or x,y,diameter, separated by commas"]),
             (["array", "--obstacles", "empty.csv", *out], ["no obstacles"]),
             (["array", "--obstacles", "outside.csv", "obstacle-gap=0.3", *out], ["contradict", "the file's own gap"]),
             (["array", "--obstacles", "outside.csv", "obstacle-layout=lattice", *out], ["contradict"]),
-            (["array", "--obstacles", "outside.csv", "--config", "lattice.cfg", *out], ["obstacle-layout=lattice", "contradict"]),
+            (["array", "--obstacles", "outside.csv", "--config", "lattice.cfg",
+              *out], ["obstacle-layout=lattice", "contradict"]),
         ]:
             with self.subTest(arguments=arguments):
                 self.refuse("clogrun", *arguments, words=words)

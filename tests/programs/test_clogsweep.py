@@ -53,7 +53,8 @@ class Sweep(ProgramTest):
         (self.folder / "logger.c").write_text(FORK_LOGGER)
         subprocess.run(["cc", "-shared", "-fPIC", "-o", "logger.so", "logger.c", "-ldl"], cwd=self.folder, check=True)
         log = self.folder / "log.txt"
-        env = {**os.environ, "LD_PRELOAD": str(self.folder / "logger.so"), "FORK_LOG": str(log), "ASAN_OPTIONS": f"{os.environ.get('ASAN_OPTIONS', '')}:verify_asan_link_order=0"}
+        env = {**os.environ, "LD_PRELOAD": str(self.folder / "logger.so"), "FORK_LOG": str(log),
+               "ASAN_OPTIONS": f"{os.environ.get('ASAN_OPTIONS', '')}:verify_asan_link_order=0"}
         for more in (["--dry-run"], ["--output", "s.h5"], ["--output", "s.h5", "--dry-run"]):
             with self.subTest(more=more):
                 log.unlink(missing_ok=True)
@@ -143,7 +144,8 @@ class Sweep(ProgramTest):
         done = self.succeed("clogsweep", "--config", "sweep.cfg", "--print-config", "seeds=7", "--box", "40")
         for line in ("line-tension = 1,2", "seeds = 7", "box = 40", "vertices = 128"):
             self.assertIn(line + "\n", done.stdout)
-        self.assertRegex(done.stdout, r"\n# wall-stiffness = 0\.0\d+\n# obstacle-density = 0\.348\d*\n# vertices = 128\n# time-step = 0\.00\d+\n# area-stiffness = \d+\n# perimeter-stiffness = 0\.1\n# wall-tension = 1\n# receding-angle = 180\n# advancing-angle = 180\n# film-friction = off\n$")
+        self.assertRegex(done.stdout,
+                         r"\n# wall-stiffness = 0\.0\d+\n# obstacle-density = 0\.348\d*\n# vertices = 128\n# time-step = 0\.00\d+\n# area-stiffness = \d+\n# perimeter-stiffness = 0\.1\n# wall-tension = 1\n# receding-angle = 180\n# advancing-angle = 180\n# film-friction = off\n$")
         self.write("printed.cfg", done.stdout)
         self.assertEqual(self.succeed("clogsweep", "--config", "printed.cfg", "--print-config").stdout, done.stdout)
 
@@ -151,7 +153,8 @@ class Sweep(ProgramTest):
 
     def test_a_dry_run_lists_the_tasks_and_runs_none(self):
         begin = time.time()
-        done = self.succeed("clogsweep", *QUICK, "line-tension=lin(0.5,1.5,3)", "seeds=1..4", "--dry-run", "--output", "s.h5")
+        done = self.succeed("clogsweep", *QUICK, "line-tension=lin(0.5,1.5,3)", "seeds=1..4",
+                            "--dry-run", "--output", "s.h5")
         elapsed = time.time() - begin
         lines = [line for line in done.stdout.splitlines() if "obstacle spacing" not in line]
         self.assertEqual(len(lines), 1 + 12 + 3)
@@ -170,7 +173,8 @@ class Sweep(ProgramTest):
         self.assertRegex(expected, self.EXPECTED + "in s.h5, 6 of them ended$")
         self.assertEqual(self.snapshot(), before)
         hours = table(self.folder / "s.h5").processor_seconds.sum() / 3600
-        self.assertRegex(left, r"^# s.h5 has 6 of 60 runs; 54 to go: expected \S+ core-hours more \(95 %: \S+ to \S+\)$")
+        self.assertRegex(left,
+                         r"^# s.h5 has 6 of 60 runs; 54 to go: expected \S+ core-hours more \(95 %: \S+ to \S+\)$")
         of_all, more = (float(re.search("expected ([^ ]+) ", line)[1]) for line in (expected, left))
         self.assertAlmostEqual(more / of_all, 1 - hours / of_all, delta=0.1)
         # Nothing remains for an estimate.
@@ -186,7 +190,8 @@ class Sweep(ProgramTest):
             rows["processor_seconds"] = np.where(rows["line_tension"] == 0.5, 1000, 1)
 
         stored_rows.change(self.folder / "s.h5", edit)
-        told = self.succeed("clogsweep", *sweep, "line-tension=0.5,1", "seeds=1..6", "--dry-run").stdout.splitlines()[-1]
+        told = self.succeed("clogsweep", *sweep, "line-tension=0.5,1", "seeds=1..6",
+                            "--dry-run").stdout.splitlines()[-1]
         self.assertIn(f"9 of 12 runs; 3 to go: expected {3 / 3600:.2g} core-hours more ", told)
 
     def test_the_expected_cost_is_within_its_interval_and_its_limit(self):
@@ -240,10 +245,12 @@ class Sweep(ProgramTest):
         keys = ["line-tension=1", "vertices=32", "box=20", "max-time=3000"]
         self.assertNotIn("obstacle spacing", self.succeed("clogsweep", *keys, "seeds=1..8", "--dry-run").stdout)
         saturated = [*keys, "obstacle-density=saturated"]
-        self.assertRegex(self.succeed("clogsweep", *saturated, "seeds=1..8", "--dry-run").stdout, r"# \d of \d runs clogged within one obstacle spacing \(0.5 sigma\)")
+        self.assertRegex(self.succeed("clogsweep", *saturated, "seeds=1..8", "--dry-run").stdout,
+                         r"# \d of \d runs clogged within one obstacle spacing \(0.5 sigma\)")
         # The count includes runs that are not in the lists, as in clogfit.
         self.succeed("clogsweep", *saturated, "seeds=1..8", "--output", "s.h5")
-        self.assertIn("clogged within one obstacle spacing", self.succeed("clogsweep", *saturated, "seeds=1..9", "--dry-run", "--output", "s.h5").stdout)
+        self.assertIn("clogged within one obstacle spacing",
+                      self.succeed("clogsweep", *saturated, "seeds=1..9", "--dry-run", "--output", "s.h5").stdout)
         self.assertIn("below_spacing", self.succeed("clogfit", "s.h5", "--format", "csv").stdout)
 
     def test_a_dry_run_of_runs_that_cannot_begin_fails(self):
@@ -270,12 +277,14 @@ class Sweep(ProgramTest):
         self.assertNotIn("soundness", told)
         told = self.succeed("clogsweep", *SMALL, "max-time=2000", "--dry-run").stdout
         self.assertIn("# droplets of 1 of 1 parameter set may travel farther than the length of their array ", told)
-        self.assertIn("# outside the range tested for soundness (handbook, Which droplets are sound): line-tension=30 ", self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
+        self.assertIn("# outside the range tested for soundness (handbook, Which droplets are sound): line-tension=30 ",
+                      self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
 
     def test_what_was_not_tested_is_said_once_when_the_sweep_starts(self):
         sweep = [*SMALL, "max-time=1", "line-tension=0.05,30", "seeds=1..3", "--output", "s.h5"]
         lines = self.succeed("clogsweep", *sweep, ranks=2).stderr.splitlines()
-        self.assertEqual(sum("outside the range tested for soundness" in line and "line-tension=30 " in line for line in lines), 1, lines)
+        self.assertEqual(sum("outside the range tested for soundness" in line and "line-tension=30 " in line
+                             for line in lines), 1, lines)
         self.assertFalse(any("line-tension=0.05" in line for line in lines), lines)
         self.assertNotIn("soundness", self.succeed("clogsweep", *sweep).stderr, "nothing is left to do")
         self.assertEqual(self.succeed("clogsweep", *sweep[:-1], "quiet.h5", "--quiet").stderr, "")
@@ -289,7 +298,8 @@ class Sweep(ProgramTest):
         self.assertIn("s.h5 has 1 of 1 run; there is nothing left to do\n", self.succeed("clogsweep", *sweep).stderr)
         self.assertIn("s.h5: 1 of 1 run finished, ", self.succeed("clogsweep", "status", "s.h5").stdout)
         self.assertIn("s.h5: 1 row of 1 run, all undamaged\n", self.succeed("clogsweep", "verify", "s.h5").stdout)
-        self.assertIn("whole.h5: 1 undamaged row\n", self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5").stdout)
+        self.assertIn("whole.h5: 1 undamaged row\n",
+                      self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5").stdout)
 
     def test_help_and_version(self):
         self.assertIn("--line-tension", self.succeed("clogsweep", "--help").stdout)
@@ -311,7 +321,8 @@ class Sweep(ProgramTest):
 
 
 class Stopped(SweepTest):
-    LONG = ["vertices=64", "box=20", "obstacle-gap=1.2", "max-time=1e9", "seeds=1..4", "--report-seconds=0.1", "--output", "s.h5"]
+    LONG = ["vertices=64", "box=20", "obstacle-gap=1.2", "max-time=1e9", "seeds=1..4",
+            "--report-seconds=0.1", "--output", "s.h5"]
 
     def ranks_that_move(self):
         return set(table(self.folder / "s.h5").query("status == 'running' and distance > 0")["rank"])
@@ -392,7 +403,8 @@ class Isolated(ProgramTest):
         rows = table(self.folder / "s.h5")
         self.assertEqual(list(rows.status), ["failed", "flowing"])
         self.assertEqual(rows.message[0], "its process was ended by SIGSEGV (Segmentation fault)")
-        self.assertRegex(error, r"(?m)^\d\d:\d\d:\d\d task 0 rank 0: failed, attempt 1: its process was ended by SIGSEGV")
+        self.assertRegex(error,
+                         r"(?m)^\d\d:\d\d:\d\d task 0 rank 0: failed, attempt 1: its process was ended by SIGSEGV")
 
     def test_a_task_that_crashed_is_tried_again(self):
         process = self.start("seeds=1", "max-time=5e3")
@@ -456,7 +468,8 @@ class Told(ProgramTest):
     def test_by_default_only_what_is_out_of_the_ordinary(self):
         self.assertNotIn("task", self.succeed("clogsweep", *self.RUNS).stderr)
         failing = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--output", "f.h5").stderr
-        self.assertRegex(failing, r"(?m)^\S+ task 0 rank 0: failed, attempt 1, will be tried again: cannot release the droplet .*seed 64\)$")
+        self.assertRegex(failing, r"(?m)^\S+ task 0 rank 0: failed, attempt 1, will be tried again: "
+                                  r"cannot release the droplet .*seed 64\)$")
         self.assertRegex(failing, r"(?m)^\S+ task 0 rank 0: failed, attempt 2: cannot release the droplet .*seed 64\)$")
 
     def test_quiet_says_nothing(self):
@@ -541,7 +554,8 @@ class Refusals(ProgramTest):
                                            ("clogrun", ["array", *keys, *geometry, f"obstacle-density={density}"])]:
                     self.refuse(program, *arguments, "--output", "s.h5",
                                 words=[f"invalid obstacle-density={density} ", f"use at most {largest}, or saturated"])
-            self.succeed("clogsweep", *keys, *geometry, f"obstacle-density={largest}", "seeds=1..20", "--output", "s.h5")
+            self.succeed("clogsweep", *keys, *geometry, f"obstacle-density={largest}",
+                         "seeds=1..20", "--output", "s.h5")
             self.assertNotIn("failed", set(table(self.folder / "s.h5").status))
             self.succeed("clogrun", "array", *keys, *geometry, f"obstacle-density={largest}", "--output", "r.h5")
             for name in ("s.h5", "r.h5"):

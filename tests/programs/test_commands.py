@@ -18,7 +18,8 @@ class Meant(ProgramTest):
                 self.refuse(program, *words, words=[f"unknown command '{words[0]}'; did you mean {meant}?"])
 
     def test_a_misspelt_word_of_a_key_is_answered_with_the_one_meant(self):
-        self.refuse("clogsweep", "preset=robst", "--output", "s.h5", words=["invalid preset=robst", "elastic, literal; did you mean robust?"])
+        self.refuse("clogsweep", "preset=robst", "--output", "s.h5",
+                    words=["invalid preset=robst", "elastic, literal; did you mean robust?"])
 
     def test_a_file_of_a_command_s_name_is_a_file(self):
         self.write("drug", "")
@@ -29,8 +30,10 @@ class Meant(ProgramTest):
         self.refuse("clogfit", "a.h5", "b.h5", "c.h5", words=["cannot read a.h5 (no such file)"])
 
     def test_a_column_s_name_is_answered_with_the_key(self):
-        self.refuse("clogsweep", "line_tension=1", "--output", "s.h5", words=["no place for 'line_tension=1'; did you mean line-tension=1?"])
-        self.refuse("clogrun", "sag", "line-tension", "0.2", words=["no place for 'line-tension'; did you mean line-tension=VALUE?"])
+        self.refuse("clogsweep", "line_tension=1", "--output", "s.h5",
+                    words=["no place for 'line_tension=1'; did you mean line-tension=1?"])
+        self.refuse("clogrun", "sag", "line-tension", "0.2",
+                    words=["no place for 'line-tension'; did you mean line-tension=VALUE?"])
 
     def test_an_unknown_key_is_quoted_as_it_was_typed(self):
         for typed, told in [("line-tensoin=1", "unknown key line-tensoin; did you mean line-tension?"),
@@ -42,7 +45,8 @@ class Meant(ProgramTest):
         for typed, told in [("gap=0.3", "unknown key gap; did you mean obstacle-gap?"),
                             ("--gap=0.3", "unknown option --gap; did you mean --obstacle-gap?"),
                             ("contact=edge", "unknown key contact; did you mean wall-contact or self-contact?"),
-                            ("obstacle=a.csv", "unknown key obstacle; did you mean obstacles or obstacle-gap or obstacle-density?"),
+                            ("obstacle=a.csv",
+                             "unknown key obstacle; did you mean obstacles or obstacle-gap or obstacle-density?"),
                             ("Gamma=0.3", "unknown key Gamma; did you mean line-tension?"),
                             ("Γ=0.3", "unknown key Γ; did you mean line-tension?"),
                             ("w_ob=0.3", "unknown key w_ob; did you mean obstacle-gap?"),
@@ -90,11 +94,15 @@ class Meant(ProgramTest):
 
     def test_lists_whose_values_contradict_each_other_are_pointed_to_points(self):
         exchange = "invalid receding-angle=180 (larger than advancing-angle=155) exchange them"
-        for advancing, end in [("155,180", "; each value of a list meets all of the other; to pair values, see clogsweep --points\n"), ("155", "\n")]:
-            done = self.run_program("clogsweep", "receding-angle=140,180", f"advancing-angle={advancing}", "--output", "s.h5")
+        for advancing, end in [("155,180", "; each value of a list meets all of the other; "
+                                           "to pair values, see clogsweep --points\n"), ("155", "\n")]:
+            done = self.run_program("clogsweep", "receding-angle=140,180", f"advancing-angle={advancing}",
+                                    "--output", "s.h5")
             self.assertEqual((done.returncode, done.stderr), (2, f"clogsweep: {exchange}{end}"))
         # The refused key need not be a list itself, and the meant value is no decimal.
-        self.refuse("clogsweep", "model=dp,sp", "vertices=64", "--output", "s.h5", words=["invalid vertices=64", "it meets each value of model; to pair values, see clogsweep --points"])
+        self.refuse("clogsweep", "model=dp,sp", "vertices=64", "--output", "s.h5",
+                    words=["invalid vertices=64",
+                           "it meets each value of model; to pair values, see clogsweep --points"])
         done = self.run_program("clogsweep", "model=dp,sp", "vertices=64,128", "--output", "s.h5")
         self.assertIn("to pair values, see clogsweep --points", done.stderr)
         self.assertNotIn("did you mean", done.stderr)
@@ -110,13 +118,16 @@ class Meant(ProgramTest):
 
     def test_a_name_that_no_file_can_have_is_the_user_s_mistake(self):
         name = 300 * "x"
-        for program, *arguments in [["clogfit", name], ["clogsweep", "salvage", name, "--output", "w.h5"], ["clogsweep", "--output", name],
-                                    ["clogrun", "array", "--output", name], ["clogrun", "array", "--config", name, "--output", "w.h5"]]:
+        for program, *arguments in [["clogfit", name], ["clogsweep", "salvage", name, "--output", "w.h5"],
+                                    ["clogsweep", "--output", name], ["clogrun", "array", "--output", name],
+                                    ["clogrun", "array", "--config", name, "--output", "w.h5"]]:
             self.refuse(program, *arguments, words=["File name too long"])
 
     def test_a_line_tension_that_is_too_large_is_named(self):
-        for program in (["clogsweep"], ["clogsweep", "--dry-run"], ["clogsweep", "--print-config"], ["clogrun", "array"]):
-            self.refuse(*program, "line-tension=1e300", "seeds=1", "--output", "s.h5", words=["invalid line-tension=1e300"])
+        for program in (["clogsweep"], ["clogsweep",
+                                        "--dry-run"], ["clogsweep", "--print-config"], ["clogrun", "array"]):
+            self.refuse(*program, "line-tension=1e300", "seeds=1", "--output", "s.h5",
+                        words=["invalid line-tension=1e300"])
 
 
 class Failing(ProgramTest):
@@ -125,7 +136,8 @@ class Failing(ProgramTest):
             done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--output", "f.h5")
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertIn(told, done.stderr)
-            self.assertIn("clogsweep: every run has failed; the first one: cannot release the droplet", done.stderr.splitlines()[-1])
+            self.assertIn("clogsweep: every run has failed; the first one: cannot release the droplet",
+                          done.stderr.splitlines()[-1])
         self.succeed("clogsweep", *BLOCKED, "seeds=51,64", "--output", "f.h5")
 
     def test_quiet_tells_it_too(self):
@@ -142,7 +154,8 @@ class Parameters(ProgramTest):
         # loop for ever.
         for line in ("%prefix%invalid_line%", "line-tension 3"):
             self.write("bad.cfg", f"# a comment\nvertices = 64\n{line}\n")
-            self.refuse("clogsweep", "--config", "bad.cfg", "--output", "s.h5", words=["bad.cfg line 3", line, "key = value"])
+            self.refuse("clogsweep", "--config", "bad.cfg", "--output", "s.h5",
+                        words=["bad.cfg line 3", line, "key = value"])
 
     def line(self, *settings):
         self.succeed("clogsweep", *settings, "max-time=1", "box=20", "seeds=1", "--output", "s.h5")
@@ -164,7 +177,8 @@ class Parameters(ProgramTest):
             (["obstacle-layout=lattice"], f"all runs: model=dp obstacle_filling=lattice lattice_angle=0 {ours}"),
             (["vertices=64", "time-step=2e-3"], f"all runs: model=dp {ours} vertices=64 time_step=0.002"),
             (["terminal-speed=0.05"], f"all runs: model=dp terminal_speed=0.05 {ours}"),
-            (["wall-tension=0.9", "area-stiffness=700"], f"all runs: model=dp wall_tension=0.9 {ours} area_stiffness=700"),
+            (["wall-tension=0.9",
+              "area-stiffness=700"], f"all runs: model=dp wall_tension=0.9 {ours} area_stiffness=700"),
         ]:
             with self.subTest(settings=settings):
                 self.assertEqual(self.line(*settings), line)
@@ -173,7 +187,8 @@ class Parameters(ProgramTest):
         self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
         for command in (["clogfit", "s.h5"], ["clogsweep", "status", "s.h5"]):
             told = self.succeed(*command, "--all-parameters").stdout
-            for word in ("terminal_speed=0.03", "near_wall_cutoff=0.00614", "clog_detection=certified", "model_version="):
+            for word in ("terminal_speed=0.03", "near_wall_cutoff=0.00614", "clog_detection=certified",
+                         "model_version="):
                 self.assertIn(word, told)
             self.assertLessEqual(max(map(len, told.splitlines())), 110, told)
 

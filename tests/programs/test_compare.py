@@ -17,7 +17,8 @@ from clogsweep.drawing import activity
 
 class Compared(Analysis):
     def sweep(self, output, *keys, seeds="1..6"):
-        self.copy_sweep(output, *SMALL, "line-tension=0.5,2", "obstacle-gap=0.4", "max-time=200", f"seeds={seeds}", *keys)
+        self.copy_sweep(output, *SMALL, "line-tension=0.5,2", "obstacle-gap=0.4",
+                        "max-time=200", f"seeds={seeds}", *keys)
 
     def both_presets(self):
         for preset in ("robust", "elastic"):
@@ -40,7 +41,8 @@ class Compared(Analysis):
             lengths = {group.preset: group for group in groups[groups.line_tension == one["line_tension"]].itertuples()}
             self.assertEqual(one["clogging_length_here"], lengths["robust"].clogging_length)
             if one["interval"] == "unpaired":
-                self.assertAlmostEqual(one["ratio"], lengths["robust"].clogging_length / lengths["elastic"].clogging_length)
+                self.assertAlmostEqual(one["ratio"],
+                                       lengths["robust"].clogging_length / lengths["elastic"].clogging_length)
             own = rows[rows.line_tension == one["line_tension"]]
             sides = [own[own.preset == preset].set_index("seed") for preset in ("robust", "elastic")]
             both = [side[side.status == "clogged"] for side in sides]
@@ -55,7 +57,8 @@ class Compared(Analysis):
         for arguments in (["both.h5", "--by", "preset"], ["elastic.h5", "robust.h5"]):
             for one in self.compare(*arguments, "--lab", "lab.cfg")["comparisons"]:
                 self.assertEqual(one["clogging_length_there_mm"], 2 * one["clogging_length_there"])
-        self.assertIn("lambda/mm", self.succeed("clogfit", "compare", "both.h5", "--by", "preset", "--lab", "lab.cfg").stdout)
+        self.assertIn("lambda/mm",
+                      self.succeed("clogfit", "compare", "both.h5", "--by", "preset", "--lab", "lab.cfg").stdout)
 
     def test_files_are_compared_as_values_of_one_file_are(self):
         self.both_presets()
@@ -64,14 +67,16 @@ class Compared(Analysis):
             for one in told["comparisons"]:
                 del one["here"], one["there"]
         self.assertEqual(of_files["comparisons"], of_values["comparisons"])
-        self.assertEqual(self.compare("robust.h5", "elastic.h5", "--by", "preset")["comparisons"][0]["there"], "preset=elastic")
+        self.assertEqual(self.compare("robust.h5", "elastic.h5", "--by", "preset")["comparisons"][0]["there"],
+                         "preset=elastic")
 
     def test_a_sweep_is_at_the_same_place_as_itself(self):
         for name in ("s.h5", "t.h5"):
             self.sweep(name, "preset=robust")
         for one in self.compare("s.h5", "t.h5")["comparisons"]:
             self.assertEqual((one["ratio"], one["same_place"], one["unlike_pairs"]), (1, one["both_clogged"], 0))
-            self.assertEqual((one["interval"], one["ratio_lower"], one["ratio_upper"], one["unpaired_lower"]), ("identical", None, None, None))
+            self.assertEqual((one["interval"], one["ratio_lower"], one["ratio_upper"], one["unpaired_lower"]),
+                             ("identical", None, None, None))
         text = self.succeed("clogfit", "compare", "s.h5", "t.h5").stdout
         self.assertRegex(text, r" 1 +identical +no ")
         self.assertIn("identical: all runs end at the same places here and there", text)
@@ -85,7 +90,8 @@ class Compared(Analysis):
 
     def test_parameter_sets_without_a_counterpart_are_named(self):
         for name, gaps, tensions in (("s.h5", "0.4,0.5,0.6", "0.5,2"), ("t.h5", "0.4", "0.5,2")):
-            self.copy_sweep(name, *SMALL, f"line-tension={tensions}", f"obstacle-gap={gaps}", "max-time=60", "seeds=1..2")
+            self.copy_sweep(name, *SMALL, f"line-tension={tensions}", f"obstacle-gap={gaps}", "max-time=60",
+                            "seeds=1..2")
         left_out = "clogfit compare: s.h5: left out, 4 of 6 groups match no runs of t.h5, such as obstacle_gap=0.5, line_tension=0.5\n"
         for files in (["s.h5", "t.h5"], ["t.h5", "s.h5"]):
             done = self.succeed("clogfit", "compare", *files)
@@ -96,11 +102,14 @@ class Compared(Analysis):
         self.succeed("clogsweep", "select", "s.h5", "obstacle_gap=0.5", "line_tension=2", "--output", "other.h5")
         self.succeed("clogsweep", "merge", "one.h5", "other.h5", "--output", "both.h5")
         self.assertEqual(self.succeed("clogfit", "compare", "both.h5", "--by", "obstacle-gap").stderr,
-                         "clogfit compare: obstacle_gap=0.4: left out, 1 of 2 groups match no runs of obstacle_gap=0.5, such as line_tension=0.5\n")
+                         "clogfit compare: obstacle_gap=0.4: "
+                         "left out, 1 of 2 groups match no runs of obstacle_gap=0.5, such as line_tension=0.5\n")
 
     def test_a_side_without_a_value_is_named(self):
-        for name, *keys in (("random.h5", "obstacle-gap=0.4"), ("lattice.h5", "obstacle-layout=lattice", "obstacle-gap=0.4", "lattice-angle=0")):
-            self.copy_sweep(name, "vertices=64", *(["box=20"] if name == "random.h5" else []), *keys, "line-tension=1,2", "max-time=20", "seeds=1..2")
+        for name, *keys in (("random.h5", "obstacle-gap=0.4"), ("lattice.h5", "obstacle-layout=lattice",
+                                                                "obstacle-gap=0.4", "lattice-angle=0")):
+            self.copy_sweep(name, "vertices=64", *(["box=20"] if name == "random.h5" else []), *keys,
+                            "line-tension=1,2", "max-time=20", "seeds=1..2")
         self.succeed("clogsweep", "merge", "random.h5", "lattice.h5", "--output", "both.h5")
         told = json.loads(self.succeed("clogfit", "compare", "both.h5", "--by", "lattice-angle", "--format", "json").stdout)["comparisons"]
         self.assertEqual({(one["here"], one["there"]) for one in told}, {("lattice_angle=0", "no lattice_angle")})
@@ -111,7 +120,8 @@ class Compared(Analysis):
         self.sweep("s.h5", "near-wall-drag=0,2", seeds="1..3")
         text = self.succeed("clogfit", "compare", "s.h5", "--by", "near-wall-drag").stdout
         self.assertRegex(text, r"lambda of each over that of near_wall_drag=0")
-        self.assertRegex(text, r"of +line_tension +clogs +lambda/sigma +clogs there +lambda there +ratio +95 % +paired +gain +same place")
+        self.assertRegex(text, r"of +line_tension +clogs +lambda/sigma +clogs there +lambda there +ratio +95 % +paired "
+                               r"+gain +same place")
         self.succeed("clogfit", "compare", "s.h5", "--by", "near_wall_drag", "--format", "csv", "--confidence", "0.9")
         drawn = self.run_program("clogfit", "compare", "s.h5", "--by", "near-wall-drag", "--picture", "ratio.png")
         self.assertEqual(drawn.returncode, 0, drawn.stderr)
@@ -132,7 +142,8 @@ class Together(Analysis):
         self.copy_sweep("whole.h5", *FEW)
         self.succeed("clogsweep", *QUICK, "line-tension=1", "seeds=1..2", "--output", "a.h5")
         self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1..2", "--output", "b.h5")
-        whole, both = (json.loads(self.succeed("clogfit", *names, "--format", "json").stdout) for names in (["whole.h5"], ["a.h5", "b.h5"]))
+        whole, both = (json.loads(self.succeed("clogfit", *names, "--format", "json").stdout)
+                       for names in (["whole.h5"], ["a.h5", "b.h5"]))
         self.assertEqual(both["groups"], whole["groups"])
         self.assertEqual((both["lists"], both["sweep"]["config"]), (whole["lists"], whole["sweep"]["config"]))
         sweep = clogsweep.open([self.folder / "a.h5", self.folder / "b.h5"], BIN)
@@ -150,14 +161,16 @@ class Events(SweepTest):
     def test_every_start_and_end_is_a_line_until_the_sweep_ends(self):
         process = self.start(*(word.replace("max-time=2e4", "max-time=4000") for word in SLOW))
         self.wait_for(lambda: (self.folder / "s.h5").exists() or process.poll() is not None)
-        lines = [json.loads(line) for line in self.succeed("clogsweep", "status", "s.h5", "--follow", "--format", "json").stdout.splitlines()]
+        lines = [json.loads(line)
+                 for line in self.succeed("clogsweep", "status", "s.h5", "--follow", "--format", "json").stdout.splitlines()]
         self.assertEqual(process.wait(), 0)
         self.assertEqual((lines[0]["event"], lines[0]["runs"]), ("begin", 2))
         self.assertEqual((lines[-1]["event"], lines[-1]["finished"], lines[-1]["complete"]), ("done", 2, True))
         ended = {line["task"]: line for line in lines if line["event"] == "end"}
         rows = table(self.folder / "s.h5").set_index("task")
         for task, line in ended.items():
-            self.assertEqual((line["status"], line["distance"], line["seed"]), (rows.status[task], rows.distance[task], rows.seed[task]))
+            self.assertEqual((line["status"], line["distance"], line["seed"]),
+                             (rows.status[task], rows.distance[task], rows.seed[task]))
         self.assertEqual(len(ended), 2 - lines[0]["finished"])
 
     def test_a_sweep_that_is_over_has_a_beginning_and_an_end(self):
@@ -169,7 +182,8 @@ class Events(SweepTest):
 
     def test_the_file_knows_how_busy_the_ranks_were(self):
         for seeds in ("1..4", "1..6"):
-            self.succeed("clogsweep", *SMALL, "obstacle-gap=0.4", "max-time=500", f"seeds={seeds}", "--output", "s.h5", ranks=2)
+            self.succeed("clogsweep", *SMALL, "obstacle-gap=0.4", "max-time=500",
+                         f"seeds={seeds}", "--output", "s.h5", ranks=2)
         sessions = activity.sessions_of(clogsweep.open(self.folder / "s.h5", BIN).attributes)
         self.assertEqual([session["ranks"] for session in sessions], [2, 2])
         busy = sum(mean * min(session["stretch"], session["seconds"] - i * session["stretch"])

@@ -33,8 +33,11 @@ class Curve(ProgramTest):
         table = pandas.read_hdf(self.copy_sweep("sweep.h5", *small, *settings), "runs")
         if lengths is not None:
             way = np.array([lengths[row.line_tension] * EXPONENTIAL[row.seed - 1] for row in table.itertuples()])
-            stored_rows.change_columns(self.folder / "sweep.h5", distance=way, status=np.array([b"clogged"] * len(table)),
-                                       clogged_by=np.array([b"certified"] * len(table)), failed_by=np.array([b"none"] * len(table)), mechanism=np.array([b"wrapped"] * len(table)))
+            stored_rows.change_columns(self.folder / "sweep.h5", distance=way,
+                                       status=np.array([b"clogged"] * len(table)),
+                                       clogged_by=np.array([b"certified"] * len(table)),
+                                       failed_by=np.array([b"none"] * len(table)),
+                                       mechanism=np.array([b"wrapped"] * len(table)))
         return table
 
     def curve(self, *arguments):
@@ -70,30 +73,36 @@ class Curve(ProgramTest):
     def test_text_and_csv_say_the_same(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
         text = self.succeed("clogfit", "curve", "sweep.h5", "--crossing=0.5,1e5").stdout
-        for words in ("fitted; 95 % intervals", "through 5 points with 30 clogs", "highest at line_tension", "crosses 0.5 sigma upwards",
-                      "does not cross 100000 sigma", "lambda/sigma"):
+        for words in ("fitted; 95 % intervals", "through 5 points with 30 clogs", "highest at line_tension",
+                      "crosses 0.5 sigma upwards", "does not cross 100000 sigma", "lambda/sigma"):
             self.assertIn(words, text)
         lines = list(csv.DictReader(io.StringIO(self.succeed("clogfit", "curve", "sweep.h5", "--format=csv").stdout)))
         curve, = self.curve()["curves"]
-        self.assertEqual([float(line["clogging_length"]) for line in lines], [place["clogging_length"] for place in curve["curve"]])
+        self.assertEqual([float(line["clogging_length"]) for line in lines],
+                         [place["clogging_length"] for place in curve["curve"]])
         self.assertTrue(all(line["clogging_length_squeezed"] == "" for line in lines))
 
     def test_the_table_of_peaks_has_none_where_a_curve_only_rises(self):
         command = ("clogfit", "curve", "sweep.h5", "--key=line-tension", "--format=peaks")
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
         (peak,), found = csv.DictReader(io.StringIO(self.succeed(*command).stdout)), self.curve()["curves"][0]["peak"]
-        self.assertEqual({name: peak[name] for name in list(peak)[:-1]}, {name: f"{found[name]:.3g}" for name in list(peak)[:-1]})
-        self.sweep(FAR[0], FAR[2], "line-tension=0.1,0.3,1,3", "terminal-speed=50,100", lengths={0.1: 1.0, 0.3: 3.0, 1.0: 10.0, 3.0: 30.0})
-        self.assertEqual([line["line_tension"] for line in csv.DictReader(io.StringIO(self.succeed(*command).stdout))], ["none", "none"])
+        self.assertEqual({name: peak[name] for name in list(peak)[:-1]},
+                         {name: f"{found[name]:.3g}" for name in list(peak)[:-1]})
+        self.sweep(FAR[0], FAR[2], "line-tension=0.1,0.3,1,3", "terminal-speed=50,100",
+                   lengths={0.1: 1.0, 0.3: 3.0, 1.0: 10.0, 3.0: 30.0})
+        self.assertEqual([line["line_tension"] for line in csv.DictReader(io.StringIO(self.succeed(*command).stdout))],
+                         ["none", "none"])
 
     def test_a_wider_confidence_has_a_wider_band(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
-        narrow, wide = (self.curve(f"--confidence={confidence}")["curves"][0]["curve"][40] for confidence in (0.5, 0.99))
+        narrow, wide = (self.curve(f"--confidence={confidence}")["curves"][0]["curve"][40]
+                        for confidence in (0.5, 0.99))
         self.assertGreater(wide["clogging_length_upper"], narrow["clogging_length_upper"])
         self.assertAlmostEqual(wide["clogging_length"], narrow["clogging_length"], places=9)
 
     def test_other_keys_tell_curves_apart_and_two_keys_make_a_surface(self):
-        self.sweep(FAR[0], FAR[2], "line-tension=0.1,0.3,1,3", "terminal-speed=50,100", lengths={0.1: 1.0, 0.3: 3.0, 1.0: 10.0, 3.0: 30.0})
+        self.sweep(FAR[0], FAR[2], "line-tension=0.1,0.3,1,3", "terminal-speed=50,100",
+                   lengths={0.1: 1.0, 0.3: 3.0, 1.0: 10.0, 3.0: 30.0})
         self.refuse("clogfit", "curve", "sweep.h5", words=["--key", "line-tension", "terminal-speed"])
         told = self.curve("--key=line-tension")
         self.assertEqual([curve["shared"]["terminal_speed"] for curve in told["curves"]], [50, 100])
@@ -143,7 +152,8 @@ class Curve(ProgramTest):
         words = "points share seeds and so obstacles"
         tensions = {0.1: 1.0, 0.3: 3.0, 1.0: 10.0, 3.0: 30.0}
         self.sweep(FAR[0], FAR[2], "line-tension=0.1,0.3,1,3", "obstacle-gap=0.4,0.5", lengths=tensions)
-        self.assertEqual([curve["common_obstacles"] for curve in self.curve("--key=line-tension")["curves"]], [True, True])
+        self.assertEqual([curve["common_obstacles"] for curve in self.curve("--key=line-tension")["curves"]],
+                         [True, True])
         self.assertIn(words, self.succeed("clogfit", "curve", "sweep.h5", "--key=line-tension").stdout)
         # Keys that change the array, and points with different seeds, are tested in test_fitted_curves.py.
 
@@ -152,27 +162,36 @@ class Curve(ProgramTest):
         gaps = "obstacle-gap=0.3,0.4,0.5,0.6"
         several = ["line-tension=1", *FAR, "obstacle-density=20%,40%"]
         self.sweep(*several, gaps, lengths=one_length)
-        self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-gap")["curves"]], [{"share_of_saturated": 0.2}, {"share_of_saturated": 0.4}])
+        self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-gap")["curves"]],
+                         [{"share_of_saturated": 0.2}, {"share_of_saturated": 0.4}])
         self.sweep(*several, "obstacle-diameter-spread=0.1,0.2,0.3,0.4", lengths=one_length)
-        self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-diameter-spread")["curves"]], [{"share_of_saturated": 0.2}, {"share_of_saturated": 0.4}])
+        self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-diameter-spread")["curves"]],
+                         [{"share_of_saturated": 0.2}, {"share_of_saturated": 0.4}])
         tensions = dict.fromkeys((0.1, 0.3, 1.0, 3.0), 1.0)
         rows = self.sweep("line-tension=0.1,0.3,1,3", *FAR, "obstacle-density=20%,40%", lengths=tensions)
         curves = self.curve("--key=line-tension")["curves"]
-        self.assertEqual([curve["shared"] for curve in curves], [{"obstacle_density": density} for density in sorted(set(rows.obstacle_density))])
-        rows = self.sweep("line-tension=0.1,0.3,1,3", *FAR, "obstacle-density=20%", "obstacle-gap=0.3,0.4", lengths=tensions)
-        self.assertEqual([curve["shared"] for curve in self.curve("--key=line-tension")["curves"]], [{"obstacle_gap": 0.3}, {"obstacle_gap": 0.4}])
+        self.assertEqual([curve["shared"] for curve in curves],
+                         [{"obstacle_density": density} for density in sorted(set(rows.obstacle_density))])
+        rows = self.sweep("line-tension=0.1,0.3,1,3", *FAR, "obstacle-density=20%", "obstacle-gap=0.3,0.4",
+                          lengths=tensions)
+        self.assertEqual([curve["shared"] for curve in self.curve("--key=line-tension")["curves"]],
+                         [{"obstacle_gap": 0.3}, {"obstacle_gap": 0.4}])
         # Densities that are the same for all gaps are no shares.
         rows = self.sweep("line-tension=1", *FAR, gaps, "obstacle-density=0.1,0.2", lengths=one_length)
-        self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-gap")["curves"]], [{"obstacle_density": 0.1}, {"obstacle_density": 0.2}])
+        self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-gap")["curves"]],
+                         [{"obstacle_density": 0.1}, {"obstacle_density": 0.2}])
 
     def test_points_give_the_curves_of_the_same_sweep(self):
         self.sweep("line-tension=1", *FAR, "obstacle-density=20%", "obstacle-gap=0.3,0.4,0.5,0.6", lengths={1.0: 1.0})
         expected = self.curve()["curves"]
-        self.write("points.csv", "obstacle-gap,obstacle-density\n" + "".join(f"{gap},20%\n" for gap in (0.3, 0.4, 0.5, 0.6)))
-        self.succeed("clogsweep", "vertices=64", "box=20", "line-tension=1", *FAR, "--points", "points.csv", "--output", "points.h5")
+        self.write("points.csv",
+                   "obstacle-gap,obstacle-density\n" + "".join(f"{gap},20%\n" for gap in (0.3, 0.4, 0.5, 0.6)))
+        self.succeed("clogsweep", "vertices=64", "box=20", "line-tension=1", *FAR, "--points", "points.csv", "--output",
+                     "points.h5")
         rows = pandas.read_hdf(self.folder / "points.h5", "runs")
-        stored_rows.change_columns(self.folder / "points.h5", distance=[EXPONENTIAL[seed - 1] for seed in rows.seed], status=np.array([b"clogged"] * len(rows)),
-                                   clogged_by=b"certified", mechanism=b"wrapped")
+        stored_rows.change_columns(self.folder / "points.h5", distance=[EXPONENTIAL[seed - 1] for seed in rows.seed],
+                                   status=np.array([b"clogged"] * len(rows)), clogged_by=b"certified",
+                                   mechanism=b"wrapped")
         (self.folder / "points.h5").replace(self.folder / "sweep.h5")
         self.assertEqual(self.curve("--key=obstacle-gap")["curves"], expected)
 
@@ -185,7 +204,8 @@ class Curve(ProgramTest):
             self.succeed("clogsweep", "select", "sweep.h5", f"line_tension{tensions}", "--output", names[-1])
         told = json.loads(self.succeed("clogfit", "curve", *names, "--format", "json").stdout)
         # The last digits are left out, because they may depend on the number of BLAS threads.
-        one, other = (json.loads(json.dumps(curves), parse_float=lambda number: float(f"{float(number):.8g}")) for curves in (told["curves"], whole))
+        one, other = (json.loads(json.dumps(curves), parse_float=lambda number: float(f"{float(number):.8g}"))
+                      for curves in (told["curves"], whole))
         self.assertEqual(one, other)
         self.refuse("clogfit", "curve", "sweep.h5", "no.h5", words=["no.h5"])
 

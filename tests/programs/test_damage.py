@@ -22,7 +22,8 @@ import clogsweep  # noqa: E402
 from clogsweep.reading import stored  # noqa: E402
 
 SETTINGS = [*QUICK, "line-tension=0.5,2", "seeds=1..3", "--output", "s.h5"]
-READERS = [("clogsweep", "status", "s.h5"), ("clogsweep", "replay", "s.h5", 0), ("clogfit", "s.h5"), ("clogsweep", *SETTINGS)]
+READERS = [("clogsweep", "status", "s.h5"), ("clogsweep", "replay", "s.h5", 0), ("clogfit", "s.h5"),
+           ("clogsweep", *SETTINGS)]
 
 
 def limit_memory(size):
@@ -31,7 +32,8 @@ def limit_memory(size):
 
 
 def may_limit_memory():
-    return subprocess.run([BIN / "clogfit", "--version"], capture_output=True, preexec_fn=lambda: limit_memory(2**31)).returncode == 0
+    return subprocess.run([BIN / "clogfit", "--version"], capture_output=True,
+                          preexec_fn=lambda: limit_memory(2**31)).returncode == 0
 
 
 class Damage(ProgramTest):
@@ -44,7 +46,8 @@ class Damage(ProgramTest):
     def multiply_a_distance(self):
         """Multiplies the distance of a clogged row by 16. A flipped bit in the exponent could do this."""
         content = self.file.read_bytes()
-        self.file.write_bytes(content.replace(struct.pack("<d", self.rows.distance[1]), struct.pack("<d", 16 * self.rows.distance[1])))
+        self.file.write_bytes(content.replace(struct.pack("<d", self.rows.distance[1]),
+                                              struct.pack("<d", 16 * self.rows.distance[1])))
         self.assertNotEqual(self.file.read_bytes(), content)
 
     def test_every_reader_notices_a_changed_number(self):
@@ -56,7 +59,8 @@ class Damage(ProgramTest):
                 self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
                 self.assertIn("row 1 (task 1) is not as it was written", done.stderr)
                 self.assertEqual(done.stdout, "")
-        self.assertEqual({name: content for name, content in self.snapshot().items() if not name.endswith(".journal")}, before)
+        self.assertEqual({name: content
+                          for name, content in self.snapshot().items() if not name.endswith(".journal")}, before)
         verified = self.run_program("clogsweep", "verify", "s.h5")
         self.assertEqual(verified.returncode, 1)
         self.assertIn("row 1 (task 1) is not as it was written\ns.h5: 5 undamaged rows, 1 fault\n", verified.stdout)
@@ -96,7 +100,8 @@ class Damage(ProgramTest):
                 flipped[len(encoded) // 2] ^= 1
                 file.attrs.modify(name, bytes(flipped))
             with self.subTest(attribute=name):
-                self.assertIn("is not as it was written", self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5").stdout)
+                self.assertIn("is not as it was written",
+                              self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5").stdout)
                 self.assertEqual(len(table(self.folder / "whole.h5")), 6)
                 self.succeed("clogsweep", "verify", "whole.h5")
                 self.succeed("clogsweep", *SETTINGS[:-1], "whole.h5")
@@ -111,10 +116,12 @@ class Damage(ProgramTest):
             stored_rows.change(self.file, lambda rows, column=column: rows[column].__setitem__(1, b"wrapqed"))
             for name, *arguments in READERS:
                 with self.subTest(column=column, program=name, arguments=arguments):
-                    self.refuse(name, *arguments, words=[f"row 1 (task 1): {column}='wrapqed' is unknown", "clogsweep salvage"])
+                    self.refuse(name, *arguments,
+                                words=[f"row 1 (task 1): {column}='wrapqed' is unknown", "clogsweep salvage"])
             self.assertEqual(self.run_program("clogsweep", "verify", "s.h5").returncode, 1)
             self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5")
-            pandas.testing.assert_frame_equal(table(self.folder / "whole.h5"), self.rows.drop(index=1).reset_index(drop=True))
+            pandas.testing.assert_frame_equal(table(self.folder / "whole.h5"),
+                                              self.rows.drop(index=1).reset_index(drop=True))
             (self.folder / "whole.h5").unlink()
             self.file.write_bytes(undamaged)
 
@@ -130,9 +137,12 @@ class Damage(ProgramTest):
             rows["task"][2] = 2
 
         undamaged = self.file.read_bytes()
-        for edit, number, words in [(lambda path: stored_rows.change(path, repeat_a_run), 5, "task 2: the same run as task 1"),
-                                    (lambda path: stored_rows.change_columns(path, wall_seconds=-1), 0, "task 0: wall_seconds=-1 is no time"),
-                                    (lambda path: stored_rows.change_attribute(path, "config", "line-tension = many\n"), 6, "its attribute config")]:
+        for edit, number, words in [(lambda path: stored_rows.change(path, repeat_a_run),
+                                     5, "task 2: the same run as task 1"),
+                                    (lambda path: stored_rows.change_columns(path, wall_seconds=-1),
+                                     0, "task 0: wall_seconds=-1 is no time"),
+                                    (lambda path: stored_rows.change_attribute(path, "config", "line-tension = many\n"),
+                                     6, "its attribute config")]:
             with self.subTest(words):
                 edit(self.file)
                 self.assertNotEqual(self.run_program("clogsweep", "verify", "s.h5").returncode, 0)
@@ -146,7 +156,8 @@ class Damage(ProgramTest):
         with h5py.File(self.file, "r+") as file:
             file.attrs.modify("config", "line-tension = 3\n")
         self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5")
-        self.refuse("clogsweep", *[word.replace("=60", "=70") for word in SETTINGS[:-1]], "whole.h5", words=["other settings: max-time=70 (file: 60)"])
+        self.refuse("clogsweep", *[word.replace("=60", "=70") for word in SETTINGS[:-1]], "whole.h5",
+                    words=["other settings: max-time=70 (file: 60)"])
 
     def test_copies_by_other_programs_are_read_with_a_warning(self):
         with h5py.File(self.file) as file, h5py.File(self.folder / "copy.h5", "w") as copy:
@@ -195,7 +206,8 @@ class Damage(ProgramTest):
                     [file[name][:] for name in chunks]
                 verified = self.run_program("clogsweep", "verify", "copy.h5")
                 self.assertEqual(verified.returncode, 1)
-                self.assertIn("h5py, pandas and other readers refuse the file; `clogsweep salvage` writes a file", verified.stdout)
+                self.assertIn("h5py, pandas and other readers refuse the file; `clogsweep salvage` writes a file",
+                              verified.stdout)
                 self.succeed("clogsweep", "salvage", "copy.h5", "--output", "whole.h5")
                 pandas.testing.assert_frame_equal(table(self.folder / "whole.h5"), self.rows)
                 (self.folder / "whole.h5").unlink()
@@ -274,8 +286,10 @@ class Damage(ProgramTest):
         said = self.succeed("clogfit", "packed.h5")
         self.assertIn("copied or changed by another program", said.stderr)
         self.assertEqual(said.stdout, self.succeed("clogfit", "s.h5").stdout)
-        pandas.testing.assert_frame_equal(clogsweep.open(self.folder / "packed.h5").rows, clogsweep.open(self.file).rows)
-        self.assertIn("copied or changed by another program", self.succeed("clogsweep", *SETTINGS[:-1], "packed.h5").stderr)
+        pandas.testing.assert_frame_equal(clogsweep.open(self.folder / "packed.h5").rows,
+                                          clogsweep.open(self.file).rows)
+        self.assertIn("copied or changed by another program",
+                      self.succeed("clogsweep", *SETTINGS[:-1], "packed.h5").stderr)
         self.assertIs(stored.is_sealed(self.folder / "packed.h5"), True, "the sweep has written it anew")
         pandas.testing.assert_frame_equal(table(self.folder / "packed.h5"), self.rows)
 
@@ -338,9 +352,11 @@ class Damage(ProgramTest):
             # The program must ignore SIGXFSZ, which would otherwise end it.
             resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
 
-        for name, *arguments in [("clogsweep", *SETTINGS[:-1], "new.h5"), ("clogrun", "array", *QUICK, "seeds=1", "--output", "run.h5")]:
+        for name, *arguments in [("clogsweep", *SETTINGS[:-1], "new.h5"),
+                                 ("clogrun", "array", *QUICK, "seeds=1", "--output", "run.h5")]:
             # Without these settings, the limit would also affect a daemon of Open MPI and the shared memory of MPICH.
-            done = subprocess.run([BIN / name, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, preexec_fn=limit,
+            done = subprocess.run([BIN / name, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
+                                  preexec_fn=limit,
                                   env={**os.environ, "OMPI_MCA_ess_singleton_isolated": "1", "UCX_TLS": "self,tcp"})
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("File too large", done.stderr)

@@ -58,8 +58,10 @@ class Walls(Analysis):
             centres = np.array([12, 14]) - radius * normal + np.arange(0, 14, spacing)[:, None] * tangent
             self.write("wall.csv", "".join(f"{x:.6f},{y:.6f},{2 * radius}\n" for x, y in centres))
             start = 14.6 + 1.2 * tangent[1]
-            self.succeed("clogrun", "array", "obstacles=wall.csv", "box=30", "release=entrance", "entrance=9", f"entrance-from={start}", f"entrance-to={start}",
-                         "line-tension=1", "terminal-speed=0.1", f"vertices={vertices}", f"max-time={30 + 30 / tangent[0] ** 2:.0f}", "--output", f"{angle}-{vertices}.h5")
+            self.succeed("clogrun", "array", "obstacles=wall.csv", "box=30", "release=entrance", "entrance=9",
+                         f"entrance-from={start}", f"entrance-to={start}", "line-tension=1", "terminal-speed=0.1",
+                         f"vertices={vertices}", f"max-time={30 + 30 / tangent[0] ** 2:.0f}", "--output",
+                         f"{angle}-{vertices}.h5")
             with h5py.File(self.folder / f"{angle}-{vertices}.h5") as file:
                 run = file["trajectory"][:]
             end = run["time"] > run["time"][-1] - 20 / tangent[0] ** 2
@@ -70,14 +72,16 @@ class Walls(Analysis):
 class Devices(Walls):
     def rows_of(self, text, name="posts.csv"):
         self.write(name, text)
-        self.succeed("clogsweep", f"obstacles={name}", *KEYS[:-3], "line-tension=1", "max-time=20", "seeds=1..2", "--output", f"{name}.h5")
+        self.succeed("clogsweep", f"obstacles={name}", *KEYS[:-3], "line-tension=1", "max-time=20", "seeds=1..2",
+                     "--output", f"{name}.h5")
         return table(self.folder / f"{name}.h5")
 
     def test_columns_in_any_order_separator_and_unit_are_the_same_device(self):
         expected = self.rows_of("x,y,diameter\n" + csv())
         others = {
             "blanks.txt": "y  r  x\n" + "".join(f"{y:.10g}\t  0.25  {x:.10g}\n".replace("\t", " ") for x, y in ROW),
-            "excel.csv": "\ufeffid;X;Y;Diameter\n" + "".join(f"{i};{x:.10g};{y:.10g};0,5\n".replace(".", ",") for i, (x, y) in enumerate(ROW)),
+            "excel.csv": "\ufeffid;X;Y;Diameter\n"
+            + "".join(f"{i};{x:.10g};{y:.10g};0,5\n".replace(".", ",") for i, (x, y) in enumerate(ROW)),
             "um.csv": "# units=um droplet=0.2mm\nx,y,diameter\n" + csv(200),
             "odd.csv": "# units=um droplet=187um\n" + csv(187),
         }
@@ -108,7 +112,8 @@ class Devices(Walls):
             for encoding in ("utf-8", "utf-16", "cp1252") if name == "excel.csv" else ("utf-8",):
                 with self.subTest(name, encoding=encoding):
                     (self.folder / name).write_bytes(text.encode(encoding))
-                    self.succeed("clogsweep", f"obstacles={name}", *KEYS[:-3], "line-tension=1", "max-time=20", "seeds=1..2", "--output", f"{name}.{encoding}.h5")
+                    self.succeed("clogsweep", f"obstacles={name}", *KEYS[:-3], "line-tension=1", "max-time=20",
+                                 "seeds=1..2", "--output", f"{name}.{encoding}.h5")
                     read = table(self.folder / f"{name}.{encoding}.h5")
                     self.assertEqual(read["obstacles"].tolist(), expected["obstacles"].tolist())
 
@@ -119,10 +124,13 @@ class Devices(Walls):
                             (um + "x [sigma],y,d\n1,2,3\n", ["line 3", "in sigma", "units=um"]), ("x;y;d\n1;2;0,5\n1.5;2;0,5\n", ["line 3", "x: '1.5'"]),
                             ("x [px],y [px],d [px]\n1,2,3\n", ["line 1", "'px' is no unit"]), ('x,y,d\n"1,234","2,345","0,100"\n', ["line 2", "x: '1,234'", "thousands"]),
                             ("x;y;d\n1,350;6;1\n2,050;3;1\n", ["'1,350'", "thousands"]),
-                            ("# two\nx,y,d\n1,2,0.5\n3,3,0.5\n1.0,2,0.50\n", ["line 5", "the circle of line 3 again", "delete one of the two lines"]),
+                            ("# two\nx,y,d\n1,2,0.5\n3,3,0.5\n1.0,2,0.50\n",
+                             ["line 5", "the circle of line 3 again", "delete one of the two lines"]),
                             ("x;y;d\num;um;um\n1;2;3\n", ["line 2", "'um' is not a finite number", "#"]),
-                            ("x;y;d\n1.5;2.5;0,5\n", ["line 2", "d: '0,5'"]), ("x,y,d\n1,2,\n", ["line 2", "d: is empty"]), ('x,y,d\n1,"2,3\n', ["line 2", "quote"]),
-                            ("x y d\n1 2 3 4\n", ["line 2", "has 4 cells", "line of names has 3"]), ("x,y,d\n1,2\n", ["line 2", "has 2 cells"]), ("x,y,d\n1,2m,3\n", ["line 2", "y: '2m'"])]:
+                            ("x;y;d\n1.5;2.5;0,5\n", ["line 2", "d: '0,5'"]),
+                            ("x,y,d\n1,2,\n", ["line 2", "d: is empty"]), ('x,y,d\n1,"2,3\n', ["line 2", "quote"]),
+                            ("x y d\n1 2 3 4\n", ["line 2", "has 4 cells", "line of names has 3"]),
+                            ("x,y,d\n1,2\n", ["line 2", "has 2 cells"]), ("x,y,d\n1,2m,3\n", ["line 2", "y: '2m'"])]:
             with self.subTest(text):
                 self.write("bad.csv", text)
                 self.refuse("clogsweep", "obstacles=bad.csv", "box=6", "--output", "x.h5", words=["bad.csv", *words])
@@ -139,32 +147,38 @@ class Devices(Walls):
 
     def test_a_drawing_in_place_of_circles_is_refused(self):
         self.write("posts.svg", SVG.format(""))
-        self.refuse("clogsweep", "obstacles=posts.svg", "box=6", "--output", "x.h5", words=["posts.svg is a drawing", "circles"])
+        self.refuse("clogsweep", "obstacles=posts.svg", "box=6", "--output", "x.h5",
+                    words=["posts.svg is a drawing", "circles"])
 
     def test_a_device_is_swept_in_laboratory_units(self):
         self.write("posts.csv", "# units=um droplet=200um\nx,y,diameter\n" + csv(200))
         self.write("lab.cfg", "diameter = 0.2 mm\nangle = 90 deg\ntension = 0.1 mN/m\nspeed = 1 mm/s\n")
-        self.succeed("clogsweep", "--lab", "lab.cfg", "obstacles=posts.csv", "box=6", "length=18", "max-time=20", "seeds=1", "--output", "s.h5")
+        self.succeed("clogsweep", "--lab", "lab.cfg", "obstacles=posts.csv", "box=6", "length=18", "max-time=20",
+                     "seeds=1", "--output", "s.h5")
         told = self.succeed("clogfit", "s.h5")
         self.assertIn("tension/(mN/m)", told.stdout)
         self.assertEqual(told.stderr, "")
         self.write("other.cfg", "diameter = 0.2 mm\nangle = 45 deg\n")
-        self.assertIn("other.cfg replaces the laboratory stored with the rows", self.succeed("clogfit", "s.h5", "--lab", "other.cfg").stderr)
+        self.assertIn("other.cfg replaces the laboratory stored with the rows",
+                      self.succeed("clogfit", "s.h5", "--lab", "other.cfg").stderr)
 
     def test_droplets_that_rest_uncertified_are_named(self):
         # The top of a row of circles across the flow is flat, so it does not hold the droplet sideways.
         self.write("row.csv", "".join(f"10,{y:.4f},0.1\n" for y in np.arange(3, 7, 0.0167)))
-        self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=8", "entrance-from=4.9", "entrance-to=5.1",
-                     "line-tension=1", "vertices=64", "max-time=1500", "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "s.h5")
+        self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=8",
+                     "entrance-from=4.9", "entrance-to=5.1", "line-tension=1", "vertices=64", "max-time=1500",
+                     "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "s.h5")
         told = self.succeed("clogfit", "s.h5").stdout
-        self.assertRegex(told, r"1 run ended by max-time with the droplet at rest for 1[34]\d\d t0 or longer: --dwell=1000 counts it as clogged")
+        self.assertRegex(told, r"1 run ended by max-time with the droplet at rest for 1[34]\d\d t0 or longer: "
+                               r"--dwell=1000 counts it as clogged")
         group, = json.loads(self.succeed("clogfit", "s.h5", "--dwell", 1000, "--format", "json").stdout)["groups"]
         self.assertEqual((group["clogs"], group["flowing"]), (1, 0))
         self.assertNotIn("at rest", self.succeed("clogfit", "s.h5", "--dwell", 1000).stdout)
         # The droplet rests from the beginning to max-time, which is 1000 t0. The --dwell that clogfit suggests must be
         # shorter.
-        self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=9.44", "entrance-from=4.9", "entrance-to=5.1",
-                     "line-tension=1", "vertices=64", "max-time=1000", "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "t.h5")
+        self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=9.44",
+                     "entrance-from=4.9", "entrance-to=5.1", "line-tension=1", "vertices=64", "max-time=1000",
+                     "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "t.h5")
         self.assertIn("--dwell=900 counts it as clogged", self.succeed("clogfit", "t.h5").stdout)
         group, = json.loads(self.succeed("clogfit", "t.h5", "--dwell", 900, "--format", "json").stdout)["groups"]
         self.assertEqual(group["clogs"], 1)
@@ -172,8 +186,10 @@ class Devices(Walls):
     def test_notes_about_passed_and_resting_droplets_are_of_arrays_only(self):
         channel = ["obstacle-layout=channel", "terminal-speed=0.05", "start=-1.5", "end=1", "vertices=64"]
         self.succeed("clogsweep", *channel, "orifice=0.95", "max-time=2000", "--output", "passed.h5")
-        self.succeed("clogsweep", *channel, "orifice=0.3", "max-time=1000", "clog-detection=threshold", "clog-energy=1e-30", "--output", "rests.h5")
-        self.assertEqual([table(self.folder / f"{name}.h5")["status"][0] for name in ("passed", "rests")], ["passed", "flowing"])
+        self.succeed("clogsweep", *channel, "orifice=0.3", "max-time=1000", "clog-detection=threshold",
+                     "clog-energy=1e-30", "--output", "rests.h5")
+        self.assertEqual([table(self.folder / f"{name}.h5")["status"][0] for name in ("passed", "rests")],
+                         ["passed", "flowing"])
         for name in ("passed", "rests"):
             told = self.succeed("clogfit", f"{name}.h5").stdout
             self.assertNotIn("reached the exit", told)
@@ -197,7 +213,8 @@ class Devices(Walls):
         self.draw("device", "s.h5", "--ways", 1, "--map", 2, "--programs", BIN)
         self.assert_picture("s-device")
         place = drawn.places(self.folder / "s.h5")[0]
-        self.assertEqual((place.name, place.length, place.width, place.has_walls, len(place.circles)), ("posts.csv", 18, 6, True, 12))
+        self.assertEqual((place.name, place.length, place.width, place.has_walls, len(place.circles)),
+                         ("posts.csv", 18, 6, True, 12))
         self.draw("report", "s.h5", "--examples", 1, "--programs", BIN)
         page = (self.folder / "s-report.html").read_text()
         self.assertIn("posts.csv", page)
@@ -210,18 +227,21 @@ class Devices(Walls):
 
     def test_droplets_that_met_no_post_are_drawn(self):
         self.write("posts.csv", "x,y,diameter\n2,5,0.5\n4,5,0.5\n")
-        self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=6", "side-walls=on", "release=entrance", "entrance-from=1", "entrance-to=2", "exit=6",
-                     "line-tension=1", "vertices=64", "max-time=500", "seeds=1..2", "--output", "s.h5")
+        self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=6", "side-walls=on", "release=entrance",
+                     "entrance-from=1", "entrance-to=2", "exit=6", "line-tension=1", "vertices=64", "max-time=500",
+                     "seeds=1..2", "--output", "s.h5")
         group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
         self.assertEqual((group["runs"], group["met_none"]), (0, 2))
         for command in ("clogging-length", "poster"):
-            self.refuse_analysis(command, "s.h5", "--output", "c", "--programs", BIN, words=["no droplet of s.h5 met an obstacle"])
+            self.refuse_analysis(command, "s.h5", "--output", "c", "--programs", BIN,
+                                 words=["no droplet of s.h5 met an obstacle"])
         for command, output in [("device", "device"), ("report", "report.html")]:
             self.draw(command, "s.h5", "--output", output, "--programs", BIN)
         self.assertTrue("2 of 2 runs finished (2 passed)" in (self.folder / "report.html").read_text())
         # The file is merged with groups whose droplets do pass.
-        self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=6", "side-walls=on", "release=entrance", "entrance-from=4.5", "entrance-to=5.5", "exit=6",
-                     "line-tension=1", "vertices=64", "max-time=500", "seeds=1..2", "--output", "t.h5")
+        self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=6", "side-walls=on", "release=entrance",
+                     "entrance-from=4.5", "entrance-to=5.5", "exit=6", "line-tension=1", "vertices=64", "max-time=500",
+                     "seeds=1..2", "--output", "t.h5")
         self.succeed("clogsweep", "merge", "s.h5", "t.h5", "--output", "both.h5")
         for command, output in [("clogging-length", "c"), ("poster", "poster"), ("report", "both.html")]:
             self.draw(command, "both.h5", "--output", output, "--programs", BIN)
@@ -230,34 +250,40 @@ class Devices(Walls):
         self.write("posts.csv", "x,y,diameter\n2,5,0.5\n4,5,0.5\n")
         device = ["obstacles=posts.csv", "box=6", "release=entrance", "entrance=1", "exit=6", "line-tension=1", "vertices=64", "max-time=20", "--dry-run"]
         for places in (["entrance-from=3.2", "entrance-to=3.2"], ["entrance-from=3,3.2", "entrance-to=3.20,4"]):
-            self.refuse("clogsweep", *device, *places, "seeds=1..2", words=["invalid seeds=1..2", "entrance-from", "whatever the seed"])
+            self.refuse("clogsweep", *device, *places, "seeds=1..2",
+                        words=["invalid seeds=1..2", "entrance-from", "whatever the seed"])
             self.succeed("clogsweep", *device, *places, "seeds=3")
         self.succeed("clogsweep", *device, "entrance-from=3.2", "entrance-to=3.3", "seeds=1..2")
         self.succeed("clogsweep", *device, "seeds=1..2")
 
     def test_each_line_tension_has_a_panel(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())
-        self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-3], "line-tension=0.5,1,1.5,2,3,4,5", "max-time=150", "seeds=1", "--output", "s.h5")
+        self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-3], "line-tension=0.5,1,1.5,2,3,4,5", "max-time=150",
+                     "seeds=1", "--output", "s.h5")
         sweep = clogsweep.Sweep(self.folder / "s.h5", BIN)
         groups, place = sweep.fit().known, drawn.places(self.folder / "s.h5", BIN)[0]
-        self.assertEqual([part.label for part in place.parts(groups)], [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 2, 3, 4, 5)])
+        self.assertEqual([part.label for part in place.parts(groups)],
+                         [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 2, 3, 4, 5)])
         for part in place.parts(groups):
             self.assertEqual([rf"$\Gamma = {row['line_tension']:g}$" for row in part.place.rows], [part.label])
         with contextlib.redirect_stderr(io.StringIO()) as told:
             figure = sweep.device(ways=1, map=0).figure
         self.assertIn("posts.csv: 6 of 7 parameter sets are drawn; clogsweep select", told.getvalue())
         panels = [axes.get_ylabel() for axes in figure.axes]
-        self.assertEqual([label.split("\n")[0] for label in panels], [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 3, 4, 5)] + ["share that"])
+        self.assertEqual([label.split("\n")[0] for label in panels],
+                         [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 3, 4, 5)] + ["share that"])
         self.assertIn("6 of 7 parameter sets", figure.texts[0].get_text())
 
     def test_a_sweep_of_both_models_has_panels_for_both(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())
-        self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=18", "model=dp,sp", "wall-stiffness=1", "max-time=20", "seeds=1", "--output", "s.h5")
+        self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=18", "model=dp,sp", "wall-stiffness=1",
+                     "max-time=20", "seeds=1", "--output", "s.h5")
         sweep = clogsweep.Sweep(self.folder / "s.h5", BIN)
         parts = drawn.places(self.folder / "s.h5", BIN)[0].parts(sweep.fit().known)
         self.assertEqual([(part.label, part.place.rows["model"].tolist()) for part in parts], [("model dp", [b"dp"]), ("model sp", [b"sp"])])
         figure = sweep.device(ways=0, map=1).figure
-        self.assertEqual([axes.get_ylabel() for axes in figure.axes[:2]], [f"model {model}\n$y/\\sigma$" for model in ("dp", "sp")])
+        self.assertEqual([axes.get_ylabel() for axes in figure.axes[:2]],
+                         [f"model {model}\n$y/\\sigma$" for model in ("dp", "sp")])
         self.assertIn("share of 1 droplet each", figure.axes[-1].get_ylabel())
 
     def test_the_scale_of_the_maps_is_there_whichever_panel_has_one(self):
@@ -265,7 +291,10 @@ class Devices(Walls):
         place = drawn.Place(name="none", circles=np.empty((0, 3)), length=10.0, width=4.0, has_walls=False, exit=0.0, rows=rows)
         way = [np.array([(1.0, 2.0), (5.0, 2.0)])]
         shares = drawn.passages(place, way)
-        for parts in ([drawn.Part("a", place, mapped=way, shares=shares), drawn.Part("b", place)], [drawn.Part("a", place), drawn.Part("b", place, mapped=way, shares=shares)]):
+        for parts in ([drawn.Part("a", place, mapped=way, shares=shares),
+                       drawn.Part("b",
+                                  place)], [drawn.Part("a", place),
+                                            drawn.Part("b", place, mapped=way, shares=shares)]):
             figure = drawn.draw(parts, 2, 0.2)
             self.assertEqual(len(figure.axes), 4)
             self.assertIn("$\\sigma$ = 0.2 mm", figure.axes[2].get_xlabel())
@@ -274,7 +303,8 @@ class Devices(Walls):
         self.write("posts.csv", "x,y,diameter\n" + "".join(f"{x},{y},1.1\n" for x, y in ROW))
         keys = ["obstacles=posts.csv", *KEYS[:-3], "line-tension=2,3,4,5", "max-time=600", "seeds=1..2"]
         for name, more in (("with", []), ("without", ["exit=0"])):
-            self.succeed("clogsweep", *[key for key in keys if not (more and key.startswith("exit"))], "--output", f"{name}.h5")
+            self.succeed("clogsweep", *[key for key in keys if not (more and key.startswith("exit"))], "--output",
+                         f"{name}.h5")
             groups = clogsweep.Sweep(self.folder / f"{name}.h5", BIN).fit().known
             self.assertGreaterEqual(sum(group["clogs"] > 0 for group in groups.members), 3)
             self.assertEqual(groups.fitted_curve(groups.members) is not None, name == "without")
@@ -284,8 +314,9 @@ class Devices(Walls):
         which is close to the entrance."""
         posts = [(1.2, 4.0), *((3, y) for y in (3.2, 4.05, 4.9)), *((7, 0.5 + 0.85 * i) for i in range(9))]
         self.write("posts.csv", "x,y,diameter\n" + "".join(f"{x},{y:.4f},0.5\n" for x, y in posts))
-        self.succeed("clogsweep", "obstacles=posts.csv", "box=8", "length=14", "side-walls=on", "release=entrance", "entrance=2.3", "exit=12",
-                     "line-tension=0.15,0.4", "vertices=64", "max-time=350", "seeds=1..30", "--output", "s.h5")
+        self.succeed("clogsweep", "obstacles=posts.csv", "box=8", "length=14", "side-walls=on", "release=entrance",
+                     "entrance=2.3", "exit=12", "line-tension=0.15,0.4", "vertices=64", "max-time=350", "seeds=1..30",
+                     "--output", "s.h5")
         rows = table(self.folder / "s.h5")
         self.assertEqual(set(rows["status"]), {"passed", "clogged", "flowing"})
         behind = (rows["release_x"] > 3) & (rows["line_tension"] == 0.4)
@@ -306,13 +337,17 @@ class Devices(Walls):
             displaced = ((own["release_x"] - 2.3).abs() > 0.01).sum()
             self.assertGreaterEqual(group["displaced"], displaced)
             self.assertLess(group["displaced"], 20)
-            self.assertIn(f"released: 30, displaced: {group['displaced']}", [text.get_text() for text in panel.get_legend().texts])
+            self.assertIn(f"released: 30, displaced: {group['displaced']}",
+                          [text.get_text() for text in panel.get_legend().texts])
         # Behind the exit no droplet is followed. The exit is listed once.
-        self.refuse("clogfit", "s.h5", "--lines", "5,12.5", words=["--lines=5,12.5", "12.5 is behind the exit at x = 12"])
-        for group in json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lines", "5,12").stdout)["groups"]:
+        self.refuse("clogfit", "s.h5", "--lines", "5,12.5",
+                    words=["--lines=5,12.5", "12.5 is behind the exit at x = 12"])
+        for group in json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lines",
+                                             "5,12").stdout)["groups"]:
             self.assertEqual([passage["x"] for passage in group["passages"]], [5, 12])
         told = self.succeed("clogfit", "s.h5").stdout
-        self.assertIn(f"{sum(group['displaced'] for group in groups)} droplets were released in the nearest void, from x = ", told)
+        self.assertIn(f"{sum(group['displaced'] for group in groups)} droplets were released in the nearest "
+                      "void, from x = ", told)
         self.assertNotIn("nearest void", self.succeed("clogfit", self.rows_path("none")).stdout)
 
     def rows_path(self, name):
@@ -323,13 +358,15 @@ class Devices(Walls):
 
     def test_several_sizes_are_in_one_picture(self):
         posts = [(600, y) for y in (640, 810, 980)] + [(1400, 100 + 170 * i) for i in range(9)]
-        self.write("posts.csv", "# units=um droplet=200um\nx,y,diameter\n" + "".join(f"{x},{y},100\n" for x, y in posts))
+        self.write("posts.csv",
+                   "# units=um droplet=200um\nx,y,diameter\n" + "".join(f"{x},{y},100\n" for x, y in posts))
         self.write("lab.cfg", "diameter = 160 um, 200 um, 240 um\nangle = 90 deg\ntension = 0.1 mN/m\nspeed = 1 mm/s\n")
         keys = ["obstacles=posts.csv", "box=1.6mm", "length=2.8mm", "side-walls=on", "release=entrance", "entrance=0.46mm", "exit=2.4mm", "vertices=64", "max-time=600"]
         self.succeed("clogsweep", "--lab", "lab.cfg", *keys, "seeds=1..4", "--output", "s.h5")
         figure = clogsweep.Sweep(self.folder / "s.h5", BIN).device(ways=1, map=1).figure
         panels, strip = figure.axes[:3], figure.axes[3]
-        self.assertEqual([axes.get_ylabel() for axes in panels], [f"diameter {mm:g} mm\n$y$ [mm]" for mm in (0.24, 0.2, 0.16)])
+        self.assertEqual([axes.get_ylabel() for axes in panels],
+                         [f"diameter {mm:g} mm\n$y$ [mm]" for mm in (0.24, 0.2, 0.16)])
         self.assertEqual(strip.get_xlabel(), "$x$ [mm], along the flow")
         self.assertIn("posts.csv: 2.8 x 1.6 mm", figure.texts[0].get_text())
         posts_drawn = [axes.collections[0].get_paths()[3].get_extents() for axes in panels]
@@ -341,14 +378,16 @@ class Devices(Walls):
             at, shares = curve.get_data()
             passage = group["passages"][1]
             self.assertAlmostEqual(passage["x"] * group["diameter_mm"], 1.4, places=5)
-            self.assertAlmostEqual(shares[np.argmin(np.abs(at - 1.4))], passage["passed"] / (passage["passed"] + passage["stopped"]))
+            self.assertAlmostEqual(shares[np.argmin(np.abs(at - 1.4))], passage["passed"] /
+                                   (passage["passed"] + passage["stopped"]))
         self.draw("report", "s.h5", "--examples", 0, "--programs", BIN)
         self.assertEqual((self.folder / "s-report.html").read_text().count("posts.csv: releases"), 1)
         # Exported rows have the diameter of their droplet. The length of the device [sigma] is 2.8 mm.
         self.draw("export", "s.h5", "rows.csv", "--programs", BIN)
         exported = pandas.read_csv(self.folder / "rows.csv", float_precision="round_trip")
         np.testing.assert_allclose(exported["diameter_mm [mm]"] * exported["length [sigma]"], 2.8, rtol=1e-9)
-        self.assertEqual((set(exported["angle_degrees [degrees]"]), exported["distance [sigma]"].tolist()), ({90}, rows["distance"].tolist()))
+        self.assertEqual((set(exported["angle_degrees [degrees]"]), exported["distance [sigma]"].tolist()),
+                         ({90}, rows["distance"].tolist()))
         # Other devices are no device of several sizes.
         self.write("other.csv", "# units=um droplet=200um\nx,y,diameter\n700,500,100\n")
         self.succeed("clogsweep", "--lab", "lab.cfg", "obstacles=other.csv", *keys[1:], "seeds=1", "--output", "other.h5")
@@ -357,7 +396,8 @@ class Devices(Walls):
         self.assertEqual(len(rows), 12)
 
     def test_parameter_sets_without_an_ended_run_have_no_panel(self):
-        rows = np.array([(1.0, 2.0, 4.0, 4.0, 0.0, status, b"none", b"anywhere", tension) for status, tension in ((b"flowing", 1.0), (b"running", 2.0))],
+        rows = np.array([(1.0, 2.0, 4.0, 4.0, 0.0, status, b"none", b"anywhere", tension)
+                         for status, tension in ((b"flowing", 1.0), (b"running", 2.0))],
                         dtype=[*COLUMNS, ("line_tension", float)])
         place = drawn.Place(name="none", circles=np.empty((0, 3)), length=10.0, width=4.0, has_walls=False, exit=0.0, rows=rows)
         groups = mock.Mock(members=[{"line_tension": 1.0, "displaced": 0}, {"line_tension": 2.0, "displaced": 0}])
@@ -366,7 +406,8 @@ class Devices(Walls):
 
     def test_a_line_of_a_device_without_exit_is_its_next_image(self):
         # The third droplet failed, and was last sound at x = 4.
-        rows = np.array([(1.0, 0.0, 4.0, 4.0, 0.0, b"flowing", b"none", b"anywhere"), (1.0, 0.0, 13.0, 13.0, 0.0, b"clogged", b"none", b"anywhere"),
+        rows = np.array([(1.0, 0.0, 4.0, 4.0, 0.0, b"flowing", b"none", b"anywhere"),
+                         (1.0, 0.0, 13.0, 13.0, 0.0, b"clogged", b"none", b"anywhere"),
                          (1.0, 0.0, 2.0, 2.0, 0.0, b"clogged", b"none", b"anywhere"),
                          (1.0, 0.0, np.nan, 3.0, np.nan, b"failed", b"none", b"anywhere")], dtype=COLUMNS)
         place = drawn.Place(name="none", circles=np.empty((0, 3)), length=10.0, width=4.0, has_walls=False, exit=0.0, rows=rows)
@@ -390,11 +431,14 @@ class Devices(Walls):
         for number, size in ((2, 1.0), (3, 1.0), (60, 1.0), (300, 1.0), (300, 0.05)):
             circles = np.column_stack([random.uniform(0, 40, number), random.uniform(0, 20, number), size * random.uniform(0.1, 0.6, number)])
             posts = np.arange(number) // 3
-            gaps = np.hypot(*(circles[:, None, :2] - circles[None, :, :2]).T) - (circles[:, None, 2] + circles[None, :, 2]) / 2
+            gaps = np.hypot(*(circles[:, None, :2]
+                              - circles[None, :, :2]).T) - (circles[:, None, 2] + circles[None, :, 2]) / 2
             gaps[posts[:, None] == posts] = np.inf
-            device = shapes.Device(circles=circles, others=[], length=40, width=20, has_frame=True, droplet_metres=1, post_of=posts)
+            device = shapes.Device(circles=circles, others=[], length=40, width=20, has_frame=True, droplet_metres=1,
+                                   post_of=posts)
             self.assertAlmostEqual(device.smallest_gap(), gaps.min(), places=12)
-            self.assertEqual({frozenset(posts[list(pair)]) for pair in device.overlaps()}, {frozenset((posts[i], posts[j])) for i, j in np.argwhere(gaps <= 0)})
+            self.assertEqual({frozenset(posts[list(pair)]) for pair in device.overlaps()},
+                             {frozenset((posts[i], posts[j])) for i, j in np.argwhere(gaps <= 0)})
 
     def test_rows_of_circles_that_close_are_filled(self):
         around = np.linspace(0, 2 * np.pi, 40, endpoint=False)
@@ -426,8 +470,10 @@ class Devices(Walls):
     def test_what_is_no_device_is_refused(self):
         self.refuse("clogsweep", "length=20", "--output", "x.h5", words=["length=20", "obstacles=FILE.csv"])
         self.write("posts.csv", csv())
-        for keys, words in [(["length=18", "boxes=2"], ["boxes=2", "length"]), (["length=18", "exit=20", "release=entrance"], ["exit=20"]),
-                            (["length=18", "entrance=3"], ["entrance=3", "release=entrance"]), (["length=9"], ["outside the array", "length=9"])]:
+        for keys, words in [(["length=18", "boxes=2"], ["boxes=2", "length"]),
+                            (["length=18", "exit=20", "release=entrance"], ["exit=20"]),
+                            (["length=18", "entrance=3"], ["entrance=3", "release=entrance"]),
+                            (["length=9"], ["outside the array", "length=9"])]:
             self.refuse("clogsweep", "obstacles=posts.csv", "box=6", *keys, "--output", "x.h5", words=words)
 
 
@@ -587,11 +633,13 @@ class Drawings(Analysis):
         for places, edges in (([(1000, 1200)], 1), ([(1000, 1180), (2000, 0), (3600, 600)], 3), ([(3600, 1200)], 1)):
             with self.subTest(places=places):
                 mask(*places)
-                self.refused("--holes", words=[f"the device's edge is no rectangle: it has {edges} indentation", "posts at the edge", "--region"])
+                self.refused("--holes", words=["the device's edge is no rectangle: "
+                                               f"it has {edges} indentation", "posts at the edge", "--region"])
         # Within a region the edge is a rectangle again.
         mask((0, 600))
         self.refused("--holes", words=["0.25 droplet diameters", "x=50 um, y=600 um"])
-        self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--holes", "--region", "60,0,3600,1200")
+        self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--holes", "--region",
+                  "60,0,3600,1200")
         self.assertEqual(len(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)), len(ROW))
         (self.folder / "posts.csv").unlink()
         # A post that touches the edge in a point is a post.
@@ -609,7 +657,8 @@ class Drawings(Analysis):
                 self.gdsii(DEVICE=[holed, *posts])
                 self.refused("--as-circles", words=["1 hole", "--holes"])
         # The hole in a hollow post is no post.
-        hollow = gdspy.boolean(gdspy.Rectangle((1800, 1000), (2000, 1150)), gdspy.Rectangle((1850, 1050), (1950, 1100)), "not", max_points=0)
+        hollow = gdspy.boolean(gdspy.Rectangle((1800, 1000), (2000, 1150)), gdspy.Rectangle((1850, 1050), (1950, 1100)),
+                               "not", max_points=0)
         self.gdsii(DEVICE=[area, hollow, *self.rounds()])
         self.assertEqual(len(self.circles("device.gds", "--as-circles")), len(ROW) + 1)
 
@@ -621,8 +670,9 @@ class Drawings(Analysis):
         slanted = [(0, 0), (3600, 0), (3600, 1200), (1800, 1180), (0, 1200)]
         chamfered = [(200, 0), (3600, 0), (3600, 1200), (0, 1200), (0, 100)]
         rounded = [(8, 0), (3600, 0), (3600, 1195), (0, 1200), (0, 8)]
-        for outline, depth in ((reservoir, "2 indentations, the deepest of 2 droplet"), (slanted, "1 indentation, the deepest of 0.1 droplet"),
-                               (chamfered, "1 indentation"), (rounded, None)):
+        for outline, depth in ((reservoir, "2 indentations, the deepest of 2 droplet"),
+                               (slanted, "1 indentation, the deepest of 0.1 droplet"), (chamfered, "1 indentation"),
+                               (rounded, None)):
             drawing = ezdxf.new("R2010")
             drawing.header["$INSUNITS"] = 13
             for place in posts:
@@ -651,7 +701,8 @@ class Drawings(Analysis):
         self.assertAlmostEqual(gaps[~np.eye(len(rows), dtype=bool)].min() / gap, 1, places=5)
 
     def test_svg(self):
-        self.write("device.svg", SVG.format("".join(f'<circle cx="{200 * x}" cy="{1200 - 200 * y}" r="50"/>' for x, y in ROW)))
+        self.write("device.svg",
+                   SVG.format("".join(f'<circle cx="{200 * x}" cy="{1200 - 200 * y}" r="50"/>' for x, y in ROW)))
         self.assert_posts(self.circles("device.svg"), 2e-3)
 
     def test_a_picture(self):
@@ -666,7 +717,8 @@ class Drawings(Analysis):
     def test_posts_that_are_not_round_are_shown_and_refused(self):
         triangle = '<path d="M2000 500 L2100 500 L2050 600 Z"/>'
         self.write("device.svg", SVG.format(triangle + '<circle cx="800" cy="300" r="50"/>'))
-        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", words=["1 post of 2 not round", "--as-circles"])
+        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts",
+                             words=["1 post of 2 not round", "--as-circles"])
         self.assertFalse((self.folder / "posts.csv").exists())
         self.assert_picture("posts")
         rows = self.circles("device.svg", "--as-rows")
@@ -682,8 +734,9 @@ class Drawings(Analysis):
             along = np.array([end_x - x, end_y - y])
             off = np.abs(along[0] * (triangle[:, 1] - y) - along[1] * (triangle[:, 0] - x)) / np.hypot(*along)
             self.assertAlmostEqual(off.min(), radius, delta=1e-4)
-        told = self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=18", "side-walls=on", "release=entrance", "entrance=8", "exit=13", "line-tension=1",
-                            "max-time=300", "seeds=1..4", "--output", "s.h5")
+        told = self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=18", "side-walls=on",
+                            "release=entrance", "entrance=8", "exit=13", "line-tension=1", "max-time=300", "seeds=1..4",
+                            "--output", "s.h5")
         self.assertEqual(set(table(self.folder / "s.h5")["status"]), {"passed"}, told.stderr)
         for name in ("posts.csv", "posts.png", "posts.pdf"):
             (self.folder / name).unlink()
@@ -693,13 +746,17 @@ class Drawings(Analysis):
     def test_what_is_no_drawing_is_refused(self):
         self.write("device.txt", "nothing")
         self.write("broken.gds", "nothing")
-        self.refuse_analysis("circles", "device.txt", "--droplet", "200um", "--output", "posts", words=["device.txt", ".dxf"])
-        self.refuse_analysis("circles", "broken.gds", "--droplet", "200um", "--output", "posts", words=["cannot read broken.gds"])
+        self.refuse_analysis("circles", "device.txt", "--droplet", "200um", "--output", "posts",
+                             words=["device.txt", ".dxf"])
+        self.refuse_analysis("circles", "broken.gds", "--droplet", "200um", "--output", "posts",
+                             words=["cannot read broken.gds"])
         self.refuse_analysis("circles", "none.gds", "--droplet", "200um", "--output", "posts", words=["no such file"])
-        self.refuse_analysis("circles", "none.gds", "--droplet", "200", "--output", "posts", words=["--droplet", "200um"])
+        self.refuse_analysis("circles", "none.gds", "--droplet", "200", "--output", "posts",
+                             words=["--droplet", "200um"])
         self.write("posts.csv", "my own")
         self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>'))
-        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", words=["will not overwrite"])
+        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts",
+                             words=["will not overwrite"])
 
 
 class WrongDrawings(Analysis):
@@ -731,14 +788,16 @@ class WrongDrawings(Analysis):
 
     def test_a_device_too_large_or_too_small_for_the_droplet(self):
         edge, post = box(0, 0, 3600, 1200), box(500, 500, 600, 600)
-        for unit, options, words in [(6, [], ["1.8e+07 by 6e+06 droplet diameters (the drawing's unit is m, in um it would be 18 by 6)", "$INSUNITS", "--droplet"]),
+        for unit, options, words in [(6, [], ["1.8e+07 by 6e+06 droplet diameters (the drawing's unit is m, "
+                                              "in um it would be 18 by 6)", "$INSUNITS", "--droplet"]),
                                      (12, [], ["unit is nm"]), (0, ["--unit", "mm"], ["unit is mm", "check --unit"])]:
             with self.subTest(unit=unit):
                 self.dxf(unit, outlines=[edge, post])
                 self.refuse("--as-rows", *options, words=words)
                 self.assertFalse((self.folder / "posts.png").exists())
         self.dxf(circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 0), box(0, 1200, 3600, 1220)])
-        self.refuse_analysis("circles", "device.dxf", "--droplet", "0.2m", "--output", "posts", words=["0.018 by 0.0062 droplet diameters"])
+        self.refuse_analysis("circles", "device.dxf", "--droplet", "0.2m", "--output", "posts",
+                             words=["0.018 by 0.0062 droplet diameters"])
         self.dxf(outlines=[box(0, 0, 36e4, 36e4), box(1e4, 1e4, 35e4, 35e4)])
         self.refuse("--as-rows", "--corner", "0.01", words=["circles (at most 200000)", "--corner"])
         self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace('width="3.6mm" height="1.2mm"', ""))
@@ -753,7 +812,8 @@ class WrongDrawings(Analysis):
         self.refuse("--pixel", "2um", words=["--pixel 2um", "the drawing says um"])
         self.draw("circles", "device.dxf", *self.COMMAND, "--unit", "um")
         self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>'))
-        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "other", "--unit", "um", words=["the drawing says mm"])
+        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "other", "--unit", "um",
+                             words=["the drawing says mm"])
         self.draw("circles", "device.svg", "--droplet", "200um", "--output", "other", "--unit", "mm")
 
     def test_lines_that_close_are_outlines(self):
@@ -764,10 +824,12 @@ class WrongDrawings(Analysis):
         lines = [side for corners in [box(0, 0, 3600, 1200), *triangles] for side in sides(corners)]
         loose = [((2500, 300), (2900, 700))]
         told = self.said_of("posts", "--as-rows", lines=lines + loose)
-        for words in ("3 posts, device 18 x 6", "13 lines closed into 4 outlines", "skipped: 1 LINE (lines red", "draw closed outlines", "side-walls=on"):
+        for words in ("3 posts, device 18 x 6", "13 lines closed into 4 outlines", "skipped: 1 LINE (lines red",
+                      "draw closed outlines", "side-walls=on"):
             self.assertIn(words, told)
         self.assertGreater(self.red().sum(), 100)
-        crossing = [((500, 450), (2000, 450)), ((2300, 400), (2800, 400)), ((2350, 350), (2600, 900)), ((2750, 350), (2500, 900))]
+        crossing = [((500, 450), (2000, 450)), ((2300, 400), (2800, 400)), ((2350, 350), (2600, 900)),
+                    ((2750, 350), (2500, 900))]
         told = self.said_of("crossing", "--as-rows", lines=lines + lines[-3:] + crossing)
         for words in ("4 posts, device 18 x 6", "19 lines closed into 5 outlines", "skipped: 1 LINE"):
             self.assertIn(words, told)
@@ -793,7 +855,8 @@ class WrongDrawings(Analysis):
 
     def test_without_an_edge_there_is_room_around_the_posts(self):
         told = self.said_of("posts", circles=[(800, 300), (1600, 300), (1200, 900)])
-        self.assertIn("no edge is drawn: the device ends half a droplet diameter beyond the posts on every side; leave out side-walls=on", told)
+        self.assertIn("no edge is drawn: the device ends half a droplet diameter beyond the posts on every side; "
+                      "leave out side-walls=on", told)
         self.assertNotIn("to a side", told)
         self.assertIn("box=4.5", self.run_printed(told))
         self.assertIn("length=5.5", told)
@@ -810,29 +873,36 @@ class WrongDrawings(Analysis):
         told = self.said_of("one", circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 1200), walls[0]])
         self.assertIn("1 outline or line extends along the whole device and is taken for a wall", told)
         self.assertIn("box=6 length=18", told)
-        told = self.said_of("down", "--flow", "down", circles=[(300, 800), (900, 800)], outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
+        told = self.said_of("down", "--flow", "down", circles=[(300, 800), (900, 800)],
+                            outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
         self.assertIn("box=5.95 length=18", told)
         with self.subTest("walls are single lines"):
             sides = [((0, 0), (3600, 0)), ((3600, 1200), (0, 1200))]
             told = self.said_of("lines", circles=[(800, 300), (800, 900)], lines=[*sides, ((2500, 300), (2900, 700))])
-            for words in ("2 outlines or lines extend along the whole device and are taken for walls", "2 posts, device 18 x 6", "skipped: 1 LINE (lines red", "box=6 length=18"):
+            for words in ("2 outlines or lines extend along the whole device and are taken for walls",
+                          "2 posts, device 18 x 6", "skipped: 1 LINE (lines red", "box=6 length=18"):
                 self.assertIn(words, told)
 
         posts, edge = [(800, 300), (800, 900)], box(0, 0, 3600, 1200)
         with self.subTest("a dimension line beside the device moves no edge"):
-            self.assertIn("device 18 x 6", self.said_of("dimension", circles=posts, outlines=[edge], lines=[((0, -200), (3600, -200))]))
-            self.assertIn("device 18 x 6", self.said_of("farther", circles=posts, lines=[*sides, ((-300, -900), (3900, -900))]))
+            self.assertIn("device 18 x 6",
+                          self.said_of("dimension", circles=posts, outlines=[edge], lines=[((0, -200), (3600, -200))]))
+            self.assertIn("device 18 x 6",
+                          self.said_of("farther", circles=posts, lines=[*sides, ((-300, -900), (3900, -900))]))
         with self.subTest("of walls that are double lines the inner faces count"):
             double = [((0, -20), (3600, -20)), ((0, 1220), (3600, 1220))]
             told = self.said_of("double", circles=posts, lines=[*sides, *double])
             self.assertIn("device 18 x 6", told)
             self.assertNotIn("skipped", told)
         with self.subTest("a long outline that is the only post is none"):
-            told = self.said_of("only", "--as-rows", outlines=[box(0, 500, 3600, 520)], lines=[((500, 800), (600, 900))])
+            told = self.said_of("only", "--as-rows", outlines=[box(0, 500, 3600, 520)],
+                                lines=[((500, 800), (600, 900))])
             self.assertIn("1 post, device", told)
         with self.subTest("a wall with teeth is a post"):
             teeth = [(3600 - 100 * i, 20 + 40 * (i % 2)) for i in range(37)]
-            told = self.said_of("teeth", "--as-rows", circles=[(800, 300), (800, 900)], outlines=[[(0, 0), (3600, 0), *teeth], box(0, 1200, 3600, 1220)])
+            told = self.said_of("teeth", "--as-rows", circles=[(800, 300), (800, 900)],
+                                outlines=[[(0, 0), (3600, 0), *teeth],
+                                          box(0, 1200, 3600, 1220)])
             self.assertIn("1 outline or line extends along the whole device", told)
             self.assertIn("3 posts", told)
 
@@ -922,14 +992,17 @@ class OtherTools(Analysis):
         return self.circles_of("device.svg", **options)
 
     def test_svg_shapes_in_transformed_groups(self):
-        for transform, circle, expected in [("rotate(30 1000 600)", (1000, 600, 250), (1000, 600, 500)), ("translate(3600 0) scale(-1 1)", (800, 300, 50), (2800, 900, 100)),
-                                            ("scale(1 -1) translate(0 -1200)", (800, 300, 50), (800, 300, 100)), ("matrix(0 1 -1 0 1200 0)", (400, 300, 50), (900, 800, 100)),
+        for transform, circle, expected in [("rotate(30 1000 600)", (1000, 600, 250), (1000, 600, 500)),
+                                            ("translate(3600 0) scale(-1 1)", (800, 300, 50), (2800, 900, 100)),
+                                            ("scale(1 -1) translate(0 -1200)", (800, 300, 50), (800, 300, 100)),
+                                            ("matrix(0 1 -1 0 1200 0)", (400, 300, 50), (900, 800, 100)),
                                             ("rotate(90 600 600) scale(2)", (400, 200, 50), (800, 400, 200))]:
             for shape in ('<circle cx="{0}" cy="{1}" r="{2}"/>', '<ellipse cx="{0}" cy="{1}" rx="{2}" ry="{2}"/>'):
                 with self.subTest(transform):
                     body = f'<g transform="{transform}">{shape.format(*circle)}</g>'
                     np.testing.assert_allclose(self.svg(body), [expected], rtol=1e-4, atol=1e-2)
-        self.write("device.svg", SVG.format('<g transform="translate(1000 600) skewX(45)"><rect width="100" height="200"/></g>'))
+        self.write("device.svg",
+                   SVG.format('<g transform="translate(1000 600) skewX(45)"><rect width="100" height="200"/></g>'))
         device = self.device("device.svg")
         np.testing.assert_allclose(np.array(device.others) * 200, [[(1000, 600), (1100, 600), (1300, 400), (1200, 400)]], atol=0.01)
 
@@ -943,7 +1016,8 @@ class OtherTools(Analysis):
 
     def test_svg_has_exact_corners(self):
         edge = '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="1.2mm" viewBox="0 0 60000 1200">{}</svg>'
-        self.write("device.svg", edge.format('<path d="M0 0 L60000 0 L60000 1200 L0 1200 Z"/><path d="M8000 300 a50 50 0 1 0 0.001 0 z"/>'))
+        self.write("device.svg", edge.format('<path d="M0 0 L60000 0 L60000 1200 L0 1200 Z"/><path d="M8000 300 a50 50 '
+                                             '0 1 0 0.001 0 z"/>'))
         device = self.device("device.svg")
         self.assertAlmostEqual(device.length, 300, places=3)
 
@@ -970,35 +1044,45 @@ class OtherTools(Analysis):
                 ("g.h circle{display:none}", "<g class='h'>*</g>", ""), ("circle.a.b{display:none}", "*", 'class="a b"'), ('circle[data-k="q"]{visibility:hidden}', "*", 'data-k="q"'),
                 ("g > .c{opacity:0}", "<g>*</g>", c), ("circle.f{display:none !important}", "*", 'class="f" style="display:inline"'), ("#p{display:none} .c{display:inline}", "*", f'id="p" {c}'),
                 (".c{display:inline} .c{display:none}", "*", c), ("desc + circle{fill:none}", "<g><desc/>*</g>", ""), ("g:nth-of-type(2) *{display:none}", "<g/><g>*</g>", ""),
-                (".c{fill:none}", "*", f'{c} fill="red"'), (".c{display:inline !important} #p{display:none !important}", "*", f'id="p" {c}'),
+                (".c{fill:none}", "*", f'{c} fill="red"'), (".c{display:inline !important} "
+                                                            "#p{display:none !important}", "*", f'id="p" {c}'),
                 ("/* a comment */ .C, .c{ display : none ; } ", "*", c), ("g{opacity:0} .c{opacity:1}", "<g>*</g>", c), ("<![CDATA[ g > .c{display:none} ]]>", "<g>*</g>", c),
                 (".c{clip-path:none} g .c{clip-path:url(#left)}", "<g>*</g>", c), ("#page > .c{display:none}", "<g id='page'>*</g>", c)]:
             body = around.replace("*", post.format(attributes)) + seen
             for text in (f"<style>{sheet}</style>{left}{body}", f"{left}{body}<style>{sheet}</style>"):
                 with self.subTest(text):
                     np.testing.assert_allclose(self.svg(text), [(800, 300, 100)], rtol=1e-3)
-        for sheet, attributes in [(".c{display:none}", f'{c} style="display:inline"'), (".c{display:inline} circle{display:none}", c),
-                                  ("circle:hover, .c:not(circle){display:none}", c), (".c{clip-path:none}", f'{c} clip-path="url(#left)"'),
-                                  (".c{fill:inherit}", f'{c} fill="none"'), (".b{display:none}", c), ("</style><style>", ""), (".c{cy:300px}", c)]:
+        for sheet, attributes in [(".c{display:none}", f'{c} style="display:inline"'),
+                                  (".c{display:inline} circle{display:none}", c),
+                                  ("circle:hover, .c:not(circle){display:none}", c),
+                                  (".c{clip-path:none}", f'{c} clip-path="url(#left)"'),
+                                  (".c{fill:inherit}", f'{c} fill="none"'), (".b{display:none}", c),
+                                  ("</style><style>", ""), (".c{cy:300px}", c)]:
             with self.subTest(sheet):
-                np.testing.assert_allclose(self.svg(f"<style>{sheet}</style>{left}{post.format(attributes)}"), [(1600, 900, 100)], rtol=1e-3)
+                np.testing.assert_allclose(self.svg(f"<style>{sheet}</style>{left}{post.format(attributes)}"),
+                                           [(1600, 900, 100)], rtol=1e-3)
                 self.assertEqual(self.drawing.notes, [])
 
     def test_svg_values_that_css_drops_leave_the_value_before_them(self):
         # CSS 2.1, 4.2: a declaration with a value that its property does not have is dropped.
         circle = '<circle cx="800" cy="300" r="50" {}/><circle cx="400" cy="300" r="50"/>'
-        for attributes in ('style="display:none;display:foo"', 'style="fill:none;fill:foo"', 'style="opacity:0;opacity:none"', 'style="visibility:hidden; visibility:none"', 'style="fill-opacity:0;fill-opacity:#1"',
-                           'style="r:0px;r:bogus"', 'style="r:0;r:-3px"', 'clip-path="url(#none)" style="clip-path:foo"'):
+        for attributes in ('style="display:none;display:foo"', 'style="fill:none;fill:foo"',
+                           'style="opacity:0;opacity:none"', 'style="visibility:hidden; visibility:none"',
+                           'style="fill-opacity:0;fill-opacity:#1"', 'style="r:0px;r:bogus"', 'style="r:0;r:-3px"',
+                           'clip-path="url(#none)" style="clip-path:foo"'):
             with self.subTest(attributes):
-                np.testing.assert_allclose(self.svg('<clipPath id="none"/>' + circle.format(attributes)), [(400, 900, 100)], rtol=1e-3)
-        for attributes in ('style="cy:300px;cy:bogus"', 'fill="red" style="fill:foo"', 'stroke-width="null"', 'display="foo"', 'visibility="none"'):
+                np.testing.assert_allclose(self.svg('<clipPath id="none"/>' + circle.format(attributes)),
+                                           [(400, 900, 100)], rtol=1e-3)
+        for attributes in ('style="cy:300px;cy:bogus"', 'fill="red" style="fill:foo"', 'stroke-width="null"',
+                           'display="foo"', 'visibility="none"'):
             with self.subTest(attributes):
                 self.assertEqual(len(self.svg(circle.format(attributes))), 2)
 
     def test_svg_paints_in_every_notation(self):
         grid = '<linearGradient id="grid"><stop stop-color="red"/></linearGradient>'
         circle = '<circle cx="800" cy="300" r="50" {}/>'
-        for paint in ("none", "transparent", "rgba(0,0,0,0)", "#1230", "currentColor", "CURRENTCOLOR", "context-fill", "url(#nope) none", "url(#nope)"):
+        for paint in ("none", "transparent", "rgba(0,0,0,0)", "#1230", "currentColor", "CURRENTCOLOR", "context-fill",
+                      "url(#nope) none", "url(#nope)"):
             for attributes in (f'fill="{paint}" color="transparent"', f'style="fill:{paint}; color:#0000"'):
                 with self.subTest(attributes):
                     self.assertEqual(len(self.svg(grid + circle.format(attributes) + '<circle cx="400" cy="300" r="50"/>')), 1)
@@ -1018,7 +1102,8 @@ class OtherTools(Analysis):
     def test_svg_shows_what_a_viewer_shows(self):
         seen, hidden = '<circle cx="800" cy="300" r="50"/>', '<circle cx="400" cy="300" r="50" {}/>'
         clipped, faint = hidden.format('clip-path="url(#c)"'), hidden.format('fill="url(#g)"')
-        for body in ['<svg x="100" y="50" width="3000" height="1000"><use href="#u"/><symbol id="u" overflow="visible"><circle cx="700" cy="250" r="50"/></symbol></svg>',
+        for body in ['<svg x="100" y="50" width="3000" height="1000"><use href="#u"/><symbol id="u" '
+                     'overflow="visible"><circle cx="700" cy="250" r="50"/></symbol></svg>',
                      '<defs><circle id="a" cx="800" cy="300" r="50"/><circle id="a" r="80"/></defs><use href="#a"/>', f'<clipPath id="c"><g><rect width="9999" height="999"/></g></clipPath>{seen}{clipped}',
                      f'<clipPath id="c"><rect width="9999" height="999" visibility="hidden"/></clipPath>{seen}{clipped}', f'{seen}<foo>{hidden.format("")}</foo>', f'{seen}<pattern id="p">{hidden.format("")}</pattern>',
                      f'{seen}<marker>{hidden.format("")}</marker>', f'{seen}<G>{hidden.format("")}</G>', f'<linearGradient id="g"/>{seen}{faint}',
@@ -1035,45 +1120,57 @@ class OtherTools(Analysis):
         circle = '<circle cx="{}" cy="300" r="50"/>'
         own = '<foreignObject requiredExtensions="http://ns.adobe.com/AdobeIllustrator/10.0/"/>'
         for body in [f"<switch>{own}<g>{circle.format(800)}</g></switch>", f'<switch><g systemLanguage="de">{circle.format(400)}</g>{circle.format(800)}{circle.format(1200)}</switch>',
-                     f'<defs><switch id="s"><g systemLanguage="de"/>{circle.format(0)}</switch></defs><use href="#s" x="800"/>']:
+                     f'<defs><switch id="s"><g systemLanguage="de"/>{circle.format(0)}</switch></defs><use '
+                     'href="#s" x="800"/>']:
             with self.subTest(body):
                 np.testing.assert_allclose(self.svg(body), [(800, 900, 100)], rtol=1e-3)
 
     def test_svg_sizes_below_zero_are_not_drawn(self):
         # SVG 2, 7.2: such a value is invalid and ignored. A radius of a corner is then automatic.
         seen = '<circle cx="400" cy="300" r="50"/>'
-        for attributes in ('circle cx="800" cy="300" r="-50"', 'rect x="750" y="250" width="-100" height="100" rx="50"', 'rect x="750" y="250" width="100" height="-100"', 'ellipse cx="800" cy="300" rx="-50" ry="-50"'):
+        for attributes in ('circle cx="800" cy="300" r="-50"', 'rect x="750" y="250" width="-100" height="100" rx="50"',
+                           'rect x="750" y="250" width="100" height="-100"',
+                           'ellipse cx="800" cy="300" rx="-50" ry="-50"'):
             with self.subTest(attributes):
                 np.testing.assert_allclose(self.svg(f"<{attributes}/>{seen}"), [(400, 900, 100)], rtol=1e-3)
-        for attributes in ('ellipse cx="800" cy="300" rx="-50" ry="50"', 'rect x="750" y="250" width="100" height="100" rx="-3" ry="50"'):
+        for attributes in ('ellipse cx="800" cy="300" rx="-50" ry="50"',
+                           'rect x="750" y="250" width="100" height="100" rx="-3" ry="50"'):
             np.testing.assert_allclose(self.svg(f"<{attributes}/>"), [(800, 900, 100)], rtol=1e-3)
 
     def test_svg_transforms_of_the_whole_drawing_are_refused(self):
-        self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace("<svg", '<svg transform="scale(2)"', 1))
+        self.write("device.svg",
+                   SVG.format('<circle cx="800" cy="300" r="50"/>').replace("<svg", '<svg transform="scale(2)"', 1))
         self.refused("device.svg", "transform of the whole <svg>")
-        np.testing.assert_allclose(self.svg('<svg transform="translate(100 0)" width="3600" height="1200"><circle cx="700" cy="300" r="50"/></svg>'), [(800, 900, 100)], rtol=1e-3)
+        np.testing.assert_allclose(self.svg('<svg transform="translate(100 0)" width="3600" height="1200"><circle '
+                                            'cx="700" cy="300" r="50"/></svg>'), [(800, 900, 100)], rtol=1e-3)
 
     def test_svg_what_librsvg_does_not_know_is_named(self):
         sheet = '@import "other.css"; @media (max-width: 9px){circle{display:none}} @layer base{circle{display:none}} @keyframes k{to{opacity:0}} .k{animation: k 1s}'
-        self.assertEqual(len(self.svg(f'<style media="print">{sheet}</style><circle cx="800" cy="300" r="50" filter="url(#f)" mask="url(#m)" style="mix-blend-mode: multiply"/>')), 1)
-        self.assertEqual(self.drawing.notes, ["ignored: @media, @layer, @import, animations, blend modes, masks, filters, media of style sheets"])
+        self.assertEqual(len(self.svg(f'<style media="print">{sheet}</style><circle cx="800" cy="300" r="50" '
+                                      'filter="url(#f)" mask="url(#m)" style="mix-blend-mode: multiply"/>')), 1)
+        self.assertEqual(self.drawing.notes, ["ignored: @media, @layer, @import, animations, blend modes, masks, "
+                                              "filters, media of style sheets"])
         self.assertEqual(len(self.svg('<pattern id="p" width="9" height="9"><path d="M0 0h9"/></pattern><path d="M0 0h9" marker="none"/><circle cx="800" cy="300" r="50" style="marker-end:url(#m)"/>')), 1)
         self.assertEqual(self.drawing.notes, ["ignored: patterns, markers"])
-        self.write("device.svg", '<?xml-stylesheet href="other.css"?>' + SVG.format('<circle cx="800" cy="300" r="50"/>'))
+        self.write("device.svg",
+                   '<?xml-stylesheet href="other.css"?>' + SVG.format('<circle cx="800" cy="300" r="50"/>'))
         self.assertEqual(len(self.circles_of("device.svg")), 1)
         self.assertEqual(self.drawing.notes, ["ignored: style sheets in other files"])
-        self.assertEqual(len(self.svg('<!-- @import, transform-origin: 0 --><settings/><circle cx="800" cy="300" r="50"/>')), 1)
+        self.assertEqual(len(self.svg('<!-- @import, transform-origin: '
+                                      '0 --><settings/><circle cx="800" cy="300" r="50"/>')), 1)
         self.assertEqual(self.drawing.notes, [])
 
     def test_svg_filled_paths_that_are_open_are_outlines(self):
         self.write("device.svg", SVG.format('<path d="M800 300h100v80h-100"/><polyline points="1200,300 1300,300 1300,380"/><path d="M100 100h100"/><path d="M500 300h100v80h-100" fill="none" stroke="black"/>'))
         device = self.device("device.svg")
-        np.testing.assert_allclose(sorted(abs(shapes.area(outline)) * 200**2 for outline in device.others), [4000, 8000], rtol=1e-3)
+        np.testing.assert_allclose(sorted(abs(shapes.area(outline)) * 200**2 for outline in device.others),
+                                   [4000, 8000], rtol=1e-3)
         self.assertEqual(len(device.lines), 1)
 
     def test_an_outline_that_crosses_itself_becomes_no_circle(self):
         self.write("device.svg", SVG.format('<path d="M2200 300L2320 660L2010 440H2390L2080 660z"/>'))
-        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--as-circles", words=["crosses itself", "in the drawing"])
+        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--as-circles",
+                             words=["crosses itself", "in the drawing"])
 
     def test_posts_that_touch_get_a_remedy_that_fits(self):
         circle = '<circle cx="800" cy="{}" r="{}"/>'
@@ -1086,8 +1183,11 @@ class OtherTools(Analysis):
 
     def test_svg_shapes_that_are_blended_stay(self):
         circle = '<circle cx="800" cy="300" r="50"{}/>'
-        for body in (circle.format(' style="mix-blend-mode:multiply"'), f'<g style="isolation:isolate">{circle.format("")}</g>', f'<style>circle{{mix-blend-mode:screen}}</style>{circle.format("")}',
-                     f'<g enable-background="new">{circle.format("")}</g>', f'<g style="enable-background:new; opacity:0.5">{circle.format("")}</g>'):
+        for body in (circle.format(' style="mix-blend-mode:multiply"'),
+                     f'<g style="isolation:isolate">{circle.format("")}</g>',
+                     f'<style>circle{{mix-blend-mode:screen}}</style>{circle.format("")}',
+                     f'<g enable-background="new">{circle.format("")}</g>',
+                     f'<g style="enable-background:new; opacity:0.5">{circle.format("")}</g>'):
             with self.subTest(body):
                 np.testing.assert_allclose(self.svg(body), [(800, 900, 100)], rtol=1e-3)
 
@@ -1099,7 +1199,8 @@ class OtherTools(Analysis):
         moved = circles.replace("cx", 'transform="translate(500 0)" cx')
         for body in [f'{left}<g clip-path="url(#left)">{circles}</g>', f'<defs>{left}</defs><g style="clip-path: url(&quot;#left&quot;)">{circles}</g>', f'{styles}{left}<g class="post left">{circles}</g>',
                      f'{left}<g clip-path="url(#left)"><g transform="translate(-500 0)">{moved}</g></g>',
-                     f'{left}<g transform="translate(-100 0)" clip-path="url(#left)"><g transform="translate(100 0)">{circles}</g></g>',
+                     f'{left}<g transform="translate(-100 0)" clip-path="url(#left)"><g '
+                     f'transform="translate(100 0)">{circles}</g></g>',
                      f'{turned}<g clip-path="url(#turned)">{circles}</g>']:
             with self.subTest(body):
                 np.testing.assert_allclose(self.svg(body), [(400, 900, 100)], rtol=1e-3)
@@ -1123,7 +1224,8 @@ class OtherTools(Analysis):
         circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))
         for body in [f'<svg width="600" height="1200">{circles}</svg>', f'<svg width="16.6666666667%" viewBox="0 0 600 1200">{circles}</svg>', f'<svg width="600" height="1200" overflow="hidden">{circles}</svg>',
                      f'<svg x="-100" width="700" height="1200"><g transform="translate(100 0)">{circles}</g></svg>',
-                     f'<g transform="rotate(90)"><svg width="1200" height="600" y="-600"><g transform="translate(0 600) rotate(-90)">{circles}</g></svg></g>']:
+                     '<g transform="rotate(90)"><svg width="1200" height="600" y="-600"><g transform="translate(0 600) '
+                     f'rotate(-90)">{circles}</g></svg></g>']:
             with self.subTest(body):
                 np.testing.assert_allclose(self.svg(body), [(400, 900, 100)], rtol=1e-3)
         for attributes in ('overflow="visible"', 'style="overflow:auto"'):
@@ -1131,7 +1233,8 @@ class OtherTools(Analysis):
         # A post that crosses the viewport is cut, and an empty viewport shows nothing, but what follows is drawn.
         self.write("device.svg", SVG.format(f'<svg width="400" height="1200">{circles}</svg>'))
         np.testing.assert_allclose(np.ptp(self.device("device.svg").others[0] * 200, axis=0), [50, 100], rtol=1e-3)
-        self.assertEqual(len(self.svg(f'<svg width="0" height="1200">{circles}</svg><circle cx="800" cy="300" r="50"/>')), 1)
+        self.assertEqual(len(self.svg(f'<svg width="0" height="1200">{circles}</svg><circle cx="800" '
+                                      'cy="300" r="50"/>')), 1)
 
     def test_svg_lengths_have_units(self):
         # SVG 2, 8.9: percentages refer to the viewport, and for r to the square root of (width^2 + height^2) / 2.
@@ -1142,10 +1245,13 @@ class OtherTools(Analysis):
                       '<use href="#c" x="50%" y="0"/><defs><circle id="c" cx="-1000" cy="300" r="50"/></defs>']:
             with self.subTest(shape):
                 np.testing.assert_allclose(self.svg(shape), [(800, 900, 100)], rtol=1e-4)
-        for shape in ('<circle id="a" r="5em"/>', '<ellipse rx="3" ry="1ex"/>', '<rect x="1rem" width="9" height="9"/>', '<circle cx="5vw" r="1"/>', '<circle style="r: 2em"/>'):
+        for shape in ('<circle id="a" r="5em"/>', '<ellipse rx="3" ry="1ex"/>', '<rect x="1rem" width="9" height="9"/>',
+                      '<circle cx="5vw" r="1"/>', '<circle style="r: 2em"/>'):
             with self.subTest(shape):
                 self.write("device.svg", SVG.format(shape))
-                self.refused("device.svg", "cannot read", "librsvg does not know lengths that depend on a font or a window", "give lengths in px or mm")
+                self.refused("device.svg", "cannot read",
+                             "librsvg does not know lengths that depend on a font or a window",
+                             "give lengths in px or mm")
         self.write("device.svg", '<svg xmlns="http://www.w3.org/2000/svg"><circle r="5%"/></svg>')
         self.refused("device.svg", "lengths in per cent", "viewBox")
 
@@ -1154,8 +1260,10 @@ class OtherTools(Analysis):
         posts = '<circle cx="{0}" cy="{1}" r="50"/>'
         size, view = 'width="3600" height="1200"', 'viewBox="{0} {1} 3600 1200"'
         # The page is the size, the viewBox, or both, in several units.
-        for page, left, top in ((size, 0, 0), (view.format(0, 0), 0, 0), (view.format(500, 200), 500, 200), (f"{size} {view.format(500, 200)}", 500, 200),
-                                (f'width="3.6mm" height="1.2mm" {view.format(-300, 70)}', -300, 70), (f'width="100%" height="100%" {view.format(500, 200)}', 500, 200)):
+        for page, left, top in ((size, 0, 0), (view.format(0, 0), 0, 0), (view.format(500, 200), 500, 200),
+                                (f"{size} {view.format(500, 200)}", 500,
+                                 200), (f'width="3.6mm" height="1.2mm" {view.format(-300, 70)}', -300,
+                                        70), (f'width="100%" height="100%" {view.format(500, 200)}', 500, 200)):
             for has_frame in (True, False):
                 seen = [(left + x, top + y) for x, y in ((800, 300), (1600, 900), (2400, 600))]
                 # Beyond each side and corner; an edge that only touches the page is outside, too.
@@ -1171,13 +1279,16 @@ class OtherTools(Analysis):
                         count = f"{len(beyond)} object{'s' * (len(beyond) > 1)} wholly outside the page left out, "
                         words = re.fullmatch(re.escape(count) + r"at x=(\S+) to (\S+), y=(\S+) to (\S+) \(enlarge the page .*", self.drawing.notes[0])
                         np.testing.assert_allclose([float(word) for word in words.groups()], [x.min() - 50, x.max() + 50, y.min() - 50, y.max() + 50], atol=0.1)
-        self.write("device.svg", SVG.replace('<rect x="0" y="0" width="3600" height="1200" fill="none" stroke="black"/>', "").format(posts.format(5000, 600)))
+        self.write("device.svg", SVG.replace('<rect x="0" y="0" width="3600" height="1200" fill="none" '
+                                             'stroke="black"/>', "").format(posts.format(5000, 600)))
         self.refused("device.svg", "holds no posts", "1 object wholly outside the page", "x=4950 to 5050")
         told = self.write("device.svg", SVG.format(posts.format(800, 600) + posts.format(5000, 600))) and self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts").stdout
-        self.assertIn("read 3 objects; 1 object wholly outside the page left out, at x=4950 to 5050, y=550 to 650", told)
+        self.assertIn("read 3 objects; 1 object wholly outside the page left out, at x=4950 to 5050, "
+                      "y=550 to 650", told)
         self.assertIn("device 18 x 6 droplet diameters (its own edge)", told)
         # A drawing without a size and without a viewBox has no page.
-        self.write("device.svg", f'<svg xmlns="http://www.w3.org/2000/svg">{posts.format(800, 300)}{posts.format(9000, -700)}</svg>')
+        self.write("device.svg",
+                   f'<svg xmlns="http://www.w3.org/2000/svg">{posts.format(800, 300)}{posts.format(9000, -700)}</svg>')
         self.assertEqual(len(self.circles_of("device.svg", unit=1e-6)), 2)
 
     def width_in_drawing(self, width):
@@ -1187,7 +1298,8 @@ class OtherTools(Analysis):
 
     def test_svg_objects_that_cross_the_border_of_the_page_are_treated_as_those_of_a_region(self):
         whole = SVG.replace('<rect x="0" y="0" width="3600" height="1200" fill="none" stroke="black"/>', "")
-        posts = "".join(f'<circle cx="{x}" cy="{y}" r="50"/>' for x, y in ((20, 600), (800, -20), (1600, 1180), (2400, 600), (3600, 600), (3620, 300)))
+        posts = "".join(f'<circle cx="{x}" cy="{y}" r="50"/>'
+                        for x, y in ((20, 600), (800, -20), (1600, 1180), (2400, 600), (3600, 600), (3620, 300)))
         self.write("device.svg", whole.format(posts))
         # Without an edge, the device begins half a droplet, 100, beyond the posts.
         np.testing.assert_allclose(self.circles_of("device.svg"), [(150, 730, 100), (1730, 150, 100), (2530, 730, 100)], atol=0.2)
@@ -1196,7 +1308,8 @@ class OtherTools(Analysis):
         self.write("device.svg", whole.replace('0 0 3600 1200', '-1000 -1000 7200 2400').replace("3.6mm", "7.2mm").replace("1.2mm", "2.4mm").format(posts))
         np.testing.assert_allclose(self.circles_of("device.svg", region=(0, 0, 3600, 1200)), [(20, 600, 100), (1600, 20, 100), (2400, 600, 100)], atol=0.2)
         # A background that is larger than the page is seen as the page, and a bar is cut.
-        self.write("device.svg", whole.format('<rect x="-100" y="-200" width="3800" height="1600"/><rect x="3000" y="400" width="900" height="300"/><circle cx="800" cy="300" r="50"/>'))
+        self.write("device.svg", whole.format('<rect x="-100" y="-200" width="3800" height="1600"/><rect x="3000" '
+                                              'y="400" width="900" height="300"/><circle cx="800" cy="300" r="50"/>'))
         device = self.device("device.svg")
         np.testing.assert_allclose([device.length, device.width], [18, 6], rtol=1e-5)
         np.testing.assert_allclose(np.ptp(device.others[0] * 200, axis=0), [600, 300], rtol=1e-5)
@@ -1221,7 +1334,8 @@ class OtherTools(Analysis):
         (self.folder / "posts.csv").unlink()
         for sweep, paint in ((1, ""), (0, 'fill="none" stroke="black"')):
             self.write("device.svg", page.format(f'<path {paint} d="{edge}{turned(4, 3, sweep)}"/>'))
-            self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes", words=["no holes", "leave out --holes"])
+            self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes",
+                                 words=["no holes", "leave out --holes"])
         # A clip that leaves the right half.
         self.write("device.svg", page.format(f'<clipPath id="right"><rect x="1800" width="1800" height="1200"/></clipPath><path clip-path="url(#right)" fill-rule="evenodd" d="{edge}{turned(4, 3, 1)}{turned(13, 3, 1)}"/>'))
         self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes")
@@ -1262,8 +1376,10 @@ class OtherTools(Analysis):
     def test_dxf_arrays_of_blocks(self):
         drawing, space = self.dxf()
         drawing.blocks.new("POST").add_circle((0, 0), 50)
-        space.add_blockref("POST", (100, 100), dxfattribs={"row_count": 5, "column_count": 8, "row_spacing": 200, "column_spacing": 300})
-        np.testing.assert_allclose(self.saved(drawing), [(100 + 300 * i, 100 + 200 * j, 100) for i in range(8) for j in range(5)], atol=1e-9)
+        space.add_blockref("POST", (100, 100),
+                           dxfattribs={"row_count": 5, "column_count": 8, "row_spacing": 200, "column_spacing": 300})
+        np.testing.assert_allclose(self.saved(drawing),
+                                   [(100 + 300 * i, 100 + 200 * j, 100) for i in range(8) for j in range(5)], atol=1e-9)
 
     def test_dxf_circles_in_mirrored_blocks_and_with_an_extrusion(self):
         drawing, space = self.dxf()
@@ -1271,8 +1387,10 @@ class OtherTools(Analysis):
         space.add_blockref("POST", (800, 300), dxfattribs={"xscale": -1})
         space.add_blockref("POST", (1200, 300), dxfattribs={"yscale": -2, "xscale": 2, "rotation": 90})
         space.add_circle((-1600, 900), 50, dxfattribs={"extrusion": (0, 0, -1)})
-        space.add_lwpolyline([(-1950, 300, 1), (-2050, 300, 1)], format="xyb", close=True, dxfattribs={"extrusion": (0, 0, -1)})
-        np.testing.assert_allclose(self.saved(drawing), [(790, 300, 100), (1200, 320, 200), (1600, 900, 100), (2000, 300, 100)], atol=0.01)
+        space.add_lwpolyline([(-1950, 300, 1), (-2050, 300, 1)], format="xyb", close=True,
+                             dxfattribs={"extrusion": (0, 0, -1)})
+        np.testing.assert_allclose(self.saved(drawing), [(790, 300, 100), (1200, 320, 200), (1600, 900, 100),
+                                                         (2000, 300, 100)], atol=0.01)
 
     def test_dxf_polylines_with_a_width(self):
         drawing, space = self.dxf()
@@ -1352,7 +1470,8 @@ class OtherTools(Analysis):
             pairs += ["0", "LINE", "8", "0", "10", str(x), "20", str(y), "30", "0.0", "11", str(end_x), "21", str(end_y), "31", "0.0"]
         self.write("device.dxf", "".join(f"{word}\r\n" for word in [*pairs, "0", "ENDSEC", "0", "EOF"]))
         self.assertIsNone(readers.read(self.folder / "device.dxf").metres)
-        np.testing.assert_allclose(self.circles_of("device.dxf", unit=1e-6), sorted((200 * x, 200 * y, 100) for x, y in ROW), atol=1e-6)
+        np.testing.assert_allclose(self.circles_of("device.dxf", unit=1e-6),
+                                   sorted((200 * x, 200 * y, 100) for x, y in ROW), atol=1e-6)
 
     # GDSII
 
@@ -1361,7 +1480,8 @@ class OtherTools(Analysis):
         device = self.device("device.gds")
         self.assertAlmostEqual(device.length * 0.2, 101.6, places=6)
         self.assertEqual(self.drawing.unit, "mil")
-        self.refuse_analysis("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--unit", "um", words=["--unit um contradicts", "the drawing says mil"])
+        self.refuse_analysis("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--unit", "um",
+                             words=["--unit um contradicts", "the drawing says mil"])
 
     def test_gdsii_circles_that_the_writer_cut(self):
         import gdspy
@@ -1377,9 +1497,11 @@ class OtherTools(Analysis):
         np.testing.assert_allclose(self.circles_of("device.gds"), [(500, 580, 100), (800, 580, 100)], atol=0.02)
         self.assertEqual((self.drawing.united[1], self.drawing.duplicates), (2, 1))
         told = self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts").stdout
-        self.assertRegex(told, r"read \d+ objects; \d+ outlines that touch united into 2 outlines; 1 duplicate ignored; 1 unit is 1 um, 0.005 droplet diameters")
+        self.assertRegex(told, r"read \d+ objects; \d+ outlines that touch united into 2 outlines; "
+                               r"1 duplicate ignored; 1 unit is 1 um, 0.005 droplet diameters")
         third = [(500 + 50 * np.cos(angle), 600 + 50 * np.sin(angle)) for angle in np.linspace(0, 2 * np.pi / 3, 41)]
-        turned = [[((x - 500) * c - (y - 600) * s + 500, (x - 500) * s + (y - 600) * c + 600) for x, y in [(500, 600), *third]]
+        turned = [[((x - 500) * c - (y - 600) * s + 500, (x - 500) * s + (y - 600) * c + 600)
+                   for x, y in [(500, 600), *third]]
                   for c, s in [(np.cos(angle), np.sin(angle)) for angle in 2 * np.pi / 3 * np.arange(3)]]
         (self.folder / "thirds.gds").write_bytes(gdsii([box(0, 0, 3600, 1200), *turned], 1e-6))
         np.testing.assert_allclose(self.circles_of("thirds.gds"), [(500, 600, 100)], atol=0.1)
@@ -1410,14 +1532,19 @@ class OtherTools(Analysis):
 
         corners = {tuple(outline[0]) for outline in polygons(reference(10, "MID", [(600, 150)]))}
         self.assertEqual(corners, {(605 + 60 * i - 20 * j, 157 + 10 * i + 50 * j) for i in range(2) for j in range(3)})
-        for transform in [{}, {"angle": 30.0}, {"angle": 90.0}, {"mirrored": True}, {"angle": 90.0, "mirrored": True, "magnified": 0.5}]:
-            for along, across in [((300, 150), (0, 300)), ((300, 0), (0, 300)), ((0, 300), (-300, 0)), ((300, 0), (0, -300)), ((300, 0), (100, 260))]:
+        for transform in [{}, {"angle": 30.0}, {"angle": 90.0}, {"mirrored": True},
+                          {"angle": 90.0, "mirrored": True, "magnified": 0.5}]:
+            for along, across in [((300, 150), (0, 300)), ((300, 0), (0, 300)), ((0, 300), (-300, 0)),
+                                  ((300, 0), (0, -300)), ((300, 0), (100, 260))]:
                 with self.subTest(along=along, across=across, **transform):
-                    ends = [(600, 150), (600 + 3 * along[0], 150 + 3 * along[1]), (600 + 2 * across[0], 150 + 2 * across[1])]
-                    places = [(600 + i * along[0] + j * across[0], 150 + i * along[1] + j * across[1]) for i in range(3) for j in range(2)]
+                    ends = [(600, 150), (600 + 3 * along[0], 150 + 3 * along[1]),
+                            (600 + 2 * across[0], 150 + 2 * across[1])]
+                    places = [(600 + i * along[0] + j * across[0], 150 + i * along[1] + j * across[1]) for i in range(3)
+                              for j in range(2)]
                     expected = polygons(b"".join(reference(10, "MID", [place], **transform) for place in places))
                     self.assertEqual(len(expected), 36)
-                    np.testing.assert_allclose(polygons(reference(11, "MID", ends, counts=(3, 2), **transform)), expected, atol=1e-6)
+                    np.testing.assert_allclose(polygons(reference(11, "MID", ends, counts=(3, 2), **transform)),
+                                               expected, atol=1e-6)
         with mock.patch.object(gds, "exact_library", lambda gdspy: gdspy.GdsLibrary):
             self.refused("device.gds", "arrays of cells", "flatten them")
 
@@ -1450,11 +1577,14 @@ class OtherTools(Analysis):
         device = self.saved(drawing, region=(500, 1200, 2000, 0))
         np.testing.assert_allclose(device, [(300, 50, 100), (500, 40, 100), (1100, 650, 100)], atol=1e-9)
         self.assertEqual(self.drawing.outside, 4)
-        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "posts", "--region", "500,1200,2000,0").stdout
+        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "posts", "--region",
+                         "500,1200,2000,0").stdout
         self.assertIn("device 7.5 x 3.5 droplet diameters (the region)", told)
         self.assertIn("4 outside the region", told)
-        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "500,0,500,9", words=["--region", "x0,y0,x1,y1"])
-        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "2500,300,3100,800", words=["no posts", "--region"])
+        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "500,0,500,9",
+                             words=["--region", "x0,y0,x1,y1"])
+        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region",
+                             "2500,300,3100,800", words=["no posts", "--region"])
 
     def test_a_post_beside_the_edge_of_a_region_is_left_out_and_named(self):
         # Two posts reach into the region of 500..2000, from the left and from above.
@@ -1471,17 +1601,21 @@ class OtherTools(Analysis):
         for x, y in ROW:
             pen.ellipse([100 * (x - 0.25), 600 - 100 * (y + 0.25), 100 * (x + 0.25), 600 - 100 * (y - 0.25)], fill=40)
         image.save(self.folder / "mask.png")
-        self.write("device.svg", SVG.format("".join(f'<circle cx="{200 * x}" cy="{1200 - 200 * y}" r="50"/>' for x, y in ROW)))
+        self.write("device.svg",
+                   SVG.format("".join(f'<circle cx="{200 * x}" cy="{1200 - 200 * y}" r="50"/>' for x, y in ROW)))
         for drawing, options, walls in (("mask.png", ["--pixel", "2um"], ""), ("device.svg", [], "side-walls=on ")):
             told = self.draw("circles", drawing, "--droplet", "200um", "--output", "posts", *options).stdout
             self.assertIn(f"box=6 length=18 {walls}release=entrance entrance=1 exit=17 ...", told)
         pen.rectangle([1400, 560, 1700, 570], fill=40)  # a scale bar
         image.save(self.folder / "bar.png")
-        self.refuse_analysis("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "cut", words=["not round", "cut scale bars", "--region"])
+        self.refuse_analysis("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "cut",
+                             words=["not round", "cut scale bars", "--region"])
         # Whoever follows the message gets the bar as a post, and is told where.
-        told = self.draw("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "barred", "--as-circles").stdout
+        told = self.draw("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "barred",
+                         "--as-circles").stdout
         self.assertIn(f"{len(ROW) + 1} posts, device", told)
-        x, y = map(float, re.search(r"1 post is at least three times as long as wide, at x=([0-9.]+) um, y=([0-9.]+) um; if this is a scale bar", told).groups())
+        x, y = map(float, re.search(r"1 post is at least three times as long as wide, at x=([0-9.]+) um, "
+                                    r"y=([0-9.]+) um; if this is a scale bar", told).groups())
         np.testing.assert_allclose((x, y), (3100, 70), atol=20)
 
     def test_a_region_is_given_as_the_program_shows_it(self):
@@ -1502,7 +1636,8 @@ class OtherTools(Analysis):
         np.testing.assert_allclose(self.circles_of(name, unit=1e-6, **options), [(200.5, 149.5, 61), (600.5, 149.5, 61)], atol=0.5)
 
     def test_pictures_in_either_contrast_and_with_a_transparent_ground(self):
-        for mode, ground, post in [("L", 255, 0), ("L", 0, 255), ("RGBA", (0, 0, 0, 0), (0, 0, 0, 255)), ("RGBA", (255, 255, 255, 0), (255, 255, 255, 255)), ("LA", (0, 0), (0, 255)),
+        for mode, ground, post in [("L", 255, 0), ("L", 0, 255), ("RGBA", (0, 0, 0, 0), (0, 0, 0, 255)),
+                                   ("RGBA", (255, 255, 255, 0), (255, 255, 255, 255)), ("LA", (0, 0), (0, 255)),
                                    ("1", 1, 0), ("1", 0, 1)]:
             with self.subTest(mode=mode, ground=ground):
                 self.picture(mode, ground, post, "mask.png")
@@ -1531,27 +1666,32 @@ class OtherTools(Analysis):
         for x, y in ((800, 300), (1600, 1200)):
             space.add_circle((x, y), 50)
         drawing.saveas(self.folder / "device.dxf")
-        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "other", words=["1 post with the centre outside the edge"])
+        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "other",
+                             words=["1 post with the centre outside the edge"])
 
     def test_pixels_of_tiff_files(self):
         info = TiffImagePlugin.ImageFileDirectory_v2()
-        for unit, number, metres in [("micron", 0.4, 2.5e-6), ("\\u00B5m", 0.4, 2.5e-6), ("mm", 400, 2.5e-6), ("um", 2, 0.5e-6)]:
+        for unit, number, metres in [("micron", 0.4, 2.5e-6), ("\\u00B5m", 0.4, 2.5e-6), ("mm", 400, 2.5e-6),
+                                     ("um", 2, 0.5e-6)]:
             info[270], info[282], info[283], info[296] = f"ImageJ=1.53t\nunit={unit}\n", number, number, 1
             self.picture("L", 255, 0, "mask.tif", tiffinfo=info)
             self.assert_two("mask.tif")
             self.assertAlmostEqual(self.drawing.metres / metres, 1)
-        self.refuse_analysis("circles", "mask.tif", "--droplet", "200um", "--output", "posts", "--pixel", "2um", words=["--pixel 2um contradicts"])
+        self.refuse_analysis("circles", "mask.tif", "--droplet", "200um", "--output", "posts", "--pixel", "2um",
+                             words=["--pixel 2um contradicts"])
         info[283] = 4
         self.picture("L", 255, 0, "mask.tif", tiffinfo=info)
         self.refused("mask.tif", "not square")
         self.picture("L", 255, 0, "mask.tif", dpi=(254, 254))
-        self.refuse_analysis("circles", "mask.tif", "--droplet", "200um", "--output", "posts", words=["--pixel, such as --pixel 2.5um", "would mean 100um, if that is not a printer's"])
+        self.refuse_analysis("circles", "mask.tif", "--droplet", "200um", "--output", "posts",
+                             words=["--pixel, such as --pixel 2.5um", "would mean 100um, if that is not a printer's"])
 
     def test_uneven_light_is_named_as_a_reason(self):
         image = Image.new("L", (300, 300), 255)
         ImageDraw.Draw(image).polygon([(60, 60), (200, 90), (90, 220)], fill=0)
         image.save(self.folder / "mask.png")
-        self.refuse_analysis("circles", "mask.png", "--droplet", "200um", "--pixel", "2um", "--output", "posts", words=["1 post of 1 not round", "lit unevenly"])
+        self.refuse_analysis("circles", "mask.png", "--droplet", "200um", "--pixel", "2um", "--output", "posts",
+                             words=["1 post of 1 not round", "lit unevenly"])
 
     def test_tiff_files_of_another_library(self):
         import tifffile
@@ -1561,18 +1701,22 @@ class OtherTools(Analysis):
             mask[120:180, x - 30:x + 30] = 100
         tifffile.imwrite(self.folder / "mask.tif", mask, imagej=True, resolution=(2, 2), metadata={"unit": "um"})
         self.assertEqual((len(self.device("mask.tif").others), self.drawing.metres), (2, 0.5e-6))
-        tifffile.imwrite(self.folder / "white.tif", np.where(mask > 1000, 0, 255).astype(np.uint8), photometric="miniswhite")
+        tifffile.imwrite(self.folder / "white.tif",
+                         np.where(mask > 1000, 0, 255).astype(np.uint8), photometric="miniswhite")
         self.assertEqual(len(self.device("white.tif", unit=1e-6).others), 2)
         tifffile.imwrite(self.folder / "stack.tif", np.stack([mask] * 7))
         self.refused("stack.tif", "several slices", "7 x 300 x 900")
 
     def test_tiff_files_in_the_compressions_of_scanners(self):
-        for mode, compression in [("L", "tiff_lzw"), ("1", "group4"), ("1", "tiff_lzw"), ("L", "tiff_adobe_deflate"), ("1", "packbits")]:
+        for mode, compression in [("L", "tiff_lzw"), ("1", "group4"), ("1", "tiff_lzw"), ("L", "tiff_adobe_deflate"),
+                                  ("1", "packbits")]:
             for ground, post in [(1, 0), (0, 1)]:
                 with self.subTest(compression, mode=mode, ground=ground):
-                    self.picture(mode, ground * (255 if mode == "L" else 1), post * (255 if mode == "L" else 1), "mask.tif", compression=compression)
+                    self.picture(mode, ground * (255 if mode == "L" else 1), post * (255 if mode == "L" else 1),
+                                 "mask.tif", compression=compression)
                     self.assert_two("mask.tif")
-                    self.assertEqual(self.drawing.notes, ["the posts are bright (--posts)" if post else "the posts are dark (--posts)"])
+                    self.assertEqual(self.drawing.notes,
+                                     ["the posts are bright (--posts)" if post else "the posts are dark (--posts)"])
         image = Image.new("CMYK", (900, 300))
         image.save(self.folder / "mask.tif", compression="tiff_lzw")
         self.refused("mask.tif", "save it as PNG")
@@ -1586,7 +1730,8 @@ class OtherTools(Analysis):
 
 class Stored(Analysis):
     def test_other_arrays_are_no_device(self):
-        self.succeed("clogsweep", "obstacle-gap=0.5", "box=20", "max-time=1", "vertices=64", "seeds=1", "--output", "random.h5")
+        self.succeed("clogsweep", "obstacle-gap=0.5", "box=20", "max-time=1", "vertices=64", "seeds=1", "--output",
+                     "random.h5")
         self.refuse_analysis("device", "random.h5", "--programs", BIN, words=["no circles of your own"])
 
 

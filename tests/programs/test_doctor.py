@@ -15,8 +15,8 @@ class Doctor(ProgramTest):
     def examine(self, *arguments, ranks=None, before=(), **environment):
         variables = {key: value for key, value in os.environ.items() if not key.startswith(("SLURM_", "OMPI_", "PRTE_"))}
         command = [*before, *([str(MPIRUN), str(ranks)] if ranks else []), str(BIN / "clogsweep"), "doctor", *arguments]
-        return subprocess.run(command, cwd=self.folder, env={**variables, **environment}, capture_output=True, text=True,
-                              timeout=LONGEST)
+        return subprocess.run(command, cwd=self.folder, env={**variables, **environment}, capture_output=True,
+                              text=True, timeout=LONGEST)
 
     def faults(self, done):
         lines = done.stdout.splitlines()
@@ -46,7 +46,8 @@ class Doctor(ProgramTest):
     @unittest.skipUnless(MPI == "Open MPI", "MPICH binds no ranks unless told by an option")
     def test_the_users_binding_wins_over_mpi_settings(self):
         cores = os.sched_getaffinity(0)
-        of_one_core = (pathlib.Path("/sys/devices/system/cpu") / f"cpu{min(cores)}" / "topology/thread_siblings").read_text()
+        of_one_core = (pathlib.Path("/sys/devices/system/cpu") / f"cpu{min(cores)}"
+                       / "topology/thread_siblings").read_text()
         threads = bin(int(of_one_core.replace(",", ""), 16)).count("1")
         for policy, expected in (("none", len(cores)), ("core", threads)):
             with self.subTest(policy):
@@ -64,7 +65,8 @@ class Doctor(ProgramTest):
 
     def test_the_mpirun_of_another_mpi_is_seen(self):
         other = {"Open MPI": "PMI_SIZE", "MPICH": "OMPI_COMM_WORLD_SIZE"}[MPI]
-        self.assertIn(f"this mpirun belongs to another MPI: use that of {MPI}", self.fault(self.examine(**{other: "2"}), "mpirun has started 2"))
+        self.assertIn(f"this mpirun belongs to another MPI: use that of {MPI}",
+                      self.fault(self.examine(**{other: "2"}), "mpirun has started 2"))
 
     def test_a_single_rank_of_mpirun_in_a_larger_allocation_is_accepted(self):
         self.assertEqual(self.faults(self.examine(ranks=1, SLURM_NTASKS="8")), {})

@@ -23,14 +23,16 @@ class Limits(SweepTest):
             with self.subTest(most=most):
                 done = self.under(resource.RLIMIT_NOFILE, (most, most))
                 self.assertEqual(done.returncode, 2, done.stderr)
-                self.assertEqual(done.stderr, f"clogsweep: cannot start MPI (this shell allows {most} open files, 32 are needed); raise the limit: ulimit -n 1024\n")
+                self.assertEqual(done.stderr, f"clogsweep: cannot start MPI (this shell allows {most} open files, "
+                                              "32 are needed); raise the limit: ulimit -n 1024\n")
         done = self.under(resource.RLIMIT_NOFILE, (10, 4096))
         self.assertEqual(done.returncode, 0, done.stderr)  # The program itself raises the limit.
 
     def test_too_few_processes(self):
         done = self.under(resource.RLIMIT_NPROC, (1, 1))
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("clogsweep: cannot start a process (Resource temporarily unavailable); end other programs, or raise the limit", done.stderr)
+        self.assertIn("clogsweep: cannot start a process (Resource temporarily unavailable); "
+                      "end other programs, or raise the limit", done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1)
 
     def under(self, what, limits):
@@ -46,7 +48,8 @@ class Limits(SweepTest):
                 os.setuid(65534)
             resource.setrlimit(what, limits)
 
-        return subprocess.run([program, *QUICK, "line-tension=1", "seeds=1", "--output", "s.h5"], cwd=self.folder, capture_output=True, text=True, preexec_fn=restrict)
+        return subprocess.run([program, *QUICK, "line-tension=1", "seeds=1", "--output", "s.h5"], cwd=self.folder,
+                              capture_output=True, text=True, preexec_fn=restrict)
 
 
 class Names(SweepTest):
@@ -58,8 +61,9 @@ class Names(SweepTest):
         return self.run_program("clogsweep", "obstacles=" + os.fsdecode(name), *OWN, "line-tension=1", "--output", "s.h5")
 
     def test_no_byte_of_a_name_sets_a_key_or_ends_the_sweep(self):
-        for name in (b"p.csv\nline-tension = 0.1", b"\nfake: line.csv", b"p.csv\n#circles q.csv", b"a#b.csv", b"a\\x0a.csv", b"a\r.csv", b"\xff\xfe.csv",
-                     "\u0085\u2028.csv".encode(), b"a = b.csv", b"\x01\x1b\x7f.csv", b"lin(1;2;3)%s{}$(date)'\".csv", b"auto"):
+        for name in (b"p.csv\nline-tension = 0.1", b"\nfake: line.csv", b"p.csv\n#circles q.csv", b"a#b.csv",
+                     b"a\\x0a.csv", b"a\r.csv", b"\xff\xfe.csv", "\u0085\u2028.csv".encode(), b"a = b.csv",
+                     b"\x01\x1b\x7f.csv", b"lin(1;2;3)%s{}$(date)'\".csv", b"auto"):
             with self.subTest(name=name):
                 done = self.sweep_among(name)
                 self.assertEqual(done.returncode, 0, done.stderr)
@@ -74,7 +78,8 @@ class Names(SweepTest):
         for name in ("p.csv\nline-tension = 0.1", " a#b\\x41.csv"):
             with self.subTest(name=name):
                 self.assertEqual(self.sweep_among(name.strip(" ").encode()).returncode, 0)
-                printed = self.succeed("clogsweep", "obstacles=" + name, *OWN, "line-tension=1", "--print-config").stdout
+                printed = self.succeed("clogsweep", "obstacles=" + name, *OWN, "line-tension=1",
+                                       "--print-config").stdout
                 self.write("again.cfg", printed.split("\n# Values behind")[0])
                 self.succeed("clogsweep", "--config", "again.cfg", "--output", "t.h5")
                 self.check_equal("s.h5", "t.h5")
@@ -148,7 +153,8 @@ ACCESS_LIST = "system.posix_acl_access"
 def access_list(reader):
     """An access list for a file that only its owner may write. A second user may read the file."""
     nobody = 2**32 - 1
-    entries = [(0x01, 6, nobody), (0x02, 4, reader), (0x04, 0, nobody), (0x10, 4, nobody), (0x20, 0, nobody)]  # owner, a user, group, mask, others
+    entries = [(0x01, 6, nobody), (0x02, 4, reader), (0x04, 0, nobody), (0x10, 4, nobody),
+               (0x20, 0, nobody)]  # owner, a user, group, mask, others
     return struct.pack("<I", 2) + b"".join(struct.pack("<HHI", *entry) for entry in entries)
 
 
@@ -222,7 +228,8 @@ class LinksOfOthers(SweepTest):
             (folder / name).symlink_to(self.folder / "elsewhere")
             os.lchown(folder / name, 12, 34)
         for output in ("open/s.h5", "open/t.h5"):
-            self.refuse("clogsweep", *FINISHED, "--output", output, words=["cannot follow the link", "it belongs to another user"])
+            self.refuse("clogsweep", *FINISHED, "--output", output,
+                        words=["cannot follow the link", "it belongs to another user"])
         self.assertFalse((self.folder / "elsewhere").exists())
 
 
@@ -275,11 +282,13 @@ class Refusals(SweepTest):
 
     def test_a_sweep_goes_on_though_its_folder_cannot_be_synced(self):
         done = self.succeed_where("folder", *FINISHED, "--output", "s.h5")
-        self.assertEqual(done.stderr.count("the folder of s.h5 cannot be synchronised (Input/output error): after a power cut the newest rows may be lost"), 1)
+        self.assertEqual(done.stderr.count("the folder of s.h5 cannot be synchronised (Input/output error): "
+                                           "after a power cut the newest rows may be lost"), 1)
         self.assertIn("4 rows of 4 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
 
     def test_a_sweep_without_locks_is_for_users_who_ask_for_it(self):
-        words = ["cannot lock s.h5.journal (No locks available); use a folder whose file system has locks", "HDF5_USE_FILE_LOCKING=FALSE"]
+        words = ["cannot lock s.h5.journal (No locks available); "
+                 "use a folder whose file system has locks", "HDF5_USE_FILE_LOCKING=FALSE"]
         self.refuse("clogsweep", *FINISHED, "--output", "s.h5", env=self.where("locks"), words=words)
         self.succeed_where("locks", *FINISHED, "--output", "s.h5", HDF5_USE_FILE_LOCKING="FALSE")
         self.assertIn("4 rows of 4 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
@@ -293,12 +302,14 @@ class Refusals(SweepTest):
         self.succeed("clogsweep", *FINISHED, "--output", "a.h5")
         self.succeed("clogsweep", *FINISHED[:-1], "seeds=104..105", "--output", "b.h5")
         done = self.succeed_where("folder", "merge", "a.h5", "b.h5", "--output", "c.h5")
-        self.assertEqual(done.stderr, "c.h5 is complete, but its folder cannot be synced (Input/output error): a power cut may lose it; copy it elsewhere, too\n")
+        self.assertEqual(done.stderr, "c.h5 is complete, but its folder cannot be synced (Input/output error): "
+                                      "a power cut may lose it; copy it elsewhere, too\n")
         self.assertIn("6 rows", self.succeed("clogsweep", "verify", "c.h5").stdout)
 
     def test_a_journal_that_cannot_be_removed_is_named(self):
         done = self.succeed_where("journal", *FINISHED, "--output", "s.h5")
-        self.assertIn("clogsweep: cannot remove s.h5.journal (Operation not permitted); the sweep is complete without it: remove it\n", done.stderr)
+        self.assertIn("clogsweep: cannot remove s.h5.journal (Operation not permitted); "
+                      "the sweep is complete without it: remove it\n", done.stderr)
         self.assertIn("4 rows of 4 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
 
 

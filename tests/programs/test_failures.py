@@ -110,10 +110,12 @@ class Readers(Analysis):
         self.assertIn("incomplete", doubts[2])
         for one in self.fit("compare", "s.h5", "--by", "line-tension")["comparisons"]:
             tension = float(one["here"].split("=")[1])
-            self.assertEqual([one[f"{name}_{side}"] for side in ("here", "there") for name in ("failed", "doubts")], [3, doubts[tension], 3, doubts[0.25]])
+            self.assertEqual([one[f"{name}_{side}"] for side in ("here", "there") for name in ("failed", "doubts")],
+                             [3, doubts[tension], 3, doubts[0.25]])
         self.write("own.csv", "distance [sigma],clogged,line-tension\n" + "5,1,2\n" * 12)
         one, = self.fit("compare", "own.csv", "s.h5")["comparisons"]
-        self.assertEqual([one[name] for name in ("failed_here", "doubts_here", "failed_there", "doubts_there")], [3, doubts[2], 0, "not_exponential equal_distances"])
+        self.assertEqual([one[name] for name in ("failed_here", "doubts_here", "failed_there", "doubts_there")],
+                         [3, doubts[2], 0, "not_exponential equal_distances"])
         for command in (["s.h5", "--by", "line-tension"], ["own.csv", "s.h5"]):
             text = self.succeed("clogfit", "compare", *command).stdout
             self.assertRegex(text, r" note\n")
@@ -138,7 +140,8 @@ class Readers(Analysis):
         # By Weibull's test, the law of each group alone has p = 0.04.
         rows = table(self.folder / "s.h5")
         way = rows.line_tension * (-np.log(1 - (rows.seed - 0.5) / 12)) ** (1 / 1.8)
-        stored_rows.change_columns(self.folder / "s.h5", status=b"clogged", clogged_by=b"certified", mechanism=b"squeezed", failed_by=b"none", distance=way, sound_distance=way)
+        stored_rows.change_columns(self.folder / "s.h5", status=b"clogged", clogged_by=b"certified",
+                                   mechanism=b"squeezed", failed_by=b"none", distance=way, sound_distance=way)
         for group in self.fit("s.h5")["groups"]:
             self.assertTrue(0.05 / 2 < group["weibull_p_value"] < 0.05)
         for one in self.fit("compare", "s.h5", "--by", "line-tension")["comparisons"]:
@@ -162,7 +165,8 @@ class Readers(Analysis):
         second["interval"] = "paired"
         faces, notes, dashed = drawn(told)
         self.assertEqual((faces, dashed), ([True, True, False], [[True], [False], [True]]))
-        for words in ("hollow: failures, which would change the length if they were clogs, or fewer than 5 clogs", "incomplete: runs of 1 of 3 points", "failed: some runs of 1 of 3 points",
+        for words in ("hollow: failures, which would change the length if they were clogs, or fewer than 5 clogs",
+                      "incomplete: runs of 1 of 3 points", "failed: some runs of 1 of 3 points",
                       "solid bars: from pairs of the same seed; dashed bars: from numbers of clogs alone"):
             self.assertIn(words, " ".join(notes.split()))
 

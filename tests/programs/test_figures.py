@@ -61,7 +61,8 @@ SINGLE_RUNS = ("1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "D")
 class Survival(unittest.TestCase):
     """Tests the curve of figure C2 with numbers like those of clogfit."""
 
-    STEPS = [{"distance": 2.0, "probability": 0.75, "lower": 0.13, "upper": 0.96}, {"distance": 5.0, "probability": 0.375, "lower": 0.01, "upper": 0.8}]
+    STEPS = [{"distance": 2.0, "probability": 0.75, "lower": 0.13, "upper": 0.96},
+             {"distance": 5.0, "probability": 0.375, "lower": 0.01, "upper": 0.8}]
 
     def draw(self, steps, censored):
         drawing, axes = style.subplots(figsize=(6.4, 4.8))
@@ -97,13 +98,17 @@ class Parts(unittest.TestCase):
         def run(end):
             row = dict.fromkeys(("obstacle_gap", "obstacle_diameter", "terminal_speed", "vertices", "seed"), 1)
             row = np.array([tuple(row.values())], dtype=[(name, float) for name in row])[0]
-            return SimpleNamespace(row=row, table={"time": np.array([0, 1]), "distance": np.array([0, end])}, word=lambda _: "flowing")
+            return SimpleNamespace(row=row, table={"time": np.array([0, 1]), "distance": np.array([0, end])},
+                                   word=lambda _: "flowing")
 
-        with unittest.mock.patch.object(arrays, "displacements", lambda _: {0.1: run(0.5), 0.2: run(0.9), 0.5: run(0.7)}):
+        with unittest.mock.patch.object(arrays, "displacements",
+                                        lambda _: {0.1: run(0.5), 0.2: run(0.9), 0.5: run(0.7)}):
             axes, = arrays.displacement(None).figure.axes
         legend = axes.get_legend()
-        self.assertEqual([text.get_text() for text in legend.get_texts()][1:], [rf"$\Gamma = {number}$" for number in (0.2, 0.5, 0.1)])
-        self.assertEqual([line.get_color() for line in legend.get_lines()[1:]], [style.COLOURS[index] for index in (1, 2, 0)])
+        self.assertEqual([text.get_text() for text in legend.get_texts()][1:],
+                         [rf"$\Gamma = {number}$" for number in (0.2, 0.5, 0.1)])
+        self.assertEqual([line.get_color() for line in legend.get_lines()[1:]],
+                         [style.COLOURS[index] for index in (1, 2, 0)])
 
     def test_clogs_of_figure_5_have_one_scale_with_a_bar(self):
         circle = np.array([np.cos(np.linspace(0, 6, 40)), np.sin(np.linspace(0, 6, 40))]) / 2
@@ -111,7 +116,8 @@ class Parts(unittest.TestCase):
         def example(_, mechanism):
             outlines = np.array([circle * [[5 if mechanism == "wrapped" else 1], [1]] + [[step / 2], [0]] for step in range(6)])
             row = SimpleNamespace(line_tension=1, obstacle_gap=0.2, friction=0, seed=1, distance=1, mechanism=mechanism)
-            return SimpleNamespace(polygons=outlines, times=np.arange(6), obstacles=np.empty((0, 3)), wedges=[], word=lambda _: mechanism), row
+            return SimpleNamespace(polygons=outlines, times=np.arange(6), obstacles=np.empty((0, 3)), wedges=[],
+                                   word=lambda _: mechanism), row
 
         with unittest.mock.patch.object(arrays, "example", example):
             plates = [arrays.two_ways(None), *(arrays.snapshot(None, mechanism) for mechanism in ("wrapped", "squeezed"))]
@@ -158,7 +164,8 @@ class Parts(unittest.TestCase):
         for lowest in (6, 0):
             axes = style.new_figure().subplots()
             right = np.arange(12) > 8
-            axes.errorbar(range(12), np.where(right, 8, 2), yerr=[np.where(right, 8 - lowest, 2), np.where(right, 2, 8)], label="a curve")
+            axes.errorbar(range(12), np.where(right, 8, 2),
+                          yerr=[np.where(right, 8 - lowest, 2), np.where(right, 2, 8)], label="a curve")
             axes.set_ylim(0, 10)
             style.legend(axes)
             axes.figure.canvas.draw()
@@ -181,7 +188,8 @@ class Drawn(Analysis):
             return list(csv.DictReader(file))
 
     def fit(self, sweep):
-        return json.loads(self.succeed("clogfit", f"{self.PLACE}/sweeps/{sweep}.h5", "--format", "json").stdout)["groups"]
+        return json.loads(self.succeed("clogfit", f"{self.PLACE}/sweeps/{sweep}.h5", "--format",
+                                       "json").stdout)["groups"]
 
     def assert_groups(self, name, sweep, quantity):
         """Checks that the numbers beside the picture are exactly those of clogfit."""
@@ -237,9 +245,11 @@ class Drawn(Analysis):
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
         # A figure that is drawn from existing files must show the droplet that its label names.
         self.call_wrapped(sweep, 0)
-        self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-friction-", "leave out --draw-only"])
+        self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only",
+                             words=["clogging-friction-", "leave out --draw-only"])
         # clogsweep itself refuses settings that differ from those of the file.
-        self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--set", "clogging-friction:box=30", words=["box"])
+        self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--set",
+                             "clogging-friction:box=30", words=["box"])
 
     def assert_report(self, sweep):
         self.draw("report", sweep, "--output", "report.html", "--examples", 0, "--programs", BIN)
@@ -281,7 +291,8 @@ class Drawn(Analysis):
         self.figures(*names, "--set", "seeds=1..3")
         self.assertEqual(self.times_of_runs(), before)
         # clogsweep itself refuses settings that differ from those of the sweep.
-        self.refuse_analysis("figures", redrawn[0], "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
+        self.refuse_analysis("figures", redrawn[0], "--output", ".", "--programs", BIN, *SET, "--set",
+                             "channel:max-time=200", words=["max-time"])
 
     def assert_passage_and_survival(self):
         """Checks figures 2 and C2."""
@@ -294,7 +305,8 @@ class Drawn(Analysis):
         for name in ("probability", "lower"):
             drawn = [float(point[name]) if point[name] else None for point in points[1:1 + len(group["survival"])]]
             self.assertEqual(drawn, [step[name] for step in group["survival"]])
-        self.assertEqual([float(point["censored_distance"]) for point in points if point.get("censored_distance")], group["censored_distances"])
+        self.assertEqual([float(point["censored_distance"]) for point in points if point.get("censored_distance")],
+                         group["censored_distances"])
 
     def times_of_runs(self):
         return {path: path.stat().st_mtime_ns for path in (self.folder / self.PLACE / "runs").iterdir() if path.suffix == ".h5"}
@@ -346,7 +358,8 @@ class Figures(Drawn):
                     self.assertIn(word, told.stderr)
                 for word in absent:
                     self.assertNotIn(word, told.stderr)
-                self.assertEqual("replaces speed.reduced.csv, which pairs line-tension and vertices" in told.stdout, "--points" in absent)
+                self.assertEqual("replaces speed.reduced.csv, which pairs line-tension and vertices" in told.stdout,
+                                 "--points" in absent)
 
     def test_mistakes_get_one_line(self):
         for arguments, words in [
@@ -354,8 +367,10 @@ class Figures(Drawn):
             (["6c", "--programs", "nowhere"], ["no clogsweep in nowhere"]),
             (["6c", "--programs", BIN, "--draw-only", "--output", "."], ["clogging-robust.h5", "--draw-only"]),
             (["6c", "--programs", BIN, "--set", "seeds"], ["--set seeds", "KEY=VALUE"]),
-            (["6c", "--programs", BIN, "--set", "clogging:seeds=1..2"], ["--set clogging:seeds=1..2", "no figure has a config"]),
-            (["6c", "--programs", BIN, "--output", ".", "--ranks", "1", "--set", "obstacle-gap=-1"], ["obstacle-gap=-1"]),
+            (["6c", "--programs", BIN, "--set",
+              "clogging:seeds=1..2"], ["--set clogging:seeds=1..2", "no figure has a config"]),
+            (["6c", "--programs", BIN, "--output", ".", "--ranks", "1", "--set",
+              "obstacle-gap=-1"], ["obstacle-gap=-1"]),
             (["2", "--programs", BIN, "--output", ".", *SET, "--profile", "no.csv"], ["cannot read no.csv"]),
         ]:
             with self.subTest(arguments=arguments):
@@ -385,14 +400,18 @@ class Pictures(Analysis):
             self.assert_picture(name)
 
     def test_numbers_have_the_figures_that_their_interval_allows(self):
-        for numbers, text in [((223.1, 101.8, 584.8), "223 (102 to 585)"), ((0.1731, 0.1013, 0.3609), "0.173 (0.101 to 0.361)"),
-                              ((1906, 407.7, 17660), "1910 (408 to 17700)"), ((25.93, 22.52, 29.98), "25.9 (22.5 to 30.0)"),
+        for numbers, text in [((223.1, 101.8, 584.8), "223 (102 to 585)"),
+                              ((0.1731, 0.1013, 0.3609), "0.173 (0.101 to 0.361)"),
+                              ((1906, 407.7, 17660), "1910 (408 to 17700)"),
+                              ((25.93, 22.52, 29.98), "25.9 (22.5 to 30.0)"),
                               ((1234.5, 1232.1, 1237.2), "1234.5 (1232.1 to 1237.2)")]:
             self.assertEqual(rounded.with_interval(*numbers), text)
-        for numbers, text in [((0.3786, 0.01244), "0.379 ± 0.012"), ((0.4451, 0.003992), "0.4451 ± 0.0040"), ((0.5, None), "0.500"),
-                              ((None, None), "-"), ((123.4, 17.2), "123 ± 17"), ((0.730780239914, 3.8e-11), "0.73078024 ± 3.8e-11")]:
+        for numbers, text in [((0.3786, 0.01244), "0.379 ± 0.012"), ((0.4451, 0.003992), "0.4451 ± 0.0040"),
+                              ((0.5, None), "0.500"), ((None, None), "-"), ((123.4, 17.2), "123 ± 17"),
+                              ((0.730780239914, 3.8e-11), "0.73078024 ± 3.8e-11")]:
             self.assertEqual(rounded.with_error(*numbers), text)
-        self.assertEqual([rounded.plain(value) for value in (0, 9.999, 1e-9, 2.5e7)], ["0.00", "10.0", "1.00e-09", "2.50e+07"])
+        self.assertEqual([rounded.plain(value) for value in (0, 9.999, 1e-9, 2.5e7)],
+                         ["0.00", "10.0", "1.00e-09", "2.50e+07"])
 
     def group(self, clogs, **columns):
         names = ("", "_lower", "_upper")
@@ -411,7 +430,8 @@ class Pictures(Analysis):
         self.assertEqual(arrow.vertices[:, 1].min(), 0)
         self.assertEqual([line.get_ydata().tolist() for line in axes.lines if line.get_marker() is arrow], [[1.0]])
         style.legend(axes, groups)
-        self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], ["most clogs wrapped", "most clogs squeezed", "most clogs hybrid"])
+        self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()],
+                         ["most clogs wrapped", "most clogs squeezed", "most clogs hybrid"])
 
     def test_labels_of_an_abscissa_are_plain_numbers_side_by_side(self):
         for values in ([0.2, 0.25, 0.3, 10], np.linspace(0.2, 0.4, 15), [0.3, 0.31], [0.3], [0.04, 0.045, 0.05, 0.5, 5], np.geomspace(0.01, 10, 30)):
@@ -426,10 +446,12 @@ class Pictures(Analysis):
             self.assertFalse([values for one, other in itertools.combinations(boxes, 2) if one.overlaps(other)])
             self.assertTrue(all(float(label.get_text()) > 0 for label in labels))
             if len(values) < 5:
-                self.assertEqual(sorted(float(label.get_text()) for label in labels), values if len(values) > 1 else [0.2, 0.25, 0.3, 0.35, 0.4])
+                self.assertEqual(sorted(float(label.get_text()) for label in labels),
+                                 values if len(values) > 1 else [0.2, 0.25, 0.3, 0.35, 0.4])
 
     def test_a_logarithmic_ordinate_has_several_labels(self):
-        for ends, expected in [((3, 30), ["5", "10", "20"]), ((0.9, 6), ["1", "2", "5"]), ((2.1, 4.9), ["3", "4"]), ((1, 1e4), ["$\\mathdefault{10^{%d}}$" % n for n in (1, 2, 3)])]:
+        for ends, expected in [((3, 30), ["5", "10", "20"]), ((0.9, 6), ["1", "2", "5"]), ((2.1, 4.9), ["3", "4"]),
+                               ((1, 1e4), ["$\\mathdefault{10^{%d}}$" % n for n in (1, 2, 3)])]:
             axes = style.new_figure().subplots()
             style.logarithmic_ordinate(axes)
             axes.set_ylim(ends)
@@ -545,7 +567,8 @@ class Pictures(Analysis):
                               ("export-vtk", "run.h5"), ("clogs", "run.h5"), ("report", "run.h5")]:
             with self.subTest(command=command, file=file):
                 where = ["--programs", BIN] if command in ("report", "clogs") else []
-                self.refuse_analysis(command, file, "--output", "x", *where, words=["run.h5" if command == "report" else "cannot read"])
+                self.refuse_analysis(command, file, "--output", "x", *where,
+                                     words=["run.h5" if command == "report" else "cannot read"])
 
     def test_nothing_is_written_over_what_is_read_or_of_another_kind(self):
         self.copy_sweep("s.h5", *FEW)
@@ -577,11 +600,13 @@ class Pictures(Analysis):
                 film = ["--film"] if output.startswith("own4") else []
                 where = ["--programs", BIN] if command in ("report", "clogs") else []
                 self.refuse_analysis(command, source, "--output", output, *film, *where, words=words)
-        self.refuse_analysis("figures", "4", "--programs", BIN, "--output", "own5", words=["figure-4.png", "no PNG file"])
+        self.refuse_analysis("figures", "4", "--programs", BIN, "--output", "own5",
+                             words=["figure-4.png", "no PNG file"])
         self.refuse_analysis("figures", "4", "--programs", BIN, "--output", "own6", "--profile", "profile.csv",
                              words=["figure-4.txt", "it is an input"])
         for film in ("own4", "own4.mp4", "own4.gif"):
-            self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, "--frames", film, "--output", "r.h5", words=["own4.", "it exists"])
+            self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, "--frames", film, "--output", "r.h5",
+                        words=["own4.", "it exists"])
         after = self.snapshot()
         self.assertEqual({name: after[name] for name in before}, before)
         # The command may replace a page or picture that it made earlier.
@@ -592,9 +617,11 @@ class Pictures(Analysis):
             self.draw("export-vtk", "run.h5", "--output", "run")
 
     def test_no_two_outputs_of_a_run_are_one_file(self):
-        for options in (["--output", "a.csv", "--write-obstacles", "./a.csv"], ["--output", "film.mp4", "--frames", "film"],
+        for options in (["--output", "a.csv", "--write-obstacles",
+                         "./a.csv"], ["--output", "film.mp4", "--frames", "film"],
                         ["--output", "r.h5", "--write-obstacles", "film.gif", "--frames", "./film.gif"]):
-            self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, *options, words=["name the same file", "give two names"])
+            self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, *options,
+                        words=["name the same file", "give two names"])
 
     def test_mistakes_get_one_line_from_every_command(self):
         self.copy_sweep("s.h5", *FEW)
@@ -615,7 +642,8 @@ class Pictures(Analysis):
         self.refuse("clogfit", "report", *arguments, words=["clogfit report: ", *words])
         for command in ("clogging-length", "clogs", "droplet", "export-vtk", "figures"):
             with self.subTest(command=command):
-                self.refuse_analysis(command, "s.h5", "--colours", words=[f"python3 -m clogsweep {command}: ", "--help"])
+                self.refuse_analysis(command, "s.h5", "--colours",
+                                     words=[f"python3 -m clogsweep {command}: ", "--help"])
 
     def test_a_machine_without_matplotlib_is_told_what_it_lacks(self):
         self.write("matplotlib.py", "raise ImportError('No module named matplotlib')")
@@ -633,7 +661,8 @@ class Pictures(Analysis):
         return run, frames, film.Film(run, frames, **{"colour": "speed", "rate": 20} | options)
 
     def test_the_camera_follows_the_droplet_and_the_verdict_comes_last(self):
-        run, frames, moving = self.film_of("preset=elastic", "line-tension=0.3", "obstacle-gap=0.3", "max-time=400", "--polygon-interval", 10)
+        run, frames, moving = self.film_of("preset=elastic", "line-tension=0.3", "obstacle-gap=0.3", "max-time=400",
+                                           "--polygon-interval", 10)
         self.assertEqual(frames.tolist(), list(range(len(run.times))))
         axes = moving.figure.axes[0]
         verdict = trajectory.verdict(run)
@@ -641,7 +670,8 @@ class Pictures(Analysis):
         for index, frame in enumerate(frames):
             moving.show(index)
             low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
-            self.assertTrue((run.polygons[frame].min(axis=1) > low).all() and (run.polygons[frame].max(axis=1) < high).all())
+            self.assertTrue((run.polygons[frame].min(axis=1) > low).all()
+                            and (run.polygons[frame].max(axis=1) < high).all())
             self.assertGreater(1, (high - low).max() / 10, "the droplet can be seen")
             # The file contains obstacles wherever the camera looks.
             self.assertLess(run.obstacles[:, 0].min(), low[0] + 0.5)
@@ -675,11 +705,13 @@ class Pictures(Analysis):
 
     def test_a_film_that_cannot_be_made_is_refused_before_the_run(self):
         filmed = ["--polygon-interval", 15, "--frames", "film.mp4", "--output", "run.h5"]
-        self.refuse("clogrun", "array", *QUICK, *filmed, env={**os.environ, "PATH": str(self.folder)}, words=["film.mp4", "no ffmpeg", "film.gif"])
+        self.refuse("clogrun", "array", *QUICK, *filmed, env={**os.environ, "PATH": str(self.folder)},
+                    words=["film.mp4", "no ffmpeg", "film.gif"])
         self.assertFalse((self.folder / "run.h5").exists())
 
     def test_a_film_is_capped_by_an_option(self):
-        self.refuse("clogrun", "array", *QUICK, "--most-frames", 3, "--output", "run.h5", words=["--most-frames", "--frames"])
+        self.refuse("clogrun", "array", *QUICK, "--most-frames", 3, "--output", "run.h5",
+                    words=["--most-frames", "--frames"])
         filmed = [*QUICK, "--polygon-interval", 5, "--frames", "film", "--output", "run.h5"]
         self.refuse("clogrun", "array", *filmed, "--most-frames=few", words=["--most-frames=few"])
         self.succeed("clogrun", "array", *filmed, "--most-frames", 3)
@@ -691,18 +723,22 @@ class Pictures(Analysis):
         return np.array(element.text.split(), dtype=float)
 
     def test_a_run_is_drawn_filmed_and_exported(self):
-        self.refuse("clogrun", "array", *QUICK, "--frames", "film", "--output", "run.h5", words=["--frames", "--polygon-interval"])
+        self.refuse("clogrun", "array", *QUICK, "--frames", "film", "--output", "run.h5",
+                    words=["--frames", "--polygon-interval"])
         for name, words in [("nowhere/film", ["no folder nowhere"]), ("film/", ["names no file"])]:
-            self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, f"--frames={name}", "--output", "run.h5", words=words)
+            self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, f"--frames={name}", "--output", "run.h5",
+                        words=words)
         name = "film.mp4" if shutil.which("ffmpeg") else "film.gif"
-        told = self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5", "--frames", name).stdout
+        told = self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5", "--frames",
+                            name).stdout
         self.assertEqual(told.splitlines()[-1], name)
         self.assertGreater((self.folder / name).stat().st_size, 1000)
         self.draw("droplet", "run.h5", "--output", "droplet")
         self.assert_picture("droplet")
         with h5py.File(self.folder / "run.h5") as file:
             polygons, times, obstacles = (file[name][:] for name in ("polygons", "polygon_times", "obstacles"))
-        told = self.draw("droplet", "run.h5", "--output", "droplet", "--pictures", "--film", "--colour", "mechanism").stdout
+        told = self.draw("droplet", "run.h5", "--output", "droplet", "--pictures", "--film", "--colour",
+                         "mechanism").stdout
         frames = sorted((self.folder / "droplet-frames").iterdir())
         self.assertEqual(len(frames), len(times))
         self.assertNotEqual(frames[0].read_bytes(), frames[-1].read_bytes())
@@ -727,7 +763,8 @@ class Pictures(Analysis):
 
     def test_a_channel_is_exported_in_numbers_that_vtk_reads(self):
         """VTK's readers stop at the first NaN."""
-        self.succeed("clogrun", "channel", "vertices=32", "line-tension=0.5", "max-time=30", "--start", -1, "--polygon-interval", 10, "--output", "run.h5")
+        self.succeed("clogrun", "channel", "vertices=32", "line-tension=0.5", "max-time=30", "--start", -1,
+                     "--polygon-interval", 10, "--output", "run.h5")
         self.draw("export-vtk", "run.h5", "--output", "run")
         walls = xml.parse(self.folder / "run-obstacles.vtp")
         self.assertEqual(self.numbers(walls, "diameter").tolist(), [0, 0])

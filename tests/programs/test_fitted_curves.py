@@ -36,7 +36,8 @@ class Records(unittest.TestCase):
             told = record["told"]
             for recorded in told["curves"]:
                 at = [[math.log(point[key]) for key in told["keys"]] for point in recorded["points"]]
-                known = known_points(at, [point["clogs"] for point in recorded["points"]], [point["total_distance"] for point in recorded["points"]])
+                known = known_points(at, [point["clogs"] for point in recorded["points"]],
+                                     [point["total_distance"] for point in recorded["points"]])
                 places = points.grid_over(known.places)
                 found.append((told, recorded, known, places, model.fit_curve(known, places)))
         return found
@@ -70,10 +71,12 @@ class Records(unittest.TestCase):
             # Both programs use 2000 draws. The standard error of an end of the interval follows from the density of the
             # draws there.
             draws = features.tops(features.drawn_curves(curve), places)
-            ends = [(np.log([peak.length_lower, peak.length_upper]), [math.log(expected[name]) for name in LENGTH[1:]], draws[1])]
+            ends = [(np.log([peak.length_lower,
+                             peak.length_upper]), [math.log(expected[name]) for name in LENGTH[1:]], draws[1])]
             for i, key in enumerate(told["keys"]):
                 self.assertAlmostEqual(math.exp(peak.place[i]) / expected[key], 1, delta=1e-6)
-                ends.append(((peak.place_lower[i], peak.place_upper[i]), [math.log(expected[f"{key}{end}"]) for end in ("_lower", "_upper")], draws[0][:, i]))
+                ends.append(((peak.place_lower[i], peak.place_upper[i]),
+                             [math.log(expected[f"{key}{end}"]) for end in ("_lower", "_upper")], draws[0][:, i]))
             for ours, theirs, drawn in ends:
                 for tail, mine, other in zip(((1 - told["confidence"]) / 2, (1 + told["confidence"]) / 2), ours, theirs):
                     error = math.sqrt(2 * tail * (1 - tail) / features.NUM_DRAWS)
@@ -102,7 +105,8 @@ class Model(unittest.TestCase):
 
     def test_a_straight_line_in_logarithms_is_followed_between_its_points(self):
         x = np.linspace(0, 3, 7)[:, None]
-        curve = model.fit_curve(known_points(x, [1000] * 7, 1000 * np.exp(1 + 0.8 * x[:, 0])), np.array([[0.7], [1.3], [2.2]]))
+        curve = model.fit_curve(known_points(x, [1000] * 7, 1000 * np.exp(1 + 0.8 * x[:, 0])),
+                                np.array([[0.7], [1.3], [2.2]]))
         np.testing.assert_allclose(curve.mean, [1.56, 2.04, 2.76], atol=0.03)
 
     def test_the_mode_is_that_of_a_general_optimiser_and_the_variance_that_of_the_full_hessian(self):
@@ -116,7 +120,8 @@ class Model(unittest.TestCase):
             g = f - known.level
             return clogs @ f + distances @ np.exp(-f) + g @ precision @ g / 2
 
-        found = optimize.minimize(loss, np.full(3, known.level), method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12, "maxiter": 10000})
+        found = optimize.minimize(loss, np.full(3, known.level), method="Nelder-Mead",
+                                  options={"xatol": 1e-9, "fatol": 1e-12, "maxiter": 10000})
         curve = model.curve_of_scales(known, scales, x)
         np.testing.assert_allclose(curve.mean, found.x, atol=1e-5)
         exact = np.linalg.inv(precision + np.diag(distances * np.exp(-curve.mean)))
@@ -158,7 +163,8 @@ class WhichPoints(unittest.TestCase):
     def test_a_curve_needs_four_values_three_of_them_with_clogs(self):
         self.assertEqual(len(curves_of([group(tension) for tension in TENSIONS])["curves"]), 1)
         for groups, words in (([group(tension) for tension in TENSIONS[:3]], "only 3 values of line-tension"),
-                              ([group(tension, clogs=6 if tension < 0.5 else 0) for tension in TENSIONS], "clogs at only 2 of the values")):
+                              ([group(tension, clogs=6 if tension < 0.5 else 0) for tension in TENSIONS],
+                               "clogs at only 2 of the values")):
             with self.subTest(words), self.assertRaisesRegex(UserError, words):
                 curves_of(groups)
 
@@ -173,7 +179,8 @@ class WhichPoints(unittest.TestCase):
 
     def test_arrays_and_channels_share_no_curve(self):
         groups = [*(group(tension) for tension in TENSIONS), group(1.0, obstacle_filling="channel", status="passed")]
-        with self.assertRaisesRegex(UserError, "arrays and channels; .*clogsweep select FILE obstacle_filling=saturated"):
+        with self.assertRaisesRegex(UserError,
+                                    "arrays and channels; .*clogsweep select FILE obstacle_filling=saturated"):
             curves_of(groups)
 
     def test_numerics_that_differ_between_values_do_not_split_a_curve(self):
@@ -197,7 +204,8 @@ class WhichPoints(unittest.TestCase):
         self.assertEqual(sorted(reasons), [4, 5, 6])
         for index, words in ((4, "only one value of line-tension with friction=0.5"), (5, "distance"), (6, "exit")):
             self.assertIn(words, reasons[index])
-        self.assertIn("in no curve:\n  line_tension 1: only one value", table.text(told, []).replace("line_tension 0.5", "").replace("  line_tension 2", ""))
+        self.assertIn("in no curve:\n  line_tension 1: only one value",
+                      table.text(told, []).replace("line_tension 0.5", "").replace("  line_tension 2", ""))
 
     def test_points_share_obstacles_where_they_share_seeds_and_the_key_leaves_the_array(self):
         groups = [group(tension) for tension in TENSIONS]

@@ -29,14 +29,16 @@ class Foreign(Analysis):
         pandas.DataFrame({"a": [1]}).to_hdf(path, key="fit")
 
     def test_a_sweep_with_objects_of_others_is_refused_before_it_is_touched(self):
-        for add, name in [(self.add_group, "/mine"), (self.add_attribute, "attribute note of /"), (self.add_attribute_of_the_table, "attribute note of /runs"), (self.add_frame, "/fit")]:
+        for add, name in [(self.add_group, "/mine"), (self.add_attribute, "attribute note of /"),
+                          (self.add_attribute_of_the_table, "attribute note of /runs"), (self.add_frame, "/fit")]:
             with self.subTest(name):
                 path = self.copy_sweep("s.h5", *FEW)
                 path.chmod(0o644)
                 add(path)
                 # More seeds, and nothing left to do.
                 for arguments in ([word.replace("1..2", "1..3") for word in FEW], FEW):
-                    self.refuse("clogsweep", *arguments, "--output", "s.h5", words=["cannot resume s.h5", name, "clogsweep salvage s.h5 --output"])
+                    self.refuse("clogsweep", *arguments, "--output", "s.h5",
+                                words=["cannot resume s.h5", name, "clogsweep salvage s.h5 --output"])
                 self.succeed("clogsweep", "salvage", "s.h5", "--output", "new.h5")
                 self.assertIn("nothing left to do", self.succeed("clogsweep", *FEW, "--output", "new.h5").stderr)
                 self.assertEqual(len(table(self.folder / "new.h5")), 4)
@@ -55,13 +57,17 @@ class Foreign(Analysis):
         path = self.changed_sweep()
         before = path.read_bytes()
         self.copy_sweep("more.h5", *(word.replace("1..2", "3") for word in FEW))
-        for program, *arguments in [("clogsweep", "status", "s.h5"), ("clogsweep", "verify", "s.h5"), ("clogsweep", "merge", "s.h5", "more.h5", "--output", "merged.h5"),
-                                    ("clogsweep", "select", "s.h5", "seed=1", "--output", "selected.h5"), ("clogsweep", "replay", "s.h5", "0"), ("clogfit", "s.h5"),
-                                    ("clogrun", "replay", "s.h5", "0", "--output", "run.h5"), ("clogsweep", *FEW, "--output", "s.h5", "--dry-run")]:
+        for program, *arguments in [("clogsweep", "status", "s.h5"), ("clogsweep", "verify", "s.h5"),
+                                    ("clogsweep", "merge", "s.h5", "more.h5", "--output", "merged.h5"),
+                                    ("clogsweep", "select", "s.h5", "seed=1", "--output", "selected.h5"),
+                                    ("clogsweep", "replay", "s.h5", "0"), ("clogfit", "s.h5"),
+                                    ("clogrun", "replay", "s.h5", "0", "--output", "run.h5"),
+                                    ("clogsweep", *FEW, "--output", "s.h5", "--dry-run")]:
             with self.subTest(program=program, arguments=arguments):
                 self.succeed(program, *arguments)
                 self.assertEqual(path.read_bytes(), before)
-        for command, *arguments in [("export", "s.h5", "rows.csv", "--programs", BIN), ("clogging-length", "s.h5", "--output", "l", "--programs", BIN)]:
+        for command, *arguments in [("export", "s.h5", "rows.csv", "--programs", BIN),
+                                    ("clogging-length", "s.h5", "--output", "l", "--programs", BIN)]:
             with self.subTest(command=command):
                 self.draw(command, *arguments)
                 self.assertEqual(path.read_bytes(), before)

@@ -57,7 +57,8 @@ class TwoHosts(SweepTest):
         (before,) = self.until_in_time(self.lose_a_host)
         rows = table(self.folder / "s.h5")
         over = before[~before.status.isin(["running", "interrupted"])].task
-        self.assertFalse(rows[rows.task.isin(over)].status.isin(["running", "interrupted"]).any(), "a finished row was lost")
+        self.assertFalse(rows[rows.task.isin(over)].status.isin(["running", "interrupted"]).any(),
+                         "a finished row was lost")
         process = self.start_on_both()
         self.ended(process)
         self.check_equal("s.h5", undisturbed(SLOW))

@@ -85,7 +85,8 @@ class Installed(Installation):
     def test_a_program_of_ones_own_finds_the_libraries(self):
         # slow_install.py builds and runs this example.
         example = self.prefix / "share/doc/clogsweep/docs/examples/own-program"
-        self.called("cmake", "-G", "Ninja", "-S", example, "-B", self.folder / "example", f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        self.called("cmake", "-G", "Ninja", "-S", example, "-B", self.folder / "example",
+                    f"-DCMAKE_PREFIX_PATH={self.prefix}")
 
     def completed(self, *words, function="_clogsweep"):
         """The words by which bash offers to complete the last word."""
@@ -164,7 +165,8 @@ class InstalledByPip(unittest.TestCase):
         cls.venv = cls.folder / "venv"
         cls.tree = sorted(ROOT.glob("analysis/*"))
         cls.called(sys.executable, "-m", "venv", "--system-site-packages", cls.venv)
-        cls.called(cls.venv / "bin/pip", "install", "--no-deps", "--no-build-isolation", "--no-index", ROOT / "analysis")
+        cls.called(cls.venv / "bin/pip", "install", "--no-deps", "--no-build-isolation", "--no-index",
+                   ROOT / "analysis")
         cls.called(BIN / "clogsweep", *KEYS[1:], "line-tension=0.4,0.5", "--output", "s.h5")
 
     @classmethod
@@ -176,7 +178,8 @@ class InstalledByPip(unittest.TestCase):
         return done.stdout
 
     def draw(self, name, **variables):
-        self.called(self.venv / "bin/python", "-m", "clogsweep", "clogging-length", "s.h5", "--output", name, **variables)
+        self.called(self.venv / "bin/python", "-m", "clogsweep", "clogging-length", "s.h5", "--output", name,
+                    **variables)
         self.assertTrue((self.folder / f"{name}.png").exists())
 
     def test_nothing_is_left_in_the_source_tree(self):
@@ -195,11 +198,13 @@ class InstalledByPip(unittest.TestCase):
         self.draw("beside")
 
     def test_without_programs_it_says_so_in_one_line(self):
-        with self.assertRaisesRegex(AssertionError, r"^.*: python3 -m clogsweep clogging-length: no clogsweep in [^\n]*/venv/bin; [^\n]*\n$"):
+        with self.assertRaisesRegex(AssertionError, r"^.*: python3 -m clogsweep clogging-length: "
+                                                    r"no clogsweep in [^\n]*/venv/bin; [^\n]*\n$"):
             self.draw("without")
 
     def test_it_has_the_configs_of_the_figures(self):
-        said = self.called(self.venv / "bin/python", "-c", "from clogsweep.paper import workshop; print(workshop.CONFIGS)")
+        said = self.called(self.venv / "bin/python", "-c",
+                           "from clogsweep.paper import workshop; print(workshop.CONFIGS)")
         configs = pathlib.Path(said.strip())
         self.assertEqual(configs.parents[1].parent, next(self.venv.glob("lib/python3*")) / "site-packages")
         names = sorted(path.name for path in (ROOT / "jobs/figures").iterdir() if path.suffix in (".cfg", ".csv"))

@@ -93,16 +93,20 @@ class Exported(Analysis):
         meanings = clogsweep.open(self.folder / "s.h5", BIN).rows.attrs["meanings"]
         for output in ("rows.csv", "rows.h5"):
             self.assertEqual(self.draw("export", "s.h5", output, "--programs", BIN).stdout, f"{output}\n")
-        read = pandas.read_csv(self.folder / "rows.csv", float_precision="round_trip", keep_default_na=False, na_values=[""])
-        self.assertEqual(list(read), [f"{name} [{unit}]" if (unit := stored.unit(meanings[name])) else name for name in rows])
+        read = pandas.read_csv(self.folder / "rows.csv", float_precision="round_trip", keep_default_na=False,
+                               na_values=[""])
+        self.assertEqual(list(read),
+                         [f"{name} [{unit}]" if (unit := stored.unit(meanings[name])) else name for name in rows])
         words = {name: "" for name in rows if rows[name].dtype == object}
         pandas.testing.assert_frame_equal(read.set_axis(rows.columns, axis=1).fillna(words), rows, check_dtype=False, check_exact=True)
         with h5py.File(self.folder / "rows.h5") as file:
             self.assertEqual(set(file), set(rows))
             self.assertIn("line-tension=1,3", file.attrs["source"])
             for name in rows:
-                np.testing.assert_array_equal(file[name].asstr()[:] if name in words else file[name][:], rows[name].to_numpy(), name)
-                self.assertEqual((file[name].attrs["unit"], file[name].attrs["meaning"]), (stored.unit(meanings[name]), meanings[name]))
+                np.testing.assert_array_equal(file[name].asstr()[:] if name in words else file[name][:],
+                                              rows[name].to_numpy(), name)
+                self.assertEqual((file[name].attrs["unit"], file[name].attrs["meaning"]),
+                                 (stored.unit(meanings[name]), meanings[name]))
 
     def test_several_files_are_one_table(self):
         for name, tension in (("a.h5", 1), ("b.h5", 3)):

@@ -41,7 +41,8 @@ class Lengths(ProgramTest):
         return json.loads(self.succeed("clogfit", "lengths", *arguments, "--format", "json").stdout)
 
     def succeed_in_python(self, *arguments):
-        done = subprocess.run([sys.executable, "-m", "clogsweep", *map(str, arguments), "--programs", support.BIN], cwd=self.folder, capture_output=True, text=True,
+        done = subprocess.run([sys.executable, "-m", "clogsweep", *map(str, arguments), "--programs", support.BIN],
+                              cwd=self.folder, capture_output=True, text=True,
                               env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")})
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
@@ -49,10 +50,12 @@ class Lengths(ProgramTest):
         answers = [("1", "0"), ("1.0", "0.0"), ("1,0", "0,0"), ("1.00", "0.00"), ("1e0", "-0"), ("+1", "0,000"), ("T", "F"), ("TRUE", "FALSE"), ("y", "n"), ("Yes", "No")]
         self.write("own.csv", "table;distance [mm];clogged\n" + "".join(f"t{i};3;{yes}\nt{i};5;{no}\nt{i};9;{yes}\n" for i, (yes, no) in enumerate(answers)))
         groups = self.lengths("own.csv")["groups"]
-        self.assertEqual([(group["clogs"] / group["runs"], group["clogging_length_mm"]) for group in groups], len(groups) * [(2 / 3, 17 / 2)])
+        self.assertEqual([(group["clogs"] / group["runs"], group["clogging_length_mm"]) for group in groups],
+                         len(groups) * [(2 / 3, 17 / 2)])
         self.assertEqual(len(groups), len(answers))
         for cell in ("0.5", '"1,000"', "1.0.0", "2", ""):
-            self.refuse("clogfit", "lengths", self.write("own.csv", f"distance [mm],clogged\n3,{cell}\n"), words=["own.csv line 2", f"""clogged is '{cell.strip('"')}'"""])
+            self.refuse("clogfit", "lengths", self.write("own.csv", f"distance [mm],clogged\n3,{cell}\n"),
+                        words=["own.csv line 2", f"""clogged is '{cell.strip('"')}'"""])
 
     def test_droplets_that_were_pushed_back_come_first_in_survival(self):
         # Two of four droplets clog upstream of their release, so P falls to 3/4 at -2 and to 1/2 at -1.
@@ -78,7 +81,8 @@ class Lengths(ProgramTest):
         steps = maintained["survival"]
         self.assertEqual([(step["distance"], step["at_risk"], step["clogs"]) for step in steps],
                          [(9, 11, 1), (13, 10, 1), (18, 8, 1), (23, 7, 1), (31, 5, 1), (34, 4, 1), (48, 2, 1)])
-        for name, expected in [("probability", 0.490909090909), ("standard_error", 0.1641932672211), ("lower", 0.1673309097769), ("upper", 0.753399790371)]:
+        for name, expected in [("probability", 0.490909090909), ("standard_error", 0.1641932672211),
+                               ("lower", 0.1673309097769), ("upper", 0.753399790371)]:
             self.assertAlmostEqual(steps[4][name], expected, places=9)
         self.assertEqual(maintained["censored_distances"], [13, 28, 45, 161])
         # The table of the Python module. The expected values come from R's summary(..., times=161), and from the last
@@ -86,11 +90,13 @@ class Lengths(ProgramTest):
         groups = [*told["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
         known = types.SimpleNamespace(told={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
         end, not_censored, none = (fit.Fit.survival(known, group).iloc[-1].to_dict() for group in range(3))
-        for name, expected in [("distance", 161), ("at_risk", 1), ("clogs", 0), ("probability", 0.184090909091), ("standard_error", 0.1534927457863),
-                               ("lower", 0.0117384801232), ("upper", 0.525014842727)]:
+        for name, expected in [("distance", 161), ("at_risk", 1), ("clogs", 0), ("probability", 0.184090909091),
+                               ("standard_error", 0.1534927457863), ("lower", 0.0117384801232),
+                               ("upper", 0.525014842727)]:
             self.assertAlmostEqual(end[name], expected, places=9)
         self.assertEqual((not_censored["distance"], not_censored["at_risk"], not_censored["clogs"]), (45, 1, 1))
-        self.assertEqual((none["distance"], none["at_risk"], none["probability"], math.isnan(none["lower"])), (3, 2, 1, True))
+        self.assertEqual((none["distance"], none["at_risk"], none["probability"], math.isnan(none["lower"])),
+                         (3, 2, 1, True))
 
     def test_tables_of_spreadsheets_and_units_give_the_same_lengths(self):
         expected = [group["clogging_length_mm"] for group in self.lengths(self.write("mm.csv", table(["x", "distance [mm]", "clogged"])))["groups"]]
@@ -106,7 +112,8 @@ class Lengths(ProgramTest):
         for unit, factor in (("mm", 1), ("sigma", 2)):
             self.write("own.csv", f"distance [{unit}],clogged\n{10 / factor},1\n{20 / factor},0\n")
             group, = self.lengths("own.csv", "--lab", "lab.cfg")["groups"]
-            self.assertEqual((group["clogging_length_mm"], group["clogging_length"], group["doubts"]), (30, 15, "few_clogs"))
+            self.assertEqual((group["clogging_length_mm"], group["clogging_length"], group["doubts"]),
+                             (30, 15, "few_clogs"))
         text = self.succeed("clogfit", "lengths", "own.csv", "--lab", "lab.cfg").stdout
         for words in ("lambda/mm", "lambda/sigma", "f: fewer than 5 clogs"):
             self.assertIn(words, text)
@@ -126,14 +133,17 @@ class Lengths(ProgramTest):
         # From R's survfit(Surv(rep(12, 10), time, status) ~ 1, conf.type="log-log").
         step = maintained["survival"][3]
         self.assertEqual((12 + step["distance"], step["at_risk"], step["clogs"]), (31, 5, 1))
-        for name, expected in [("probability", 0.54), ("standard_error", 0.1731184565550), ("lower", 0.1811653384041), ("upper", 0.800712517334)]:
+        for name, expected in [("probability", 0.54), ("standard_error", 0.1731184565550), ("lower", 0.1811653384041),
+                               ("upper", 0.800712517334)]:
             self.assertAlmostEqual(step[name], expected, places=9)
-        self.assertEqual(done.stderr, "clogfit lengths: aml.csv: left out, 5 droplets that ended before --from-distance=12 mm\n")
+        self.assertEqual(done.stderr,
+                         "clogfit lengths: aml.csv: left out, 5 droplets that ended before --from-distance=12 mm\n")
         text = self.succeed("clogfit", "lengths", "aml.csv", "--from-distance=50").stdout
         self.assertRegex(text, r"Nonmaintained +0 +0 +- +- +f")
 
     def test_a_delayed_entry_is_refused(self):
-        for head in ("entry [mm]", "Entry", "entry_um", "start (mm)", "from [sigma]", "entrance [mm]", "Entered_um", "x0 (sigma)"):
+        for head in ("entry [mm]", "Entry", "entry_um", "start (mm)", "from [sigma]", "entrance [mm]", "Entered_um",
+                     "x0 (sigma)"):
             self.write("own.csv", f"distance [mm],clogged,{head}\n10,1,2\n20,1,4\n")
             self.refuse("clogfit", "lengths", "own.csv", words=[f"own.csv line 1: column '{head}' says where droplets were first seen", "; delete the column and subtract its values", "--from-distance"])
         for name in ("start", "entrance"):
@@ -192,11 +202,14 @@ class Lengths(ProgramTest):
         group, = self.lengths("own.csv")["groups"]
         self.assertNotIn("clogging_length", group)
         self.write("other.csv", "distance [sigma],clogged\n5,1\n")
-        self.refuse("clogfit", "compare", "own.csv", "other.csv", "--lab", "lab.cfg", words=["one is in mm", "fill the empty cells of the column diameter"])
+        self.refuse("clogfit", "compare", "own.csv", "other.csv", "--lab", "lab.cfg",
+                    words=["one is in mm", "fill the empty cells of the column diameter"])
 
     def test_a_diameter_or_an_angle_needs_a_unit_and_numbers(self):
-        for head, words in [("diameter", ["column 'diameter' has no unit", "diameter [mm]"]), ("Diameter", ["column 'Diameter' has no unit"]),
-                            ("diameter [px]", ["the unit 'px'", "diameter [mm]"]), ("diameter [sigma]", ["the unit 'sigma'"]), ("diameter_px", ["the unit 'px'", "rename"]),
+        for head, words in [("diameter", ["column 'diameter' has no unit", "diameter [mm]"]),
+                            ("Diameter", ["column 'Diameter' has no unit"]),
+                            ("diameter [px]", ["the unit 'px'", "diameter [mm]"]),
+                            ("diameter [sigma]", ["the unit 'sigma'"]), ("diameter_px", ["the unit 'px'", "rename"]),
                             ("angle [grad]", ["the unit 'grad'", "angle [deg] or rad"])]:
             for line in ("3,1,200\n", "3,1,abc\n"):
                 self.refuse("clogfit", "lengths", self.write("own.csv", f"distance [um],clogged,{head}\n{line}"), words=["own.csv line 1", *words])
@@ -205,7 +218,8 @@ class Lengths(ProgramTest):
             self.refuse("clogfit", "lengths", self.write("own.csv", f"distance [mm];clogged;{head}\n12.5;1;{cell}\n"), words=["own.csv", *words])
             self.refuse("clogfit", "lengths", self.write("own.csv", f'{head},distance [mm],clogged\n"{cell}",12,1\n'), words=["own.csv", *words])
         # What is no table of distances at all is not about a diameter.
-        self.refuse("clogfit", "lengths", self.write("own.csv", "x,y,diameter\n1,2,3\n"), words=["own.csv line 1: has no column distance"])
+        self.refuse("clogfit", "lengths", self.write("own.csv", "x,y,diameter\n1,2,3\n"),
+                    words=["own.csv line 1: has no column distance"])
 
     def test_an_angle_is_in_degrees(self):
         for head, factor in (("angle", 1), ("angle [deg]", 1), ("Angle (°)", 1), ("angle_degrees", 1), ("angle [rad]", math.pi / 180)):
@@ -216,7 +230,8 @@ class Lengths(ProgramTest):
         for comment in ("# units=um droplet=200um", "# units = um", "#droplet=200um", "# unit=mm"):
             for text in (f"{comment}\ndistance [mm],clogged\n100,1\n", f"distance [mm],clogged\n100,1\n{comment}\n"):
                 self.refuse("clogfit", "lengths", self.write("own.csv", text),
-                            words=[f"own.csv line {text.splitlines().index(comment) + 1}: units in a comment", "header", "'diameter [um]'", "--lab"])
+                            words=[f"own.csv line {text.splitlines().index(comment) + 1}: "
+                                   "units in a comment", "header", "'diameter [um]'", "--lab"])
         self.write("own.csv", "# units of the camera: px, droplet no. 7\ndistance [mm],clogged\n# day=2\n3,1\n")
         self.assertEqual(self.lengths("own.csv")["groups"][0]["clogging_length_mm"], 3)
 
@@ -224,7 +239,9 @@ class Lengths(ProgramTest):
         """Takes the names from what the commands print, so names of later results are tested, too."""
         self.write("lab.cfg", LAB)
         self.write("own.csv", "distance [mm],clogged,wall\n3,1,a\n5,1,b\n6,1,a\n")
-        for arguments, labels in ((["lengths", "own.csv", "--lab", "lab.cfg"], ["wall"]), (["compare", "own.csv", "--by", "wall"], []), (["compare", "own.csv", "own.csv", "--lab", "lab.cfg"], ["wall"])):
+        for arguments, labels in ((["lengths", "own.csv", "--lab",
+                                    "lab.cfg"], ["wall"]), (["compare", "own.csv", "--by", "wall"], []),
+                                  (["compare", "own.csv", "own.csv", "--lab", "lab.cfg"], ["wall"])):
             told = json.loads(self.succeed("clogfit", *arguments, "--format", "json").stdout)
             names = [name for name in (told.get("groups") or told["comparisons"])[0] if name not in labels]
             self.assertGreater(len(names), 10)
@@ -233,8 +250,8 @@ class Lengths(ProgramTest):
             for name in dict.fromkeys((*names, *in_any_form, *in_table)):
                 self.write("taken.csv", f"distance [sigma],clogged,wall,{name}\n3,1,a,7\n5,1,b,7\n6,1,c,8\n")
                 for form in ("text", "csv") if name in names else ["text"]:
-                    self.refuse("clogfit", *(word.replace("own.csv", "taken.csv") for word in arguments), "--format", form,
-                                words=[f"taken.csv line 1: column '{name}' has the name of a result; rename it"])
+                    self.refuse("clogfit", *(word.replace("own.csv", "taken.csv") for word in arguments), "--format",
+                                form, words=[f"taken.csv line 1: column '{name}' has the name of a result; rename it"])
         # A result of one command is a label of the other one.
         self.write("own.csv", "distance [mm],clogged,ratio\n3,1,7\n5,1,8\n")
         self.assertEqual([group["ratio"] for group in self.lengths("own.csv")["groups"]], [7, 8])
@@ -256,7 +273,8 @@ class Lengths(ProgramTest):
             for droplets in range(1, 13):
                 apart = [(way, way < 16) for way in random.exponential(8, size=droplets)]
                 coarse = [(8 * round(way / 8), True) for way in random.exponential(8, size=5 * droplets)]
-                for name, table in [("copies", apart * copies), ("coarse", coarse), ("zeros", [(0.0, True)] * copies * droplets),
+                for name, table in [("copies", apart * copies), ("coarse", coarse),
+                                    ("zeros", [(0.0, True)] * copies * droplets),
                                     ("one place", [(5.0, True)] * copies * droplets + [(3.0, False)] * droplets),
                                     ("sound", [(way, True) for way in random.exponential(8, size=5 + droplets)])]:
                     tables[f"{name} {copies} {droplets}"] = table
@@ -270,7 +288,8 @@ class Lengths(ProgramTest):
     def test_equal_droplets_are_not_exponential_either(self):
         self.write("own.csv", "distance [mm],clogged\n" + "5,1\n" * 12)
         group, = self.lengths("own.csv")["groups"]
-        self.assertEqual((group["doubts"], group["weibull_p_value"], group["weibull_shape"]), ("not_exponential equal_distances", 0, None))
+        self.assertEqual((group["doubts"], group["weibull_p_value"], group["weibull_shape"]),
+                         ("not_exponential equal_distances", 0, None))
         text = self.succeed("clogfit", "lengths", "own.csv").stdout
         self.assertRegex(text, r"9\.68 +xe")
         self.assertIn("\ne: half of the clogs or more", text)
@@ -287,7 +306,9 @@ class Lengths(ProgramTest):
         self.write("own.csv", "surfactant [mM],wall,distance [mm],clogged\n" + "".join(f"{group},{wall},{distance!r},1\n" for group, wall, distance in runs))
         told = json.loads(self.succeed("clogfit", "compare", "own.csv", "--by", "surfactant [mM]", "--format", "json").stdout)
         self.assertEqual([(one["here"], one["there"], one["wall"]) for one in told["comparisons"]],
-                         [(f"surfactant [mM]={group}", "surfactant [mM]=0.5", wall) for group in (2, 10) for wall in ("a", "b")])
+                         [(f"surfactant [mM]={group}", "surfactant [mM]=0.5", wall)
+                          for group in (2, 10)
+                          for wall in ("a", "b")])
         for one in told["comparisons"]:
             of = {group: sum(distance for g, wall, distance in runs if g == group and wall == one["wall"]) / 6 for group in (0.5, 2, 10)}
             ratio = of[float(one["here"].partition("=")[2])] / of[0.5]
@@ -295,7 +316,8 @@ class Lengths(ProgramTest):
             # All droplets clogged, so the ratio follows Snedecor's F.
             self.assertAlmostEqual(one["ratio_upper"], ratio / scipy.stats.f.ppf(0.025, 12, 12))
         # A group without a counterpart is named.
-        self.write("own.csv", "n,diameter [mm],distance [mm],clogged\n1,0.5,1,1\n1,0.5,2,1\n2,0.5,5,1\n2,0.8,4,0\n3,0.5,6,1\n")
+        self.write("own.csv", "n,diameter [mm],distance "
+                              "[mm],clogged\n1,0.5,1,1\n1,0.5,2,1\n2,0.5,5,1\n2,0.8,4,0\n3,0.5,6,1\n")
         self.assertEqual(self.succeed("clogfit", "compare", "own.csv", "--by", "n").stderr, "clogfit compare: n=2: left out, 1 of 2 groups match no runs of n=1, such as diameter=0.8\n")
         self.write("own.csv", "surfactant [mM],wall,distance [mm],clogged\n1,a,3,1\n2,a,3,1\n")
         for words, arguments in [(["no column", "wall"], ["--by", "wal"]), (["one table"], ["own.csv", "--by", "wall"])]:
@@ -303,7 +325,8 @@ class Lengths(ProgramTest):
 
     def test_survival_curves_of_groups_are_compared_by_the_log_rank_test(self):
         self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
-        one, = json.loads(self.succeed("clogfit", "compare", "aml.csv", "--by", "x", "--format", "json").stdout)["comparisons"]
+        one, = json.loads(self.succeed("clogfit", "compare", "aml.csv", "--by", "x", "--format",
+                                       "json").stdout)["comparisons"]
         # From R: `survdiff(Surv(time, status) ~ x, data = aml)`.
         self.assertAlmostEqual(one["log_rank_p"], 0.0653393220405, places=12)
         self.assertEqual(one["log_rank_p_holm"], one["log_rank_p"])
@@ -314,7 +337,8 @@ class Lengths(ProgramTest):
         told = json.loads(self.succeed("clogfit", "compare", "three.csv", "--by", "x", "--format", "json").stdout)["comparisons"]
         for one, p_value in zip(told, (0.130678644081, 1)):
             self.assertAlmostEqual(one["log_rank_p_holm"], p_value, places=9)
-        self.assertIn("corrected for 2 comparisons (Holm)\n", self.succeed("clogfit", "compare", "three.csv", "--by", "x").stdout)
+        self.assertIn("corrected for 2 comparisons (Holm)\n",
+                      self.succeed("clogfit", "compare", "three.csv", "--by", "x").stdout)
 
     def test_a_picture_has_the_survival_curve_of_each_group(self):
         self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
@@ -325,7 +349,8 @@ class Lengths(ProgramTest):
         # From R: `survfit(Surv(time, status) ~ x, data = aml)`.
         way, probability = curves["x Maintained"].get_data()
         self.assertEqual(list(way), [0, 9, 13, 18, 23, 31, 34, 48, 161])
-        for found, expected in zip(probability, [1, 0.909091, 0.818182, 0.715909, 0.613636, 0.490909, 0.368182, 0.184091, 0.184091]):
+        for found, expected in zip(probability,
+                                   [1, 0.909091, 0.818182, 0.715909, 0.613636, 0.490909, 0.368182, 0.184091, 0.184091]):
             self.assertAlmostEqual(found, expected, places=6)
         self.assertEqual(list(curves["x Nonmaintained"].get_data()[0]), [0, 5, 8, 12, 23, 27, 30, 33, 43, 45, 45])
         self.assertIn([13, 28, 45, 161], [list(line.get_xdata()) for line in axes.lines])
@@ -355,11 +380,14 @@ class Lengths(ProgramTest):
         told = json.loads(self.succeed("clogfit", "compare", "own.csv", "--by", "wall", "--format", "json").stdout)["comparisons"]
         self.assertEqual([(one["doubts_here"], one["doubts_there"]) for one in told], [(None, None), ("not_exponential", None), (None, None)])
         for wall in "ab":
-            self.write(f"{wall}.csv", "distance [mm],clogged\n" + "".join(f"{way!r},1\n" for way in ways(near, 5 + (wall == "b"))))
-        one, = json.loads(self.succeed("clogfit", "compare", "a.csv", "b.csv", "--format", "json").stdout)["comparisons"]
+            self.write(f"{wall}.csv",
+                       "distance [mm],clogged\n" + "".join(f"{way!r},1\n" for way in ways(near, 5 + (wall == "b"))))
+        one, = json.loads(self.succeed("clogfit", "compare", "a.csv", "b.csv", "--format",
+                                       "json").stdout)["comparisons"]
         self.assertEqual((one["doubts_here"], one["doubts_there"]), (None, None))
         self.write("few.csv", "wall,distance [mm],clogged\na,5,1\na,6,1\nb,7,1\n")
-        one, = json.loads(self.succeed("clogfit", "compare", "few.csv", "--by", "wall", "--format", "json").stdout)["comparisons"]
+        one, = json.loads(self.succeed("clogfit", "compare", "few.csv", "--by", "wall", "--format",
+                                       "json").stdout)["comparisons"]
         self.assertEqual((one["doubts_here"], one["doubts_there"]), ("few_clogs", "few_clogs"))
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
@@ -373,7 +401,8 @@ class Lengths(ProgramTest):
                 self.refuse("clogfit", "lengths", self.write("own.csv", text), words=["own.csv", *words])
         self.refuse("clogfit", "lengths", words=["missing table"])
         self.refuse("clogfit", "lengths", "curve.h5", words=["cannot read curve.h5", "; clogfit curve.h5 fits a sweep"])
-        self.refuse("clogfit", "own.csv", words=["cannot read own.csv", "; clogfit lengths own.csv fits measured distances"])
+        self.refuse("clogfit", "own.csv",
+                    words=["cannot read own.csv", "; clogfit lengths own.csv fits measured distances"])
 
 
 class Beside(ProgramTest):
@@ -404,7 +433,8 @@ class Beside(ProgramTest):
     def test_a_table_without_a_common_column_is_compared_with_every_parameter_set(self):
         self.write("own.csv", "distance [sigma],clogged,wall\n3,1,glass\n5,1,glass\n9,0,steel\n")
         found = self.compare("sweep.h5", "own.csv")
-        self.assertEqual([(one["wall"], one["line_tension"]) for one in found], [(wall, tension) for wall in ("glass", "steel") for tension in self.groups])
+        self.assertEqual([(one["wall"], one["line_tension"]) for one in found],
+                         [(wall, tension) for wall in ("glass", "steel") for tension in self.groups])
         self.assertEqual({one["clogs_here"] for one in found}, {0, 2})
         # If all droplets clogged, the ratio of the two lengths follows Snedecor's F distribution. Each length has two
         # degrees of freedom per clog.
@@ -414,7 +444,8 @@ class Beside(ProgramTest):
         self.assertAlmostEqual(one["ratio_upper"], one["ratio"] * quantile, places=6)
 
     def test_droplets_of_another_size_are_no_droplets_of_the_sweep(self):
-        self.write("own.csv", "distance [mm],clogged,diameter [mm],line-tension\n6,1,2,1\n10,1,2.004,1\n40,1,4,1\n60,1,4,3\n")
+        self.write("own.csv",
+                   "distance [mm],clogged,diameter [mm],line-tension\n6,1,2,1\n10,1,2.004,1\n40,1,4,1\n60,1,4,3\n")
         done = self.succeed("clogfit", "compare", "own.csv", "sweep.h5", "--lab", "lab.cfg", "--format", "json")
         found = json.loads(done.stdout)["comparisons"]
         self.assertEqual([(one["diameter"], round(one["clogging_length_there_mm"], 9)) for one in found], [(2, 6), (2, 10)])
@@ -428,21 +459,26 @@ class Beside(ProgramTest):
                 self.assertNotIn("clogging_length_here", one)
                 self.assertEqual(one["clogging_length_here_mm"], {4: 20}.get(one["diameter"], 5))
         self.write("other.csv", "distance [sigma],clogged\n10,1\n")
-        self.assertEqual([one["ratio"] for one in self.compare("own.csv", "other.csv")], [10 / 3, 10 / (10 / 2.004), 1, 10 / 15])
+        self.assertEqual([one["ratio"] for one in self.compare("own.csv", "other.csv")],
+                         [10 / 3, 10 / (10 / 2.004), 1, 10 / 15])
         # The picture leaves these droplets out, too.
         for options, kept in ((["--lab", self.folder / "lab.cfg"], [(2, 3), (2.004, 10 / 2.004)]), ([], [(2, 3), (2.004, 10 / 2.004), (4, 10), (4, 15)])):
             with contextlib.redirect_stderr(io.StringIO()) as said:
-                own = measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None, *options).known, None, *options)
+                own = measured.lengths_of(self.folder / "own.csv",
+                                          fit.read(self.folder / "sweep.h5", None, *options).known, None, *options)
             self.assertEqual([(group["diameter"], group["clogging_length"]) for group in own], kept)
-            self.assertEqual("left out, 2 of 4 groups have other diameters than the droplets of the sweep" in said.getvalue(), bool(options))
+            self.assertEqual("left out, 2 of 4 groups have other diameters than the droplets "
+                             "of the sweep" in said.getvalue(), bool(options))
 
     def test_columns_that_match_nothing_are_named(self):
         self.write("own.csv", "distance [sigma],clogged,wall,line-tension,vertices\n3,1,glass,1,64\n4,1,glass,3,64\n5,1,steel,1,64\n5,1,steel,1,64\n")
         done = self.succeed("clogfit", "compare", "own.csv", "sweep.h5")
-        self.assertEqual(done.stderr, "clogfit compare: own.csv: columns without a match in sweep.h5: wall (groups are compared whatever their values)\n")
+        self.assertEqual(done.stderr, "clogfit compare: own.csv: columns without a match in sweep.h5: "
+                                      "wall (groups are compared whatever their values)\n")
         with contextlib.redirect_stderr(io.StringIO()) as said:
             measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None).known, None)
-        self.assertTrue(said.getvalue().endswith("own.csv: columns without a match in the sweep: wall\n"), said.getvalue())
+        self.assertTrue(said.getvalue().endswith("own.csv: columns without a match in the sweep: wall\n"),
+                        said.getvalue())
         # A number may be rounded. A key with one value in the sweep matches this value only.
         self.write("own.csv", "distance [sigma],clogged,line-tension\n3,1,1.004\n")
         self.assertEqual([one["line_tension"] for one in self.compare("own.csv", "sweep.h5")], [1])
@@ -452,8 +488,10 @@ class Beside(ProgramTest):
     def test_groups_that_match_nothing_are_named(self):
         self.write("own.csv", "distance [sigma],clogged,line-tension,wall\n3,1,1,glass\n4,1,7,glass\n4,1,7,steel\n")
         done = self.succeed("clogfit", "compare", "own.csv", "sweep.h5")
-        self.assertEqual(done.stderr.splitlines()[-2:], ["clogfit compare: sweep.h5: left out, 1 of 2 groups match no runs of own.csv, such as line_tension=3",
-                                                         "clogfit compare: own.csv: left out, 2 of 3 groups match no runs of sweep.h5, such as line-tension=7, wall=glass"])
+        self.assertEqual(done.stderr.splitlines()[-2:], ["clogfit compare: sweep.h5: left out, 1 of 2 groups match "
+                                                         "no runs of own.csv, such as line_tension=3",
+                                                         "clogfit compare: own.csv: left out, 2 of 3 groups match "
+                                                         "no runs of sweep.h5, such as line-tension=7, wall=glass"])
 
     def test_a_column_of_numbers_of_droplets_gets_a_hint(self):
         for rows, hint in [("1,glass,3,1\n2,glass,4,0\n3,steel,5,0\n", "clogfit: own.csv: each droplet is a group of its own; delete columns such as no to join droplets\n"),
@@ -465,7 +503,8 @@ class Beside(ProgramTest):
         self.write("own.csv", "distance [mm],clogged\n3,1\n")
         self.write("other.csv", "distance [mm],clogged,line-tension\n3,1,7\n")
         for arguments, words in [(["own.csv", "sweep.h5"], ["--lab"]), (["own.csv"], ["nothing to compare"]),
-                                 (["other.csv", "sweep.h5", "--lab", "lab.cfg"], ["no group"]), (["own.csv", "sweep.h5", "--by", "friction"], ["--by", "one table"])]:
+                                 (["other.csv", "sweep.h5", "--lab", "lab.cfg"], ["no group"]),
+                                 (["own.csv", "sweep.h5", "--by", "friction"], ["--by", "one table"])]:
             self.refuse("clogfit", "compare", *arguments, words=words)
 
     def test_the_picture_shows_measured_lengths_in_droplet_diameters(self):
@@ -476,19 +515,22 @@ class Beside(ProgramTest):
         figure = style.figure_of(lambda axes, these: measured.draw_on(axes, own, these, "own.csv"), groups)
         stars = [line for line in figure.axes[0].lines if line.get_marker() == "*"]
         self.assertEqual([(line.get_xdata()[0], line.get_ydata()[0]) for line in stars], [(1, 4), (3, 6)])
-        self.assertLess(max(line.get_zorder() for line in figure.axes[0].lines if line not in stars), min(star.get_zorder() for star in stars))
+        self.assertLess(max(line.get_zorder() for line in figure.axes[0].lines if line not in stars),
+                        min(star.get_zorder() for star in stars))
         entries = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
         self.assertEqual((entries[0], len(entries)), ("own.csv", len(set(entries))))
         with self.assertRaisesRegex(UserError, "--lab"):
             measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None).known, None)
 
     def test_measured_lengths_have_the_colour_of_their_curve(self):
-        self.succeed("clogsweep", "vertices=64", "box=20", "obstacle-density=saturated", "obstacle-gap=0.2,0.3", "line-tension=1,3", "max-time=60", "seeds=1", "--output", "two.h5")
+        self.succeed("clogsweep", "vertices=64", "box=20", "obstacle-density=saturated", "obstacle-gap=0.2,0.3",
+                     "line-tension=1,3", "max-time=60", "seeds=1", "--output", "two.h5")
         groups = fit.read(self.folder / "two.h5", None).known
         self.write("own.csv", "distance [sigma],clogged,line-tension,obstacle-gap\n3,1,1,0.2\n4,1,1,0.301\n4,1,2,0.3\n5,1,1,0.25\n")
         own = measured.lengths_of(self.folder / "own.csv", groups, None)
         figure = style.figure_of(lambda axes, these: measured.draw_on(axes, own, these, "own.csv"), groups)
-        stars = {(line.get_xdata()[0], line.get_ydata()[0]): line.get_color() for line in figure.axes[0].lines if line.get_marker() == "*"}
+        stars = {(line.get_xdata()[0], line.get_ydata()[0]): line.get_color() for line in figure.axes[0].lines
+                 if line.get_marker() == "*"}
         first, second = style.COLOURS[:2]
         self.assertEqual([groups.curves()[i][1][0]["obstacle_gap"] for i in range(2)], [0.2, 0.3])
         self.assertEqual(stars, {(1, 3): first, (1, 4): second, (2, 4): second, (1, 5): measured.COLOUR})
@@ -498,9 +540,11 @@ class Beside(ProgramTest):
         groups = fit.read(self.folder / "sweep.h5", None, "--confidence", 0.5).known
         own = measured.lengths_of(self.folder / "own.csv", groups, None)
         # Two clogs at 3 and 5: twice their sum divided by lambda is chi-squared with four degrees of freedom.
-        np.testing.assert_allclose([own[0]["clogging_length_lower"], own[0]["clogging_length_upper"]], 16 / scipy.stats.chi2.ppf([0.75, 0.25], 4))
+        np.testing.assert_allclose([own[0]["clogging_length_lower"], own[0]["clogging_length_upper"]],
+                                   16 / scipy.stats.chi2.ppf([0.75, 0.25], 4))
         figure = style.figure_of(lambda axes, these: measured.draw_on(axes, own, these, "own.csv"), groups)
-        self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()], ["own.csv", "own.csv, 50 % interval"])
+        self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()],
+                         ["own.csv", "own.csv, 50 % interval"])
 
     def test_a_long_legend_widens_the_picture_once(self):
         figure, axes = style.subplots(figsize=(6.4, 4.8))
@@ -513,9 +557,11 @@ class Beside(ProgramTest):
         self.assertAlmostEqual(figure.get_figwidth(), widened)
 
     def test_measured_lengths_are_not_drawn_among_lateral_displacements(self):
-        self.succeed("clogsweep", "obstacle-layout=lattice", "pitch=2", "vertices=64", "box=20", "max-time=1", "seeds=1", "--output", "lattice.h5")
+        self.succeed("clogsweep", "obstacle-layout=lattice", "pitch=2", "vertices=64", "box=20", "max-time=1",
+                     "seeds=1", "--output", "lattice.h5")
         self.write("own.csv", "distance [sigma],clogged\n3,1\n")
-        done = subprocess.run([sys.executable, "-m", "clogsweep", "clogging-length", "lattice.h5", "--with", "own.csv"], cwd=self.folder, capture_output=True, text=True,
+        done = subprocess.run([sys.executable, "-m", "clogsweep", "clogging-length", "lattice.h5", "--with", "own.csv"],
+                              cwd=self.folder, capture_output=True, text=True,
                               env={**os.environ, "PYTHONPATH": str(ROOT / "analysis"), "PATH": str(support.BIN)})
         self.assertEqual((done.returncode, done.stderr), (2, "python3 -m clogsweep clogging-length: no place for --with (pictures of lattices show lateral displacements); "
                                                           "clogfit compare own.csv lattice.h5 compares lengths\n"))

@@ -73,7 +73,8 @@ class Module(Analysis):
         self.assertEqual([bars.lines[0].get_xdata().tolist() for bars in axes.containers], [[0.1, 0.7]])
         of_page = report.table_of_lengths(fit.known, fit.told["doubts"], table(self.folder / "s.h5"))
         cells = re.findall(r"<td><span>[^<]*</span><small>( \(mean of \d of \d runs: [^<]*\))</small></td>", of_page)
-        self.assertEqual([re.search(r"\(.* runs", cell)[0] for cell in cells], ["(mean of 3 of 4 runs", "(mean of 2 of 4 runs"])
+        self.assertEqual([re.search(r"\(.* runs", cell)[0] for cell in cells],
+                         ["(mean of 3 of 4 runs", "(mean of 2 of 4 runs"])
         self.assertTrue(cells[1].endswith(": -)"))
 
     def test_a_notebook_shows_what_varies_and_how_far_a_sweep_is(self):
@@ -100,7 +101,8 @@ class Module(Analysis):
     def test_options_of_a_fit_reach_clogfit(self):
         options = {"dwell": 20.0, "from_distance": 0.5, "confidence": 0.5, "row_angle": 10.0}
         words = [word for name, value in options.items() for word in (f"--{name.replace('_', '-')}", value)]
-        self.assertEqual(self.sweep().fit(**options).told, json.loads(self.succeed("clogfit", "s.h5", "--format", "json", *words).stdout))
+        self.assertEqual(self.sweep().fit(**options).told,
+                         json.loads(self.succeed("clogfit", "s.h5", "--format", "json", *words).stdout))
 
     def test_curves_draw_themselves_are_saved_and_know_where_they_come_from(self):
         sweep = self.sweep()
@@ -110,7 +112,8 @@ class Module(Analysis):
         self.assertEqual(fit.curve().save(self.folder / "curve.png"), self.folder / "curve.png")
         self.assert_picture("curve")
         about = Image.open(self.folder / "curve.png").text["Description"]
-        for words in (sweep.attributes["git_describe"], "line-tension=0.5,3", "seeds = 1..4", "8 runs in 2 groups, fitted by clogfit "):
+        for words in (sweep.attributes["git_describe"], "line-tension=0.5,3", "seeds = 1..4",
+                      "8 runs in 2 groups, fitted by clogfit "):
             self.assertIn(words, about)
         self.write("notes.png", "no picture")
         with self.assertRaisesRegex(clogsweep.UserError, "will not overwrite .*notes.png"):
@@ -261,9 +264,11 @@ class Module(Analysis):
     def test_a_python_module_that_is_lacking_gets_one_line(self):
         for lines in ("clogsweep.open('s.h5')", "clogsweep.Sweep"):
             # With None in sys.modules an import fails.
-            done = subprocess.run([sys.executable, "-c", f"import sys; sys.modules['pandas'] = None\nimport clogsweep\n{lines}"],
+            done = subprocess.run([sys.executable, "-c", "import sys; sys.modules['pandas'] = None\nimport "
+                                                         f"clogsweep\n{lines}"],
                                   cwd=ROOT / "analysis", capture_output=True, text=True)
-            self.assertRegex(done.stderr.splitlines()[-1], "^ImportError: cannot start .*pandas.*; .*python.* needs h5py, pandas, SciPy, tables and matplotlib")
+            self.assertRegex(done.stderr.splitlines()[-1], "^ImportError: cannot start .*pandas.*; .*python.* needs "
+                                                           "h5py, pandas, SciPy, tables and matplotlib")
             self.assertNotIn("ModuleNotFoundError", done.stderr)
 
     def test_nothing_is_loaded_that_a_call_does_not_need(self):
@@ -289,7 +294,8 @@ class Module(Analysis):
 
         listed = called()
         self.assertEqual((listed.returncode, called("--help").stdout), (0, listed.stdout))
-        modules = {path.stem.replace("_", "-") for path in (ROOT / "analysis/clogsweep/commands").glob("[a-z]*.py")} - {"command-line"}
+        paths = (ROOT / "analysis/clogsweep/commands").glob("[a-z]*.py")
+        modules = {path.stem.replace("_", "-") for path in paths} - {"command-line"}
         self.assertEqual(modules, set(clogsweep.__main__.COMMANDS))
         for command in modules:
             self.assertIn(f"\n  {command} ", listed.stdout)

@@ -43,7 +43,8 @@ class Names(Analysis):
     def setUp(self):
         super().setUp()
         (self.folder / CIRCLES).write_text("x,y,diameter\n2,3,0.6\n7,8,1\n", encoding="utf-8")
-        self.succeed("clogsweep", f"obstacles={CIRCLES}", "box=10", "vertices=64", "max-time=30", "line-tension=0.5,1", "--output", SWEEP)
+        self.succeed("clogsweep", f"obstacles={CIRCLES}", "box=10", "vertices=64", "max-time=30", "line-tension=0.5,1",
+                     "--output", SWEEP)
 
     def test_json_is_utf_8(self):
         for command in (["clogfit", SWEEP], ["clogfit", "compare", SWEEP, SWEEP], ["clogsweep", "status", SWEEP]):
@@ -75,7 +76,8 @@ class Names(Analysis):
                 self.refuse_analysis(name, "./-dash.h5", *more, "--programs", BIN, words=[words])
 
     def test_pictures_do_not_depend_on_settings_of_the_user(self):
-        (self.folder / "matplotlibrc").write_text("text.usetex: True\nbackend: GTK4Cairo\nfont.size: 30\naxes.grid: True\n")
+        (self.folder / "matplotlibrc").write_text("text.usetex: True\nbackend: GTK4Cairo\nfont.size: "
+                                                  "30\naxes.grid: True\n")
         command = [sys.executable, "-m", "clogsweep", "clogging-length", os.fsencode(SWEEP), "--programs", str(BIN), "--output"]
         around = {"cwd": self.folder, "capture_output": True, "text": True}
         usual = {**os.environ, "PYTHONPATH": str(ROOT / "analysis")}
@@ -83,7 +85,8 @@ class Names(Analysis):
         for name, foreign in (("usual", {}), ("inline", {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}), ("none", {"MPLBACKEND": "inline"}),
                               ("latex", {"MATPLOTLIBRC": str(self.folder / "matplotlibrc")})):
             folder = {"cwd": self.folder} if name == "latex" else {"cwd": ROOT}
-            done = subprocess.run([*command[:4], self.folder / SWEEP, *command[5:], self.folder / name], **{**around, **folder}, env={**usual, **foreign}, check=False)
+            done = subprocess.run([*command[:4], self.folder / SWEEP, *command[5:], self.folder / name],
+                                  **{**around, **folder}, env={**usual, **foreign}, check=False)
             self.assertEqual(done.returncode, 0, done.stderr)
             with Image.open(self.folder / f"{name}.png") as picture:
                 pictures.append(picture.tobytes())
@@ -113,7 +116,8 @@ class Words(Analysis):
 
     def setUp(self):
         super().setUp()
-        sweep = self.copy_sweep("s.h5", *QUICK, "line-tension=0.5,3", "seeds=1..4", "--until-precision=90%", "--most-seeds=4")
+        sweep = self.copy_sweep("s.h5", *QUICK, "line-tension=0.5,3", "seeds=1..4", "--until-precision=90%",
+                                "--most-seeds=4")
         stored_rows.change_columns(sweep, host=b"node\xff\x1b[31m")
         stored_rows.change_attribute(sweep, "stopping_rule", "until\x1b[31m red")
 
@@ -144,7 +148,8 @@ class Outputs(Analysis):
     def test_a_file_that_cannot_be_finished_leaves_the_earlier_one(self):
         path = self.folder / "page.html"
         path.write_text("earlier", encoding="utf-8")
-        with self.assertRaisesRegex(clogsweep.UserError, "cannot write .*page.html .No space left on device.; look at the folder"), outputs.replaced(path) as fresh:
+        with self.assertRaisesRegex(clogsweep.UserError, "cannot write .*page.html .No space left on device.; "
+                                                         "look at the folder"), outputs.replaced(path) as fresh:
             fresh.write_text("half", encoding="utf-8")
             raise OSError(28, "No space left on device")
         self.assertEqual(self.snapshot(), {"page.html": b"earlier"})
@@ -165,25 +170,29 @@ class Outputs(Analysis):
         page = self.folder / "s-report.html"
         page.write_text("<!DOCTYPE html> earlier", encoding="utf-8")
         with mock.patch("pathlib.Path.write_text", side_effect=OSError(28, "No space left on device")):
-            self.refuse_analysis("report", "s.h5", "--examples", 0, "--programs", BIN, words=["cannot write s-report.html (No space left on device)"])
+            self.refuse_analysis("report", "s.h5", "--examples", 0, "--programs", BIN,
+                                 words=["cannot write s-report.html (No space left on device)"])
         self.assertEqual(page.read_text(encoding="utf-8"), "<!DOCTYPE html> earlier")
 
     def test_every_output_takes_the_place_of_the_earlier_one(self):
         """A second name still leads to the earlier file with its old content. So the command did not write into this
         file."""
         self.copy_sweep("s.h5", *QUICK, "line-tension=0.5,3", "seeds=1..4")
-        self.copy_sweep("run.h5", "array", *QUICK, "line-tension=3", "seeds=1", "--polygon-interval=20", program="clogrun")
+        self.copy_sweep("run.h5", "array", *QUICK, "line-tension=3", "seeds=1", "--polygon-interval=20",
+                        program="clogrun")
         picture = Image.new("L", (600, 300), 255)
         for x in (100, 300, 500):
             ImageDraw.Draw(picture).ellipse((x - 40, 110, x + 40, 190), fill=0)
         picture.save(self.folder / "mask.png")
-        commands = [["report", "s.h5", "--examples", 0, "--programs", BIN], ["clogging-length", "s.h5", "--programs", BIN],
-                    ["export-vtk", "run.h5", "--output", "run"], ["droplet", "run.h5", "--output", "frames", "--pictures", "--size", "540p"],
+        commands = [["report", "s.h5", "--examples", 0, "--programs", BIN],
+                    ["clogging-length", "s.h5", "--programs", BIN], ["export-vtk", "run.h5", "--output", "run"],
+                    ["droplet", "run.h5", "--output", "frames", "--pictures", "--size", "540p"],
                     ["circles", "mask.png", "--pixel", "2um", "--droplet", "200um", "--output", "posts"]]
         inputs = set(self.folder.rglob("*"))
         for command in commands:
             self.draw(*command)
-        first = sorted(path for path in set(self.folder.rglob("*")) - inputs if path.is_file() and path.suffix != ".txt")
+        first = sorted(path for path in set(self.folder.rglob("*")) - inputs
+                       if path.is_file() and path.suffix != ".txt")
         self.assertLessEqual({".html", ".png", ".pdf", ".pvd", ".vtp", ".csv"}, {path.suffix for path in first})
         before = {path: path.stat().st_ino for path in first}
         for number, path in enumerate(first):

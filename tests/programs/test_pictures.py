@@ -42,22 +42,26 @@ class Calls(Analysis):
             with self.subTest(command=command):
                 self.refuse_analysis(command, "s.h5" if is_of_runs else "run.h5", "--output", "x", *self.needs(command),
                                      words=["cannot read", "output of clogrun" if is_of_runs else "clogsweep"])
-        self.refuse_analysis("clogs", "run.h5", *self.needs("clogs"), words=["run.h5 (holds one run of clogrun, not a sweep)"])
+        self.refuse_analysis("clogs", "run.h5", *self.needs("clogs"),
+                             words=["run.h5 (holds one run of clogrun, not a sweep)"])
 
     def test_a_file_that_is_not_there_is_called_so(self):
         for command in self.COMMANDS:
             with self.subTest(command=command):
-                self.refuse_analysis(command, "nope.h5", "--output", "x", *self.needs(command), words=["cannot read nope.h5 (no such file); check the name"])
+                self.refuse_analysis(command, "nope.h5", "--output", "x", *self.needs(command),
+                                     words=["cannot read nope.h5 (no such file); check the name"])
 
     def test_critical_angles_are_those_of_rigid_disks_and_drawn_from_the_table_too(self):
         # A rigid disk follows the rows up to the angle t with sin t = (sigma + sigma_ob)/(2 a) = 1/3 (Frechette and
         # Drazer 2009).
-        self.succeed("clogsweep", "obstacle-layout=lattice", "lattice=square,triangular", "pitch=3", "obstacle-diameter=1", "line-tension=1,3",
-                     "terminal-speed=0.1", "vertices=64", "box=200", "max-time=1000", "seeds=1", "lattice-angle=15,18.5,20.7,25", "--output", "s.h5")
+        self.succeed("clogsweep", "obstacle-layout=lattice", "lattice=square,triangular", "pitch=3",
+                     "obstacle-diameter=1", "line-tension=1,3", "terminal-speed=0.1", "vertices=64", "box=200",
+                     "max-time=1000", "seeds=1", "lattice-angle=15,18.5,20.7,25", "--output", "s.h5")
         printed = self.draw("critical-angle", "s.h5", "--format", "csv", "--programs", BIN).stdout
         lines = [line.split(",") for line in printed.splitlines()]
         self.assertEqual(lines[0], ["line_tension", "obstacle_filling", "lower", "upper", "runs"])
-        self.assertEqual([line[:2] for line in lines[1:]], [[tension, kind] for tension in "13" for kind in ("lattice", "triangular")])
+        self.assertEqual([line[:2] for line in lines[1:]],
+                         [[tension, kind] for tension in "13" for kind in ("lattice", "triangular")])
         for line in lines[1:]:
             self.assertTrue(18 < float(line[2]) < 19.47 < float(line[3]) < 21.1, line)
         self.write("angles.csv", "# by hand\n" + printed)
@@ -67,7 +71,8 @@ class Calls(Analysis):
         self.assertEqual(*(Image.open(self.folder / f"{name}.png").tobytes() for name in ("one", "two")))
         self.write("bounds.csv", "line_tension,lower,upper,runs\n1,20,,3\n2,21,,3\n")
         self.draw("critical-angle", "bounds.csv", "--programs", BIN)
-        for text in ("", "a,b\n1,2\n", "lower,upper,runs\nx,y,z\n", "lower,upper,runs,colour\n1,2,3,4\n", "\0\xff", "lower,upper,runs\n1,2,3\n"):
+        for text in ("", "a,b\n1,2\n", "lower,upper,runs\nx,y,z\n", "lower,upper,runs,colour\n1,2,3,4\n", "\0\xff",
+                     "lower,upper,runs\n1,2,3\n"):
             self.write("rubbish.csv", text)
             self.refuse_analysis("critical-angle", "rubbish.csv", "--programs", BIN, words=["cannot"])
 
@@ -82,21 +87,22 @@ class Calls(Analysis):
 
     def test_a_run_that_is_too_short_does_not_count_for_a_critical_angle(self):
         # After 30 t0 the droplet has moved by 3 diameters at most: straight on it would have crossed no row.
-        self.succeed("clogsweep", "obstacle-layout=lattice", "pitch=3", "obstacle-diameter=1", "terminal-speed=0.1", "vertices=64", "box=200",
-                     "max-time=30,1000", "seeds=1", "lattice-angle=15,25", "--output", "s.h5")
+        self.succeed("clogsweep", "obstacle-layout=lattice", "pitch=3", "obstacle-diameter=1", "terminal-speed=0.1",
+                     "vertices=64", "box=200", "max-time=30,1000", "seeds=1", "lattice-angle=15,25", "--output", "s.h5")
         printed = self.draw("critical-angle", "s.h5", "--format", "csv", "--programs", BIN).stdout
         self.assertEqual([line.split(",")[-1] for line in printed.splitlines()], ["runs", "0", "2"])
 
     def test_an_output_may_be_left_out_or_have_its_ending(self):
         self.copy_sweep("s.h5", *FEW)
-        for command, made, *options in [("clogging-length", "s-clogging-length.png"), ("clogs", "s-clogs.png", "--most", 1),
-                                        ("dwell", "s-dwell.png"), ("poster", "s-poster.png"),
-                                        ("report", "s-report.html", "--examples", 0)]:
+        for command, made, *options in [("clogging-length", "s-clogging-length.png"),
+                                        ("clogs", "s-clogs.png", "--most", 1), ("dwell", "s-dwell.png"),
+                                        ("poster", "s-poster.png"), ("report", "s-report.html", "--examples", 0)]:
             self.assertIn(made, self.draw(command, "s.h5", "--programs", BIN, *options).stdout)
             self.assertTrue((self.folder / made).exists())
         for name in ("cl.png", "cl.pdf", "cl0.2"):
             self.draw("clogging-length", "s.h5", "-o", name, "--programs", BIN)
-        self.assertEqual({path.name for path in self.folder.glob("cl*")}, {"cl.png", "cl.pdf", "cl0.2.png", "cl0.2.pdf"})
+        self.assertEqual({path.name for path in self.folder.glob("cl*")},
+                         {"cl.png", "cl.pdf", "cl0.2.png", "cl0.2.pdf"})
         self.refuse_analysis("clogging-length", "/dev/null", words=["no name", "--output"])
 
     def test_a_name_of_a_film_asks_for_one(self):
@@ -119,7 +125,8 @@ class Calls(Analysis):
             (["clogs", "s.h5", "--tasks", "1-3"], ["--tasks", "1-3", "try 3,17,40"]),
             (["clogs", "s.h5", "--tasks", "7,0"], ["tasks 7:", "no such clogged polygon"]),
             (["clogs", "s.h5", "--mechanism", "wrapped"], ["mechanism wrapped", "no such clogged polygon"]),
-            (["clogs", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks", "longer max-time into another file"]),
+            (["clogs",
+              "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks", "longer max-time into another file"]),
             (["droplet", "s.h5", "-o", "x", "--size", "7p"], ["--size", "7p", "1080p"]),
             (["droplet", "s.h5", "-o", "x", "--rate", "0"], ["--rate", "1 or more"]),
             (["figures", "2", "--ranks", "0"], ["--ranks", "1 or more"]),
@@ -152,7 +159,8 @@ class Looks(Analysis):
 
     def test_one_curve_has_its_whole_title_the_interface_and_room_at_the_frame(self):
         groups = self.fit(*ONE_CURVE)
-        for drawing in (style.figure_of(lengths.draw_on, groups), style.figure_of(lengths.draw_speeds_on, groups), style.figure_of(report.draw_survival, groups, "", groups.members)):
+        for drawing in (style.figure_of(lengths.draw_on, groups), style.figure_of(lengths.draw_speeds_on, groups),
+                        style.figure_of(report.draw_survival, groups, "", groups.members)):
             self.assert_title_is_whole(drawing)
             self.assertIn("2 runs per point", drawing.axes[0].get_title())
         # The stiffer droplets clog at once, so their speed is unknown.
@@ -167,7 +175,8 @@ class Looks(Analysis):
     def test_two_presets_in_one_picture_have_a_curve_each(self):
         # K_l is a given number in robust. In elastic it follows from the line tension.
         self.succeed("clogsweep", *SMALL, "line-tension=0.3,1", "seeds=1..2", "--output", "robust.h5")
-        self.succeed("clogsweep", *SMALL, "line-tension=0.3,1", "seeds=1..2", "preset=elastic", "friction=0.05", "--output", "elastic.h5")
+        self.succeed("clogsweep", *SMALL, "line-tension=0.3,1", "seeds=1..2", "preset=elastic", "friction=0.05",
+                     "--output", "elastic.h5")
         groups = Groups(json.loads(self.succeed("clogfit", "robust.h5", "elastic.h5", "--format", "json").stdout))
         self.assertEqual(groups.curve_parameters(), ["friction", "preset"])
 
@@ -175,7 +184,8 @@ class Looks(Analysis):
         self.succeed("clogsweep", *SMALL, "line-tension=0.03,0.3", "max-time=400", "seeds=1..8", "--output", "s.h5")
         times = dwell.times_of(self.fit_at())
         self.assertEqual(len(times), 12)
-        self.assertEqual((times[0], times[-1]), (stored.read_rows(self.folder / "s.h5")["dwells_known_from"].max(), 400))
+        self.assertEqual((times[0], times[-1]),
+                         (stored.read_rows(self.folder / "s.h5")["dwells_known_from"].max(), 400))
         fits = [self.fit_at("--dwell", repr(time)) for time in times]
         drawing = dwell.draw(times, fits)
         self.assert_title_is_whole(drawing)
@@ -207,7 +217,8 @@ class Looks(Analysis):
         self.refuse_analysis("dwell", "s.h5", "--programs", BIN, words=["from 16.67 t0 on", "make max-time longer"])
         dwells = [name for name in stored_rows.columns(self.folder / "s.h5") if "dwell" in name and name != "dwell_length"]
         stored_rows.change_columns(self.folder / "s.h5", **dict.fromkeys(dwells, np.nan))
-        self.refuse_analysis("dwell", "s.h5", "--programs", BIN, words=["did not look for them", "compute the sweep anew"])
+        self.refuse_analysis("dwell", "s.h5", "--programs", BIN,
+                             words=["did not look for them", "compute the sweep anew"])
 
     def test_many_curves_are_told_apart_beside_the_legend_and_off_the_frame(self):
         arrays = ["obstacle-gap=lin(0.2,0.35,4)", "obstacle-diameter=lin(0.3,0.45,4)"]
@@ -220,7 +231,8 @@ class Looks(Analysis):
                 axes, = drawing.axes
                 legend, frame = axes.get_legend().get_window_extent(), axes.get_window_extent()
                 self.assertLess(frame.x1, legend.x0)
-                self.assertTrue(legend.x1 < drawing.bbox.x1 and legend.y0 > drawing.bbox.y0 and legend.y1 <= frame.y1 + 1)
+                self.assertTrue(legend.x1 < drawing.bbox.x1 and legend.y0 > drawing.bbox.y0
+                                and legend.y1 <= frame.y1 + 1)
                 self.assertGreater(frame.width, 0.6 * 6.4 * drawing.dpi)
                 lines = [bars.lines[0] for bars in axes.containers]
                 self.assertEqual(len({(line.get_color(), str(line._dash_pattern)) for line in lines}), 16)
@@ -266,13 +278,15 @@ class Looks(Analysis):
         self.write("kinds.csv", "obstacle-layout,obstacle-gap,obstacle-density,box,max-time\nwall,,,,1000\nrandom,0.3,saturated,20,60\n")
         self.succeed("clogsweep", "--points", "kinds.csv", "line-tension=3", "vertices=64", "seeds=1", "--output", "s.h5")
         self.assertEqual(table(self.folder / "s.h5").status.tolist(), 2 * ["clogged"])
-        self.assertIn("left out: 1 clog in a channel or on a wall", self.draw("clogs", "s.h5", "--programs", BIN).stderr)
+        self.assertIn("left out: 1 clog in a channel or on a wall",
+                      self.draw("clogs", "s.h5", "--programs", BIN).stderr)
         self.assert_picture("s-clogs")
 
     def test_a_run_of_several_laboratories_is_drawn_once(self):
         self.write("lab.cfg", "diameter = 0.8 mm\nangle = 20 deg, 45 deg\nspeed = 1 mm/s\ntension = 2 mN/m\n")
-        self.succeed("clogsweep", "--lab", "lab.cfg", "line-tension=3", "terminal-speed=0.03", "obstacle-gap=0.3sigma", "obstacle-density=saturated", "box=20sigma", "vertices=64", "max-time=60",
-                     "seeds=1..2", "--output", "s.h5")
+        self.succeed("clogsweep", "--lab", "lab.cfg", "line-tension=3", "terminal-speed=0.03", "obstacle-gap=0.3sigma",
+                     "obstacle-density=saturated", "box=20sigma", "vertices=64", "max-time=60", "seeds=1..2",
+                     "--output", "s.h5")
         rows = clogs.of_polygons(stored.read_rows(self.folder / "s.h5", BIN), "s.h5")
         drawn = clogs.chosen(rows, "s.h5", mechanism=None, tasks=None, most=12)
         self.assertEqual((len(rows), len(drawn)), (4, 2))
@@ -287,7 +301,8 @@ class Looks(Analysis):
         self.assertNotIn("resume", done.stderr)
 
     def test_a_soft_disk_can_be_seen(self):
-        self.succeed("clogrun", "array", "model=sp", "wall-stiffness=1", "box=20", "max-time=30", "--polygon-interval", 10, "--output", "run.h5")
+        self.succeed("clogrun", "array", "model=sp", "wall-stiffness=1", "box=20", "max-time=30", "--polygon-interval",
+                     10, "--output", "run.h5")
         run = trajectory.read(self.folder / "run.h5")
         size = run.polygons.max(axis=2) - run.polygons.min(axis=2)
         np.testing.assert_allclose(size, 1, atol=1e-3)
@@ -309,17 +324,20 @@ class Looks(Analysis):
 
     def test_two_models_share_a_picture_over_what_both_have(self):
         self.write("models.csv", "model,wall-stiffness,obstacle-gap\nsp,2,0.3\nsp,4,0.4\ndp,,0.3\n")
-        self.succeed("clogsweep", "--points", "models.csv", "box=20", "boxes=2", "max-time=60", "seeds=1..2", "--output", "s.h5")
+        self.succeed("clogsweep", "--points", "models.csv", "box=20", "boxes=2", "max-time=60", "seeds=1..2",
+                     "--output", "s.h5")
         for command in ("clogging-length", "survival", "dwell", "report", "poster"):
             self.draw(command, "s.h5", "--programs", BIN)
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
         self.assertEqual([label.split(",")[0] for label, _ in groups.curves()], ["model dp", "model sp", "model sp"])
-        self.assertNotIn("no ", " ".join(label for label, _ in groups.curves()), "parameters that a model lacks are not named")
+        self.assertNotIn("no ", " ".join(label for label, _ in groups.curves()),
+                         "parameters that a model lacks are not named")
         self.assertIn("deformable polygon and soft disk", groups.caption())
 
     def test_only_the_density_of_a_saturated_array_is_called_saturated(self):
         self.write("arrays.csv", "obstacle-layout,lattice-angle,obstacle-gap\nlattice,0,0.5\nrandom,,0.4\n")
-        self.succeed("clogsweep", "--points", "arrays.csv", "vertices=32", "box=20", "max-time=30", "seeds=1..2", "--output", "s.h5")
+        self.succeed("clogsweep", "--points", "arrays.csv", "vertices=32", "box=20", "max-time=30", "seeds=1..2",
+                     "--output", "s.h5")
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
         self.assertEqual(groups.said("lattice_angle", None), "no lattice angle")
         self.assertIn("saturated", groups.said("obstacle_density", None))
@@ -337,7 +355,8 @@ class Looks(Analysis):
             self.assertNotIn(r"\Gamma_\mathrm{w}", caption)  # A film of water is the default.
 
     def test_a_passage_is_drawn_over_h_with_a_colour_bar_as_high_as_the_axes(self):
-        self.succeed("clogrun", "channel", "vertices=64", "orifice=0.8", "start=-1", "end=1", "--polygon-interval", 10, "--output", "run.h5")
+        self.succeed("clogrun", "channel", "vertices=64", "orifice=0.8", "start=-1", "end=1", "--polygon-interval", 10,
+                     "--output", "run.h5")
         drawing = way.draw(trajectory.read(self.folder / "run.h5"), 4)
         drawing.canvas.draw()
         axes, = drawing.axes
@@ -386,7 +405,8 @@ class Looks(Analysis):
 
     def test_examples_are_of_droplets_that_came_a_diameter_far_if_there_are_any(self):
         columns = [("task", int), ("distance", float), ("shape_parameter", float), ("mechanism", "S8")]
-        rows = np.array([(task, distance, 1 + task % 3, b"squeezed") for task, distance in enumerate([0.1, 3, 0.2, 2, 0.5, 9, 0.4, 1])], columns)
+        rows = np.array([(task, distance, 1 + task % 3, b"squeezed")
+                         for task, distance in enumerate([0.1, 3, 0.2, 2, 0.5, 9, 0.4, 1])], columns)
         self.assertEqual({row["task"] for row in report.examples(rows, 4)}, {1, 3, 5, 7})
         self.assertEqual({row["task"] for row in report.examples(rows, 2)} - {1, 3, 5, 7}, set())
         self.assertTrue({1, 3, 5, 7} < {row["task"] for row in report.examples(rows, 6)})
@@ -407,7 +427,8 @@ class Looks(Analysis):
         moving = film.Film(run, film.chosen_frames(run, 50), "speed", 20)
         moving.show(len(moving) - 1)
         end = f"r = {run.row['distance']:.2f} "
-        self.assertTrue(any(end in text.get_text() for text in moving.figure.texts), [text.get_text() for text in moving.figure.texts])
+        self.assertTrue(any(end in text.get_text() for text in moving.figure.texts),
+                        [text.get_text() for text in moving.figure.texts])
 
     def film_of(self, **options):
         self.copy_sweep("run.h5", "array", *QUICK, "--polygon-interval", 3, program="clogrun")
@@ -433,8 +454,8 @@ class Looks(Analysis):
             self.assertTrue(red > green > blue, "the droplet is orange")
             (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
             # This obstacle is in the middle of the picture, where nothing covers it.
-            inside = [(x, y) for x, y, _ in run.obstacles if left + 0.3 * (right - left) < x < left + 0.6 * (right - left)
-                      and low + 0.4 * (high - low) < y < high - 0.3 * (high - low)]
+            inside = [(x, y) for x, y, _ in run.obstacles if left + 0.3 * (right - left) < x < left
+                      + 0.6 * (right - left) and low + 0.4 * (high - low) < y < high - 0.3 * (high - low)]
             self.assertGreater(len(inside), 0)
             for place in inside:
                 np.testing.assert_array_equal(colour_at(index, place), 184)
@@ -450,7 +471,8 @@ class Looks(Analysis):
                     pixels = np.asarray(shown.convert("RGB")).astype(int)
                     drawn = moving.pixels(index)[..., :3].astype(int)
                     self.assertLess(np.abs(pixels - drawn).max(axis=2).mean(), 1)
-                    self.assertLess(np.percentile(np.abs(pixels - drawn).max(axis=2)[100:440, 885:894], 99), 12, "the colour bar")
+                    self.assertLess(np.percentile(np.abs(pixels - drawn).max(axis=2)[100:440, 885:894], 99), 12,
+                                    "the colour bar")
                     self.assertEqual(pixels[20, 480].tolist(), [255, 255, 255])
                     self.assertLess(pixels[-3:, 100:500].min(axis=0).mean(), 128, "the line of the frame below")
 
@@ -486,7 +508,8 @@ class Looks(Analysis):
         self.assertFalse(list(self.folder.glob("other*")))
 
     def test_posters_of_arrays_channels_and_walls(self):
-        for name, keys in [("arrays", [*ONE_CURVE, "relative-drag=0.5,1,2"]), ("channel", ["orifice=0.7", "vertices=64", "line-tension=0.5,5", "max-time=2000"]),
+        for name, keys in [("arrays", [*ONE_CURVE, "relative-drag=0.5,1,2"]),
+                           ("channel", ["orifice=0.7", "vertices=64", "line-tension=0.5,5", "max-time=2000"]),
                            ("wall", ["obstacle-layout=wall", "vertices=64", "line-tension=0.3,1"])]:
             with self.subTest(name):
                 self.succeed("clogsweep", *keys, "--output", f"{name}.h5")
@@ -496,7 +519,8 @@ class Looks(Analysis):
         texts = " ".join(text.get_text() for text in drawing.findobj(Text))
         for once in ("deformable polygon", "2 runs per point", "preset robust"):
             self.assertEqual(texts.count(once), 1, once)
-        for words in ("Clogging length vs line tension", "12 runs:", "begun 20", "\nclogsweep vertices=64", "share of the runs"):
+        for words in ("Clogging length vs line tension", "12 runs:", "begun 20", "\nclogsweep vertices=64",
+                      "share of the runs"):
             self.assertIn(words, texts)
 
     def test_many_curves_leave_room_for_themselves_on_a_poster(self):

@@ -51,7 +51,8 @@ class Points(PointsTest):
 
     def test_dry_run_status_and_config_know_of_them(self):
         arguments = [*QUICK, "--points", "p.csv"]
-        self.assertIn("# 14 tasks: 3 parameter sets, 1 to 10 seeds each", self.succeed("clogsweep", *arguments, "--dry-run").stdout)
+        self.assertIn("# 14 tasks: 3 parameter sets, 1 to 10 seeds each",
+                      self.succeed("clogsweep", *arguments, "--dry-run").stdout)
         config = self.write("again.cfg", self.succeed("clogsweep", *arguments, "--print-config").stdout)
         listed = self.succeed("clogsweep", "--config", config, "--dry-run").stdout.splitlines()
         own = self.succeed("clogsweep", *arguments, "--dry-run").stdout.splitlines()
@@ -70,7 +71,8 @@ class Points(PointsTest):
         self.assertEqual(len(rows), 14)
         common = rows.merge(before.drop(columns="task"), on=[name for name in before.columns if name != "task"])
         self.assertEqual(len(common), 2, "the old rows are there, bit for bit")
-        self.assertIn("there is nothing left to do", self.succeed("clogsweep", *QUICK, "--points", "p.csv", "--output", "s.h5").stderr)
+        self.assertIn("there is nothing left to do",
+                      self.succeed("clogsweep", *QUICK, "--points", "p.csv", "--output", "s.h5").stderr)
         self.sweep("s.h5", "line-tension=7", "obstacle-gap=0.4", "seeds=1")
         self.assertEqual(len(self.rows("s.h5")), 15)
 
@@ -79,7 +81,8 @@ class Points(PointsTest):
         self.assertEqual(list(rows.preset), ["robust", "elastic"] * 2)
         self.sweep("e.h5", "preset=elastic", "obstacle-gap=0.4", "seeds=1..2")
         own = self.rows("s.h5")
-        self.assertEqual(own[own.preset == "elastic"].drop(columns="task").to_csv(index=False), self.rows("e.h5").drop(columns="task").to_csv(index=False))
+        self.assertEqual(own[own.preset == "elastic"].drop(columns="task").to_csv(index=False),
+                         self.rows("e.h5").drop(columns="task").to_csv(index=False))
         self.succeed("clogsweep", "status", "s.h5")
         self.assertIn("there is nothing left to do",
                       self.succeed("clogsweep", *QUICK, "preset=robust,elastic", "obstacle-gap=0.4", "seeds=1..2", "--output", "s.h5").stderr)
@@ -88,7 +91,8 @@ class Points(PointsTest):
         self.write("many.csv", "line-tension,seeds\n" + "".join(f"{0.5 + i / 1e5:g},1\n" for i in range(5000)))
         self.write("one.csv", "line-tension,seeds\n0.5,1\n")
         self.sweep("s.h5", "--points", "one.csv", "obstacle-gap=0.4")
-        done = self.run_program("clogsweep", *QUICK, "--points", "many.csv", "obstacle-gap=0.4", "--max-hours", "1e-4", "--output", "s.h5")
+        done = self.run_program("clogsweep", *QUICK, "--points", "many.csv", "obstacle-gap=0.4", "--max-hours", "1e-4",
+                                "--output", "s.h5")
         self.assertEqual(done.returncode, 75, done.stderr)
         self.assertIn("of 5000 runs", self.succeed("clogsweep", "status", "s.h5").stdout)
         self.succeed("clogsweep", "verify", "s.h5")
@@ -96,23 +100,23 @@ class Points(PointsTest):
             self.assertIn("config.2", file.attrs)
 
     def test_mistakes_get_one_line_and_nothing_is_written(self):
-        for text, words in [
-                ("line-tension\n", ["holds no points"]),
-                ("", ["holds no points"]),
-                ("line-tension [g rho]\n1\n", ["p.csv line 1", "without units"]),
-                ("lime-tension\n1\n", ["p.csv line 1", "did you mean line-tension?"]),
-                ("line-tension,line-tension\n1,2\n", ["line-tension", "twice"]),
-                ("line-tension,obstacle-gap\n1\n", ["p.csv line 2", "1 cell", "2 keys"]),
-                ("line-tension;seeds\n1;2,0\n", ["p.csv line 2", "seeds: '2,0'", "decimal comma"]),
-                ("line-tension;max-time\n1;1,350\n2;2,050\n", ["p.csv", "'1,350'", "thousands"]),
-                ("line-tension;seeds\n0.5,0.7;1\n", ["p.csv line 2", "line-tension: '0.5,0.7' may be a list", "a line for each value"]),
-                ("line-tension\n1.234,5\n", ["p.csv line 2", "line-tension: '1.234,5'", "decimal comma"]),
-                ("line-tension,seeds\n\"0,5\",1\n", ["p.csv line 2", "line-tension: '0,5'", "decimal comma"]),
-                ("line-tension\n1\nx\n", ["p.csv line 3", "invalid line-tension=x"]),
-                ("line-tension\n1\n-1\n", ["point 2", "invalid line-tension=-1"]),
-                ("line-tension\n1\n1.0\n", ["point 1 and point 2", "the same run"]),
-                ("line-tension,seeds\n1,1..3\n1,3\n", ["point 1 and point 2", "seed 3"]),
-                ("obstacle-gap\n0.001\n", ["point 1", "obstacle-gap"])]:
+        for text, words in [("line-tension\n", ["holds no points"]), ("", ["holds no points"]),
+                            ("line-tension [g rho]\n1\n", ["p.csv line 1", "without units"]),
+                            ("lime-tension\n1\n", ["p.csv line 1", "did you mean line-tension?"]),
+                            ("line-tension,line-tension\n1,2\n", ["line-tension", "twice"]),
+                            ("line-tension,obstacle-gap\n1\n", ["p.csv line 2", "1 cell", "2 keys"]),
+                            ("line-tension;seeds\n1;2,0\n", ["p.csv line 2", "seeds: '2,0'", "decimal comma"]),
+                            ("line-tension;max-time\n1;1,350\n2;2,050\n", ["p.csv", "'1,350'", "thousands"]),
+                            ("line-tension;seeds\n0.5,0.7;1\n",
+                             ["p.csv line 2", "line-tension: '0.5,0.7' may be a list", "a line for each value"]),
+                            ("line-tension\n1.234,5\n", ["p.csv line 2", "line-tension: '1.234,5'", "decimal comma"]),
+                            ("line-tension,seeds\n\"0,5\",1\n",
+                             ["p.csv line 2", "line-tension: '0,5'", "decimal comma"]),
+                            ("line-tension\n1\nx\n", ["p.csv line 3", "invalid line-tension=x"]),
+                            ("line-tension\n1\n-1\n", ["point 2", "invalid line-tension=-1"]),
+                            ("line-tension\n1\n1.0\n", ["point 1 and point 2", "the same run"]),
+                            ("line-tension,seeds\n1,1..3\n1,3\n", ["point 1 and point 2", "seed 3"]),
+                            ("obstacle-gap\n0.001\n", ["point 1", "obstacle-gap"])]:
             self.write("p.csv", text)
             self.refuse("clogsweep", *QUICK, "--points", "p.csv", "--output", "s.h5", words=words)
         # Keys of some points, given for all of them
@@ -123,9 +127,11 @@ class Points(PointsTest):
                         words=[f"point 2: invalid {setting}", f"to give {key} for some points, make it a column of the points file"])
         self.write("p.csv", "obstacle-layout,orifice,seeds,box\nrandom,,1..3,20\nchannel,0.6,,\n")
         told = self.succeed("clogsweep", "vertices=64", "--points", "p.csv", "--dry-run", "--output", "s.h5").stdout
-        self.assertEqual([line.split()[1] for line in told.splitlines()[1:5]], ["density", "channel", "density", "density"])
+        self.assertEqual([line.split()[1] for line in told.splitlines()[1:5]],
+                         ["density", "channel", "density", "density"])
         self.write("p.csv", "model,vertices\ndp,32\nsp,\n")
-        self.refuse("clogsweep", "vertices=64", "wall-stiffness=5", "--points", "p.csv", "--output", "s.h5", words=["point 2: invalid vertices=64", "to give vertices for some points, leave it out elsewhere"])
+        self.refuse("clogsweep", "vertices=64", "wall-stiffness=5", "--points", "p.csv", "--output", "s.h5",
+                    words=["point 2: invalid vertices=64", "to give vertices for some points, leave it out elsewhere"])
         self.write("p.csv", "obstacle-layout,orifice,box\nrandom,,20\nchannel,0.6,20\n")
         done = self.run_program("clogsweep", "--points", "p.csv", "--output", "s.h5")
         self.assertNotIn("make it a column", done.stderr)
@@ -133,33 +139,40 @@ class Points(PointsTest):
         for setting in ("lattice-angle=5", "lattice=triangular"):
             key = setting.split("=")[0]
             self.refuse("clogsweep", "vertices=64", setting, "--points", "p.csv", "--output", "s.h5",
-                        words=[f"point 2: invalid {setting} (a random array has no rows) to give {key} for some points, make it a column of the points file"])
+                        words=[f"point 2: invalid {setting} (a random array has no rows) to give {key} for some "
+                               "points, make it a column of the points file"])
         self.refuse("clogsweep", "vertices=64", "pitch=0.7", "--points", "p.csv", "--output", "s.h5",
-                    words=["point 2: invalid pitch=0.7", "to give pitch for some points, leave it out elsewhere and write it in their cells"])
+                    words=["point 2: invalid pitch=0.7", "to give pitch for some points, "
+                                                         "leave it out elsewhere and write it in their cells"])
         self.write("p.csv", "pitch,friction\n0.6,0\n,0\n")
         self.refuse("clogsweep", "vertices=64", "obstacle-layout=lattice", "obstacle-gap=0.3", "--points", "p.csv", "--output", "s.h5",
                     words=["point 1: invalid pitch=0.6 (obstacle-gap=0.3 is given as well)", "to give obstacle-gap for some points, make it a column"])
         self.write("p.csv", "line-tension\n1\n")
-        self.refuse("clogsweep", *QUICK, "--points", "p.csv", "line-tension=2", "--output", "s.h5", words=["p.csv", "line-tension"])
+        self.refuse("clogsweep", *QUICK, "--points", "p.csv", "line-tension=2", "--output", "s.h5",
+                    words=["p.csv", "line-tension"])
         self.refuse("clogsweep", *QUICK, "--points", "none.csv", "--output", "s.h5", words=["none.csv"])
         self.write("p.csv", "line-tension,seeds\n1,1..3\n2,1\n")
-        self.refuse("clogsweep", *QUICK, "--points", "p.csv", "--until-precision", "50%", "--output", "s.h5", words=["--until-precision"])
+        self.refuse("clogsweep", *QUICK, "--points", "p.csv", "--until-precision", "50%", "--output", "s.h5",
+                    words=["--until-precision"])
         for shard in ("6/5", "0/5", "2", "x"):
             self.refuse("clogsweep", *QUICK, "--shard", shard, "--output", "s.h5", words=[f"--shard={shard}", "2/5"])
         self.refuse("clogsweep", *QUICK, "--shard", "3/5", "seeds=1", "--output", "s.h5", words=["3/5", "is empty"])
 
     def test_points_without_chance_have_one_run(self):
         self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.7\nwall,\n")
-        told = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv", "--dry-run").stdout
+        told = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv",
+                            "--dry-run").stdout
         self.assertIn("# 14 tasks: 3 parameter sets, 1 to 12 seeds each", told)
-        told = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "obstacle-layout=channel,wall", "--dry-run").stdout
+        told = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12,
+                            "obstacle-layout=channel,wall", "--dry-run").stdout
         self.assertIn("# 2 tasks: 2 parameter sets", told)
         self.write("c.csv", "x,y\n5,5\n")
         self.write("p.csv", "obstacles,release\nc.csv,centre\nc.csv,anywhere\n")
-        told = self.succeed("clogsweep", "vertices=64", "box=10", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv", "--dry-run").stdout
+        told = self.succeed("clogsweep", "vertices=64", "box=10", "max-time=1", "--seeds-per-set", 12, "--points",
+                            "p.csv", "--dry-run").stdout
         self.assertIn("# 13 tasks: 2 parameter sets, 1 to 12 seeds each", told)
-        self.refuse("clogsweep", "vertices=64", "box=10", "--until-precision", "20%", "--points", "p.csv", "--output", "s.h5",
-                    words=["no place for --until-precision (nothing is random with release=centre"])
+        self.refuse("clogsweep", "vertices=64", "box=10", "--until-precision", "20%", "--points", "p.csv", "--output",
+                    "s.h5", words=["no place for --until-precision (nothing is random with release=centre"])
         self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.7\n")
         self.refuse("clogsweep", "vertices=64", "--until-precision", "20%", "--points", "p.csv", "--output", "s.h5",
                     words=["no place for --until-precision (nothing is random with obstacle-layout=channel", "apart"])
@@ -202,9 +215,11 @@ class Merged(PointsTest):
         self.merge("a.h5", "b.h5")
         self.assertIn("6 rows of 6 runs, all undamaged", self.succeed("clogsweep", "verify", "all.h5").stdout)
         own, a = self.rows("all.h5"), self.rows("a.h5")
-        self.assertEqual(own[own.preset == "elastic"].drop(columns="task").to_csv(index=False), a.drop(columns="task").to_csv(index=False))
+        self.assertEqual(own[own.preset == "elastic"].drop(columns="task").to_csv(index=False),
+                         a.drop(columns="task").to_csv(index=False))
         config = self.write("c.cfg", self.attribute("all.h5", "config"))
-        self.assertIn("there is nothing left to do", self.succeed("clogsweep", "--config", config, "--output", "all.h5").stderr)
+        self.assertIn("there is nothing left to do",
+                      self.succeed("clogsweep", "--config", config, "--output", "all.h5").stderr)
         self.merge("all.h5", "a.h5", output="again.h5")
         self.check_same_rows("again.h5", "all.h5")
 
@@ -216,7 +231,8 @@ class Merged(PointsTest):
             rows["distance"][2] *= 0.9
 
         stored_rows.change(self.folder / "b.h5", change)
-        self.refuse("clogsweep", "merge", "a.h5", "b.h5", "--output", "all.h5", words=["a.h5", "b.h5", "task 18", "task 2 ", "distance"])
+        self.refuse("clogsweep", "merge", "a.h5", "b.h5", "--output", "all.h5",
+                    words=["a.h5", "b.h5", "task 18", "task 2 ", "distance"])
         self.refuse("clogfit", "a.h5", "b.h5", words=["task 18", "task 2 "])
 
     def test_runs_that_differ_by_instruction_set_are_counted_once(self):
@@ -230,13 +246,15 @@ class Merged(PointsTest):
 
             stored_rows.change(self.folder / name, change)
         said = self.merge("a.h5", "b.h5", "c.h5")
-        self.assertIn("24 rows of 3 files, 8 runs in more than one of them (1 with results that differ by instruction set", said)
+        self.assertIn("24 rows of 3 files, 8 runs in more than one of them "
+                      "(1 with results that differ by instruction set", said)
         self.assertEqual(self.rows("all.h5")["instruction_set"].nunique(), 1)
 
     def test_a_merge_names_numerical_keys_that_keep_parameter_sets_apart(self):
         for name, tension, vertices, seed in [("a", 1, 64, 1), ("b", 1, 80, 1), ("c", 3, 80, 1), ("d", 1, 64, 3)]:
             self.succeed("clogsweep", *SMALL[1:], "max-time=1", f"line-tension={tension}", f"vertices={vertices}", f"seeds={seed}", "--output", f"{name}.h5")
-        for other, said in [("b", "clogsweep merge: no parameter set is in two of the files, because they differ in vertices; clogfit does not join their runs\n"),
+        for other, said in [("b", "clogsweep merge: no parameter set is in two of the files, "
+                                  "because they differ in vertices; clogfit does not join their runs\n"),
                             ("c", ""), ("d", "")]:
             self.assertEqual(self.succeed("clogsweep", "merge", "a.h5", f"{other}.h5", "--output", f"a{other}.h5").stderr, said)
 
@@ -270,7 +288,8 @@ class Selected(PointsTest):
     def test_rows_by_conditions_on_columns(self):
         self.sweep("s.h5", "line-tension=0.5,1,2", "obstacle-gap=0.4,0.5", "seeds=1..3")
         self.sweep("some.h5", "line-tension=1,2", "obstacle-gap=0.5", "seeds=1..2")
-        done = self.succeed("clogsweep", "select", "s.h5", "line_tension>0.5", "obstacle_gap=0.5,0.7", "--where", "seed<=2", "--output", "out.h5")
+        done = self.succeed("clogsweep", "select", "s.h5", "line_tension>0.5", "obstacle_gap=0.5,0.7", "--where",
+                            "seed<=2", "--output", "out.h5")
         self.assertEqual(done.stdout, "out.h5: 4 rows\n")
         self.check_same_rows("out.h5", "some.h5")
         part, = map(json.loads, self.attribute("out.h5", "parts").splitlines())
@@ -282,8 +301,9 @@ class Selected(PointsTest):
 
     def test_mistakes_get_one_line_and_nothing_is_written(self):
         self.sweep("s.h5", "seeds=1..2", "obstacle-gap=0.4")
-        for condition, words in [("line-tension>1", ["did you mean line_tension?"]), ("status>clogged", ["is a word"]), ("seed", ["give one like"]),
-                                 ("seed=x", ["'x'"]), ("seed>1,2", ["a list"]), ("seed>7", ["no row"])]:
+        for condition, words in [("line-tension>1", ["did you mean line_tension?"]), ("status>clogged", ["is a word"]),
+                                 ("seed", ["give one like"]), ("seed=x", ["'x'"]), ("seed>1,2", ["a list"]),
+                                 ("seed>7", ["no row"])]:
             self.refuse("clogsweep", "select", "s.h5", condition, "--output", "o.h5", words=words)
         self.refuse("clogsweep", "select", "s.h5", "--output", "o.h5", words=["missing condition"])
         self.refuse("clogsweep", "select", "s.h5", "seed=1", words=["missing --output"])

@@ -106,8 +106,10 @@ class Precision(ProgramTest):
         self.assertEqual(first, "# this is the first round: +-20 % needs 100 clogs per parameter set")
         bound = float(re.search("at most ([^ ]+) core-hours", bound)[1])
         expected = float(re.search("expected ([^ ]+) core-hours", expected)[1])
-        found = re.fullmatch(r"# all rounds: 100 seeds each if every run clogs, expected (\S+) core-hours \(95 %: (\S+) to (\S+)\); "
-                             r"400 seeds each \(--most-seeds\) if few do, expected (\S+) core-hours \(95 %: (\S+) to (\S+)\), at most (\S+)", rounds)
+        found = re.fullmatch(r"# all rounds: 100 seeds each if every run clogs, expected (\S+) core-hours \(95 %: "
+                             r"(\S+) to (\S+)\); "
+                             r"400 seeds each \(--most-seeds\) if few do, expected (\S+) core-hours \(95 %: "
+                             r"(\S+) to (\S+)\), at most (\S+)", rounds)
         fewest, *of_fewest, most, low, high, longest = map(float, found.groups())
         self.assertLessEqual(low, most)
         self.assertLessEqual(most, high)
@@ -116,7 +118,8 @@ class Precision(ProgramTest):
         self.assertAlmostEqual(fewest / expected / 25, 1, delta=0.11)  # The printed number has two significant digits.
         self.assertAlmostEqual(most / expected / 100, 1, delta=0.11)
         self.assertAlmostEqual(longest / bound / 100, 1, delta=0.02)
-        self.assertIn("# --most-seeds=30 ends it before that; give 100 or more", told("--until-precision=20%", "--most-seeds=30"))
+        self.assertIn("# --most-seeds=30 ends it before that; give 100 or more",
+                      told("--until-precision=20%", "--most-seeds=30"))
 
     def test_a_dry_run_after_the_first_round_does_not_call_the_sweep_done(self):
         self.succeed("clogsweep", *SWEEP[:-2], "--output", "s.h5")

@@ -46,7 +46,8 @@ class Geometry(unittest.TestCase):
             def ends(arrays, tension, edge=edge):
                 return {tension: [b"wrapped" if offset <= edge else b"" for (_, offset, _), in arrays]}
             with mock.patch.object(droplets, "ends", ends):
-                self.assertAlmostEqual(droplets.half_width(0.3, 0.1), edge, delta=max(prediction.OFFSET_PRECISION, edge / 36))
+                self.assertAlmostEqual(droplets.half_width(0.3, 0.1), edge,
+                                       delta=max(prediction.OFFSET_PRECISION, edge / 36))
 
     def test_lengths_that_may_be_wrong_are_doubted(self):
         self.assertEqual(prediction.doubts_of(1.09, 25), [])
@@ -73,7 +74,8 @@ class Predicted(Analysis):
         files = [f"{index}.csv" for index in range(len(offsets))]
         for file, offset in zip(files, offsets):
             self.pair(file, 15, offset)
-        self.succeed("clogsweep", "obstacles=" + ",".join(files), "box=20", "line-tension=3", "vertices=64", "max-time=400", "--output", "s.h5")
+        self.succeed("clogsweep", "obstacles=" + ",".join(files), "box=20", "line-tension=3", "vertices=64",
+                     "max-time=400", "--output", "s.h5")
         with stored.opened(self.folder / "s.h5") as file:
             names = stored.circle_files(file)
         ends = {names[row.obstacles]: row.status for row in table(self.folder / "s.h5").itertuples()}
@@ -89,16 +91,19 @@ class Predicted(Analysis):
     def test_a_laboratory_gives_the_droplet_and_units(self):
         # Gamma = 0.3 gamma/(g sin(angle) difference sigma^2) = 3, with 9.81 m/s^2 and a difference of 100 kg/m^3.
         tension = 3 / 0.3 * 9.81 * 0.5 * 100 * 0.002**2
-        self.write("lab.cfg", f"diameter = 2 mm\nangle = 30 deg\ntension = {tension} N/m\ndensity-difference = 0.1 g/ml\n")
+        self.write("lab.cfg",
+                   f"diameter = 2 mm\nangle = 30 deg\ntension = {tension} N/m\ndensity-difference = 0.1 g/ml\n")
         self.write("pair.csv", "# units=mm droplet=2mm\nx,y,diameter\n26,19.2,0.6\n26,20.8,0.6\n")
-        head, line = self.draw("predict", "--programs", BIN, "vertices=64", "--lab", "lab.cfg", "obstacles=pair.csv", "box=40mm").stdout.splitlines()
+        head, line = self.draw("predict", "--programs", BIN, "vertices=64", "--lab", "lab.cfg", "obstacles=pair.csv",
+                               "box=40mm").stdout.splitlines()
         self.assertEqual(head, "line_tension,clogging_length,squeezed,wrapped,doubts,clogging_length_mm")
         tension, length, *_, in_mm = line.split(",")
         # A pair across the flow catches on its whole width: 20 sigma times 20 sigma divided by 0.8 sigma.
         self.assertEqual((tension, in_mm), ("3", "1000"))
         self.assertAlmostEqual(float(length), 20 * 20 / 0.8, delta=0.1)
         self.write("two.cfg", "diameter = 2 mm, 3 mm\nangle = 30 deg\n")
-        self.refuse_analysis("predict", "--programs", BIN, "--lab", "two.cfg", "obstacles=pair.csv", "box=40mm", words=["two.cfg", "2 droplets", "give one diameter"])
+        self.refuse_analysis("predict", "--programs", BIN, "--lab", "two.cfg", "obstacles=pair.csv", "box=40mm",
+                             words=["two.cfg", "2 droplets", "give one diameter"])
 
     def test_the_curve_is_drawn_beside_the_lengths_of_a_sweep(self):
         self.pair("pair.csv", 0)
@@ -117,7 +122,8 @@ class Predicted(Analysis):
         files = [f"{sign}.csv" for sign in (-1, 1)]
         for sign, file in zip((-1, 1), files):
             self.write(file, f"x,y,diameter\n47,{10 - half_width * (1 + 0.05 * sign)},0.3\n")
-        self.succeed("clogsweep", "obstacles=" + ",".join(files), "box=20", "boxes=4", *soft, "max-time=2000", "--output", "p.h5")
+        self.succeed("clogsweep", "obstacles=" + ",".join(files), "box=20", "boxes=4", *soft, "max-time=2000",
+                     "--output", "p.h5")
         rows = table(self.folder / "p.h5")
         self.assertEqual(sorted(rows.status), ["clogged", "flowing"])
 
@@ -140,11 +146,13 @@ class Predicted(Analysis):
 
     def test_what_it_cannot_use_is_refused(self):
         self.write("two.csv", "x,y,diameter\n5,5,0.3\n5,5.8,0.3\n")
-        for words, said in [(["seeds=1..5"], "seeds"), (["obstacle-gap=0.2,0.3"], "one value"), (["release=anywhere"], "release"), (["--with", "s.h5"], "--output"),
+        for words, said in [(["seeds=1..5"], "seeds"), (["obstacle-gap=0.2,0.3"], "one value"),
+                            (["release=anywhere"], "release"), (["--with", "s.h5"], "--output"),
                             (["terminal-speed=x"], "terminal-speed"), (["frobnicate=1", "obstacles=two.csv"], "")]:
             self.refuse_analysis("predict", "--programs", BIN, *words, words=[said])
         self.write("lab.cfg", "diameter = 1.2 mm\nangle = 30 deg\ntension = 2 mN/m\nspeed = 1 mm/s\n")
-        self.refuse_analysis("predict", "--programs", BIN, "--lab", "lab.cfg", "line-tension=20mN/m", words=["line-tension=20mN/m", "write it into lab.cfg as the tension"])
+        self.refuse_analysis("predict", "--programs", BIN, "--lab", "lab.cfg", "line-tension=20mN/m",
+                             words=["line-tension=20mN/m", "write it into lab.cfg as the tension"])
         self.assertEqual(sorted(path.name for path in pathlib.Path(self.folder).glob("*.h5")), [])
 
 

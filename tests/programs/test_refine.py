@@ -51,7 +51,8 @@ def settings_for(name):
     words = ["vertices=64", "max-time=1", "box=60"]
     if scope == "file":
         return [*words, "obstacles=posts.csv", *(["release=entrance"] if name.startswith("entrance") else [])]
-    elastic = ["preset=elastic"] if name in ("perimeter-stiffness-ratio", "perimeter-stiffness", "friction", "yield-traction") else []
+    elastic = ["preset=elastic"] if name in ("perimeter-stiffness-ratio", "perimeter-stiffness", "friction",
+                                             "yield-traction") else []
     if name == "advancing-angle":
         words.append("wall-tension=0.5")  # Young's angle is then 120 degrees.
     if name == "pitch":
@@ -90,7 +91,8 @@ class EveryKey(ProgramTest):
 
     def rows(self, tasks, copies):
         """Rows of the tasks. Columns in which the tasks do not differ contain zeros and empty texts."""
-        rows = pandas.DataFrame(0.0, index=range(copies * len(tasks)), columns=[column["name"] for column in SCHEMA["columns"]])
+        rows = pandas.DataFrame(0.0, index=range(copies * len(tasks)),
+                                columns=[column["name"] for column in SCHEMA["columns"]])
         for column in SCHEMA["columns"]:
             if column["kind"] in ("word", "text"):
                 rows[column["name"]] = ""
@@ -106,7 +108,8 @@ class EveryKey(ProgramTest):
         others = []
         for column in SCHEMA["columns"]:
             name = column["name"]
-            if column.get("parameter_role") not in ("physics", "numerics") or name in {NUMBERS[key]["column"] for key in keys}:
+            is_swept = name in {NUMBERS[key]["column"] for key in keys}
+            if column.get("parameter_role") not in ("physics", "numerics") or is_swept:
                 continue
             other = rows.iloc[-1:].copy()  # a row of another sweep that differs only in this column
             other[name] = "other" if rows[name].dtype == object else other[name].fillna(0) * 1.01 + 7
@@ -138,7 +141,8 @@ class EveryKey(ProgramTest):
                     self.check_peak(name, settings_for(name), values)
                     self.check_membership([name], settings_for(name), combinations([values]))
                     if name != "line-tension":
-                        self.check_membership([name, "line-tension"], settings_for(name), combinations([values, [0.5, 2.0]]))
+                        self.check_membership([name, "line-tension"], settings_for(name),
+                                              combinations([values, [0.5, 2.0]]))
                 except UserError as error:
                     self.assertNotIn("\n", str(error).strip())
                     refused[name] = str(error)
@@ -169,7 +173,8 @@ class Values(unittest.TestCase):
         self.assertEqual(choice.spread(values, 7), [0.3, 0.442, 0.649, 0.953, 1.4, 2.05, 3])
 
     def test_lists_are_read_as_clogsweep_reads_them(self):
-        self.assertEqual(lists.numbers("0.2, 1..3,1..8:3,log(1,100,3),lin(0,1,3)"), [0.2, 1, 2, 3, 1, 4, 7, 1, 10, 100, 0, 0.5, 1])
+        self.assertEqual(lists.numbers("0.2, 1..3,1..8:3,log(1,100,3),lin(0,1,3)"),
+                         [0.2, 1, 2, 3, 1, 4, 7, 1, 10, 100, 0, 0.5, 1])
         self.assertTrue(math.isnan(lists.numbers("20%")[0]))
 
 
@@ -182,8 +187,10 @@ class Choice(unittest.TestCase):
         place = np.arange(self.NUMBER) - 20
         covariance = 0.25 * np.exp(-0.5 * ((place[:, None] - place) / 3) ** 2)
         curve = Curve(4 - 4 * (place / 10) ** 2 / (1 + (place / 10) ** 2), covariance, 0.0)
-        return choice.choose_blocks(curve, np.broadcast_to(4.0 * clogs, self.NUMBER), np.broadcast_to(4.0 * work, self.NUMBER),
-                                    goals.weights(curve, Goal(kind, 0.1, math.exp(2))), np.full(self.NUMBER, most), work_of_round, most_work)
+        return choice.choose_blocks(curve, np.broadcast_to(4.0 * clogs, self.NUMBER),
+                                    np.broadcast_to(4.0 * work, self.NUMBER),
+                                    goals.weights(curve, Goal(kind, 0.1, math.exp(2))), np.full(self.NUMBER, most),
+                                    work_of_round, most_work)
 
     def test_blocks_are_spread_where_all_is_alike(self):
         blocks = self.blocks("curve")
@@ -212,7 +219,8 @@ class RefineTest(ProgramTest):
         return [sys.executable, "-m", "clogsweep", "refine", key, *arguments, *(["--", *launcher] if launcher else [])]
 
     def run_refine(self, key, *arguments, **options):
-        return subprocess.run(self.command(key, *arguments, **options), cwd=self.folder, capture_output=True, text=True, timeout=LONGEST, env=ENVIRONMENT)
+        return subprocess.run(self.command(key, *arguments, **options), cwd=self.folder, capture_output=True, text=True,
+                              timeout=LONGEST, env=ENVIRONMENT)
 
     def refine(self, key, *arguments, **options):
         done = self.run_refine(key, *arguments, **options)
@@ -243,23 +251,24 @@ class Refine(RefineTest):
         again = self.refine("line-tension", *SWEEP, GOAL, "--most-seeds=12", "--output", "s.h5", launcher=())
         self.assertEqual(again.stderr.strip().splitlines()[-1], last)
         self.assertEqual((len(table(self.folder / "s.h5")), self.points()), (len(rows), points))
-        by_hand = self.succeed("clogsweep", "--config", *(path.name for path in self.folder.glob("*.cfg")), "--output", "h.h5",
-                               "--points", *(path.name for path in self.folder.glob("*.csv")))
+        by_hand = self.succeed("clogsweep", "--config", *(path.name for path in self.folder.glob("*.cfg")), "--output",
+                               "h.h5", "--points", *(path.name for path in self.folder.glob("*.csv")))
         self.assertIn(f"{len(rows)}/{len(rows)} done", by_hand.stderr)
         self.check_equal("h.h5", "s.h5")
 
     def test_kills_and_stops_change_neither_points_nor_rows(self):
         self.refine("line-tension", *SWEEP, GOAL, "--output", "whole.h5")
         stopped, hours = 0, 0.0002
-        while (done := self.run_refine("line-tension", *SWEEP, GOAL, "--output", "s.h5", f"--max-hours={hours}")).returncode == 75:
+        while (done := self.run_refine("line-tension", *SWEEP, GOAL, "--output", "s.h5",
+                                       f"--max-hours={hours}")).returncode == 75:
             stopped += 1
             hours *= 1.1  # On a busy machine a session may make no progress.
             self.assertLess(stopped, 200)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertGreater(stopped, 0)
         for seconds in (1.5, 2, 3, 4):  # After this time SIGKILL is sent to all processes.
-            with subprocess.Popen(self.command("line-tension", *SWEEP, GOAL, "--output", "killed.h5"), cwd=self.folder, env=ENVIRONMENT,
-                                  stderr=subprocess.DEVNULL, start_new_session=True) as process:
+            with subprocess.Popen(self.command("line-tension", *SWEEP, GOAL, "--output", "killed.h5"), cwd=self.folder,
+                                  env=ENVIRONMENT, stderr=subprocess.DEVNULL, start_new_session=True) as process:
                 time.sleep(seconds)
                 family = descendants(process.pid)
                 for pid in [process.pid, *family]:
@@ -275,18 +284,21 @@ class Refine(RefineTest):
         (path,) = self.folder.glob("s.h5.refine-*.csv")
         path.write_text(path.read_text() + "1.5,1001..1003\n")  # The points are stored, but their round has not begun.
         self.refine("line-tension", *SWEEP, "--until=curve=95%", "--output", "s.h5")
-        self.assertEqual(sorted(table(self.folder / "s.h5").query("line_tension == 1.5 and seed > 1000").seed), [1001, 1002, 1003])
+        self.assertEqual(sorted(table(self.folder / "s.h5").query("line_tension == 1.5 and seed > 1000").seed),
+                         [1001, 1002, 1003])
 
     def test_a_sweep_that_is_there_informs_it(self):
         self.succeed("clogsweep", *QUICK, "obstacle-gap=0.3", "line-tension=0.5,0.9,1.7", "seeds=1..10", "--output", "s.h5")
         first = self.refine("line-tension", *SWEEP, "--budget=0.0000001h", "--output", "s.h5").stderr.splitlines()[-1]
-        alone = self.refine("line-tension", *SWEEP, "--budget=0.0000001h", "--output", "alone.h5").stderr.splitlines()[-1]
+        alone = self.refine("line-tension", *SWEEP, "--budget=0.0000001h", "--output",
+                            "alone.h5").stderr.splitlines()[-1]
         self.assertEqual(len(table(self.folder / "s.h5")), 30 + 7 * 3)
         self.assertLess(*(float(re.search(r"within (\S+) %", words)[1]) for words in (first, alone)))
 
     def test_two_keys_make_a_surface(self):
-        done = self.refine("line-tension,obstacle-density", *QUICK[:2], "max-time=60", "obstacle-gap=0.3", "seeds=1..3", "line-tension=0.5,2",
-                           "obstacle-density=0.5,0.8", "--until=curve=90%", "--most-seeds=30", "--output", "s.h5")
+        done = self.refine("line-tension,obstacle-density", *QUICK[:2], "max-time=60", "obstacle-gap=0.3", "seeds=1..3",
+                           "line-tension=0.5,2", "obstacle-density=0.5,0.8", "--until=curve=90%", "--most-seeds=30",
+                           "--output", "s.h5")
         rows = table(self.folder / "s.h5")
         self.assertGreaterEqual(len(rows.groupby(["line_tension", "obstacle_density"])), 16)
         self.assertTrue(rows.obstacle_density.between(0.5, 0.8).all())
@@ -301,28 +313,33 @@ class Refine(RefineTest):
             self.assertEqual(sorted(of_value.seed), [1, 2, 3])
 
     def test_the_peak_over_a_gap_is_found_in_a_saturated_array(self):
-        done = self.refine("obstacle-gap", "box=20", "boxes=2", "vertices=64", "max-time=200", "seeds=1..4", "obstacle-density=saturated",
-                           "obstacle-gap=0.3,0.5", "--until=peak=50%", "--most-seeds=40", "--output", "s.h5")
+        done = self.refine("obstacle-gap", "box=20", "boxes=2", "vertices=64", "max-time=200", "seeds=1..4",
+                           "obstacle-density=saturated", "obstacle-gap=0.3,0.5", "--until=peak=50%", "--most-seeds=40",
+                           "--output", "s.h5")
         self.assertRegex(done.stderr, r"peak=50% is reached; .*highest at obstacle-gap 0\.[45]")
 
     def test_a_search_over_a_gap_says_what_else_changes_and_which_runs_did_not_clog(self):
         words = ["box=20", "vertices=64", "max-time=60", "seeds=1..2", "obstacle-gap=0.3,1"]
         note = "obstacle-density=saturated changes the number of obstacles per area with obstacle-gap"
-        done = self.refine("obstacle-gap", *words, "obstacle-density=saturated", "--until=crossing=20:60%", "--most-seeds=2", "--output", "s.h5", launcher=())
+        done = self.refine("obstacle-gap", *words, "obstacle-density=saturated", "--until=crossing=20:60%",
+                           "--most-seeds=2", "--output", "s.h5", launcher=())
         self.assertIn(note, done.stderr)
         rows = table(self.folder / "s.h5")
         without = rows.groupby("obstacle_gap").filter(lambda of_gap: not (of_gap.status == "clogged").any())
         self.assertGreater(len(without), 0)
         share = (without.steps * without.vertices).sum() / (rows.steps * rows.vertices).sum()
         named = ", ".join(f"obstacle-gap={gap:g}" for gap in sorted(set(without.obstacle_gap)))
-        self.assertIn(f"{len(without)} runs ({100 * share:.0f} % of the computing time) did not clog, at {named}: they only show", done.stderr)
+        self.assertIn(f"{len(without)} runs ({100 * share:.0f} % of the computing time) did not clog, at {named}: "
+                      "they only show", done.stderr)
         self.assertIn("obstacle-density=12.5% changes", self.refine("obstacle-gap", *words, "--budget=1h", "--dry-run", launcher=()).stderr)
         for more in (["obstacle-density=0.2"], ["obstacle-density=saturated", "--quiet"]):
-            self.assertNotIn("changes the number", self.refine("obstacle-gap", *words, *more, "--budget=1h", "--dry-run", launcher=()).stderr)
+            self.assertNotIn("changes the number",
+                             self.refine("obstacle-gap", *words, *more, "--budget=1h", "--dry-run", launcher=()).stderr)
 
     def test_a_dry_run_tells_what_the_rounds_may_cost(self):
         told = self.refine("line-tension", *SWEEP, "--until=curve=20%", "--dry-run", launcher=()).stdout
-        for words in ("21 tasks: 7 parameter sets, 3 seeds each", "this is the first round", "core-hours in all if every run clogs"):
+        for words in ("21 tasks: 7 parameter sets, 3 seeds each", "this is the first round",
+                      "core-hours in all if every run clogs"):
             self.assertIn(words, told)
         told = self.refine("line-tension", *SWEEP, "--budget=10h", "--dry-run", launcher=()).stdout
         self.assertIn("10 core-hours at most", told)
@@ -347,9 +364,9 @@ class Refine(RefineTest):
             ("line-tension", ["line-tension=0.3,3", "seeds=1..9", "--most-seeds=3", GOAL], "--most-seeds=3"),
             ("line-tension", ["line-tension=0.3,3", "obstacle-layout=wall", GOAL], "no clogging length"),
             ("line-tension", ["line-tension=0.3,3", "--until=critical-angle=1"], "refine lattice-angle"),
-            ("line-tension,friction", ["line-tension=0.3,3", "friction=0.1,1", "preset=elastic", "--until=crossing=3:10%"], "give one key"),
-            ("vertices", ["vertices=64,128", GOAL], "not a number of the physics"),
-            ("nonsense", [GOAL], "no such key"),
+            ("line-tension,friction",
+             ["line-tension=0.3,3", "friction=0.1,1", "preset=elastic", "--until=crossing=3:10%"], "give one key"),
+            ("vertices", ["vertices=64,128", GOAL], "not a number of the physics"), ("nonsense", [GOAL], "no such key"),
             ("obstacle-density", ["obstacle-density=10%,20%", GOAL], "refine needs numbers"),
             ("exit", ["exit=3,4", GOAL], "no user-supplied circles"),
             ("lattice-angle", ["lattice-angle=10,40", GOAL], "obstacle-layout=lattice"),
@@ -365,7 +382,8 @@ class Refine(RefineTest):
                 self.assertEqual(self.snapshot(), before)
 
     def test_the_option_of_clogsweep_names_the_command(self):
-        self.refuse("clogsweep", *SWEEP, "--refine", "line-tension", GOAL, "--output", "no.h5", words=["python3 -m clogsweep refine KEY"])
+        self.refuse("clogsweep", *SWEEP, "--refine", "line-tension", GOAL, "--output", "no.h5",
+                    words=["python3 -m clogsweep refine KEY"])
 
     def test_warnings_go_on_to_the_launcher_as_the_signal_that_mpirun_forwards(self):
         for number in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU, signal.SIGHUP, signal.SIGTERM, signal.SIGINT):
@@ -393,11 +411,13 @@ LATTICE = ["obstacle-layout=lattice", "obstacle-gap=2", "obstacle-diameter=1", "
 
 class CriticalAngle(RefineTest):
     def angle(self, angles, *arguments, max_time=1000, output="s.h5"):
-        return self.refine("lattice-angle", *LATTICE, f"lattice-angle={angles}", f"max-time={max_time}", *arguments, "--output", output)
+        return self.refine("lattice-angle", *LATTICE, f"lattice-angle={angles}", f"max-time={max_time}", *arguments,
+                           "--output", output)
 
     def test_it_is_bracketed_by_rows_that_droplets_follow_and_rows_that_they_leave(self):
         last = self.angle("10.01,40", "--until=critical-angle=2").stderr.strip().splitlines()[-1]
-        middle, lower, upper = map(float, re.search(r"the critical angle is ([0-9.]+) degrees \(([0-9.]+) to ([0-9.]+)\)", last).groups())
+        middle, lower, upper = map(float, re.search(r"the critical angle is ([0-9.]+) degrees \(([0-9.]+) "
+                                                    r"to ([0-9.]+)\)", last).groups())
         self.assertTrue(lower < middle < upper <= lower + 2)
         rows = table(self.folder / "s.h5")
         self.assertLess(len(rows), 15)
@@ -415,13 +435,15 @@ class CriticalAngle(RefineTest):
     def test_lattices_of_every_kind_are_those_that_clogsweep_takes(self):
         for kind in ("square", "triangular", "rhombic"):
             for wanted in (8, 13.3, 21):
-                told = self.succeed("clogsweep", "obstacle-layout=lattice", f"lattice={kind}", "pitch=3", "obstacle-diameter=1", "box=200",
-                                    "seeds=1", f"lattice-angle={wanted}", "max-time=1", "--dry-run").stdout
+                told = self.succeed("clogsweep", "obstacle-layout=lattice", f"lattice={kind}", "pitch=3",
+                                    "obstacle-diameter=1", "box=200", "seeds=1", f"lattice-angle={wanted}",
+                                    "max-time=1", "--dry-run").stdout
                 angle = critical_angle.nearest_lattice(3, wanted, 200, kind)
                 self.assertIn(f"at {angle:.4g} degrees (tan", told)
 
     def test_what_does_not_bracket_it_is_said(self):
-        for angles, max_time, words in [("32.5,35,40", 1000, "at 32.47 degrees droplets leave the rows; try smaller angles"),
+        for angles, max_time, words in [("32.5,35,40", 1000,
+                                         "at 32.47 degrees droplets leave the rows; try smaller angles"),
                                         ("9.46,10.01,11.31", 1000, "droplets follow the rows; try larger angles"),
                                         ("10.01,40", 20, "no droplet went far enough")]:
             with self.subTest(angles=angles):
@@ -436,14 +458,17 @@ class CriticalAngle(RefineTest):
         self.assertIn(f"; 1 of {number} runs failed and do not count", told)
 
     def test_a_dry_run_tells_what_the_rounds_may_cost(self):
-        told = self.refine("lattice-angle", *LATTICE, "lattice-angle=10.01,40", "max-time=1000", "--until=critical-angle=0.5", "--dry-run").stdout
+        told = self.refine("lattice-angle", *LATTICE, "lattice-angle=10.01,40", "max-time=1000",
+                           "--until=critical-angle=0.5", "--dry-run").stdout
         for words in ("5 tasks: 5 parameter sets, 1 seed each", "takes about 2 more rounds, 6 runs"):
             self.assertIn(words, told)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
-        for settings, words in [(["lattice-angle=10,40", "--until=curve=20%"], "critical-angle=0.5"), (["lattice-angle=10,40", "--until=critical-angle=0"], "0.001"),
+        for settings, words in [(["lattice-angle=10,40", "--until=curve=20%"], "critical-angle=0.5"),
+                                (["lattice-angle=10,40", "--until=critical-angle=0"], "0.001"),
                                 (["lattice-angle=10,40", "--until=critical-angle=1", "--same-seeds"], "--same-seeds"),
-                                (["lattice-angle=20", "--until=critical-angle=1"], "bounds"), (["lattice-angle=0,40", "--until=critical-angle=1"], "above 0"),
+                                (["lattice-angle=20", "--until=critical-angle=1"], "bounds"),
+                                (["lattice-angle=0,40", "--until=critical-angle=1"], "above 0"),
                                 (["lattice-angle=40,10", "--until=critical-angle=1"], "lower bound")]:
             with self.subTest(settings=settings):
                 done = self.run_refine("lattice-angle", *LATTICE, *settings, "--output", "no.h5", launcher=())

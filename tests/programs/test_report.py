@@ -51,9 +51,11 @@ class Browser(ProgramTest):
         cls.addClassCleanup(folder.cleanup)
         cls.page = pathlib.Path(folder.name) / "page.html"
         sweep = shared_sweep(*cls.KEYS)
-        told = subprocess.run([BIN / "clogfit", sweep, "--format", "json"], check=True, capture_output=True, text=True, timeout=LONGEST)
+        told = subprocess.run([BIN / "clogfit", sweep, "--format", "json"], check=True, capture_output=True, text=True,
+                              timeout=LONGEST)
         cls.groups = json.loads(told.stdout)["groups"]
-        subprocess.run([BIN / "clogfit", "report", sweep, "--output", cls.page, "--examples", "1"], check=True, capture_output=True, timeout=LONGEST)
+        subprocess.run([BIN / "clogfit", "report", sweep, "--output", cls.page, "--examples", "1"], check=True,
+                       capture_output=True, timeout=LONGEST)
 
     def setUp(self):
         super().setUp()
@@ -61,7 +63,8 @@ class Browser(ProgramTest):
         self.browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
 
     def see(self, scheme):
-        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                                     {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
 
     def read_page(self):
         self.browser.get(self.page.as_uri())
@@ -132,7 +135,8 @@ class Lengths(Browser):
             bright = first_chart.find_elements(By.CSS_SELECTOR, ".legend.of")
             self.assertEqual(len(bright), 1)
             self.assertIn(point.get_attribute("data-groups"), bright[0].get_attribute("data-groups").split())
-            self.assertEqual({row.get_attribute("data-groups") for row in self.find_all("tr.of")}, {point.get_attribute("data-groups")})
+            self.assertEqual({row.get_attribute("data-groups") for row in self.find_all("tr.of")},
+                             {point.get_attribute("data-groups")})
         self.point_at(self.find("h1"))
         self.wait(lambda: not self.find("#card").is_displayed())
         self.assertEqual(self.find_all(".of"), [])
@@ -147,7 +151,8 @@ class Lengths(Browser):
         second = self.shown()
         self.assertNotEqual(first, second)
         for point, shown in ((points[0], first), (points[1], second)):
-            self.assertIn(f"line tension {shown['line tension']}: length {shown['λ/σ (95 %)']},", point.get_attribute("aria-label"))
+            self.assertIn(f"line tension {shown['line tension']}: length {shown['λ/σ (95 %)']},",
+                          point.get_attribute("aria-label"))
         ActionChains(self.browser).send_keys(Keys.ESCAPE).perform()
         self.wait(lambda: not self.find("#card").is_displayed())
 
@@ -173,7 +178,8 @@ class Lengths(Browser):
 
     def test_the_heading_of_a_long_table_stays_in_sight(self):
         self.read_page()
-        self.browser.execute_script("document.querySelector('.scroll').style.maxHeight = '6rem'; document.querySelector('.scroll').scrollTop = 1000")
+        self.browser.execute_script("document.querySelector('.scroll').style.maxHeight = '6rem'; "
+                                    "document.querySelector('.scroll').scrollTop = 1000")
         box, heading = (self.find(selector).rect for selector in (".scroll", "th"))
         self.assertGreater(self.browser.execute_script("return document.querySelector('.scroll').scrollTop"), 0)
         self.assertAlmostEqual(heading["y"], box["y"], delta=1)
@@ -197,7 +203,8 @@ class Lengths(Browser):
         self.assertGreater(sum(counts[160:]), 500, "light ink")
 
     def test_a_narrow_screen_needs_no_scrolling_to_the_side(self):
-        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": True})
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                     {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": True})
         self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {})
         self.read_page()
         self.assertLessEqual(self.browser.execute_script("return document.documentElement.scrollWidth"), 400)
@@ -211,7 +218,8 @@ class Lengths(Browser):
         self.browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
         self.read_page()
         self.assertEqual(self.find_all("button"), [])
-        self.assertEqual([float(gap) for gap in self.column("obstacle gap")], [group["obstacle_gap"] for group in self.groups])
+        self.assertEqual([float(gap) for gap in self.column("obstacle gap")],
+                         [group["obstacle_gap"] for group in self.groups])
         self.assertEqual(self.column("clogs"), [str(group["clogs"]) for group in self.groups])
         for point, title in zip(self.find_all(POINT), self.find_all(f"{POINT} > title"), strict=True):
             self.assertEqual(point.get_attribute("aria-label"), title.get_attribute("textContent"))
@@ -227,7 +235,8 @@ class Passages(Browser):
         for number, point in enumerate(self.find_all(POINT)[:2]):
             self.point_at(point)
             shown = self.shown()
-            self.assertEqual((shown["line tension"], shown["outcome"]), (f"{self.groups[number]['line_tension']:g}", self.groups[number]["status"]))
+            self.assertEqual((shown["line tension"], shown["outcome"]),
+                             (f"{self.groups[number]['line_tension']:g}", self.groups[number]["status"]))
             self.assertEqual(shown["largest A"], f"{self.groups[number]['largest_shape_parameter']:.4g}")
             outcomes.add(shown["outcome"])
         self.assertEqual(outcomes, {"passed", "clogged"})

@@ -55,7 +55,8 @@ class Resumed(SweepTest):
         return (process, error) if (self.folder / "s.h5.journal").exists() else None
 
     def test_a_signal_stops_and_the_same_command_resumes(self):
-        sweep = [word.replace("max-time=2e4", "max-time=8e4") for word in SLOW]  # A fast machine needs more time to stop.
+        # A fast machine needs more time to stop.
+        sweep = [word.replace("max-time=2e4", "max-time=8e4") for word in SLOW]
         for signal_number in (signal.SIGUSR1, signal.SIGINT, signal.SIGTERM):
             process, error = self.until_in_time(lambda: self.stop_with_a_snapshot(sweep, signal_number))
             if signal_number == signal.SIGUSR1:  # A second after any other signal, mpirun kills the remaining ranks.
@@ -76,7 +77,8 @@ class Resumed(SweepTest):
             with self.subTest(signal=warned):
                 # The sweep runs without mpirun.
                 process = self.start(*ENDLESS, launcher="env", ranks="--default-signal=HUP")
-                self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any())
+                self.wait_for(lambda: (self.folder / "s.h5").exists() and
+                              (table(self.folder / "s.h5").status == "running").any())
                 helper, = children_of(process.pid)
                 for pid in (*children_of(helper), helper, process.pid):
                     os.kill(pid, warned)
@@ -91,7 +93,8 @@ class Resumed(SweepTest):
         launcher = self.folder / "launcher"
         for preloaded in ("", self.folder / "library.so"):
             with self.subTest(preloaded=preloaded):
-                launcher.write_text(f'#!/bin/sh\nshift\nexec nohup env LD_PRELOAD={preloaded} ASAN_OPTIONS="$ASAN_OPTIONS:verify_asan_link_order=0" "$@"\n')
+                launcher.write_text(f'#!/bin/sh\nshift\nexec nohup env LD_PRELOAD={preloaded} '
+                                    'ASAN_OPTIONS="$ASAN_OPTIONS:verify_asan_link_order=0" "$@"\n')
                 launcher.chmod(0o755)
                 (self.folder / "s.h5").unlink(missing_ok=True)
                 process = self.start(*FEW_LONG, launcher=launcher, ranks=1)
@@ -134,7 +137,8 @@ class Resumed(SweepTest):
             for rank in stopped:
                 os.kill(rank, signal.SIGCONT)
             error = self.ended(first, 2)
-            self.assertIn("s.h5 (somebody has replaced it or its journal while the sweep was running); all runs are in s.h5.rescued1", error)
+            self.assertIn("s.h5 (somebody has replaced it or its journal while the sweep was running); "
+                          "all runs are in s.h5.rescued1", error)
             self.check_equal("s.h5", undisturbed(SLOW))
             self.assertFalse((self.folder / "s.h5.journal").exists())
             for name in ("s.h5", "s.h5.rescued1"):
@@ -217,7 +221,8 @@ class Resumed(SweepTest):
         process = self.start(*SEVERAL_SLOW)
         self.wait_for((self.folder / "s.h5").exists)
         before = (self.folder / "s.h5").read_bytes()
-        self.wait_for(lambda: process.poll() is not None or (~table(self.folder / "s.h5").status.isin(["running", "interrupted"])).any())
+        self.wait_for(lambda: process.poll() is not None or
+                      (~table(self.folder / "s.h5").status.isin(["running", "interrupted"])).any())
         self.kill_all(process)
         if not (self.folder / "s.h5.journal").exists():
             return False
@@ -228,7 +233,8 @@ class Resumed(SweepTest):
         self.until_in_time(self.killed_behind_its_table)
         for command in (("clogsweep", "status", "s.h5"), ("clogfit", "s.h5")):
             told = self.run_program(*command).stderr
-            self.assertRegex(told, r"s.h5: \d+ runs? ended that only the journal of the stopped sweep has; the sweep's own command adds (it|them)\n")
+            self.assertRegex(told, r"s.h5: \d+ runs? ended that only the journal of the stopped sweep has; "
+                                   r"the sweep's own command adds (it|them)\n")
         self.succeed("clogsweep", *SEVERAL_SLOW, ranks=2)
         self.assertNotIn("journal", self.run_program("clogsweep", "status", "s.h5").stderr)
         self.check_equal("s.h5", undisturbed(SEVERAL_SLOW))
@@ -245,14 +251,16 @@ class Resumed(SweepTest):
         self.assertRegex(verified.stdout, r"1 more damaged; the last one is torn, as after a kill")
         self.assertEqual(journal.read_bytes()[:-22], content)
         done = self.succeed("clogsweep", *SLOW, ranks=2)
-        self.assertIn("s.h5.journal: 1 record is damaged; its run resumes from an earlier record or restarts\n", done.stderr)
+        self.assertIn("s.h5.journal: 1 record is damaged; its run resumes from an earlier record or restarts\n",
+                      done.stderr)
         self.check_equal("s.h5", undisturbed(SLOW))
 
     def test_a_link_is_followed(self):
         (self.folder / "scratch").mkdir()
         (self.folder / "s.h5").symlink_to("scratch/target.h5")
         self.stop_with_unfinished_runs(FEW_LONG)
-        self.assertEqual({path.name for path in (self.folder / "scratch").iterdir()}, {"target.h5", "target.h5.journal"})
+        self.assertEqual({path.name for path in (self.folder / "scratch").iterdir()},
+                         {"target.h5", "target.h5.journal"})
         self.succeed("clogsweep", *FEW_LONG[:-1], "scratch/target.h5", ranks=2)
         self.assertTrue((self.folder / "s.h5").is_symlink())
         self.assertIn("4 of 4 runs finished", self.succeed("clogsweep", "status", "s.h5").stdout)
@@ -366,21 +374,24 @@ class Resumed(SweepTest):
             for command in [["status", "s.h5"], ["verify", "s.h5"], keys]:
                 with self.subTest(text=text, command=command[0]):
                     self.refuse("clogsweep", *command, words=["cannot read s.h5 (its attribute config: "])
-            self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", 0).stdout, "the row says all of its run")
+            self.assertIn("the same bits",
+                          self.succeed("clogsweep", "replay", "s.h5", 0).stdout, "the row says all of its run")
 
     def test_a_config_that_is_missing_is_restored_by_the_sweeps_own_command(self):
         keys = [*QUICK, "seeds=1", "--output", "s.h5"]
         self.succeed("clogsweep", *keys)
         stored_rows.change_attribute(self.folder / "s.h5", "config", "")
-        self.refuse("clogsweep", "status", "s.h5", words=["its attribute config: it is missing; the sweep's own command restores it"])
-        self.assertIn("its config is missing: the sweep's own command restores it", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.refuse("clogsweep", "status", "s.h5",
+                    words=["its attribute config: it is missing; the sweep's own command restores it"])
+        self.assertIn("its config is missing: the sweep's own command restores it",
+                      self.succeed("clogsweep", "verify", "s.h5").stdout)
         self.succeed("clogsweep", *keys)
         self.assertIn("1 of 1 run", self.succeed("clogsweep", "status", "s.h5").stdout)
 
     def test_other_physics_is_refused_by_name(self):
         self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "--output", "s.h5")
-        self.refuse("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "clog-energy=1e-16", "gravity=vertex",
-                    "perimeter-spring=mean", "--output", "s.h5",
+        self.refuse("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "clog-energy=1e-16",
+                    "gravity=vertex", "perimeter-spring=mean", "--output", "s.h5",
                     words=["clog-energy=1e-16 (file: 1e-17)", "gravity=vertex (file: area)", "another --output"])
         # Two different texts for the same number count as equal.
         done = self.succeed("clogsweep", "vertices=64", "box=2e1", "max-time=20", "seeds=1", "--output", "s.h5")
@@ -446,7 +457,8 @@ class Batch(ProgramTest):
     def script(self, name, *arguments, **environment):
         for command in ("scontrol", "qsub"):
             stub = self.folder / command
-            stub.write_text(f'#!/bin/sh\n[ "$1" != show ] || exec echo "   WorkDir={self.folder}"\necho {command} "$@" >> "{self.folder}/called"\n')
+            stub.write_text(f'#!/bin/sh\n[ "$1" != show ] || exec echo "   WorkDir={self.folder}"\necho {command} "$@" '
+                            f'>> "{self.folder}/called"\n')
             stub.chmod(0o755)
         variables = {**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}", "CLOG_BIN": str(BIN),
                      "OMPI_MCA_rmaps_base_oversubscribe": "1", **environment}
@@ -497,7 +509,8 @@ class Batch(ProgramTest):
             code=0
             run_sweep touch began || code=$?
             echo $code"""
-        done = subprocess.run(["bash", "-euc", script], cwd=self.folder, capture_output=True, text=True, timeout=LONGEST)
+        done = subprocess.run(["bash", "-euc", script], cwd=self.folder, capture_output=True, text=True,
+                              timeout=LONGEST)
         self.assertEqual(done.stdout, "75\n", done.stderr)
         self.assertEqual(self.snapshot(), {})
 
@@ -530,22 +543,25 @@ class Batch(ProgramTest):
         options.write_text("\n".join(self.sweep("max-time=1e5")) + "\n")
         for name, count in [("slurm.sh", "SLURM_RESTART_COUNT"), ("pbs.sh", "REQUEUES")]:
             with self.subTest(script=name):
-                process = self.script(name, *self.sweep("max-time=1e5", "--max-hours=1e-5"), SWEEP=str(options), HOURS="1e-5", SLURM_JOB_ID="77", MAX_REQUEUES="3",
-                                      **{count: "3"})
+                process = self.script(name, *self.sweep("max-time=1e5", "--max-hours=1e-5"), SWEEP=str(options),
+                                      HOURS="1e-5", SLURM_JOB_ID="77", MAX_REQUEUES="3", **{count: "3"})
                 output, _ = process.communicate(timeout=LONGEST)
                 self.assertEqual(process.returncode, 75, output)
-                self.assertIn("not complete after 3 requeues, as many as MAX_REQUEUES allows; submit the job again", output)
+                self.assertIn("not complete after 3 requeues, as many as MAX_REQUEUES allows; "
+                              "submit the job again", output)
                 self.assertEqual(self.called(), "")
         process = self.script("slurm.sh", *self.sweep(), SLURM_JOB_ID="77", MAX_REQUEUES="many")
         self.assertRegex(process.communicate(timeout=LONGEST)[0], "^MAX_REQUEUES=many is not a whole number; set .*\n$")
         self.assertEqual(process.returncode, 2)
 
     def test_one_rank_of_many_tasks_is_refused(self):
-        self.refuse("clogsweep", *self.sweep(), env={**os.environ, "SLURM_NTASKS": "8"}, words=["allocation of 8 tasks"])
+        self.refuse("clogsweep", *self.sweep(), env={**os.environ, "SLURM_NTASKS": "8"},
+                    words=["allocation of 8 tasks"])
 
     def test_ranks_of_another_mpis_launcher_are_refused(self):
         other = {"Open MPI": "PMI_SIZE", "MPICH": "OMPI_COMM_WORLD_SIZE"}[MPI]
-        self.refuse("clogsweep", *self.sweep(), env={**os.environ, other: "2"}, words=[f"this mpirun belongs to another MPI: use that of {MPI}"])
+        self.refuse("clogsweep", *self.sweep(), env={**os.environ, other: "2"},
+                    words=[f"this mpirun belongs to another MPI: use that of {MPI}"])
 
 
 if __name__ == "__main__":

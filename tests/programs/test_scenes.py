@@ -59,7 +59,8 @@ class BreakUp(Analysis):
     def test_break_up_agrees_with_the_thinnest_neck_of_the_row(self):
         self.succeed("clogsweep", *self.KEYS, "line-tension=0.066,0.07,0.08,0.1", "--output", "s.h5")
         wider = 0.1
-        self.succeed("clogsweep", *self.KEYS[:-1], "line-tension=0.066,0.07,0.08,0.1", f"break-up-neck={wider}", "--output", "t.h5")
+        self.succeed("clogsweep", *self.KEYS[:-1], "line-tension=0.066,0.07,0.08,0.1", f"break-up-neck={wider}",
+                     "--output", "t.h5")
         predicted = [row.thinnest_neck < wider for row in read_rows(self.folder / "s.h5")]
         self.assertEqual([row.status == "broken" for row in read_rows(self.folder / "t.h5")], predicted)
         self.assertEqual(set(predicted), {True, False})
@@ -72,7 +73,8 @@ class BreakUp(Analysis):
         self.assertTrue(0.055 < low < high < 0.07 and high < 1.02 * low, near)
         self.assertEqual(far.split(",")[2:], ["", "0.01", ""])  # No droplet breaks up.
         self.assertTrue((self.folder / "c.png").exists())
-        for words, said in [(["--offsets", "0.6"], "0.6"), (["vertices"], "KEY=VALUE"), (["vertices=x"], "vertices"), (["--offsets", "0.4"], "nothing to draw")]:
+        for words, said in [(["--offsets", "0.6"], "0.6"), (["vertices"], "KEY=VALUE"), (["vertices=x"], "vertices"),
+                            (["--offsets", "0.4"], "nothing to draw")]:
             self.refuse_analysis("collision", "--output", "d", "--programs", BIN, *words, words=[said])
 
 
@@ -89,10 +91,12 @@ class Channels(Analysis):
         self.assertEqual(row.largest_shape_parameter, samples["shape_parameter"][largest])
         self.assertEqual(row.largest_shape_parameter_at, samples["h"][largest])
         fastest = np.argmax(samples["speed_ratio"])
-        self.assertEqual((row.largest_relative_speed, row.largest_relative_speed_at), (samples["speed_ratio"][fastest], samples["h"][fastest]))
+        self.assertEqual((row.largest_relative_speed, row.largest_relative_speed_at),
+                         (samples["speed_ratio"][fastest], samples["h"][fastest]))
         fallen = samples[samples["time"] > 10 * 0.05]
         slowest = np.argmin(fallen["speed_ratio"])
-        self.assertEqual((row.smallest_relative_speed, row.smallest_relative_speed_at), (fallen["speed_ratio"][slowest], fallen["h"][slowest]))
+        self.assertEqual((row.smallest_relative_speed, row.smallest_relative_speed_at),
+                         (fallen["speed_ratio"][slowest], fallen["h"][slowest]))
         self.assertTrue(np.isnan(row.sag))
         # A droplet between two caps on rounded tips has a shape parameter of 1.0952 (tests/core/scene). The largest
         # shape parameter occurs in the orifice.
@@ -100,10 +104,12 @@ class Channels(Analysis):
         self.assertLess(abs(row.largest_shape_parameter_at), 0.05)
 
     def test_every_key_of_the_channel_is_swept(self):
-        for key, values, column in [("orifice", "0.7,0.8", "orifice"), ("wedge-angle", "30,45", "wedge_angle"), ("tip-radius", "0.03,0.1", "tip_radius"),
-                                    ("start", "-1.5,-1.2", "start"), ("end", "0.5,1", "end")]:
+        for key, values, column in [("orifice", "0.7,0.8", "orifice"), ("wedge-angle", "30,45", "wedge_angle"),
+                                    ("tip-radius", "0.03,0.1", "tip_radius"), ("start", "-1.5,-1.2", "start"),
+                                    ("end", "0.5,1", "end")]:
             keys = [word for word in CHANNEL if not word.startswith(f"{key}=")]
-            self.succeed("clogsweep", *keys, "line-tension=0.3", "max-time=10", f"{key}={values}", "--output", f"{key}.h5")
+            self.succeed("clogsweep", *keys, "line-tension=0.3", "max-time=10", f"{key}={values}", "--output",
+                         f"{key}.h5")
             rows = read_rows(self.folder / f"{key}.h5")
             self.assertEqual([getattr(row, column) for row in rows], [float(value) for value in values.split(",")])
             fits = json.loads(self.succeed("clogfit", f"{key}.h5", "--format", "json").stdout)
@@ -157,7 +163,8 @@ class Channels(Analysis):
                                  for group in fit["groups"]])
 
     def test_a_report_of_soft_disks_has_no_shapes(self):
-        self.succeed("clogsweep", "model=sp", "orifice=0.7", "wall-stiffness=1,50", "start=-1.5", "end=1", "max-time=2000", "--output", "s.h5")
+        self.succeed("clogsweep", "model=sp", "orifice=0.7", "wall-stiffness=1,50", "start=-1.5", "end=1",
+                     "max-time=2000", "--output", "s.h5")
         self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
         page = (self.folder / "r.html").read_text()
         self.assertEqual((page.count("<svg"), page.count("<img")), (3, 0))
@@ -167,7 +174,8 @@ class Channels(Analysis):
         self.succeed("clogsweep", *CHANNEL, "line-tension=0.5,0.6", "--output", "s.h5")
 
         def interrupt(*tasks):
-            stored_rows.change(self.folder / "s.h5", lambda rows: rows["status"].__setitem__(list(tasks), b"interrupted"))
+            stored_rows.change(self.folder / "s.h5",
+                               lambda rows: rows["status"].__setitem__(list(tasks), b"interrupted"))
 
         interrupt(1)
         self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
@@ -184,8 +192,11 @@ class Channels(Analysis):
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
         rows = passages.examples(stored.read_rows(self.folder / "s.h5"), 5)
         self.assertEqual([row["task"] for row in rows], [0, 1])
-        for row, figure in zip(rows, passages.draw_outlines(groups, rows, BIN / "clogrun", self.folder / "s.h5", self.folder), strict=True):
-            outline = max((patch.get_path().vertices[:-1].T for patch in figure.axes[0].patches), key=lambda points: points.shape[1])
+        for row, figure in zip(rows,
+                               passages.draw_outlines(groups, rows, BIN / "clogrun", self.folder / "s.h5", self.folder),
+                               strict=True):
+            outline = max((patch.get_path().vertices[:-1].T for patch in figure.axes[0].patches),
+                          key=lambda points: points.shape[1])
             x, y = outline
             after_x, after_y = np.roll(outline, -1, axis=1)
             perimeter, area = np.hypot(after_x - x, after_y - y).sum(), abs((x * after_y - after_x * y).sum()) / 2
@@ -202,13 +213,16 @@ class Channels(Analysis):
                              (parts.distance, parts.smallest_relative_speed, parts.largest_shape_parameter_at))
 
     def test_keys_without_effect_or_out_of_range_are_refused(self):
-        for words, told in [(["obstacle-gap=0.3"], ["obstacle-gap", "no array"]), (["seeds=1..5"], ["seeds=1..5", "nothing is random"]),
-                            (["obstacles=none", "box=20"], ["box", "no array"]), (["start=-0.1"], ["start", "clear of the wedges"]),
-                            (["end=-3"], ["end", "downstream"]), (["orifice=0"], ["orifice"])]:
+        for words, told in [(["obstacle-gap=0.3"], ["obstacle-gap", "no array"]),
+                            (["seeds=1..5"], ["seeds=1..5", "nothing is random"]),
+                            (["obstacles=none", "box=20"], ["box", "no array"]),
+                            (["start=-0.1"], ["start", "clear of the wedges"]), (["end=-3"], ["end", "downstream"]),
+                            (["orifice=0"], ["orifice"])]:
             names = [word.split("=")[0] for word in words]
             keys = [word for word in CHANNEL if word.split("=")[0] not in names]
             self.refuse("clogsweep", *keys, "line-tension=1", *words, "--output", "s.h5", words=told)
-        self.refuse("clogsweep", "orifice=0.6", "obstacle-layout=random", "--output", "s.h5", words=["orifice=0.6", "obstacle-layout=channel"])
+        self.refuse("clogsweep", "orifice=0.6", "obstacle-layout=random", "--output", "s.h5",
+                    words=["orifice=0.6", "obstacle-layout=channel"])
         # The key `orifice` implies a channel.
         self.succeed("clogsweep", "orifice=0.7", "vertices=64", "max-time=1", "--output", "s.h5")
         self.assertEqual([row.obstacle_filling for row in read_rows(self.folder / "s.h5")], ["channel"])
@@ -273,7 +287,8 @@ class OwnCircles(ProgramTest):
         # clogrun must compute the same run.
         self.succeed("clogrun", "array", *OWN, "line-tension=1", "--output", "r.h5")
         run, = read_rows(self.folder / "r.h5")
-        self.assertEqual((run.distance, run.lateral_displacement, run.obstacles), (rows[1].distance, rows[1].lateral_displacement, key))
+        self.assertEqual((run.distance, run.lateral_displacement, run.obstacles),
+                         (rows[1].distance, rows[1].lateral_displacement, key))
 
     def test_the_table_is_enough(self):
         self.succeed("clogsweep", *OWN, "release=anywhere", "seeds=1..3", "--output", "s.h5")
@@ -287,18 +302,21 @@ class OwnCircles(ProgramTest):
 
     def test_seeds_release_it_anywhere(self):
         # In this array every lane along the flow is blocked by posts.
-        (self.folder / "dense.csv").write_text("x,y,diameter\n" + "".join(f"{3 * i % 10},{1.25 * i + 0.6},0.5\n" for i in range(8)))
+        (self.folder / "dense.csv").write_text("x,y,diameter\n"
+                                               + "".join(f"{3 * i % 10},{1.25 * i + 0.6},0.5\n" for i in range(8)))
         keys = ["obstacles=dense.csv", *OWN[1:-1], "line-tension=0.1", "max-time=400", "release=anywhere"]
         self.succeed("clogsweep", *keys, "seeds=1..4", "--output", "s.h5")
         self.assertEqual(len({row.lateral_displacement for row in read_rows(self.folder / "s.h5")}), 4)
         self.succeed("clogsweep", *OWN[:-1], "max-time=1", "release=anywhere", "--output", "ten.h5")
         self.assertEqual(len(read_rows(self.folder / "ten.h5")), 10)
         self.refuse("clogsweep", *OWN, "seeds=1..4", "--output", "t.h5", words=["seeds=1..4", "release=anywhere"])
-        self.refuse("clogsweep", "release=anywhere", "--output", "t.h5", words=["release=anywhere", "obstacles=FILE.csv"])
+        self.refuse("clogsweep", "release=anywhere", "--output", "t.h5",
+                    words=["release=anywhere", "obstacles=FILE.csv"])
 
     def test_other_circles_are_other_runs(self):
         self.succeed("clogsweep", *OWN, "--output", "s.h5")
-        (self.folder / "posts.csv").write_text("# the same, said otherwise\n" + CIRCLES.replace("2,5,0.5", " 2.0 , 5.0 , 0.50 "))
+        (self.folder / "posts.csv").write_text("# the same, said otherwise\n"
+                                               + CIRCLES.replace("2,5,0.5", " 2.0 , 5.0 , 0.50 "))
         self.succeed("clogsweep", *OWN, "--output", "s.h5")
         self.assertEqual(len(read_rows(self.folder / "s.h5")), 1)
         (self.folder / "posts.csv").write_text(CIRCLES.replace("2,5,0.5", "2,5,0.55"))
@@ -315,11 +333,13 @@ class OwnCircles(ProgramTest):
         keys = [key for key in OWN if not key.startswith("max-time")]
         told = self.succeed("clogsweep", *keys, "release=anywhere", "max-time=500", "--dry-run")
         self.assertIn("give a file of circles that is as long", told.stdout + told.stderr)
-        self.assertNotIn("boxes=", (told.stdout + told.stderr).split("meet the same obstacles again")[1].splitlines()[0])
+        self.assertNotIn("boxes=",
+                         (told.stdout + told.stderr).split("meet the same obstacles again")[1].splitlines()[0])
 
     def test_how_wide_their_array_is_has_to_be_said(self):
         self.refuse("clogsweep", "obstacles=posts.csv", "--output", "s.h5", words=["obstacles=posts.csv", "give box"])
-        self.refuse("clogrun", "array", "obstacles=posts.csv", "--output", "r.h5", words=["obstacles=posts.csv", "give box"])
+        self.refuse("clogrun", "array", "obstacles=posts.csv", "--output", "r.h5",
+                    words=["obstacles=posts.csv", "give box"])
         (self.folder / "posts.csv").write_text("x,y\n" + "".join(f"{i % 5 * 2},{i // 5 * 2}\n" for i in range(25)))
         wide = [*OWN, "obstacle-diameter=1.1"]
         self.assertNotIn("bare", self.succeed("clogsweep", *wide, "--dry-run").stdout)
@@ -345,7 +365,8 @@ class OwnCircles(ProgramTest):
         self.assertTrue(0 < free < len(rows), free)
         group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
         self.assertEqual((group["met_none"], "met_none" in group["doubts"].split()), (free, True))
-        self.assertAlmostEqual(group["contacts_per_length"], sum(row.contacts for row in rows) / sum(row.distance for row in rows), places=9)
+        self.assertAlmostEqual(group["contacts_per_length"],
+                               sum(row.contacts for row in rows) / sum(row.distance for row in rows), places=9)
         self.assertRegex(self.succeed("clogfit", "s.h5").stdout, r"met none +lambda_met")
         self.succeed("clogsweep", "verify", "s.h5")
 
@@ -388,7 +409,8 @@ class OwnCircles(ProgramTest):
         self.succeed("clogsweep", *keys, "--output", "one.h5")
         self.succeed("clogsweep", *keys, "--isolate=no", "--output", "bare.h5")
         self.succeed("clogsweep", *keys, "--output", "two.h5", ranks=2)
-        places = [[(row.distance, row.lateral_displacement) for row in read_rows(self.folder / name)] for name in ("one.h5", "bare.h5", "two.h5")]
+        places = [[(row.distance, row.lateral_displacement) for row in read_rows(self.folder / name)]
+                  for name in ("one.h5", "bare.h5", "two.h5")]
         self.assertEqual(places[0], places[1])
         self.assertEqual(places[0], places[2])
 

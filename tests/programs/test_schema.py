@@ -41,7 +41,8 @@ VALUES = {"line-tension": "1,3", "wall-stiffness": "0.05,0.08", "obstacle-gap": 
           "self-contact-range": "0.01,0.012", "clog-energy": "1e-17,1e-16", "dwell-length": "0.04,0.05", "break-up-neck": "0,0.05",
           "obstacles": "one.csv,other.csv", "length": "12,15", "entrance": "2,3", "entrance-from": "1,2", "entrance-to": "8,9",
           "exit": "8,9",
-          "laboratory": "angle = 20 deg; diameter = 1 mm; speed = 1 mm/s,angle = 20 deg; diameter = 2 mm; speed = 1 mm/s"}
+          "laboratory": "angle = 20 deg; diameter = 1 mm; speed = 1 mm/s,angle = 20 deg; diameter = 2 mm; "
+                        "speed = 1 mm/s"}
 
 
 class Sweeps(Analysis):

@@ -42,7 +42,8 @@ class LaboratoryTest(ProgramTest):
         return json.loads(self.succeed("clogfit", "units", self.lab(**changed), "--format", "json").stdout)
 
     def sweep(self, *arguments, output="s.h5", ranks=None, **changed):
-        return self.succeed("clogsweep", "--lab", self.lab(**changed), *(arguments or ARRAY), "--output", output, ranks=ranks)
+        return self.succeed("clogsweep", "--lab", self.lab(**changed), *(arguments or ARRAY), "--output", output,
+                            ranks=ranks)
 
     def fit(self, *arguments):
         return json.loads(self.succeed("clogfit", *arguments, "--format", "json").stdout)
@@ -74,7 +75,8 @@ class Sizes(LaboratoryTest):
         for name, given, is_law in [("s.h5", [], True), ("given.h5", ["terminal-speed=0.03"], False)]:
             self.assertNotIn(words, self.sweep("--quiet", *given, *ARRAY[:-1], "seeds=1", output=name, **law).stderr)
             self.assertEqual(words in self.succeed("clogsweep", "status", name).stdout, is_law)
-        self.assertIn("no speed, so all droplets have terminal-speed=0.03", self.sweep("--dry-run", *ARRAY, speed="").stderr)
+        self.assertIn("no speed, so all droplets have terminal-speed=0.03",
+                      self.sweep("--dry-run", *ARRAY, speed="").stderr)
 
     def test_a_list_of_speeds_has_one_for_each_droplet_and_tilt(self):
         self.check_speeds([1, 2, 3, 4], speed="1 mm/s, 2 mm/s, 3 mm/s, 4 mm/s")
@@ -122,7 +124,8 @@ class Sizes(LaboratoryTest):
                 self.assertAlmostEqual(row["box"] * diameter, 10.2)
         # For each droplet size, the circles equal those of a file that was drawn for this size.
         self.write("small.csv", POSTS.replace("droplet=1mm", "droplet=0.8mm"))
-        self.succeed("clogsweep", "--lab", self.lab(diameter="0.8 mm", angle="20 deg"), *keys[1:], "obstacles=small.csv", "--output", "one.h5")
+        self.succeed("clogsweep", "--lab", self.lab(diameter="0.8 mm", angle="20 deg"), *keys[1:],
+                     "obstacles=small.csv", "--output", "one.h5")
         rows, one = table(self.folder / "s.h5"), table(self.folder / "one.h5")
         self.assertIn(one.obstacles[0], set(rows.obstacles))
         self.assertEqual(rows.distance[rows.obstacles == one.obstacles[0]].tolist(), one.distance.tolist())
@@ -131,7 +134,8 @@ class Sizes(LaboratoryTest):
     def test_circles_of_another_droplet_are_scaled_for_one_droplet_too(self):
         self.write("posts.csv", POSTS)
         lab = self.lab(diameter="0.5 mm", angle="20 deg")
-        self.succeed("clogrun", "array", "--lab", lab, "obstacles=posts.csv", "box=10.2mm", "vertices=64", "max-time=5", "--output", "r.h5")
+        self.succeed("clogrun", "array", "--lab", lab, "obstacles=posts.csv", "box=10.2mm", "vertices=64", "max-time=5",
+                     "--output", "r.h5")
         with h5py.File(self.folder / "r.h5") as file:
             self.assertAlmostEqual(file["runs"]["box"][0], 20.4)
             self.assertAlmostEqual(file["runs"]["obstacle_gap"][0], 2 * (1.7 - 0.3))
@@ -151,10 +155,12 @@ class Sizes(LaboratoryTest):
         self.refuse("clogsweep", "--quiet", "--lab", self.lab("one.cfg", diameter="0.5 mm", angle="20 deg"), "obstacles=posts.csv", "box=10", "--output", "x.h5", words=["box=10"])
         self.refuse("clogsweep", "obstacle-gap=0.4mm", "--output", "x.h5", words=["obstacle-gap=0.4mm", "--lab"])
         self.write("plain.csv", "1,1,0.3\n")
-        self.refuse("clogsweep", "--quiet", "--lab", lab, "obstacles=plain.csv", "box=10mm", "--output", "x.h5", words=["plain.csv", "in droplet diameters", "# units"])
+        self.refuse("clogsweep", "--quiet", "--lab", lab, "obstacles=plain.csv", "box=10mm", "--output", "x.h5",
+                    words=["plain.csv", "in droplet diameters", "# units"])
         for key in ("box=5mN/m", "line-tension=5mm", "vertices=3mm", "box=5furlong"):
             with self.subTest(key):
-                self.refuse("clogsweep", "--quiet", "--lab", lab, key, *ARRAY[:3], "--output", "x.h5", words=[f"invalid {key}"])
+                self.refuse("clogsweep", "--quiet", "--lab", lab, key, *ARRAY[:3], "--output", "x.h5",
+                            words=[f"invalid {key}"])
 
     def test_mistakes_in_lists_get_one_line(self):
         for changed, words in [({"speed": "1 mm/s, 2 mm/s"}, ["2 values of speed for 4 sets"]), ({"tension": "1 mN/m, 2 mN/m"}, ["tension=1 mN/m, 2 mN/m", "one value"]),
@@ -173,10 +179,13 @@ class Sizes(LaboratoryTest):
         self.sweep()
         self.refuse("clogfit", "s.h5", "--lab", "lab.cfg", words=["lab.cfg describes 4 droplets", "omit --lab"])
         for words in (["compare", "s.h5", "--by", "diameter"], ["compare", "s.h5", "--by", "angle"]):
-            self.refuse("clogfit", *words, words=["no parameter of a run", "clogfit lists the lengths in mm of each droplet"])
+            self.refuse("clogfit", *words,
+                        words=["no parameter of a run", "clogfit lists the lengths in mm of each droplet"])
         self.refuse("clogfit", "compare", "s.h5", "--by", "line-tension", words=["varies nothing", "clogsweep select"])
-        self.refuse("clogsweep", "select", "s.h5", "diameter=0.8", "--output", "x.h5", words=["no column 'diameter'", "laboratory"])
-        self.refuse("clogsweep", "--quiet", "--lab", self.lab(diameter="0.8 mm, 0.8 mm"), *ARRAY, "--output", "x.h5", words=["mean the same run"])
+        self.refuse("clogsweep", "select", "s.h5", "diameter=0.8", "--output", "x.h5",
+                    words=["no column 'diameter'", "laboratory"])
+        self.refuse("clogsweep", "--quiet", "--lab", self.lab(diameter="0.8 mm, 0.8 mm"), *ARRAY, "--output", "x.h5",
+                    words=["mean the same run"])
 
     def test_such_a_sweep_resumes_and_grows_and_is_one_of_its_config(self):
         self.sweep()
@@ -195,7 +204,8 @@ class Sizes(LaboratoryTest):
         for changed in ({"angle": "20.0 deg, 45deg"}, {"diameter": "800 um, 0.16 cm"}, {"speed": "0.1 cm/s"}):
             self.assertIn("nothing left to do", self.sweep(**changed).stderr, changed)
         pandas.testing.assert_frame_equal(table(self.folder / "s.h5"), before)
-        self.refuse("clogsweep", "--quiet", "--lab", self.lab(diameter="0.8 mm, 800 um"), *ARRAY, "--output", "x.h5", words=["mean the same run"])
+        self.refuse("clogsweep", "--quiet", "--lab", self.lab(diameter="0.8 mm, 800 um"), *ARRAY, "--output", "x.h5",
+                    words=["mean the same run"])
 
     def test_runs_of_a_laboratory_that_says_more_are_adopted(self):
         self.sweep()
@@ -214,7 +224,8 @@ class Sizes(LaboratoryTest):
         before = table(self.folder / "s.h5")
         self.sweep(*keys, diameter="0.8 mm", angle="20 deg, 45 deg")
         rows = table(self.folder / "s.h5")
-        self.assertEqual((len(rows), rows.laboratory.nunique(), rows.wall_seconds.sum()), (4, 2, before.wall_seconds.sum()))
+        self.assertEqual((len(rows), rows.laboratory.nunique(), rows.wall_seconds.sum()),
+                         (4, 2, before.wall_seconds.sum()))
         self.assertEqual(set(rows.distance), set(before.distance))
         self.assertEqual({group["angle_degrees"] for group in self.fit("s.h5")["groups"]}, {20, 45})
 
@@ -222,7 +233,8 @@ class Sizes(LaboratoryTest):
         keys = ["line-tension=0.5", "terminal-speed=0.03", "obstacle-gap=0.4sigma", "vertices=64", "box=20sigma", "max-time=40"]
 
         def sweep(*options, output, ranks=None):
-            told = self.sweep(*keys, *options, output=output, diameter="0.8 mm", angle="20 deg, 45 deg", ranks=ranks).stderr
+            told = self.sweep(*keys, *options, output=output, diameter="0.8 mm", angle="20 deg, 45 deg",
+                              ranks=ranks).stderr
             rows = table(self.folder / output)
             per_seed = rows.groupby("seed")
             self.assertTrue((per_seed.laboratory.nunique() == 2).all())
@@ -268,7 +280,8 @@ class Sizes(LaboratoryTest):
         self.succeed("clogsweep", "obstacle-gap=0.9", *keys, "seeds=3", "--output", "g.h5")
         self.succeed("clogsweep", "merge", "p.h5", "g.h5", "--output", "all.h5")
         self.assertEqual([group["runs"] for group in self.fit("all.h5")["groups"]], [3])
-        self.assertIn("nothing left to do", self.succeed("clogsweep", "obstacle-gap=0.9", *keys, "seeds=1..2", "--output", "p.h5").stderr)
+        self.assertIn("nothing left to do",
+                      self.succeed("clogsweep", "obstacle-gap=0.9", *keys, "seeds=1..2", "--output", "p.h5").stderr)
         pandas.testing.assert_frame_equal(table(self.folder / "p.h5"), by_pitch)
 
     def test_points_and_shards_and_more_seeds_meet_droplets(self):
@@ -290,10 +303,12 @@ class Sizes(LaboratoryTest):
         groups = self.fit("s.h5")["groups"]
         for group in groups:
             self.assertIn((group["diameter_mm"], group["angle_degrees"]), SETS)
-            self.assertAlmostEqual(group["clogging_length_lower_mm"], group["diameter_mm"] * group["clogging_length_lower"])
+            self.assertAlmostEqual(group["clogging_length_lower_mm"],
+                                   group["diameter_mm"] * group["clogging_length_lower"])
         self.succeed("clogsweep", "select", "s.h5", f"laboratory={groups[0]['laboratory']}", "--output", "one.h5")
         one, = self.fit("one.h5")["groups"]
-        self.assertEqual((one["diameter_mm"], one["angle_degrees"]), (groups[0]["diameter_mm"], groups[0]["angle_degrees"]))
+        self.assertEqual((one["diameter_mm"], one["angle_degrees"]),
+                         (groups[0]["diameter_mm"], groups[0]["angle_degrees"]))
         self.assertIn("diameter_mm,angle_degrees,", self.succeed("clogfit", "s.h5", "--format", "csv").stdout)
         heading, *lines = [line.split() for line in self.succeed("clogfit", "s.h5").stdout.split("\n\n")[1].splitlines()]
         self.assertEqual(heading[:3], ["diameter/mm", "angle/degrees", "lambda/mm"])
@@ -313,30 +328,37 @@ class Sizes(LaboratoryTest):
             self.assertFalse({"laboratory", "line_tension", "obstacle_gap"} & set(found["comparisons"][0]))
         # Friction that differs between the sizes does not follow from them.
         for size, friction in [("0.8 mm", "0"), ("1.6 mm", "0.3")]:
-            self.sweep(*ARRAY, "preset=elastic", f"friction={friction}", output=f"{friction}.h5", diameter=size, angle="20 deg")
+            self.sweep(*ARRAY, "preset=elastic", f"friction={friction}", output=f"{friction}.h5", diameter=size,
+                       angle="20 deg")
         self.succeed("clogsweep", "merge", "0.h5", "0.3.h5", "--output", "merged.h5")
         self.write("own.csv", "distance [mm],clogged,diameter [mm]\n3,1,0.8\n4,1,1.6\n")
         found = json.loads(self.succeed("clogfit", "compare", "own.csv", "merged.h5", "--format", "json").stdout)
         self.assertEqual({(one["diameter"], one["friction"]) for one in found["comparisons"]}, {(0.8, 0), (1.6, 0.3)})
         self.lab()
-        self.succeed("clogsweep", "select", "s.h5", f"laboratory={table(self.folder / 's.h5').laboratory[0]}", "--output", "one.h5")
-        self.refuse("clogfit", "compare", self.write("large.csv", "distance [mm],clogged,diameter [mm]\n3,1,1.6\n"), "one.h5", words=["no group"])
+        self.succeed("clogsweep", "select", "s.h5", f"laboratory={table(self.folder / 's.h5').laboratory[0]}",
+                     "--output", "one.h5")
+        self.refuse("clogfit", "compare", self.write("large.csv", "distance [mm],clogged,diameter [mm]\n3,1,1.6\n"),
+                    "one.h5", words=["no group"])
         self.write("sigma.csv", "distance [sigma],clogged\n3,1\n")
-        self.refuse("clogfit", "compare", "sigma.csv", "s.h5", words=["several droplets", "distances in mm, and a column diameter [mm]"])
-        self.refuse("clogfit", "compare", "sigma.csv", "s.h5", "--lab", "lab.cfg", words=["omit --lab: the sweep stores its laboratories"])
+        self.refuse("clogfit", "compare", "sigma.csv", "s.h5",
+                    words=["several droplets", "distances in mm, and a column diameter [mm]"])
+        self.refuse("clogfit", "compare", "sigma.csv", "s.h5", "--lab", "lab.cfg",
+                    words=["omit --lab: the sweep stores its laboratories"])
 
     def test_sweeps_are_compared_in_millimetres_with_the_same_droplet(self):
         self.sweep(*ARRAY, "preset=elastic", "friction=0,0.3", output="f.h5")
         told = json.loads(self.succeed("clogfit", "compare", "f.h5", "--by", "friction", "--format", "json").stdout)
         self.assertEqual((told["columns"], told["differing"]), (["diameter", "angle"], ["friction"]))
-        lengths_in_mm = {(one["diameter_mm"], one["angle_degrees"], one["friction"]): one["clogging_length_lower_mm"] for one in self.fit("f.h5")["groups"]}
+        lengths_in_mm = {(one["diameter_mm"], one["angle_degrees"], one["friction"]): one["clogging_length_lower_mm"]
+                         for one in self.fit("f.h5")["groups"]}
         self.assertEqual(len(told["comparisons"]), len(SETS))
         for one in told["comparisons"]:
             for side, friction in [("here", 0.3), ("there", 0)]:
                 self.assertAlmostEqual(one[f"clogging_length_{side}_lower_mm"], lengths_in_mm[one["diameter"], one["angle"], friction])
         figure = style.figure_of(ratios.draw_on, {**told, "comparisons": [one | {"ratio": 1, "ratio_lower": 0.5, "ratio_upper": 2} for one in told["comparisons"]]})
         self.assertEqual(figure.axes[0].get_xlabel(), "diameter of the droplet [mm]")
-        self.assertEqual({text.get_text() for text in figure.axes[0].get_legend().get_texts()}, {"tilt 20°", "tilt 45°"})
+        self.assertEqual({text.get_text() for text in figure.axes[0].get_legend().get_texts()},
+                         {"tilt 20°", "tilt 45°"})
         # Droplets of the same size and tilt may differ in their tension.
         self.sweep()
         self.sweep(*ARRAY, output="softer.h5", tension="1 mN/m")
@@ -367,7 +389,8 @@ class Sizes(LaboratoryTest):
             self.assertAlmostEqual(point["total_distance"], point["diameter_mm"] * groups[point["diameter_mm"]]["total_distance"])
         self.assertEqual(json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)["keys"], found["keys"])
         # The same laboratory in other words is one curve, with the same points.
-        self.assertIn("nothing left to do", self.sweep(*keys, diameter="800 um, 1.0 mm, 1200 um, 0.16 cm", angle="20.0 deg").stderr)
+        self.assertIn("nothing left to do",
+                      self.sweep(*keys, diameter="800 um, 1.0 mm, 1200 um, 0.16 cm", angle="20.0 deg").stderr)
         again = json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)
         for name in ("diameter_mm", "total_distance", "clogging_length"):
             np.testing.assert_allclose(*([point[name] or np.nan for point in one["curves"][0]["points"]] for one in (again, found)), rtol=1e-9)
@@ -385,19 +408,23 @@ class Sizes(LaboratoryTest):
         for key in ([], ["--key", "diameter"]):
             self.refuse("clogfit", "curve", "s.h5", *key, words=["only 3 values of diameter", "a curve needs 4"])
         for key in (["pitch=1.8"], ["pitch=0"]):
-            self.refuse("clogsweep", "--quiet", "--lab", "lab.cfg", *keys, *key, "--output", "x.h5", words=["without a unit"])
+            self.refuse("clogsweep", "--quiet", "--lab", "lab.cfg", *keys, *key, "--output", "x.h5",
+                        words=["without a unit"])
 
     def test_a_comment_of_the_laboratory_may_have_any_character(self):
         plain = self.droplets()
         lines = [f"{key} = {text}" for key, text in LAB.items()]
-        lab = self.write("lab.cfg", "; ".join(lines[:2]) + "   # terminal; measured = with ; this\n" + "\n".join(lines[2:]) + "\n")
+        lab = self.write("lab.cfg",
+                         "; ".join(lines[:2]) + "   # terminal; measured = with ; this\n" + "\n".join(lines[2:]) + "\n")
         self.assertEqual(json.loads(self.succeed("clogfit", "units", lab, "--format", "json").stdout), plain)
-        self.refuse("clogfit", "units", self.write("lab.cfg", "diameter = 1 mm; angle = 20 deg # a; b\nspeed\n"), words=["line 2: 'speed' is not"])
+        self.refuse("clogfit", "units", self.write("lab.cfg", "diameter = 1 mm; angle = 20 deg # a; b\nspeed\n"),
+                    words=["line 2: 'speed' is not"])
 
     def test_a_lattice_is_drawn_over_the_diameter_with_the_tangent_of_its_rows(self):
         lattice = ["obstacle-layout=lattice", *ARRAY[:2], "vertices=64", "box=15", "max-time=40", "seeds=1"]
         # In this box, lattices for the two droplets can be at 14.93 and 15.07 degrees.
-        for name, angles, tangents in [("tilted", "15", [2 - math.sqrt(3)]), ("both", "lin(0,15,2)", [2 - math.sqrt(3)]), ("straight", "0", [])]:
+        for name, angles, tangents in [("tilted", "15", [2 - math.sqrt(3)]),
+                                       ("both", "lin(0,15,2)", [2 - math.sqrt(3)]), ("straight", "0", [])]:
             with self.subTest(name):
                 self.sweep(*lattice, f"lattice-angle={angles}", output=f"{name}.h5", angle="20 deg")
                 figure = poster.draw(self.folder / f"{name}.h5", BIN)
@@ -405,7 +432,8 @@ class Sizes(LaboratoryTest):
                 dashed = [line.get_ydata()[0] for line in axes.lines if line.get_linestyle() == "--"]
                 np.testing.assert_allclose(dashed, tangents)
                 legend = axes.get_legend()
-                self.assertEqual([] if legend is None else [text.get_text() for text in legend.get_texts()], ["lattice angle 0°", "lattice angle 15°"] if name == "both" else [])
+                self.assertEqual([] if legend is None else [text.get_text() for text in legend.get_texts()],
+                                 ["lattice angle 0°", "lattice angle 15°"] if name == "both" else [])
                 texts = [text.get_text() for text in figure.findobj(Text)]
                 self.assertEqual(any("lattice angle 15°" in text for text in texts), bool(tangents))
                 self.assertIn("Lateral displacement vs diameter", texts)
@@ -425,8 +453,10 @@ class Sizes(LaboratoryTest):
     def test_one_of_several_devices_can_be_drawn(self):
         self.write("posts.csv", POSTS)
         self.write("other.csv", POSTS + "5,6,0.2\n")
-        self.sweep("obstacles=posts.csv,other.csv", "box=10.2mm", "release=anywhere", "vertices=64", "max-time=5", "seeds=1", diameter="1 mm", angle="20 deg")
-        with self.assertRaisesRegex(clogsweep.UserError, "cannot draw 2 devices as one; clogsweep select .*s.h5 obstacles=SUM ") as refused:
+        self.sweep("obstacles=posts.csv,other.csv", "box=10.2mm", "release=anywhere", "vertices=64", "max-time=5",
+                   "seeds=1", diameter="1 mm", angle="20 deg")
+        with self.assertRaisesRegex(clogsweep.UserError,
+                                    "cannot draw 2 devices as one; clogsweep select .*s.h5 obstacles=SUM ") as refused:
             self.picture_of("s.h5")
         check_sum = re.findall("[0-9a-f]{16}", str(refused.exception))[-1]
         self.succeed("clogsweep", "select", "s.h5", f"obstacles={check_sum}", "--output", "one.h5")
@@ -437,19 +467,24 @@ class Sizes(LaboratoryTest):
         return device.the_picture(device.places(path, BIN), clogsweep.Sweep(path, BIN).fit().known, path)
 
     def test_critical_angles_are_named_by_the_droplets(self):
-        self.sweep("obstacle-layout=lattice", "pitch=2.4mm", "obstacle-diameter=0.8mm", "lattice-angle=15,25", "line-tension=1,3", "vertices=64", "max-time=1", "seeds=1", angle="20 deg")
+        self.sweep("obstacle-layout=lattice", "pitch=2.4mm", "obstacle-diameter=0.8mm", "lattice-angle=15,25",
+                   "line-tension=1,3", "vertices=64", "max-time=1", "seeds=1", angle="20 deg")
         command = [sys.executable, "-m", "clogsweep", "critical-angle", "s.h5"]
         around = {"cwd": self.folder, "capture_output": True, "text": True, "env": {**os.environ, "PYTHONPATH": str(ROOT / "analysis"), "PATH": str(BIN)}}
         done = subprocess.run([*command, "--format", "csv"], **around)
-        self.assertEqual(done.stdout, "diameter_mm,line_tension,lower,upper,runs\n0.8,1,,,0\n0.8,3,,,0\n1.6,1,,,0\n1.6,3,,,0\n", done.stderr)
+        self.assertEqual(done.stdout,
+                         "diameter_mm,line_tension,lower,upper,runs\n0.8,1,,,0\n0.8,3,,,0\n1.6,1,,,0\n1.6,3,,,0\n",
+                         done.stderr)
         empty = subprocess.run(command, **around)
         self.assertEqual((empty.returncode, empty.stderr), (2, "python3 -m clogsweep critical-angle: cannot draw critical angles (the paths within max-time=1 are too short: "
                                                                "straight on, they would cross fewer than two rows) try a larger max-time or lattice-angle\n"))
         columns = json.loads(self.succeed("clogsweep", "--schema").stdout)["columns"]
         found = pandas.DataFrame({"diameter_mm": [0.8, 0.8, 1.6, 1.6], "line_tension": [1, 3, 1, 3], "lower": 20.0, "upper": 21.0, "runs": 2})
         found.loc[3, ["lower", "upper"]] = np.nan
-        figure = style.figure_of(critical_angles.draw_on, found, fits.droplet_columns() | {column["name"]: column for column in columns})
-        self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()], ["diameter 0.8 mm", "diameter 1.6 mm"])
+        figure = style.figure_of(critical_angles.draw_on, found,
+                                 fits.droplet_columns() | {column["name"]: column for column in columns})
+        self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()],
+                         ["diameter 0.8 mm", "diameter 1.6 mm"])
         self.assertTrue(figure.axes[0].get_xlabel().startswith(r"line tension $\Gamma"))
         self.assertTrue(figure.axes[0].texts[0].get_text().endswith("\n1 of 4 points: the paths are too short"))
 
@@ -473,13 +508,14 @@ class Mixtures(LaboratoryTest):
 
     def module(self, *arguments):
         path = f"{BIN}:{os.environ['PATH']}"
-        done = subprocess.run([sys.executable, "-m", "clogsweep", *arguments], cwd=self.folder, capture_output=True, text=True,
-                              env={**os.environ, "PYTHONPATH": str(ROOT / "analysis"), "PATH": path})
+        done = subprocess.run([sys.executable, "-m", "clogsweep", *arguments], cwd=self.folder, capture_output=True,
+                              text=True, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis"), "PATH": path})
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def rows(self, output, seeds, diameter, outcomes):
         """A sweep with these outcomes. @param outcomes  status and distance [mm] by diameter and seed"""
-        self.sweep("--quiet", *ARRAY[:-2], *self.FAR, f"seeds={seeds}", output=output, angle="20 deg", diameter=diameter)
+        self.sweep("--quiet", *ARRAY[:-2], *self.FAR, f"seeds={seeds}", output=output, angle="20 deg",
+                   diameter=diameter)
         texts = self.fit(output)["laboratories"]
 
         def edit(rows):
@@ -635,7 +671,8 @@ class Mixtures(LaboratoryTest):
         self.assertIn(" (above ", self.succeed("clogfit", "s.h5", *self.TENSIONS).stdout)
         one = self.copy_sweep("one.h5", *SMALL, *self.FAR, "line-tension=0.5,1", "seeds=1")
         stored_rows.change_columns(one, distance=[1, 2], **self.CLOG)
-        self.assertIn("lambda = 1.75 sigma, without an interval\n", self.succeed("clogfit", "one.h5", *self.TENSIONS).stdout)
+        self.assertIn("lambda = 1.75 sigma, without an interval\n",
+                      self.succeed("clogfit", "one.h5", *self.TENSIONS).stdout)
 
     def test_what_is_no_mixture_is_refused(self):
         keys = [*ARRAY[:-2], "max-time=1", "seeds=1", "preset=elastic"]

@@ -16,11 +16,11 @@ import clogsweep  # noqa: E402
 
 SMALL_SWEEP = [*QUICK, "seeds=1..3", "--verbose", "--output", "s.h5"]
 # All commands that print something and then end
-REPORTS = [["clogsweep", "--help"], ["clogsweep", "--version"], ["clogsweep", "--print-config"], ["clogsweep", *QUICK, "--dry-run"],
-           ["clogsweep", "doctor"], ["clogsweep", "doctor", "--help"], ["clogsweep", "status", "done.h5"],
-           ["clogsweep", "verify", "done.h5"], ["clogsweep", "replay", "done.h5", "0"],
-           ["clogrun", "--help"], ["clogrun", "sag", "vertices=64", "max-time=1"],
-           ["clogrun", "array", *QUICK, "--output", "run.h5"],
+REPORTS = [["clogsweep", "--help"], ["clogsweep", "--version"], ["clogsweep", "--print-config"],
+           ["clogsweep", *QUICK, "--dry-run"], ["clogsweep", "doctor"], ["clogsweep", "doctor", "--help"],
+           ["clogsweep", "status", "done.h5"], ["clogsweep", "verify", "done.h5"],
+           ["clogsweep", "replay", "done.h5", "0"], ["clogrun", "--help"],
+           ["clogrun", "sag", "vertices=64", "max-time=1"], ["clogrun", "array", *QUICK, "--output", "run.h5"],
            ["clogfit", "--help"], ["clogfit", "done.h5"], ["clogfit", "done.h5", "--format", "json"],
            ["clogfit", "drag", "speeds.csv"]]
 SPEEDS = "d [sigma], v [v_t]\n0.01,0.05\n0.02,0.12\n0.05,0.3\n0.1,0.5\n0.2,0.7\n"
@@ -29,8 +29,8 @@ SPEEDS = "d [sigma], v [v_t]\n0.01,0.05\n0.02,0.12\n0.05,0.3\n0.1,0.5\n0.2,0.7\n
 class Streams(SweepTest):
     def redirect(self, redirection, name, *arguments, ranks=None):
         command = [*([str(MPIRUN), str(ranks)] if ranks else []), str(BIN / name), *arguments]
-        return subprocess.run(["bash", "-c", f'"$@" {redirection}', "bash", *command], cwd=self.folder, capture_output=True,
-                              text=True, timeout=LONGEST)
+        return subprocess.run(["bash", "-c", f'"$@" {redirection}', "bash", *command], cwd=self.folder,
+                              capture_output=True, text=True, timeout=LONGEST)
 
     def prepare_reports(self):
         shutil.copyfile(shared_sweep(*QUICK, "seeds=1..3"), self.folder / "done.h5")
@@ -61,7 +61,8 @@ class Streams(SweepTest):
                 for redirection in (">&-", "<&-", "2>&-", "2>/dev/full"):
                     (self.folder / "run.h5").unlink(missing_ok=True)
                     done = self.redirect(redirection, *report)
-                    self.assertEqual((done.returncode, done.stderr), (usual.returncode, "" if "2>" in redirection else usual.stderr), redirection)
+                    self.assertEqual((done.returncode, done.stderr),
+                                     (usual.returncode, "" if "2>" in redirection else usual.stderr), redirection)
                 (self.folder / "run.h5").unlink(missing_ok=True)
 
     def test_output_that_cannot_be_written_is_an_error(self):
@@ -158,7 +159,8 @@ class Files(SweepTest):
         for ranks in (None, 2):
             command = [*([str(MPIRUN), str(ranks)] if ranks else []), str(BIN / "clogsweep"), "--config", "/dev/stdin", "--dry-run"]
             config = "seeds = 1..7\nvertices = 64\nbox = 20\nmax-time = 1\n"
-            done = subprocess.run(command, input=config, cwd=self.folder, capture_output=True, text=True, timeout=LONGEST)
+            done = subprocess.run(command, input=config, cwd=self.folder, capture_output=True, text=True,
+                                  timeout=LONGEST)
             self.assertIn("# 7 tasks", done.stdout, done.stderr)
 
     def test_a_signal_ends_the_waiting_for_a_pipe(self):
@@ -167,7 +169,8 @@ class Files(SweepTest):
                                      (["clogrun", "sag", "--config", "pipe"], -signal.SIGTERM),
                                      (["clogfit", "drag", "pipe"], -signal.SIGTERM)):
             with self.subTest(arguments):
-                process = subprocess.Popen([str(BIN / arguments[0]), *arguments[1:]], cwd=self.folder, stderr=subprocess.PIPE)
+                process = subprocess.Popen([str(BIN / arguments[0]), *arguments[1:]], cwd=self.folder,
+                                           stderr=subprocess.PIPE)
                 # The call returns when the program has opened its end.
                 writer = os.open(self.folder / "pipe", os.O_WRONLY)
                 process.terminate()
@@ -181,10 +184,11 @@ class Alone(SweepTest):
 
     def test_it_needs_neither_environment_nor_daemon(self):
         environment = {name: value for name, value in os.environ.items() if name == "ASAN_OPTIONS"}
-        process = subprocess.Popen([str(BIN / "clogsweep"), *ENDLESS], cwd=self.folder, env=environment, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen([str(BIN / "clogsweep"), *ENDLESS], cwd=self.folder, env=environment,
+                                   stderr=subprocess.PIPE, text=True)
         self.addCleanup(lambda: process.poll() is None and process.kill())
-        self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()
-                      or process.poll() is not None)
+        self.wait_for(lambda: (self.folder / "s.h5").exists() and
+                      (table(self.folder / "s.h5").status == "running").any() or process.poll() is not None)
         names = subprocess.run(["ps", "-o", "comm=", "--ppid", str(process.pid)], capture_output=True, text=True).stdout
         process.send_signal(signal.SIGTERM)
         self.ended(process, 75)
@@ -193,8 +197,8 @@ class Alone(SweepTest):
     def test_it_needs_no_folder_for_its_own_files(self):
         # Otherwise all such ranks of a user would share one folder. A rank would then fail if it started while another
         # rank ends.
-        done = subprocess.run([str(BIN / "clogsweep"), *QUICK, "--output", "s.h5"], cwd=self.folder, env={**os.environ, "TMPDIR": "/proc"},
-                              capture_output=True, text=True)
+        done = subprocess.run([str(BIN / "clogsweep"), *QUICK, "--output", "s.h5"], cwd=self.folder,
+                              env={**os.environ, "TMPDIR": "/proc"}, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
 
 

@@ -76,7 +76,8 @@ class Tables(Analysis):
 
     def test_readers_in_python_refuse_the_same_errors(self):
         readers = self.readers_in_python()
-        self.assertEqual([name for name, (command, *_) in self.READERS.items() if not command[0].startswith("clog")], list(readers))
+        self.assertEqual([name for name, (command, *_) in self.READERS.items() if not command[0].startswith("clog")],
+                         list(readers))
         for name, read in readers.items():
             command, head, lines = self.READERS[name]
             self.table(",", [head, *lines])
@@ -96,7 +97,8 @@ class Tables(Analysis):
                 quantity = title.partition("[")[0].strip()
                 for other in {title, f"{quantity} [mm]"}:
                     for place in (column + 1, len(head)):
-                        doubled = [[*cells[:place], cell, *cells[place:]] for cells, cell in zip([head, *lines], [other, *(line[column] for line in lines)])]
+                        doubled = [[*cells[:place], cell, *cells[place:]]
+                                   for cells, cell in zip([head, *lines], [other, *(line[column] for line in lines)])]
                         self.table(",", [["# measured"], *doubled])
                         with self.subTest(reader=name, header=doubled[0]), self.assertRaises(UserError) as refusal:
                             read()
@@ -110,7 +112,9 @@ class Tables(Analysis):
         np.testing.assert_array_equal(read(), plain)
 
     def test_both_languages_know_the_same_errors(self):
-        words = re.findall(r'"(#[^"]+)"', (ROOT / "src" / "console" / "csv.cpp").read_text().partition("other_error_words[] =")[2].partition(";")[0])
+        words = re.findall(r'"(#[^"]+)"',
+                           (ROOT / "src" / "console"
+                            / "csv.cpp").read_text().partition("other_error_words[] =")[2].partition(";")[0])
         self.assertGreater(len(words), 8)
         for word in words:
             self.assertIn(word.casefold(), [error.casefold() for error in ERRORS])
@@ -136,8 +140,10 @@ class Tables(Analysis):
                         self.assertIn(f"t.csv line {second[0] + 2}: {title}: '{other}' has a", done.stderr)
 
     def test_the_first_line_and_quoted_cells_are_no_exceptions(self):
-        for text in ("#N/A,2,1\n5,5,1\n", '"#N/A",2,1\n5,5,1\n', "#N/A 2 1\n5 5 1\n", "#REF!;2;1\n5;5;1\n", '5,5,1\n"#DIV/0!",2,1\n'):
-            self.refuse("clogsweep", f"obstacles={self.write('t.csv', text)}", *OWN, words=["t.csv line", "column 1 is '#"])
+        for text in ("#N/A,2,1\n5,5,1\n", '"#N/A",2,1\n5,5,1\n', "#N/A 2 1\n5 5 1\n", "#REF!;2;1\n5;5;1\n",
+                     '5,5,1\n"#DIV/0!",2,1\n'):
+            self.refuse("clogsweep", f"obstacles={self.write('t.csv', text)}", *OWN,
+                        words=["t.csv line", "column 1 is '#"])
 
     def test_comments_remain_comments(self):
         comments = ["# 55 posts, measured!", "#a, b", "## A section", "#", "######", "# is this right?", "#x,y,diameter", '"# quoted, with a comma"', "# #N/A", "#1"]
@@ -150,7 +156,8 @@ class Tables(Analysis):
                 self.table(separator, [*([comment] for comment in comments), head, lines[0], *([comment] for comment in comments), *lines[1:]])
                 told = self.call(command)
                 with self.subTest(reader=name, separator=separator):
-                    self.assertEqual((told.returncode, without_costs(told.stdout)), (expected.returncode, without_costs(expected.stdout)), told.stderr)
+                    self.assertEqual((told.returncode, without_costs(told.stdout)),
+                                     (expected.returncode, without_costs(expected.stdout)), told.stderr)
 
 
 class Units(ProgramTest):
@@ -159,7 +166,8 @@ class Units(ProgramTest):
     def circles(self, text):
         """The circles of a file, in droplet diameters."""
         self.write("posts.csv", text)
-        self.succeed("clogrun", "array", "obstacles=posts.csv", "box=10", "vertices=64", "max-time=0.1", "--output", "run.h5", "--write-obstacles", "read.csv")
+        self.succeed("clogrun", "array", "obstacles=posts.csv", "box=10", "vertices=64", "max-time=0.1", "--output",
+                     "run.h5", "--write-obstacles", "read.csv")
         found = np.loadtxt(self.folder / "read.csv", delimiter=",", skiprows=1, comments="#")
         for name in ("run.h5", "read.csv"):
             (self.folder / name).unlink()
@@ -175,13 +183,17 @@ class Units(ProgramTest):
                 if place == 0:
                     self.assertEqual(self.circles(text), half)
                 else:
-                    self.refuse("clogsweep", f"obstacles={self.write('posts.csv', text)}", *OWN, words=[f"posts.csv line {place + 1}", "below circles", "above all circles"])
+                    self.refuse("clogsweep", f"obstacles={self.write('posts.csv', text)}", *OWN,
+                                words=[f"posts.csv line {place + 1}", "below circles", "above all circles"])
         # Concatenated files have the same line twice.
         self.assertEqual(self.circles(units + lines[0] + units + lines[1] + units + lines[2]), half)
-        self.refuse("clogsweep", f"obstacles={self.write('posts.csv', units + '# units=um droplet=3um' + chr(10) + self.CIRCLES)}", *OWN, words=["line 2", "contradict"])
+        self.refuse("clogsweep",
+                    f"obstacles={self.write('posts.csv', units + '# units=um droplet=3um' + chr(10) + self.CIRCLES)}",
+                    *OWN, words=["line 2", "contradict"])
 
     def test_units_are_read_in_other_spellings(self):
-        for units in ("# units = um, droplet = 2um", "# Units=um; Droplet=2", "#unit= um droplet =0.002mm", "# units=um droplet=2um;;"):
+        for units in ("# units = um, droplet = 2um", "# Units=um; Droplet=2", "#unit= um droplet =0.002mm",
+                      "# units=um droplet=2um;;"):
             with self.subTest(units):
                 self.assertEqual(self.circles(f"{units}\n{self.CIRCLES}"), [(1, 1, 0.5), (2.5, 2.5, 0.5), (4, 4, 0.5)])
         self.assertEqual(self.circles(f"# units=um droplet=4um\n{self.CIRCLES}"), [(0.5, 0.5, 0.25), (1.25, 1.25, 0.25), (2, 2, 0.25)])
@@ -191,23 +203,32 @@ class Points(ProgramTest):
     def test_a_blank_line_of_one_column_is_an_empty_cell(self):
         head, cells = "line-tension", ["0.5", "", "2", "", "3"]
         for ending in ("\n", "\r\n"):
-            blank = self.succeed("clogsweep", *QUICK, "seeds=1", "--points", self.write("p.csv", ending.join([head, "0.5", "", "2", "3", "", ""])), "--dry-run").stdout
-            quoted = self.succeed("clogsweep", *QUICK, "seeds=1", "--points", self.write("p.csv", ending.join([head, "0.5", '""', "2", "3"])), "--dry-run").stdout
+            blank = self.succeed("clogsweep", *QUICK, "seeds=1", "--points",
+                                 self.write("p.csv", ending.join([head, "0.5", "", "2", "3", "", ""])),
+                                 "--dry-run").stdout
+            quoted = self.succeed("clogsweep", *QUICK, "seeds=1", "--points",
+                                  self.write("p.csv", ending.join([head, "0.5", '""', "2", "3"])), "--dry-run").stdout
             self.assertIn("# 4 tasks: 4 parameter sets", blank)
-            self.assertEqual([line for line in blank.splitlines() if not line.startswith("#")], [line for line in quoted.splitlines() if not line.startswith("#")])
+            self.assertEqual([line for line in blank.splitlines() if not line.startswith("#")],
+                             [line for line in quoted.splitlines() if not line.startswith("#")])
         # Two missing values are the same run twice.
-        self.refuse("clogsweep", *QUICK, "seeds=1", "--points", self.write("p.csv", "\n".join([head, *cells]) + "\n"), "--dry-run", words=["point 2 and point 4", "the same run"])
+        self.refuse("clogsweep", *QUICK, "seeds=1", "--points", self.write("p.csv", "\n".join([head, *cells]) + "\n"),
+                    "--dry-run", words=["point 2 and point 4", "the same run"])
         # In a table of several columns, a blank line is no row.
         self.assertIn("# 2 tasks", self.succeed("clogsweep", *QUICK, "--points", self.write("p.csv", "line-tension,seeds\n1,1\n\n2,1\n"), "--dry-run").stdout)
 
     def test_decimal_commas_with_units_are_those_of_decimal_points(self):
         self.write("lab.cfg", "diameter = 2 mm\nangle = 20 deg\nspeed = 7 mm/s\n")
         told = {}
-        for name, text in (("point", "obstacle-diameter;seeds\n0.4mm;1\n0.8 mm;2\n1.5e3um;3\n"), ("comma", "obstacle-diameter;seeds\n0,4mm;1\n0,8 mm;2\n1,5e3um;3\n")):
+        for name, text in (("point", "obstacle-diameter;seeds\n0.4mm;1\n0.8 mm;2\n1.5e3um;3\n"),
+                           ("comma", "obstacle-diameter;seeds\n0,4mm;1\n0,8 mm;2\n1,5e3um;3\n")):
             self.write("p.csv", text)
-            told[name] = self.succeed("clogsweep", "box=20", "obstacle-gap=0.4", "vertices=64", "max-time=1", "--lab", "lab.cfg", "--points", "p.csv", "--dry-run").stdout.splitlines()[:4]
+            told[name] = self.succeed("clogsweep", "box=20", "obstacle-gap=0.4", "vertices=64", "max-time=1", "--lab",
+                                      "lab.cfg", "--points", "p.csv", "--dry-run").stdout.splitlines()[:4]
         self.assertEqual(told["comma"], told["point"])
-        self.refuse("clogsweep", "box=20", "obstacle-gap=0.4", "--lab", "lab.cfg", "--points", self.write("p.csv", "obstacle-diameter;seeds\n1,350mm;1\n"), "--dry-run", words=["'1,350'", "thousands"])
+        self.refuse("clogsweep", "box=20", "obstacle-gap=0.4", "--lab", "lab.cfg", "--points",
+                    self.write("p.csv", "obstacle-diameter;seeds\n1,350mm;1\n"), "--dry-run",
+                    words=["'1,350'", "thousands"])
 
 
 if __name__ == "__main__":

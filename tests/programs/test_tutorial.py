@@ -11,8 +11,9 @@ import pages
 from drawing import Analysis
 
 # Parts of commands that take long, with their replacements
-SHORTER = [(r"\bmpirun -np \d+ ", ""), (r"\bseeds( *)=( *)1\.\.\d+", r"seeds\1=\g<2>1..2"), (r"\bmax-time( *)=( *)\d{3,}", r"max-time\1=\g<2>300"),
-           (r"\bstart=-2 end=\d\b", "start=-1 end=-0.9"), (r"\bfor tension in [\d. ]+", "for tension in 1"), (r"\bvertices=128\b", "vertices=64")]
+SHORTER = [(r"\bmpirun -np \d+ ", ""), (r"\bseeds( *)=( *)1\.\.\d+", r"seeds\1=\g<2>1..2"),
+           (r"\bmax-time( *)=( *)\d{3,}", r"max-time\1=\g<2>300"), (r"\bstart=-2 end=\d\b", "start=-1 end=-0.9"),
+           (r"\bfor tension in [\d. ]+", "for tension in 1"), (r"\bvertices=128\b", "vertices=64")]
 # This function replaces python3, and only records its arguments. The test then makes the calls itself, without starting
 # Python again.
 LATER = "later() { echo \"$@\" >> later.txt; }\n"
@@ -30,7 +31,9 @@ class Commands(Analysis):
                     for long, short in SHORTER:
                         block = re.sub(long, short, block)
                     later.write_text("")
-                    done = pages.run(language, LATER + re.sub(r"\S*python3 -m clogsweep|clogfit(?= report)", "later", block), self.folder)
+                    done = pages.run(language,
+                                     LATER + re.sub(r"\S*python3 -m clogsweep|clogfit(?= report)", "later", block),
+                                     self.folder)
                     self.assertEqual(done.returncode, 0, done.stdout)
                     for line in later.read_text().splitlines():
                         self.draw(*line.split())

@@ -50,8 +50,8 @@ class Units(ProgramTest):
         lab = self.lab(thickness="0.4 mm")
         there = self.units(lab)
         self.assertAlmostEqual(there["line_tension_of_cell_uN"], 9.6 * 0.4, places=9)
-        back = self.units(lab, "--line-tension", there["line_tension"], "--terminal-speed", there["terminal_speed"], "--wall-stiffness",
-                          there["wall_stiffness"], "--length", 24, "--time", 1000)["given"]
+        back = self.units(lab, "--line-tension", there["line_tension"], "--terminal-speed", there["terminal_speed"],
+                          "--wall-stiffness", there["wall_stiffness"], "--length", 24, "--time", 1000)["given"]
         for name, value in (("tension_mN_per_m", 9.6), ("angle_degrees", 28), ("speed_mm_per_s", 7), ("length_mm", 84),
                             ("line_tension_of_equal_sag", there["line_tension"]), ("time_s", 1000 * there["time_s"])):
             self.assertAlmostEqual(back[name] / value, 1, places=6, msg=name)
@@ -61,7 +61,8 @@ class Units(ProgramTest):
 
     def test_lists_are_converted_one_by_one(self):
         lab = self.lab()
-        upright, = self.units(self.lab(angle="90 deg", name="upright.cfg"), "--line-tension", "log(0.1,0.4,3)")["given"]["tension_mN_per_m"][:1]
+        upright, = self.units(self.lab(angle="90 deg", name="upright.cfg"), "--line-tension",
+                              "log(0.1,0.4,3)")["given"]["tension_mN_per_m"][:1]
         self.assertAlmostEqual(upright, self.units("upright.cfg", "--line-tension", 0.1)["given"]["tension_mN_per_m"])
         given = self.units(lab, "--line-tension", "0.05,0.2", "--length", "2,3")["given"]
         self.assertEqual(given["length_mm"], [7.0, 10.5])
@@ -71,10 +72,12 @@ class Units(ProgramTest):
         self.assertEqual(clogsweep.units(self.folder / lab, length=[2, 3], folder=BIN)["given"]["length_mm"], [7.0, 10.5])
         # Between upright plates this droplet has Gamma = 0.0815. At any other tilt Gamma is larger.
         told = self.succeed("clogfit", "units", lab, "--line-tension", "0.05,0.2").stdout
-        self.assertRegex(told, r"(?m)^or tilt with this tension +none: even upright, Gamma is 0\.0815 +Gamma = 0\.0500$")
+        self.assertRegex(told,
+                         r"(?m)^or tilt with this tension +none: even upright, Gamma is 0\.0815 +Gamma = 0\.0500$")
         self.assertRegex(told, r"(?m)^or tilt with this tension +2\d\.\d deg +Gamma = 0\.200$")
         self.write("no-tension.cfg", "diameter = 3.5 mm\nangle = 28 deg\n")
-        self.assertIn("not known without tension in lab.cfg", self.succeed("clogfit", "units", "no-tension.cfg", "--line-tension", 0.2).stdout)
+        self.assertIn("not known without tension in lab.cfg",
+                      self.succeed("clogfit", "units", "no-tension.cfg", "--line-tension", 0.2).stdout)
         self.refuse("clogfit", "units", lab, "--length", "1,-2", words=["--length=1,-2", "positive"])
         self.refuse("clogfit", "units", lab, "--length", "1,x", words=["--length=1,x", "x"])
 
@@ -117,7 +120,8 @@ class Units(ProgramTest):
         lab = self.lab()
         program = f"import clogsweep, json; print(json.dumps([clogsweep.units('lab.cfg', length=2, folder='{BIN}'), " \
                   f"clogsweep.units({{'diameter': '3.5 mm', 'angle': '28 deg', 'speed': '7 mm/s', 'tension': '{TENSION}'}}, length=2, folder='{BIN}')]))"
-        done = subprocess.run([sys.executable, "-c", program], cwd=self.folder, capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "analysis"), "PATH": ""})
+        done = subprocess.run([sys.executable, "-c", program], cwd=self.folder, capture_output=True, text=True,
+                              env={"PYTHONPATH": str(ROOT / "analysis"), "PATH": ""})
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads(done.stdout), 2 * [self.units(lab, "--length", 2)])
 
@@ -128,7 +132,8 @@ class Units(ProgramTest):
         with h5py.File(self.folder / "s.h5") as file:
             text, = (text[()].decode() for text in file["laboratories"].values())
             self.assertIn("tension = 9.6 mN/m", text.split("; "))
-            self.assertEqual([stored.decode() for stored in set(file["runs"]["laboratory"])], list(file["laboratories"]))
+            self.assertEqual([stored.decode() for stored in set(file["runs"]["laboratory"])],
+                             list(file["laboratories"]))
             self.assertAlmostEqual(file["runs"]["line_tension"][0] / known["line_tension"], 1, places=3)
             self.assertAlmostEqual(file["runs"]["terminal_speed"][0] / known["terminal_speed"], 1, places=3)
         self.succeed("clogsweep", "--lab", lab, *QUICK, "seeds=1..5", "--output", "s.h5")  # gives the sweep more seeds
@@ -149,22 +154,26 @@ class Units(ProgramTest):
         speed = self.units(self.lab())["terminal_speed"]
         self.succeed("clogsweep", *QUICK, f"terminal-speed={speed}", "seeds=1..2", "--output", "s.h5")
         before = json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lab", self.lab()).stdout)
-        stored_rows.change_attribute(self.folder / "s.h5", "laboratory", (self.folder / "lab.cfg").read_text() + "# measured in May\n")
+        stored_rows.change_attribute(self.folder / "s.h5", "laboratory",
+                                     (self.folder / "lab.cfg").read_text() + "# measured in May\n")
         done = self.succeed("clogfit", "s.h5", "--format", "json")
         self.assertEqual((json.loads(done.stdout)["laboratory"], done.stderr), (before["laboratory"], ""))
 
     def test_speeds_are_those_of_the_runs(self):
         # The laboratory's droplet falls at 30 mm/s; the runs have another speed.
         self.lab(speed="30 mm/s")
-        for keys, speed in ((["--lab", "lab.cfg", "terminal-speed=1mm/s"], 1), ([], 0.03 * 3.5 / self.units("lab.cfg")["time_s"])):
-            self.succeed("clogsweep", *keys, "line-tension=5", "obstacle-gap=1", "vertices=64", "box=20", "max-time=600", "seeds=1..4", "--output", f"{len(keys)}.h5")
+        for keys, speed in ((["--lab", "lab.cfg",
+                              "terminal-speed=1mm/s"], 1), ([], 0.03 * 3.5 / self.units("lab.cfg")["time_s"])):
+            self.succeed("clogsweep", *keys, "line-tension=5", "obstacle-gap=1", "vertices=64", "box=20",
+                         "max-time=600", "seeds=1..4", "--output", f"{len(keys)}.h5")
             told = self.succeed("clogfit", f"{len(keys)}.h5", "--lab", "lab.cfg", "--format", "json")
             group, = json.loads(told.stdout)["groups"]
             for name, model in (("speed_mm_per_s", "relative_speed_all"), ("speed_error_mm_per_s", "relative_speed_all_error")):
                 self.assertAlmostEqual(group[name] / (speed * group[model]), 1, places=3)
             self.assertIn("those of runs with a terminal speed of", told.stderr)
             self.assertIn("that of the laboratory's description is 30 mm/s", told.stderr)
-        run = self.succeed("clogrun", "array", "--lab", "lab.cfg", "terminal-speed=1mm/s", *QUICK, "seeds=1", "--output", "r.h5").stdout
+        run = self.succeed("clogrun", "array", "--lab", "lab.cfg", "terminal-speed=1mm/s", *QUICK, "seeds=1",
+                           "--output", "r.h5").stdout
         time, = re.findall(r"t = ([-0-9.e]+) t0", run)
         long, = re.findall(r"t = ([-0-9.e]+) s", run)
         self.assertAlmostEqual(float(long) / (float(time) * self.units("lab.cfg")["time_s"]), 1, places=2)
@@ -196,7 +205,8 @@ class Units(ProgramTest):
         self.assertAlmostEqual(rows.line_tension["dp"] / known["line_tension"], 1, places=3)
         self.assertAlmostEqual(rows.wall_stiffness["sp"] / known["wall_stiffness"], 1, places=3)
         self.write("p.csv", "model,obstacle-gap,vertices\ndp,0.4,64\nsp,0.5,\n")
-        self.succeed("clogsweep", "--lab", "lab.cfg", "--points", "p.csv", "box=20", "max-time=20", "seeds=1", "--output", "p.h5")
+        self.succeed("clogsweep", "--lab", "lab.cfg", "--points", "p.csv", "box=20", "max-time=20", "seeds=1",
+                     "--output", "p.h5")
         pointed = table(self.folder / "p.h5").set_index("model")
         for name, model in (("line_tension", "dp"), ("wall_stiffness", "sp")):
             self.assertEqual(pointed[name][model], rows[name][model])
@@ -206,7 +216,8 @@ class Units(ProgramTest):
         tension."""
         for diameter in ("0.8", "1.2"):
             lab = self.lab(f"{diameter} mm", "20 deg", "1.2 mm/s", tension="10 mN/m", name=f"{diameter}.cfg")
-            self.succeed("clogsweep", "--lab", lab, "vertices=64", "box=20", "max-time=40", "seeds=1..2", "--output", f"s{diameter}.h5")
+            self.succeed("clogsweep", "--lab", lab, "vertices=64", "box=20", "max-time=40", "seeds=1..2", "--output",
+                         f"s{diameter}.h5")
         return ["s0.8.h5", "s1.2.h5"]
 
     def check_two_droplets(self, *files):
@@ -233,7 +244,8 @@ class Units(ProgramTest):
         self.succeed("clogsweep", "salvage", "both.h5", "--output", "salvaged.h5")
         self.check_two_droplets("salvaged.h5")
         groups = clogsweep.open([self.folder / name for name in files], BIN).fit().known
-        self.assertEqual({groups.said("laboratory", group["laboratory"]) for group in groups.members}, {"diameter = 0.8 mm", "diameter = 1.2 mm"})
+        self.assertEqual({groups.said("laboratory", group["laboratory"]) for group in groups.members},
+                         {"diameter = 0.8 mm", "diameter = 1.2 mm"})
         self.succeed("clogfit", "report", "both.h5", "--output", "r.html")
         self.assertIn("diameter = 0.8 mm", (self.folder / "r.html").read_text())
 
@@ -248,7 +260,8 @@ class Units(ProgramTest):
             del file["laboratories"]
         done = self.run_program("clogfit", first)
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("of some of its rows (another program changed the file); give this laboratory by --lab", done.stderr)
+        self.assertIn("of some of its rows (another program changed the file); give this laboratory by --lab",
+                      done.stderr)
         self.assertIn("lambda/mm", self.succeed("clogfit", first, "--lab", "0.8.cfg").stdout)
 
     def test_a_report_has_bounds_in_laboratory_units(self):
@@ -275,7 +288,8 @@ class Units(ProgramTest):
     def test_a_curve_tells_the_units_of_its_laboratory(self):
         self.succeed("clogsweep", "--lab", self.lab(), *QUICK, "line-tension=0.5,1,2,4", "seeds=1..3", "--output", "s.h5")
         gamma = self.units("lab.cfg")["tension_mN_per_m_of_gamma_1"]
-        self.assertIn(f"in the laboratory: sigma = 3.50 mm, Gamma = 1 is {rounded.plain(gamma)} mN/m", self.succeed("clogfit", "curve", "s.h5").stdout)
+        self.assertIn(f"in the laboratory: sigma = 3.50 mm, Gamma = 1 is {rounded.plain(gamma)} mN/m",
+                      self.succeed("clogfit", "curve", "s.h5").stdout)
 
     def test_a_run_of_a_laboratory_is_told_in_its_units(self):
         lab = self.lab()

@@ -24,8 +24,10 @@ class Integers(ProgramTest):
         self.assertIn("3 runs", self.succeed("clogsweep", "status", "s.h5").stdout)
 
     def test_other_notations_of_integers_get_the_one_that_is_accepted(self):
-        for text, words in [("1:10", ["1..10"]), ("1:10:2", ["1..10:2"]), ("1e3", ["1000"]), ("1;2;3", ["1,2,3"]), ("1; 2", ["1,2"]), ("1 2 3", ["1,2,3"]), ("1-10", ["1..10"]), ("2.0", ["did you mean 2?"]),
-                            ("1..9:0", ["step"]), ("-3", ["0 to 4294967295"]), ("-3..2", ["0 to 4294967295"]), ("5000000000", ["0 to 4294967295"]), ("two", ["'two' is not an integer"])]:
+        for text, words in [("1:10", ["1..10"]), ("1:10:2", ["1..10:2"]), ("1e3", ["1000"]), ("1;2;3", ["1,2,3"]),
+                            ("1; 2", ["1,2"]), ("1 2 3", ["1,2,3"]), ("1-10", ["1..10"]), ("2.0", ["did you mean 2?"]),
+                            ("1..9:0", ["step"]), ("-3", ["0 to 4294967295"]), ("-3..2", ["0 to 4294967295"]),
+                            ("5000000000", ["0 to 4294967295"]), ("two", ["'two' is not an integer"])]:
             with self.subTest(text):
                 done = self.run_program("clogsweep", *DRY, f"seeds={text}")
                 self.refuse("clogsweep", *DRY, f"seeds={text}", words=[f"seeds={text}", *words])
@@ -43,7 +45,8 @@ class Commands(ProgramTest):
                                         ("clogsweep", "compare", "clogfit compare"), ("clogsweep", "report", "clogfit report"), ("clogfit", "merge", "clogsweep merge"),
                                         ("clogfit", "status", "clogsweep status"), ("clogfit", "circles", "python3 -m clogsweep circles"), ("clogrun", "verify", "clogsweep verify")]:
             with self.subTest(program=program, command=command):
-                self.refuse(program, command, "s.h5", "out.csv", words=[f"unknown command '{command}'; did you mean {words}?"])
+                self.refuse(program, command, "s.h5", "out.csv",
+                            words=[f"unknown command '{command}'; did you mean {words}?"])
         self.write("export", "")
         self.refuse("clogsweep", "export", words=["no place for 'export'"])
 

@@ -137,7 +137,9 @@ def record(folder, tree, pages_tree, only, output):
         def run_program(self, name, *arguments, **options):
             def run():
                 return super(Commands, self).run_program(name, *arguments, **options)
-            return self.recorder.call(f"{self.page}: {name} {' '.join(map(str, arguments))}", run) if self.recorder else run()
+
+            return self.recorder.call(f"{self.page}: {name} {' '.join(map(str, arguments))}",
+                                      run) if self.recorder else run()
 
         def analyse(self, command, *arguments):
             def run():
@@ -181,7 +183,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("before", type=pathlib.Path)
     parser.add_argument("after", type=pathlib.Path)
-    parser.add_argument("--trees", type=pathlib.Path, nargs=2, default=[pathlib.Path(__file__).resolve().parents[2]] * 2)
+    parser.add_argument("--trees", type=pathlib.Path, nargs=2,
+                        default=[pathlib.Path(__file__).resolve().parents[2]] * 2)
     parser.add_argument("--only", default="", help="pages with this in their path")
     parser.add_argument("--record", type=pathlib.Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()

@@ -58,4 +58,6 @@ def correlation(residuals: Numbers) -> float:
     """The correlation between successive residuals, without subtraction of their mean. For n residuals of pure noise it
     is about 1/sqrt(n) or less. If the profiles differ systematically, the correlation is near one."""
     squares = float(residuals @ residuals)
-    return float(residuals[1:] @ residuals[:-1]) / squares if len(residuals) >= FEWEST_CORRELATED and squares > 0 else math.nan
+    if len(residuals) < FEWEST_CORRELATED or not squares > 0:
+        return math.nan
+    return float(residuals[1:] @ residuals[:-1]) / squares

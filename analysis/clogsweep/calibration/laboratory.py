@@ -24,8 +24,10 @@ def quantities(given: Mapping[str, str | None], folder: pathlib.Path) -> tuple[d
     try:
         answer = laboratory.units(UNKNOWN | known, folder=folder)
     except ProgramFailed as failure:
-        raise UserError(re.sub("^.*lab.cfg (invalid )?", lambda found: "invalid --" if found[1] else "", str(failure))) from failure
-    return answer, Scales(answer["diameter_mm"] * 1e-3 if "diameter" in known else 0, answer["speed_mm_per_s"] * 1e-3 if "speed" in known else 0)
+        reason = re.sub("^.*lab.cfg (invalid )?", lambda found: "invalid --" if found[1] else "", str(failure))
+        raise UserError(reason) from failure
+    return answer, Scales(answer["diameter_mm"] * 1e-3 if "diameter" in known else 0,
+                          answer["speed_mm_per_s"] * 1e-3 if "speed" in known else 0)
 
 
 def print_json(answer: Mapping[str, Any], document: Mapping[str, Any]) -> None:

@@ -77,13 +77,17 @@ def read_table(path: str, length: str, scales: Scales) -> Numbers:
             if not columns:
                 columns = tables.columns_of(cells)
                 if not {length, "v"} <= columns.keys():
-                    raise UserError(f"needs a header that names the columns {length} and v, e.g. {length} [mm], v [mm/s]")
-                factors = (factor(cells[columns[length]], "sigma", scales.diameter, "--diameter"), factor(cells[columns["v"]], "v_t", scales.speed, "--speed"))
+                    raise UserError(f"needs a header that names the columns {length} and v, e.g. "
+                                    f"{length} [mm], v [mm/s]")
+                factors = (factor(cells[columns[length]], "sigma", scales.diameter, "--diameter"),
+                           factor(cells[columns["v"]], "v_t", scales.speed, "--speed"))
                 continue
             if len(cells) <= max(columns[length], columns["v"]):
                 raise UserError("has too few columns")
             shape = (cells + [""])[min(columns.get("A", len(cells)), len(cells))]
-            found.append([numbers.read(cells[columns[length]], length) * factors[0], numbers.read(cells[columns["v"]], "v") * factors[1], numbers.read(shape, "A") if shape else math.nan])
+            found.append([numbers.read(cells[columns[length]], length) * factors[0],
+                          numbers.read(cells[columns["v"]], "v") * factors[1],
+                          numbers.read(shape, "A") if shape else math.nan])
         except UserError as error:
             raise UserError(f"{path} line {line_number}: {error}") from error
     numbers.check(path)
@@ -103,7 +107,8 @@ def at(profile: Profile, h: Numbers) -> Profile:
     ends = np.array([profile.h[0], profile.h.max()])
     # Conversion to diameters may round a frame at the start or at the end of the profile to a place outside.
     near = np.where(np.abs(h - np.clip(h, *ends)) < ROUNDING, np.clip(h, *ends), h)
-    return Profile(h, *(np.interp(near, profile.h[first], values[first], left=math.nan, right=math.nan) for values in profile[1:]))
+    return Profile(h, *(np.interp(near, profile.h[first], values[first], left=math.nan, right=math.nan)
+                        for values in profile[1:]))
 
 
 def read_profile(path: str, scales: Scales = Scales()) -> tuple[Profile, np.void | None]:
@@ -122,8 +127,9 @@ def read_trial(path: str, scales: Scales = Scales()) -> tuple[Profile, Channel |
     if row is None:
         return profile, None
     if profile.h[-1] < min(float(row["end"]), FARTHEST_FRAME):
-        raise UserError(f"cannot calibrate with {path} (its droplet was at h = {profile.h[-1]:.3g} when the run ended: it clogged, or was stopped); "
-                        "give a droplet that passed")
+        raise UserError(f"cannot calibrate with {path} (its droplet was at h = {profile.h[-1]:.3g} when the run ended: "
+                        "it clogged, or was stopped); give a droplet that passed")
     last = round(FARTHEST_FRAME * FRAMES_PER_DIAMETER)
     frames = at(profile, np.arange(-last, last + 1) / FRAMES_PER_DIAMETER)
-    return Profile(*(values[np.isfinite(frames.speed)] for values in frames)), Channel(*(float(row[name]) for name in Channel._fields))
+    profile = Profile(*(values[np.isfinite(frames.speed)] for values in frames))
+    return profile, Channel(*(float(row[name]) for name in Channel._fields))

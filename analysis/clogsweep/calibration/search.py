@@ -93,7 +93,8 @@ class Search:
     """The simulations of one profile, stored by their places (log Gamma and b_0/b_inf). Simulations run in parallel. A
     place that was simulated before is seldom simulated again."""
 
-    def __init__(self, measured: Profile, simulate: Simulation, progress: Callable[[float, float, float], None]) -> None:
+    def __init__(self, measured: Profile, simulate: Simulation,
+                 progress: Callable[[float, float, float], None]) -> None:
         self.measured, self.simulate, self.progress = measured, simulate, progress
         self.known: dict[tuple[float, float], Attempt] = {}
 
@@ -116,7 +117,8 @@ class Search:
         corners = np.array(start) + np.vstack([np.zeros(2), np.diag(first_step)])
         corners = np.where(corners > UPPER, 2 * np.array(start) - corners, corners)
         found = optimize.minimize(
-            lambda scaled: self.attempt(scaled * scale).delta, corners[0] / scale, method="Nelder-Mead", bounds=optimize.Bounds(LOWER / scale, UPPER / scale),
+            lambda scaled: self.attempt(scaled * scale).delta, corners[0] / scale, method="Nelder-Mead",
+            bounds=optimize.Bounds(LOWER / scale, UPPER / scale),
             options={"initial_simplex": corners / scale, "xatol": 1, "fatol": math.inf, "maxfev": most})
         return self.attempt(found.x * scale), found.success
 
@@ -124,16 +126,19 @@ class Search:
         """Finds the linearised residuals by finite differences over a step. Returns None if the droplet clogs a step
         away, or if the frames do not determine both line tension and drag."""
         below = np.maximum(place - step, [-math.inf, 0])
-        beside = [(place[0] + step[0], place[1]), (below[0], place[1]), (place[0], place[1] + step[1]), (place[0], below[1])]
+        beside = [(place[0] + step[0], place[1]), (below[0], place[1]), (place[0], place[1] + step[1]),
+                  (place[0], below[1])]
         here, stiffer, softer, slower, faster = every = self.attempts([place, *beside])
         if len({attempt.num_never_reached for attempt in every}) > 1:
             return None
-        slopes = np.stack([stiffer.residuals - softer.residuals, slower.residuals - faster.residuals], axis=1) / (place + step - below)
+        differences = [stiffer.residuals - softer.residuals, slower.residuals - faster.residuals]
+        slopes = np.stack(differences, axis=1) / (place + step - below)
         information = slopes.T @ slopes
         if not np.linalg.det(information) > 1e-12 * np.prod(np.diag(information)):
             return None
         variance = here.residuals @ here.residuals / (len(here.residuals) - 2)
-        return Linearised(-np.linalg.lstsq(slopes, here.residuals, rcond=None)[0], np.sqrt(variance * np.diag(np.linalg.inv(information))))
+        return Linearised(-np.linalg.lstsq(slopes, here.residuals, rcond=None)[0],
+                          np.sqrt(variance * np.diag(np.linalg.inv(information))))
 
     def linearise(self, place: Place) -> Linearised | None:
         """Computes the linearised residuals twice: first over steps so short that the droplets on both sides of the
@@ -151,7 +156,8 @@ class Search:
             if around := self.linearise(best.place):
                 if np.all(np.abs(around.step) <= np.maximum(NEGLIGIBLE * around.errors, [1e-5, 1e-6])):
                     return best, True
-                best = nearest([best, *self.attempts([np.array(best.place) + share * around.step for share in (1, 0.5, 0.2, 0.05)])])
+                along = [np.array(best.place) + share * around.step for share in (1, 0.5, 0.2, 0.05)]
+                best = nearest([best, *self.attempts(along)])
             if best.delta >= WORTH_IT * before:
                 found, is_small = self.descend(best.place, (0.005, max(0.02 * best.place[1], 0.001)), (5e-5, 5e-6), 80)
                 best = nearest([best, found])
@@ -176,11 +182,13 @@ class Search:
         """@return the best simulation; whether the search converged; the smallest Gamma at which droplets clog, or
         NaN"""
         grid = self.attempts(list(itertools.product(GRID_TENSIONS, GRID_DRAGS)))
-        minima = in_parallel(lambda start: self.descend(start, (0.4, max(0.3 * start[1], 0.03)), (0.01, 0.002), 40)[0], starts(grid))
+        minima = in_parallel(lambda start: self.descend(start, (0.4, max(0.3 * start[1], 0.03)), (0.01, 0.002), 40)[0],
+                             starts(grid))
         drag = nearest(minima).place[1]
         clog = self.bracket_clog(grid, drag)
         if clog:
-            ladder = self.attempts([(clog[0] - distance, factor * drag) for distance in LADDER_DISTANCES for factor in LADDER_DRAGS])
+            ladder = self.attempts([(clog[0] - distance, factor * drag)
+                                    for distance in LADDER_DISTANCES for factor in LADDER_DRAGS])
             minima += in_parallel(lambda start: self.descend(start, (0.01, max(0.05 * start[1], 0.001)), (5e-4, 5e-5), 60)[0], starts(ladder))
         return *self.polish(nearest(minima)), math.exp(clog[1]) if clog else math.nan
 
@@ -209,25 +217,31 @@ def warnings(best: Attempt, found: Calibration) -> list[str]:
     # The correlation of independent noise exceeds this limit once in seven hundred trials. If the residuals are
     # systematic, the measurement differs from the model in more than Gamma and b_0.
     largest = 3 / math.sqrt(num_frames)
-    shapes = [(name, measure) for name, measure, delta in (("speeds", found.speed_correlation, found.delta_v), ("shapes", found.shape_correlation, found.delta_a))
+    shapes = [(name, measure) for name, measure, delta in (("speeds", found.speed_correlation, found.delta_v),
+                                                           ("shapes", found.shape_correlation, found.delta_a))
               if measure > largest and delta > MESH][:1]
     every = [
         (not found.converged, "the search did not converge: another place may have a smaller Delta_v"),
         # A drag at its lower limit of 0 needs no warning, because it cannot be negative.
         (not LOWER[0] + 0.01 < log_tension < UPPER[0] - 0.01 or drag > 0.99 * UPPER[1],
          "the best is at the end of what was searched, and may lie beyond"),
-        (best.num_never_reached > 0, f"no simulated droplet comes to {best.num_never_reached} of the frames: look at --orifice, at the units and at h"),
-        (math.isnan(found.line_tension_error), "no errors: the frames do not determine both, or the droplet clogs at a line tension beside this one"),
-        (found.delta_v > GOOD, "Delta_v is large: no simulated droplet moves like this one; look at --orifice, units, vertices"),
-        *((True, f"the {name} of successive frames differ alike from the best run (correlation {measure:.2f}; noise of {num_frames} frames "
-                 f"stays below {largest:.2f}): no Gamma and b_0 explain this profile, and errors are too small; look at V_t "
-                 "(terminal-speed, or --speed and --angle) first, then at orifice, wedge-angle and units") for name, measure in shapes),
+        (best.num_never_reached > 0, f"no simulated droplet comes to {best.num_never_reached} of the frames: "
+                                     "look at --orifice, at the units and at h"),
+        (math.isnan(found.line_tension_error), "no errors: the frames do not determine both, "
+                                               "or the droplet clogs at a line tension beside this one"),
+        (found.delta_v > GOOD, "Delta_v is large: no simulated droplet moves like this one; "
+                               "look at --orifice, units, vertices"),
+        *((True, f"the {name} of successive frames differ alike from the best run (correlation {measure:.2f}; "
+                 f"noise of {num_frames} frames stays below {largest:.2f}): no Gamma and b_0 explain this profile, "
+                 "and errors are too small; look at V_t (terminal-speed, or --speed and --angle) first, "
+                 "then at orifice, wedge-angle and units") for name, measure in shapes),
         (found.clogging_tension < NEAR_CLOG * found.line_tension,
          f"close to a clog: simulated droplets of Gamma = {found.clogging_tension:.4g} and more do not pass")]
     return [text for is_so, text in every if is_so]
 
 
-def calibrate(measured: Profile, simulate: Simulation, progress: Callable[[float, float, float], None] = lambda *_: None) -> Calibration:
+def calibrate(measured: Profile, simulate: Simulation,
+              progress: Callable[[float, float, float], None] = lambda *_: None) -> Calibration:
     """Minimises Delta_v. The same profile gives the same result every time.
 
     Errors come from least squares, on the assumption that the frames are independent and have equal relative scatter.
@@ -243,6 +257,7 @@ def calibrate(measured: Profile, simulate: Simulation, progress: Callable[[float
     around = search.linearise(best.place)
     errors = around.errors if around else np.full(2, math.nan)
     shapes = shape_residuals(measured, best.simulated)
-    found = Calibration(tension, tension * float(errors[0]), drag, float(errors[1]), best.delta, root_mean_square(shapes), correlation(best.residuals),
+    found = Calibration(tension, tension * float(errors[0]), drag,
+                        float(errors[1]), best.delta, root_mean_square(shapes), correlation(best.residuals),
                         correlation(shapes), is_converged, clogging_tension, len(search.known), [])
     return found._replace(warnings=warnings(best, found))

@@ -49,8 +49,9 @@ class Clogrun:
             if self.stopping.is_set():
                 raise Stopped
             # The process has its own session, so the terminal does not send it SIGINT.
-            with subprocess.Popen([self.program, "channel", *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                  encoding="utf-8", errors="backslashreplace", start_new_session=True) as process:
+            with subprocess.Popen([self.program, "channel", *map(str, words)], stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, encoding="utf-8", errors="backslashreplace",
+                                  start_new_session=True) as process:
                 self.running.add(process)
                 # The signal may have come between the check above and the start of the process.
                 if self.stopping.is_set():
@@ -81,7 +82,9 @@ class Clogrun:
     def channel(self, words: Sequence[str]) -> Channel:
         """The channel that follows from these keys. @throws ProgramFailed  for keys that clogrun refuses"""
         with tempfile.TemporaryDirectory(prefix="clogsweep-calibrate-") as place:
-            config = dict(line.split(" = ", 1) for line in self(*words, f"--output={place}/run.h5", "--dry-run").splitlines() if " = " in line)
+            config = dict(line.split(" = ", 1)
+                          for line in self(*words, f"--output={place}/run.h5", "--dry-run").splitlines()
+                          if " = " in line)
         return Channel(*(float(config[name.replace("_", "-")]) for name in Channel._fields))
 
     def past(self, measured: Profile, words: Sequence[str]) -> Simulation:
@@ -98,12 +101,14 @@ class Clogrun:
                 raise
             start = float(farthest[1]) - 0.1
             channel = self.channel([*words, f"start={start}", f"end={end}"])
-        words += [f"start={start}", f"end={end}", f"max-time={SLOWEST * (end - start) / channel.terminal_speed}", f"--sample-interval={SAMPLE_INTERVAL}"]
+        words += [f"start={start}", f"end={end}", f"max-time={SLOWEST * (end - start) / channel.terminal_speed}",
+                  f"--sample-interval={SAMPLE_INTERVAL}"]
 
         def simulate(line_tension: float, near_wall_drag: float) -> Profile:
             """The simulated passage, which ends early if the droplet breaks or clogs."""
             with tempfile.TemporaryDirectory(prefix="clogsweep-calibrate-") as place:
-                self(*words, f"line-tension={line_tension}", f"near-wall-drag={near_wall_drag}", f"--output={place}/run.h5")
+                self(*words, f"line-tension={line_tension}", f"near-wall-drag={near_wall_drag}",
+                     f"--output={place}/run.h5")
                 return read_run(f"{place}/run.h5")[0]
 
         return simulate

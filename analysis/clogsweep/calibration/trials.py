@@ -44,13 +44,15 @@ class Progress:
         return "Delta_v down to {:.3g}, with Gamma = {:.4g}, b_0/b_inf = {:.4g}".format(*best)
 
 
-def calibrate(clogrun: Clogrun, words: Sequence[str], files: Sequence[str], profiles: Sequence[Profile]) -> list[Calibration]:
+def calibrate(clogrun: Clogrun, words: Sequence[str], files: Sequence[str],
+              profiles: Sequence[Profile]) -> list[Calibration]:
     """Calibrates all profiles. @param words  keys of clogrun channel. @throws ProgramFailed  after a signal, with the
     best results so far"""
     progress = Progress(len(files))
 
     def calibrate_one(number: int) -> Calibration:
-        found = search.calibrate(profiles[number], clogrun.past(profiles[number], words), lambda *attempt: progress.tried(number, *attempt))
+        found = search.calibrate(profiles[number], clogrun.past(profiles[number], words),
+                                 lambda *attempt: progress.tried(number, *attempt))
         progress.num_ended += 1
         return found
 

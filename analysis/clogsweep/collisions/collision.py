@@ -48,8 +48,10 @@ class Collisions:
         """Whether a droplet of each line tension breaks up."""
         circles, sweep = self.folder / "circle.csv", self.folder / "collisions.h5"
         circles.write_text(f"x,y,diameter\n{BOX / 2 + FALL},{BOX / 2 + offset},{DIAMETER}\n", encoding="utf-8")
-        programs.run_program(self.clogsweep, f"obstacles={circles}", f"box={BOX}", "seeds=1", *(f"{key}={value}" for key, value in self.keys.items()),
-                             "line-tension=" + ",".join(f"{tension:.6g}" for tension in tensions), "--output", sweep, "--quiet")
+        programs.run_program(self.clogsweep, f"obstacles={circles}", f"box={BOX}", "seeds=1",
+                             *(f"{key}={value}" for key, value in self.keys.items()),
+                             "line-tension=" + ",".join(f"{tension:.6g}" for tension in tensions),
+                             "--output", sweep, "--quiet")
         rows = np.sort(stored.read_rows(sweep), order="line_tension")
         sweep.unlink()
         stored.warn_of_failures(rows, "whole")

@@ -37,9 +37,13 @@ SOFTEST = 1
 ARRAYS, ARRAY_BOX = 4, 60  # Number of random arrays in which pairs are counted, and their width [sigma].
 
 # Keys that describe the array. All other keys describe the droplet. `obstacle-diameter` describes both.
-OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacles", "lattice", "pitch", "lattice-angle", "box",
+OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacle-diameter-spread",
+             "obstacles", "lattice", "pitch", "lattice-angle", "box",
              "boxes", "length")
-REFUSED = {"exit": "droplets leave the obstacles at one of their own", "seeds": "arrays and pairs have seeds of their own here", "max-time": "nothing runs in the array", "release": "nothing runs in the array"}
+REFUSED = {"exit": "droplets leave the obstacles at one of their own",
+           "seeds": "arrays and pairs have seeds of their own here",
+           "max-time": "nothing runs in the array",
+           "release": "nothing runs in the array"}
 
 
 Circles = Sequence[tuple[float, float, float]]  # x along the flow, y across it, diameter [sigma]
@@ -86,7 +90,8 @@ class Droplets:
         try:
             speed = float(keys.get("terminal-speed", SPEED))
         except ValueError:
-            raise UserError(f"invalid terminal-speed={keys['terminal-speed']} (must be a number); try {SPEED}") from None
+            raise UserError(f"invalid terminal-speed={keys['terminal-speed']} "
+                            f"(must be a number); try {SPEED}") from None
         # The time is limited because a soft droplet may creep on an obstacle without ever ending. Droplets that pass
         # end at the exit.
         self.keys = {"max-time": f"{LONGEST_FALL / speed:g}", "exit": f"{BOX / 2 + FALL + EXIT:g}"} | keys
@@ -113,14 +118,17 @@ class Droplets:
         found: dict[float, list[bytes]] = {}
         for row in rows:
             index = int(pathlib.Path(names[stored.text(row["obstacles"])]).stem)
-            found.setdefault(float(row["line_tension"]), [b""] * len(arrays))[index] = row["mechanism"] if row["status"] == b"clogged" else b""
+            ends = found.setdefault(float(row["line_tension"]), [b""] * len(arrays))
+            ends[index] = row["mechanism"] if row["status"] == b"clogged" else b""
         return found
 
     def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
         """Which pairs of obstacles hold a droplet that falls onto the middle between the two obstacles, for each line
         tension. A pair does not count if a single obstacle would hold the droplet.
         @param angles  of the pairs [degrees]"""
-        halves = [[(gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos)] for angle in angles]
+        halves = [[(gap + diameter) / 2 * part(math.radians(angle))
+                   for part in (math.sin, math.cos)]
+                  for angle in angles]
         ends = self.ends([[(0, -y, diameter), (2 * x, y, diameter)] for x, y in halves])
         return {tension: [end in (b"squeezed", b"hybrid") for end in words] for tension, words in ends.items()}
 
@@ -179,7 +187,8 @@ def predict(droplets: Droplets, array: Array) -> Iterator[Prediction]:
         num_angles = math.ceil(largest_angle(min(1, gap + GAP_STEP / 2), diameter) / ANGLE_STEP)
         angle_cells = np.floor(array.angles[here] / ANGLE_STEP).astype(int)
         across = array.separations[here] * np.cos(np.radians(array.angles[here]))
-        for tension, held in droplets.held(gap, diameter, [ANGLE_STEP * (index + 0.5) for index in range(num_angles)]).items():
+        angles = [ANGLE_STEP * (index + 0.5) for index in range(num_angles)]
+        for tension, held in droplets.held(gap, diameter, angles).items():
             if array.is_isotropic:
                 total = mean_cosine(held) * np.sum(array.separations[here])
             else:
@@ -204,8 +213,9 @@ def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]
     ways: list[Numbers] = []
     area, sizes = 0.0, []
     for seed in range(1, 2 if is_own else ARRAYS + 1):
-        programs.run_program(clogrun, "array", *options, *(f"{key}={value}" for key, value in keys.items()), f"seeds={seed}", "vertices=64", "max-time=1",
-                             "--output", run, "--write-obstacles", circle_file)
+        programs.run_program(clogrun, "array", *options, *(f"{key}={value}" for key, value in keys.items()),
+                             f"seeds={seed}", "vertices=64", "max-time=1", "--output", run, "--write-obstacles",
+                             circle_file)
         row = stored.read_rows(run)[0]
         run.unlink()
         circles = np.loadtxt(circle_file, delimiter=",", skiprows=1, ndmin=2, encoding="utf-8")
@@ -215,4 +225,5 @@ def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]
         sizes += circles[:, 2].tolist()
         ways += pairs_of(circles, width, length)
     along, across, diameters = np.abs(np.concatenate(ways)).T
-    return Array(area, len(sizes), float(np.mean(sizes)), diameters, np.hypot(along, across), np.degrees(np.arctan2(along, across)), not is_own)
+    return Array(area, len(sizes), float(np.mean(sizes)), diameters, np.hypot(along, across),
+                 np.degrees(np.arctan2(along, across)), not is_own)

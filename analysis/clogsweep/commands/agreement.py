@@ -20,11 +20,15 @@ from . import command_line
 
 def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="size of the figures' sweeps (reduced)")
-    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"), help="folder that python3 -m clogsweep figures wrote (results/figures)")
-    parser.add_argument("--run", action="store_true", help="first run the missing sweeps, which takes an hour in reduced size")
+    parser.add_argument("--size", choices=["reduced", "full"], default="reduced",
+                        help="size of the figures' sweeps (reduced)")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"),
+                        help="folder that python3 -m clogsweep figures wrote (results/figures)")
+    parser.add_argument("--run", action="store_true",
+                        help="first run the missing sweeps, which takes an hour in reduced size")
     parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="MPI ranks of the sweeps (2)")
-    parser.add_argument("--format", choices=sorted(agreement.WRITERS), default="markdown", help="format of the table (markdown)")
+    parser.add_argument("--format", choices=sorted(agreement.WRITERS), default="markdown",
+                        help="format of the table (markdown)")
     programs.add_option(parser)
     return parser.parse_args()
 

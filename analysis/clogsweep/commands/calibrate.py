@@ -33,16 +33,20 @@ from ..tools.errors import UserError
 from ..tools.texts import printable
 from . import command_line
 
-QUANTITIES = {"diameter": "diameter of the undeformed droplet, e.g. 3.5mm", "speed": "terminal speed far from walls, e.g. 7mm/s",
-              "angle": "angle of the plates to the horizontal, e.g. 28deg", "density": "density of the droplet (0.703g/ml)",
-              "outer-density": "density of the liquid around the droplet (0.997g/ml)", "tension": "interfacial tension, e.g. 10mN/m, to compute Gamma_exp"}
+QUANTITIES = {"diameter": "diameter of the undeformed droplet, e.g. 3.5mm",
+              "speed": "terminal speed far from walls, e.g. 7mm/s",
+              "angle": "angle of the plates to the horizontal, e.g. 28deg",
+              "density": "density of the droplet (0.703g/ml)",
+              "outer-density": "density of the liquid around the droplet (0.997g/ml)",
+              "tension": "interfacial tension, e.g. 10mN/m, to compute Gamma_exp"}
 OWN = (*QUANTITIES, "other", "format", "programs", "help", "version")
 FOUND = ("line-tension", "near-wall-drag")
 
 
 def options() -> command_line.Parser:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("profiles", nargs="*", help="CSV files, or files written by clogrun channel, one per trial; and KEY=VALUE")
+    parser.add_argument("profiles", nargs="*",
+                        help="CSV files, or files written by clogrun channel, one per trial; and KEY=VALUE")
     for name, meaning in QUANTITIES.items():
         parser.add_argument(f"--{name}", help=meaning)
     parser.add_argument("--other", help="diameter and angle of another experiment, to which Gamma is scaled")
@@ -86,7 +90,8 @@ def refuse_other_channel(file: str, stored: Channel | None, simulated: Channel, 
     """Refuses keys that contradict the channel stored with a simulated passage. A measured passage needs the channel as
     keys, because Gamma depends on it."""
     if stored is None and "orifice" not in names:
-        raise UserError("missing orifice (the fitted line tension depends on the channel); give its width in droplet diameters, e.g. orifice=0.8, "
+        raise UserError("missing orifice (the fitted line tension depends on the channel); "
+                        "give its width in droplet diameters, e.g. orifice=0.8, "
                         "and wedge-angle and tip-radius if they differ from the defaults of clogrun channel")
     for name, was, given in zip(Channel._fields, stored or (), simulated):
         key = name.replace("_", "-")
@@ -97,10 +102,12 @@ def refuse_other_channel(file: str, stored: Channel | None, simulated: Channel, 
 def means(found: Sequence[Calibration]) -> dict[str, float]:
     """Mean and standard deviation over independent trials, as published (Cheng et al., Fig. 2). The standard deviation
     of a single trial is NaN."""
-    values = {"line_tension": [one.line_tension for one in found], "near_wall_drag": [one.near_wall_drag for one in found]}
+    values = {"line_tension": [one.line_tension for one in found],
+              "near_wall_drag": [one.near_wall_drag for one in found]}
     every: dict[str, float] = {}
     for name, numbers in values.items():
-        every |= {name: statistics.fmean(numbers), f"{name}_deviation": statistics.stdev(numbers) if len(numbers) > 1 else math.nan}
+        every |= {name: statistics.fmean(numbers),
+                  f"{name}_deviation": statistics.stdev(numbers) if len(numbers) > 1 else math.nan}
     return every
 
 
@@ -108,13 +115,15 @@ def print_table(files: Sequence[str], found: Sequence[Calibration], mean: dict[s
     width = max(7, *map(len, files))
     print(f"{'profile':{width}}    Gamma*        +-  b_0/b_inf        +-   Delta_v   Delta_A")
     for file, one in zip(files, found):
-        print(f"{file:{width}}  {one.line_tension:>8.4g}  {one.line_tension_error:>8.2g}  {one.near_wall_drag:>9.4g}  {one.near_wall_drag_error:>8.2g}"
+        print(f"{file:{width}}  {one.line_tension:>8.4g}  {one.line_tension_error:>8.2g}  {one.near_wall_drag:>9.4g}  "
+              f"{one.near_wall_drag_error:>8.2g}"
               f"  {one.delta_v:>8.3g}  {one.delta_a:>8.3g}")
     for file, one in zip(files, found):
         for warning in one.warnings:
             print(f"note: {file}: {warning}")
     if len(found) > 1:
-        print("\nmean of {} trials and their standard deviation: Gamma* = {:.3g} +- {:.2g}, b_0*/b_inf = {:.3g} +- {:.2g}".format(len(found), *mean.values()))
+        print("\nmean of {} trials and their standard deviation: "
+              "Gamma* = {:.3g} +- {:.2g}, b_0*/b_inf = {:.3g} +- {:.2g}".format(len(found), *mean.values()))
     else:
         print("\none trial: the errors come from the scatter of its frames")
 

@@ -34,23 +34,35 @@ TURNS = {"right": 0, "down": 1, "left": 2, "up": 3}
 
 def options() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("drawing", type=pathlib.Path, help="drawing to read (.dxf, .gds, .svg, .png, .tif, .bmp or .jpg)")
-    command_line.add_output(parser, "name of the files: .csv, .png and .pdf are made", ".csv", ".png", ".pdf", required=True)
+    parser.add_argument("drawing", type=pathlib.Path,
+                        help="drawing to read (.dxf, .gds, .svg, .png, .tif, .bmp or .jpg)")
+    command_line.add_output(parser, "name of the files: .csv, .png and .pdf are made", ".csv", ".png", ".pdf",
+                            required=True)
     parser.add_argument("--droplet", required=True, help="diameter of the droplet with its unit, such as 200um")
     scale = parser.add_mutually_exclusive_group()
     scale.add_argument("--unit", choices=shapes.METRES, help="unit of a drawing that contains none")
     scale.add_argument("--pixel", help="size of a pixel of a picture with its unit, such as 2.5um")
-    parser.add_argument("--layer", help="use only this layer of a DXF or GDSII file, in GDSII also with its datatype, such as 1/0 (all layers)")
-    parser.add_argument("--cell", help="use this cell of a GDSII file, with all cells to which it refers (the top cells)")
-    parser.add_argument("--holes", action="store_true", help="the posts are holes in the drawn areas, whose outer edge is that of the device")
-    parser.add_argument("--posts", choices=("dark", "bright"), help="brightness of the posts in a picture (dark, unless its border and most of its area are dark)")
-    parser.add_argument("--region", type=region_of, help="x0,y0,x1,y1: use only this rectangle, in the unit and coordinates that the drawing program shows")
+    parser.add_argument("--layer", help="use only this layer of a DXF or GDSII file, in GDSII also with its datatype, "
+                                        "such as 1/0 (all layers)")
+    parser.add_argument("--cell", help="use this cell of a GDSII file, "
+                                       "with all cells to which it refers (the top cells)")
+    parser.add_argument("--holes", action="store_true",
+                        help="the posts are holes in the drawn areas, whose outer edge is that of the device")
+    parser.add_argument("--posts", choices=("dark", "bright"),
+                        help="brightness of the posts in a picture "
+                             "(dark, unless its border and most of its area are dark)")
+    parser.add_argument("--region", type=region_of, help="x0,y0,x1,y1: use only this rectangle, "
+                                                         "in the unit and coordinates that the drawing program shows")
     parser.add_argument("--flow", choices=TURNS, default="right", help="direction of the flow in the drawing (right)")
-    parser.add_argument("--tolerance", type=command_line.between(0.001, 0.5, "a fraction of the radius"), default=0.04, help="largest deviation of a post from a circle, as a fraction of its radius (0.04)")
+    parser.add_argument("--tolerance", type=command_line.between(0.001, 0.5, "a fraction of the radius"), default=0.04,
+                        help="largest deviation of a post from a circle, as a fraction of its radius (0.04)")
     others = parser.add_mutually_exclusive_group()
-    others.add_argument("--as-rows", action="store_true", help="replace posts that are not round by rows of circles along their outlines")
-    others.add_argument("--as-circles", action="store_true", help="replace posts that are not round by circles of the same area")
-    parser.add_argument("--corner", type=command_line.between(0.01, 1, "a radius in droplet diameters"), default=0.05, help="with --as-rows: radius of rounded corners, in droplet diameters (0.05)")
+    others.add_argument("--as-rows", action="store_true",
+                        help="replace posts that are not round by rows of circles along their outlines")
+    others.add_argument("--as-circles", action="store_true",
+                        help="replace posts that are not round by circles of the same area")
+    parser.add_argument("--corner", type=command_line.between(0.01, 1, "a radius in droplet diameters"), default=0.05,
+                        help="with --as-rows: radius of rounded corners, in droplet diameters (0.05)")
     return parser.parse_args()
 
 
@@ -70,7 +82,10 @@ def metres_of(arguments: argparse.Namespace, drawing: shapes.Drawing) -> float:
     if drawing.metres and arguments.unit == drawing.unit:
         return drawing.metres
     if arguments.pixel or arguments.unit:
-        metres = shapes.length_in_metres(arguments.pixel, "--pixel") if arguments.pixel else shapes.METRES[arguments.unit]
+        if arguments.pixel:
+            metres = shapes.length_in_metres(arguments.pixel, "--pixel")
+        else:
+            metres = shapes.METRES[arguments.unit]
         refuse_other_unit(arguments, drawing, metres)
         return metres
     if drawing.metres is None:
@@ -84,7 +99,8 @@ def refuse_other_unit(arguments: argparse.Namespace, drawing: shapes.Drawing, me
     if drawing.metres is None or np.isclose(metres, drawing.metres, rtol=1e-6, atol=0):
         return
     option = f"--pixel {arguments.pixel}" if arguments.pixel else f"--unit {arguments.unit}"
-    raise UserError(f"{option} contradicts {arguments.drawing} (the drawing says {drawing.unit}); run without {option}, or correct the unit in the drawing")
+    raise UserError(f"{option} contradicts {arguments.drawing} (the drawing says {drawing.unit}); "
+                    f"run without {option}, or correct the unit in the drawing")
 
 
 def remedy_of_unit(arguments: argparse.Namespace) -> str:
@@ -104,25 +120,37 @@ def call_of(device: shapes.Device, drawing: shapes.Drawing, output: pathlib.Path
     walls = "" if drawing.frame and len(device.walls) < 2 else "side-walls=on "
     inset = 1 if device.length >= 4 else 0
     ends = f"entrance={inset} exit={device.length - inset:.6g}" if inset else f"exit={device.length:.6g}"
-    return f"clogsweep obstacles={output}.csv box={device.width:.6g} length={device.length:.6g} {walls}release=entrance {ends} ..."
+    return (f"clogsweep obstacles={output}.csv box={device.width:.6g} length={device.length:.6g} "
+            f"{walls}release=entrance {ends} ...")
 
 
-def told(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> list[str]:
+def description(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> list[str]:
     """Lines that describe the content of the drawing."""
-    edge = "the region" if drawing.frame and not drawing.is_picture else "its own edge" if device.has_frame else "between its walls" if len(device.walls) == 2 else "no edge is drawn"
+    if drawing.frame and not drawing.is_picture:
+        edge = "the region"
+    elif device.has_frame:
+        edge = "its own edge"
+    else:
+        edge = "between its walls" if len(device.walls) == 2 else "no edge is drawn"
     micrometres = device.droplet_micrometres
-    words = [f"{rounded.counted(device.num_posts(), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
+    words = [f"{rounded.counted(device.num_posts(), 'post')}, "
+             f"device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
     if len(device.circles):
         diameters = device.circles[:, 2]
-        gaps = [("smallest gap", device.smallest_gap()), ("to a side", device.gap_to_sides() if device.has_frame or device.walls else np.inf)]
+        gaps = [("smallest gap", device.smallest_gap()),
+                ("to a side", device.gap_to_sides() if device.has_frame or device.walls else np.inf)]
         gap = "".join(f", {name} {gap:.4g} ({gap * micrometres:.4g} um)" for name, gap in gaps if np.isfinite(gap))
         words.append(f"diameters of circles {diameters.min():.4g} to {diameters.max():.4g}{gap}, in droplet diameters")
     if drawing.frame and len(device.walls) < 2:
-        words.append("the border is no wall in the command below, so the posts repeat across the flow; add side-walls=on if there are walls")
+        words.append("the border is no wall in the command below, so the posts repeat across the flow; "
+                     "add side-walls=on if there are walls")
     if not device.has_frame and len(device.walls) < 2:
-        words.append("no edge is drawn: the device ends half a droplet diameter beyond the posts" + (", or where a wall ends" if device.walls else " on every side; leave out side-walls=on if it has no walls"))
+        words.append("no edge is drawn: the device ends half a droplet diameter beyond the posts"
+                     + (", or where a wall ends" if device.walls else
+                        " on every side; leave out side-walls=on if it has no walls"))
     if number := len(device.walls):
-        are = "outline or line extends along the whole device and is taken for a wall" if number == 1 else "outlines or lines extend along the whole device and are taken for walls"
+        are = ("outline or line extends along the whole device and is taken for a wall" if number == 1 else
+               "outlines or lines extend along the whole device and are taken for walls")
         words.append(f"{number} {are}: side-walls=on")
     return [*words, summary(device, drawing, metres)]
 
@@ -138,7 +166,8 @@ def summary(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> st
     words += [f"{rounded.counted(drawing.duplicates, 'duplicate')} ignored"] if drawing.duplicates else []
     words += [f"{drawing.outside} outside the region"] if drawing.outside else []
     own = metres * float(np.hypot(*np.diff(drawing.from_own([(0, 0), (1, 0)]), axis=0)[0]))
-    scale = f"1 {'pixel' if drawing.is_picture else 'unit'} is {own / shapes.METRES['um']:.6g} um, {own / device.droplet_metres:.6g} droplet diameters"
+    scale = (f"1 {'pixel' if drawing.is_picture else 'unit'} is {own / shapes.METRES['um']:.6g} um, "
+             f"{own / device.droplet_metres:.6g} droplet diameters")
     return "; ".join([*words, *skipped(device, drawing), scale])
 
 
@@ -150,7 +179,8 @@ def skipped(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
         return []
     names = ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items()))
     install = "" if drawing.can_join else ", or install python3-shapely, which joins lines"
-    remedy = f" (lines red in the picture; draw closed outlines{install}; straight walls at both sides are side-walls=on)" if device.lines else ""
+    remedy = (f" (lines red in the picture; draw closed outlines{install}; "
+              "straight walls at both sides are side-walls=on)") if device.lines else ""
     return [f"skipped: {names}{remedy}"]
 
 
@@ -159,18 +189,23 @@ def in_rows(device: shapes.Device, radius: float) -> tuple[shapes.Device, list[s
     number = len(device.others)
     found = rows.as_rows(device, radius)
     micrometres = device.droplet_micrometres
-    advice = "; thin parts are cut off, and a smaller --corner keeps more of them" if found.farthest > 2 * found.corner else ""
-    return found.device, [f"{rounded.counted(number, 'post')} not round (red lines) as {rounded.counted(len(found.device.circles) - len(device.circles), 'circle')} in rows: "
-                          f"corners lose {found.farthest:.2g} at most ({found.farthest * micrometres:.2g} um), walls are rough by {found.roughness:.2g}, in droplet diameters{advice}"]
+    are_cut = found.farthest > 2 * found.corner
+    advice = "; thin parts are cut off, and a smaller --corner keeps more of them" if are_cut else ""
+    return found.device, [f"{rounded.counted(number, 'post')} not round (red lines) "
+                          f"as {rounded.counted(len(found.device.circles) - len(device.circles), 'circle')} in rows: "
+                          f"corners lose {found.farthest:.2g} at most ({found.farthest * micrometres:.2g} um), "
+                          f"walls are rough by {found.roughness:.2g}, in droplet diameters{advice}"]
 
 
 def named_slender(device: shapes.Device) -> list[str]:
     """Names the slender outlines that are to become posts, because scale bars and labels would become posts, too."""
     found = shapes.slender(device.others)
-    places = ", ".join(f"x={x:.5g} um, y={y:.5g} um" for x, y in (outline.mean(axis=0) * device.droplet_micrometres for outline in found[:3]))
+    places = ", ".join(f"x={x:.5g} um, y={y:.5g} um"
+                       for x, y in (outline.mean(axis=0) * device.droplet_micrometres for outline in found[:3]))
     more = f", and {len(found) - 3} more" if len(found) > 3 else ""
     are = "is" if len(found) == 1 else "are"
-    return [f"{rounded.counted(len(found), 'post')} {are} at least three times as long as wide, at {places}{more}; if this is a scale bar or a label, cut it away by --region or in the drawing"] if found else []
+    return [f"{rounded.counted(len(found), 'post')} {are} at least three times as long as wide, at {places}{more}; "
+            "if this is a scale bar or a label, cut it away by --region or in the drawing"] if found else []
 
 
 def remedy_of_touching(device: shapes.Device, pairs: list[tuple[int, int]], are_holes_read: bool) -> str:
@@ -181,7 +216,8 @@ def remedy_of_touching(device: shapes.Device, pairs: list[tuple[int, int]], are_
         return "Separate them in the drawing"
     holes = "" if are_holes_read else ", or give --holes if the posts are the holes of drawn areas"
     separate = "" if is_within.all() else "; separate the others"
-    return f"{int(is_within.sum())} of them {'is' if is_within.sum() == 1 else 'are'} one outline within another, as a ring has: remove the inner one in the drawing{holes}{separate}"
+    return (f"{int(is_within.sum())} of them {'is' if is_within.sum() == 1 else 'are'} one outline within another, "
+            f"as a ring has: remove the inner one in the drawing{holes}{separate}")
 
 
 def body() -> int:
@@ -192,12 +228,14 @@ def body() -> int:
     outputs.refuse_unwritable(table, "csv", arguments.drawing)
     drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts, arguments.cell, arguments.holes)
     if arguments.holes and drawing.is_picture:
-        raise UserError("no place for --holes (the drawing is a picture); --posts bright or dark chooses the posts of a picture")
+        raise UserError("no place for --holes (the drawing is a picture); "
+                        "--posts bright or dark chooses the posts of a picture")
     lines.join(drawing)
     areas.tidy(drawing, arguments.region, arguments.tolerance, arguments.holes)
     metres = metres_of(arguments, drawing)
     device = shapes.understood(drawing, metres, droplet, arguments.tolerance, TURNS[arguments.flow])
-    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), metres, remedy_of_unit(arguments), drawing.is_picture)
+    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), metres, remedy_of_unit(arguments),
+                           drawing.is_picture)
     made = named_slender(device) if arguments.as_rows or arguments.as_circles else []
     if arguments.as_rows and device.others:
         device, deviations = in_rows(device, arguments.corner)
@@ -205,22 +243,31 @@ def body() -> int:
     if arguments.as_circles:
         shapes.refuse_swallowed(drawing, [outline for outline, _ in drawing.swallowing])
         device = shapes.as_circles(device)
-    picture = Picture(device_plan.understood(device, arguments.drawing.name), f"python3 -m clogsweep circles {arguments.drawing}")
+    picture = Picture(device_plan.understood(device, arguments.drawing.name),
+                      f"python3 -m clogsweep circles {arguments.drawing}")
     command_line.tell(f"{picture.save(arguments.output)} (and .pdf)")
-    command_line.tell("\n".join(told(device, drawing, metres) + made))
+    command_line.tell("\n".join(description(device, drawing, metres) + made))
     if device.others:
-        light = "; if the picture is lit unevenly, even it out and make it black and white first" if drawing.is_picture else ""
-        raise UserError(f"{rounded.counted(len(device.others), 'post')} of {len(device.others) + len(device.circles)} not round, red in the picture; no {table} "
-                        f"was written. Use --as-rows for rows of circles along their outlines, --as-circles for circles of the same area, or a larger --tolerance; cut scale bars and labels away with --region or in the drawing, because these options make posts of them, too{light}")
+        uneven = "; if the picture is lit unevenly, even it out and make it black and white first"
+        light = uneven if drawing.is_picture else ""
+        raise UserError(f"{rounded.counted(len(device.others), 'post')} of {len(device.others) + len(device.circles)} "
+                        f"not round, red in the picture; no {table} "
+                        "was written. Use --as-rows for rows of circles along their outlines, "
+                        "--as-circles for circles of the same area, or a larger --tolerance; "
+                        "cut scale bars and labels away with --region or in the drawing, "
+                        f"because these options make posts of them, too{light}")
     if touching := device.overlaps():
         x, y, _ = device.circles[touching[0][0]]
         micrometres = device.droplet_micrometres
-        raise UserError(f"{rounded.counted(len(touching), 'pair')} of posts touch, the first at x={x:.4g}, y={y:.4g} in droplet diameters "
-                        f"({x * micrometres:.5g} um, {y * micrometres:.5g} um from the device's lower left corner); no {table} was written. "
-                        f"{remedy_of_touching(device, touching, arguments.holes)}")
-    outside = device.circles[np.any((device.circles[:, :2] < 0) | (device.circles[:, :2] >= (device.length, device.width)), axis=1)]
+        raise UserError(f"{rounded.counted(len(touching), 'pair')} of posts touch, the first at x={x:.4g}, "
+                        f"y={y:.4g} in droplet diameters "
+                        f"({x * micrometres:.5g} um, {y * micrometres:.5g} um from the device's lower left corner); "
+                        f"no {table} was written. {remedy_of_touching(device, touching, arguments.holes)}")
+    centres = device.circles[:, :2]
+    outside = device.circles[np.any((centres < 0) | (centres >= (device.length, device.width)), axis=1)]
     if len(outside):
-        raise UserError(f"{rounded.counted(len(outside), 'post')} with the centre outside the edge of the device; no {table} was written. Draw a wider edge, cut these posts away, or choose another --region")
+        raise UserError(f"{rounded.counted(len(outside), 'post')} with the centre outside the edge of the device; "
+                        f"no {table} was written. Draw a wider edge, cut these posts away, or choose another --region")
     with outputs.replaced(table) as fresh:
         fresh.write_text(shapes.csv_of(device, printable(f"{arguments.drawing.name}, by clogsweep")), encoding="utf-8")
     command_line.tell(f"{table}\n{call_of(device, drawing, arguments.output)}")

@@ -22,17 +22,20 @@ from . import command_line
 
 
 def add_measured(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--with", dest="measured", metavar="TABLE", type=pathlib.Path, help="also draw the lengths from this table of measured distances, see clogfit lengths")
+    parser.add_argument("--with", dest="measured", metavar="TABLE", type=pathlib.Path,
+                        help="also draw the lengths from this table of measured distances, see clogfit lengths")
 
 
 def body() -> int:
-    arguments = command_line.sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json",
+    arguments = command_line.sweep_to_draw(__doc__, "clogging-length",
+                                           "file of clogsweep --output, or output of clogfit --format json",
                                            [command_line.add_lab, add_measured, command_line.add_width])
     lab = command_line.lab_options(arguments)
     fitted = fit.read(arguments.sweep, arguments.programs, *lab)
     groups = fitted.known.with_lengths(arguments.sweep)
     if arguments.measured and groups.are_lattices:
-        raise UserError(f"no place for --with (pictures of lattices show lateral displacements); clogfit compare {arguments.measured} {arguments.sweep} compares lengths")
+        raise UserError("no place for --with (pictures of lattices show lateral displacements); "
+                        f"clogfit compare {arguments.measured} {arguments.sweep} compares lengths")
     own = measured.lengths_of(arguments.measured, groups, arguments.programs, *lab) if arguments.measured else []
     figure = style.figure_of(curve.draw_on, groups)
     if own:

@@ -17,7 +17,8 @@ from .command_line import save, sweep_to_draw, tasks, whole
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--most", type=whole(1), default=30, help="draw at most this number of clogs, beginning with the first (%(default)s)")
+    parser.add_argument("--most", type=whole(1), default=30,
+                        help="draw at most this number of clogs, beginning with the first (%(default)s)")
     parser.add_argument("--tasks", type=tasks, help="draw only the clogs of these tasks, e.g. 3,17,40")
     parser.add_argument("--mechanism", choices=clogs.MECHANISMS, help="draw only clogs with this mechanism")
     parser.add_argument("--jobs", type=whole(1), default=2, help="number of simultaneous replays (%(default)s)")

@@ -33,16 +33,19 @@ def offsets(word: str) -> list[float]:
     except ValueError:
         numbers = [math.nan]
     if not all(0 <= number < 0.5 for number in numbers):
-        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be numbers from 0 to below 0.5 with commas between them) try 0,0.1,0.3")
+        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be numbers from 0 to below 0.5 with commas "
+                                         "between them) try 0,0.1,0.3")
     return numbers
 
 
 def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="keys of clogsweep; vertices, terminal-speed, break-up-neck, max-time have defaults "
+    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE",
+                        help="keys of clogsweep; vertices, terminal-speed, break-up-neck, max-time have defaults "
                         "of their own here")
     command_line.add_output(parser, "name of the picture; .png and .pdf are made", ".png", ".pdf", required=True)
-    parser.add_argument("--offsets", type=offsets, default="0,0.01,0.02,0.05,0.1,0.15,0.2,0.25,0.3,0.35", help="offsets of the droplet's path from the obstacle's centre [sigma]")
+    parser.add_argument("--offsets", type=offsets, default="0,0.01,0.02,0.05,0.1,0.15,0.2,0.25,0.3,0.35",
+                        help="offsets of the droplet's path from the obstacle's centre [sigma]")
     programs.add_option(parser)
     return parser.parse_args()
 
@@ -53,12 +56,16 @@ def body() -> int:
     found: dict[float, collision.Threshold] = {}
     print("offset,symmetry,breaks_up_to,whole_from,capillary_number")
     with tempfile.TemporaryDirectory(prefix="clogsweep-collision-") as folder:
-        collisions = collision.Collisions(programs.programs_in(arguments.programs) / "clogsweep", pathlib.Path(folder), dict(arguments.keys))
+        collisions = collision.Collisions(programs.programs_in(arguments.programs) / "clogsweep",
+                                          pathlib.Path(folder), dict(arguments.keys))
         for offset in arguments.offsets:
             low, high = found[offset] = collisions.threshold(offset)
             middle = f"{collision.capillary_number(math.sqrt(low * high)):.4g}" if low and high else ""
-            print(offset, f"{collision.symmetry(offset):.4f}", *(f"{end:.4g}" if end else "" for end in (low, high)), middle, sep=",", flush=True)
+            print(offset, f"{collision.symmetry(offset):.4f}", *(f"{end:.4g}" if end else "" for end in (low, high)),
+                  middle, sep=",", flush=True)
     if not any(low and high for low, high in found.values()):
-        raise UserError(f"nothing to draw (no offset has a threshold between line tensions of {collision.TENSIONS[0]} and {collision.TENSIONS[1]}); try smaller --offsets")
-    Picture(break_up.draw(found, ", ".join(f"{key}={value}" for key, value in collisions.keys.items()))).save(arguments.output)
+        raise UserError(f"nothing to draw (no offset has a threshold between line tensions of {collision.TENSIONS[0]} "
+                        f"and {collision.TENSIONS[1]}); try smaller --offsets")
+    keys = ", ".join(f"{key}={value}" for key, value in collisions.keys.items())
+    Picture(break_up.draw(found, keys)).save(arguments.output)
     return 0

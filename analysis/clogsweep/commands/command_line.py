@@ -89,7 +89,8 @@ def between(low: float, high: float, meaning: str) -> Callable[[str], float]:
 def tasks(word: str) -> set[int]:
     """Type of an option: numbers of tasks."""
     if not all(part.isdecimal() for part in word.split(",")):
-        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be whole numbers with commas between them) try 3,17,40")
+        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be whole numbers with commas between "
+                                         "them) try 3,17,40")
     return {int(part) for part in word.split(",")}
 
 
@@ -149,12 +150,14 @@ def add_format(parser: argparse.ArgumentParser) -> None:
 
 
 def add_lab(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--lab", type=pathlib.Path, help="file that describes the laboratory, see clogfit units; adds scales in laboratory units")
+    parser.add_argument("--lab", type=pathlib.Path,
+                        help="file that describes the laboratory, see clogfit units; adds scales in laboratory units")
 
 
 def add_width(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--width", type=between(4, 30, "a width in cm"), metavar="CM",
-                        help="lay the picture out for a journal column of this width, such as 8.6, and print the text that belongs in the caption")
+                        help="lay the picture out for a journal column of this width, such as 8.6, "
+                             "and print the text that belongs in the caption")
 
 
 def save(picture: Picture, arguments: argparse.Namespace) -> int:
@@ -251,7 +254,8 @@ def run(body: Callable[[], int]) -> int:
     except BrokenPipeError:
         return WITHOUT_READER
     except OSError as error:
-        return _refuse(f"cannot use {error.filename or 'a file'} ({error.strerror or error}); look at its name and permissions")
+        return _refuse(f"cannot use {error.filename or 'a file'} ({error.strerror or error}); "
+                       "look at its name and permissions")
     except KeyboardInterrupt:
         _refuse("interrupted; what was not complete has not been written")
         return INTERRUPTED

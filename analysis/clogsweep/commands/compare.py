@@ -21,9 +21,11 @@ from .command_line import Parser, add_output, add_width, beside, save
 
 def body() -> int:
     parser = Parser(__doc__)
-    parser.add_argument("sweeps", type=pathlib.Path, nargs="+", help="files of clogsweep --output; each further file is compared with the first")
+    parser.add_argument("sweeps", type=pathlib.Path, nargs="+",
+                        help="files of clogsweep --output; each further file is compared with the first")
     parser.add_argument("--by", help="key whose values are compared with each other")
-    parser.add_argument("--within", help="the two clogs of a pair count as one place if they are within this distance [sigma]")
+    parser.add_argument("--within",
+                        help="the two clogs of a pair count as one place if they are within this distance [sigma]")
     parser.add_argument("--confidence", help="confidence level of the intervals (0.95)")
     add_output(parser, "name of the picture; .png and .pdf are made (FIRST-compare)", ".png", ".pdf")
     add_width(parser)
@@ -31,8 +33,9 @@ def body() -> int:
     arguments = parser.parse_args()
     arguments.output = arguments.output or beside(arguments.sweeps[0], "compare")
     outputs.refuse_unwritable_picture(arguments.output, arguments.sweeps[0])
-    options = [word for name in ("by", "within", "confidence") if (value := getattr(arguments, name)) is not None for word in (f"--{name}", value)]
+    options = [word for name in ("by", "within", "confidence") if (value := getattr(arguments, name)) is not None
+               for word in (f"--{name}", value)]
     clogfit = programs.programs_in(arguments.programs) / "clogfit"
-    told = json.loads(programs.run_with_warnings(clogfit, "compare", *arguments.sweeps, *options, "--format", "json"))
+    answer = json.loads(programs.run_with_warnings(clogfit, "compare", *arguments.sweeps, *options, "--format", "json"))
     source = f"clogfit compare {' '.join(map(str, [*arguments.sweeps, *options]))}"
-    return save(style.Picture(style.figure_of(ratios.draw_on, told), source), arguments)
+    return save(style.Picture(style.figure_of(ratios.draw_on, answer), source), arguments)

@@ -29,7 +29,8 @@ from . import command_line
 
 
 def add_format(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--format", choices=("picture", "csv"), default="picture", help="draw a picture, or print the table as csv (%(default)s)")
+    parser.add_argument("--format", choices=("picture", "csv"), default="picture",
+                        help="draw a picture, or print the table as csv (%(default)s)")
 
 
 def read_angles(path: pathlib.Path, columns: Container[str]) -> pandas.DataFrame:
@@ -46,7 +47,8 @@ def read_angles(path: pathlib.Path, columns: Container[str]) -> pandas.DataFrame
 
 
 def body() -> int:
-    arguments = command_line.sweep_to_draw(__doc__, "critical-angle", "file of clogsweep --output, or the table of this command",
+    arguments = command_line.sweep_to_draw(__doc__, "critical-angle",
+                                           "file of clogsweep --output, or the table of this command",
                                            [command_line.add_width, add_format])
     schema = json.loads(programs.run_program(programs.programs_in(arguments.programs) / "clogsweep", "--schema"))
     columns = fits.droplet_columns() | {column["name"]: column for column in schema["columns"]}
@@ -57,8 +59,10 @@ def body() -> int:
         with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs) as file:
             source = stored.source(stored.attributes(file))
         # Droplet sizes come first; parameters that may follow from others come last.
-        parameters = sorted((name for name, column in columns.items() if column.get("role") == "parameter" and column.get("parameter_role") != "ensemble"),
-                            key=lambda name: (name != "obstacle_diameter", "key" not in columns[name], "automatic_in" in columns[name]))
+        parameters = sorted((name for name, column in columns.items()
+                             if column.get("role") == "parameter" and column.get("parameter_role") != "ensemble"),
+                            key=lambda name:
+                            (name != "obstacle_diameter", "key" not in columns[name], "automatic_in" in columns[name]))
         rows = stored.read_table(arguments.sweep, arguments.programs)
         if (rows["laboratory"] != "none").all():
             groups = fits.told(programs.programs_in(arguments.programs) / "clogfit", arguments.sweep)["groups"]
@@ -69,11 +73,13 @@ def body() -> int:
         for words, statuses in [("failed", ["failed"]), ("are unfinished", UNFINISHED)]:
             if number := rows["status"].isin(statuses).sum():
                 print(f"{number} of {rounded.counted(len(rows), 'run')} {words} and do not count", file=sys.stderr)
-        spans = " within max-time=" + " to ".join(f"{span:.4g}" for span in sorted({rows["max_time"].min(), rows["max_time"].max()}))
+        ends = sorted({rows["max_time"].min(), rows["max_time"].max()})
+        spans = " within max-time=" + " to ".join(f"{span:.4g}" for span in ends)
     if arguments.format == "csv":
         print(table.to_csv(index=False, float_format="%.6g"), end="")
         return 0
     if table[["lower", "upper"]].isna().all(axis=None):
-        raise UserError(f"cannot draw critical angles (the paths{spans} are too short: straight on, they would cross fewer than two rows) try a larger max-time or lattice-angle")
+        raise UserError(f"cannot draw critical angles (the paths{spans} are too short: "
+                        "straight on, they would cross fewer than two rows) try a larger max-time or lattice-angle")
     figure = style.figure_of(critical_angles.draw_on, table, columns)
     return command_line.save(style.Picture(figure, source), arguments)

@@ -38,10 +38,14 @@ def body() -> int:
     parser = command_line.Parser(__doc__)
     parser.add_argument("file", type=pathlib.Path, nargs="*", help="sweep files, fitted as one sweep")
     parser.add_argument("--key", default="", help="key of the abscissa, or two keys separated by a comma")
-    parser.add_argument("--crossing", type=crossed_lengths, default=[], help="print where the curve reaches these lengths [sigma; mm for droplets of several sizes]")
+    parser.add_argument("--crossing", type=crossed_lengths, default=[],
+                        help="print where the curve reaches these lengths [sigma; mm for droplets of several sizes]")
     parser.add_argument("--format", default="text", help="text, csv, json or peaks")
-    for name, meaning in (("confidence", "confidence level of the intervals (0.95)"), ("from-distance", "see clogfit --help [sigma]"), ("dwell", "see clogfit --help [t0]"),
-                          ("lab", "file that describes the laboratory, see clogfit units; its units are printed below the curve")):
+    for name, meaning in (("confidence", "confidence level of the intervals (0.95)"),
+                          ("from-distance", "see clogfit --help [sigma]"),
+                          ("dwell", "see clogfit --help [t0]"),
+                          ("lab", "file that describes the laboratory, see clogfit units; "
+                                  "its units are printed below the curve")):
         parser.add_argument(f"--{name}", help=meaning)
     programs.add_option(parser)
     arguments = parser.parse_args()
@@ -61,5 +65,6 @@ def body() -> int:
     else:
         print(table.text(found, arguments.crossing), end="")
         if lab:
-            print(f"in the laboratory: sigma = {rounded.plain(lab['length_mm'])} mm, Gamma = 1 is {rounded.plain(lab['tension_mN_per_m_of_gamma_1'])} mN/m")
+            print(f"in the laboratory: sigma = {rounded.plain(lab['length_mm'])} mm, "
+                  f"Gamma = 1 is {rounded.plain(lab['tension_mN_per_m_of_gamma_1'])} mN/m")
     return 0

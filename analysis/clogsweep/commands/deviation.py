@@ -17,17 +17,20 @@ from . import command_line
 
 def body() -> int:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("profiles", nargs="*", help="CSV files or files of clogrun channel, with the measured passage first")
+    parser.add_argument("profiles", nargs="*",
+                        help="CSV files or files of clogrun channel, with the measured passage first")
     parser.add_argument("--diameter", help="diameter of the undeformed droplet, e.g. 3.3mm")
     parser.add_argument("--speed", help="terminal speed far from walls, e.g. 1.1mm/s")
     programs.add_option(parser)
     arguments = parser.parse_args()
     if len(arguments.profiles) < 2:
         raise UserError("missing profiles; try clogfit deviation measured.csv simulated.csv")
-    answer, scales = laboratory.quantities({"diameter": arguments.diameter, "speed": arguments.speed}, programs.programs_in(arguments.programs))
+    answer, scales = laboratory.quantities({"diameter": arguments.diameter, "speed": arguments.speed},
+                                           programs.programs_in(arguments.programs))
     measured_file, *files = arguments.profiles
     measured = profiles.read_trial(measured_file, scales)[0]
-    laboratory.print_json(answer, {"measured": measured_file, "deviations": [deviations(measured, file, scales) for file in files]})
+    laboratory.print_json(answer, {"measured": measured_file,
+                                   "deviations": [deviations(measured, file, scales) for file in files]})
     return 0
 
 
@@ -38,4 +41,5 @@ def deviations(measured: profiles.Profile, file: str, scales: profiles.Scales) -
         speeds, _ = deviation.speed_residuals(measured, simulated)
     except UserError as error:
         raise UserError(f"{file}: {error}") from error
-    return {"profile": file, "delta_v": deviation.root_mean_square(speeds), "delta_a": deviation.root_mean_square(deviation.shape_residuals(measured, simulated))}
+    return {"profile": file, "delta_v": deviation.root_mean_square(speeds),
+            "delta_a": deviation.root_mean_square(deviation.shape_residuals(measured, simulated))}

@@ -19,10 +19,12 @@ from .command_line import save, sweep_to_draw, whole
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--ways", type=whole(0), default=3, help="number of paths drawn in each panel (%(default)s)")
-    parser.add_argument("--map", type=whole(0), default=6, help="number of replayed runs in the map of each panel; 0: no map (%(default)s)")
+    parser.add_argument("--map", type=whole(0), default=6,
+                        help="number of replayed runs in the map of each panel; 0: no map (%(default)s)")
     parser.add_argument("--jobs", type=whole(1), default=2, help="number of simultaneous replays (%(default)s)")
 
 
 def body() -> int:
     arguments = sweep_to_draw(__doc__, "device", more=[add_options])
-    return save(Sweep(arguments.sweep, arguments.programs).device(ways=arguments.ways, map=arguments.map, jobs=arguments.jobs), arguments)
+    sweep = Sweep(arguments.sweep, arguments.programs)
+    return save(sweep.device(ways=arguments.ways, map=arguments.map, jobs=arguments.jobs), arguments)

@@ -35,7 +35,8 @@ def fit(distances: Numbers, speeds: Numbers) -> dict[str, float | None]:
     line = stats.linregress(np.log(distances), np.log(speeds / (1 - speeds)))
     drag = math.exp(-line.intercept)
     errors = (float(line.stderr), float(drag * line.intercept_stderr)) if len(speeds) > 2 else (None, None)
-    return {"near_wall_exponent": float(line.slope), "near_wall_exponent_error": errors[0], "near_wall_drag": drag, "near_wall_drag_error": errors[1]}
+    return {"near_wall_exponent": float(line.slope), "near_wall_exponent_error": errors[0],
+            "near_wall_drag": drag, "near_wall_drag_error": errors[1]}
 
 
 def with_error(value: float | None, error: float | None) -> str:
@@ -52,15 +53,18 @@ def body() -> int:
     arguments = parser.parse_args()
     if not arguments.file:
         raise UserError("missing file; try clogfit drag speeds.csv")
-    answer, scales = laboratory.quantities({"diameter": arguments.diameter, "speed": arguments.speed}, programs.programs_in(arguments.programs))
+    answer, scales = laboratory.quantities({"diameter": arguments.diameter, "speed": arguments.speed},
+                                           programs.programs_in(arguments.programs))
     distances, speeds, _ = profiles.read_table(arguments.file, "d", scales)
     try:
         found = fit(distances, speeds)
     except UserError as error:
         raise UserError(f"{arguments.file} cannot be fitted ({error})") from error
     if arguments.format == "text":
-        exponent, drag = (with_error(found[name], found[f"{name}_error"]) for name in ("near_wall_exponent", "near_wall_drag"))
-        print(f"alpha = {exponent}, b_0/b_inf = {drag}, from {len(speeds)} speeds{', which are too few for errors' if len(speeds) < 3 else ''}")
+        exponent, drag = (with_error(found[name], found[f"{name}_error"])
+                          for name in ("near_wall_exponent", "near_wall_drag"))
+        print(f"alpha = {exponent}, b_0/b_inf = {drag}, "
+              f"from {len(speeds)} speeds{', which are too few for errors' if len(speeds) < 3 else ''}")
     else:
         laboratory.print_json(answer, {**found, "speeds": len(speeds)})
     return 0

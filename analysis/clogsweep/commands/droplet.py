@@ -29,13 +29,17 @@ from . import command_line
 def body() -> int:
     parser = command_line.Parser(__doc__)
     parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
-    command_line.add_output(parser, "name of the picture, .png and .pdf are made; or of a film", ".png", ".pdf", required=True)
-    parser.add_argument("--outlines", type=command_line.whole(1), default=12, help="number of outlines in a picture (12)")
+    command_line.add_output(parser, "name of the picture, .png and .pdf are made; or of a film", ".png", ".pdf",
+                            required=True)
+    parser.add_argument("--outlines", type=command_line.whole(1), default=12,
+                        help="number of outlines in a picture (12)")
     parser.add_argument("--film", action="store_true", help="make a film instead: .mp4 (ffmpeg) or .gif")
     parser.add_argument("--pictures", action="store_true", help="make numbered pictures in OUTPUT-frames instead")
-    parser.add_argument("--colour", choices=film.COLOURS, default="speed", help="what the colours in a film show (speed)")
+    parser.add_argument("--colour", choices=film.COLOURS, default="speed",
+                        help="what the colours in a film show (speed)")
     parser.add_argument("--rate", type=command_line.whole(1), default=20, help="frames of a film per second (20)")
-    parser.add_argument("--most-frames", type=command_line.whole(1), default=600, help="largest number of frames of a film (600)")
+    parser.add_argument("--most-frames", type=command_line.whole(1), default=600,
+                        help="largest number of frames of a film (600)")
     parser.add_argument("--size", choices=film.SIZES, help="size of the frames (1080p; 540p for a .gif)")
     arguments = parser.parse_args()
     if not arguments.output.parent.is_dir():
@@ -58,7 +62,8 @@ def draw_film(arguments: argparse.Namespace) -> int:
     frames = film.chosen_frames(run, arguments.most_frames)
     moving = film.Film(run, frames, arguments.colour, arguments.rate, arguments.size or film.size_for(path))
     if frames[0] > 0:
-        print(f"{command_line.name()}: the film begins at t = {run.times[frames[0]]:.4g} t0; --most-frames shows more", file=sys.stderr)
+        print(f"{command_line.name()}: the film begins at t = {run.times[frames[0]]:.4g} t0; --most-frames shows more",
+              file=sys.stderr)
     if path:
         command_line.tell(film.write_film(moving, path, arguments.rate))
     if arguments.pictures:

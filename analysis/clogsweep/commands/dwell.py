@@ -25,5 +25,6 @@ def body() -> int:
     lab = command_line.lab_options(arguments)
     fit = Fit(*fits.fitted(clogfit, arguments.sweep, *lab))
     times = dwell.times_of(fit.known.with_lengths(arguments.sweep))
-    known = [Groups(*fits.fitted(clogfit, arguments.sweep, "--dwell", repr(time), *lab)).with_lengths(arguments.sweep) for time in times]
+    known = [Groups(*fits.fitted(clogfit, arguments.sweep, "--dwell", repr(time), *lab)).with_lengths(arguments.sweep)
+             for time in times]
     return command_line.save(Picture(dwell.draw(times, known), fit.source), arguments)

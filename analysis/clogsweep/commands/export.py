@@ -18,7 +18,8 @@ from . import command_line
 def body() -> int:
     parser = command_line.Parser(__doc__)
     parser.add_argument("sweeps", type=pathlib.Path, nargs="+", help="files of clogsweep --output")
-    parser.add_argument("output", type=pathlib.Path, help="file to write, .csv or .h5; an existing file is not replaced")
+    parser.add_argument("output", type=pathlib.Path,
+                        help="file to write, .csv or .h5; an existing file is not replaced")
     programs.add_option(parser)
     arguments = parser.parse_args()
     paths, folder = arguments.sweeps, arguments.programs

@@ -22,15 +22,21 @@ from . import command_line
 
 def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("names", nargs="+", metavar="NAME", help="names of figures; list shows the names, all means all figures")
-    parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="reduced sweeps take minutes on two cores; full sweeps have the published size")
-    parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="number of MPI ranks of the sweeps, and of simultaneous runs (2)")
-    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"), help="folder of the results (results/figures)")
+    parser.add_argument("names", nargs="+", metavar="NAME",
+                        help="names of figures; list shows the names, all means all figures")
+    parser.add_argument("--size", choices=["reduced", "full"], default="reduced",
+                        help="reduced sweeps take minutes on two cores; full sweeps have the published size")
+    parser.add_argument("--ranks", type=command_line.whole(1), default=2,
+                        help="number of MPI ranks of the sweeps, and of simultaneous runs (2)")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"),
+                        help="folder of the results (results/figures)")
     parser.add_argument("--draw-only", action="store_true", help="draw from existing results and run nothing")
     parser.add_argument("--profile", type=pathlib.Path, action="append", default=[], metavar="FILE.csv",
-                        help="measured passage (columns h [sigma], v [v_t], A), drawn in figures 2, 3 (two profiles: orifices of 0.9, then 0.7 sigma) and 4, and compared with the simulation in figure B2")
+                        help="measured passage (columns h [sigma], v [v_t], A), drawn in figures 2, 3 (two profiles: "
+                             "orifices of 0.9, then 0.7 sigma) and 4, and compared with the simulation in figure B2")
     parser.add_argument("--set", action="append", default=[], metavar="[CONFIG:]KEY=VALUE",
-                        help="replace a value of the config, e.g. clogging-sp:seeds=1..50; keys that a figure itself sets cannot be replaced")
+                        help="replace a value of the config, e.g. clogging-sp:seeds=1..50; "
+                             "keys that a figure itself sets cannot be replaced")
     programs.add_option(parser)
     return parser.parse_args()
 
@@ -45,8 +51,9 @@ def body() -> int:
         if name not in CATALOGUE:
             raise UserError(f"no figure {name}; {command_line.name()} list names them")
     shop = Workshop(size=arguments.size, ranks=arguments.ranks, folder=arguments.output / arguments.size,
-                    programs=programs.programs_in(arguments.programs), overrides=[Override.parse(text) for text in getattr(arguments, "set")],
-                    profiles=arguments.profile, draw_only=arguments.draw_only)
+                    programs=programs.programs_in(arguments.programs),
+                    overrides=[Override.parse(text) for text in getattr(arguments, "set")], profiles=arguments.profile,
+                    draw_only=arguments.draw_only)
     for path in arguments.profile:
         measured(path)
     try:

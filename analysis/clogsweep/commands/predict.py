@@ -33,18 +33,22 @@ from . import command_line
 
 def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="keys of clogsweep; line-tension may be a list")
-    parser.add_argument("--lab", type=pathlib.Path, help="file that describes the laboratory of one droplet, see clogfit units")
+    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE",
+                        help="keys of clogsweep; line-tension may be a list")
+    parser.add_argument("--lab", type=pathlib.Path,
+                        help="file that describes the laboratory of one droplet, see clogfit units")
     command_line.add_output(parser, "name of a picture; .png and .pdf are made", ".png", ".pdf")
-    parser.add_argument("--with", dest="measured", metavar="SWEEP", type=pathlib.Path, help="also draw the lengths of this file of clogsweep --output")
+    parser.add_argument("--with", dest="measured", metavar="SWEEP", type=pathlib.Path,
+                        help="also draw the lengths of this file of clogsweep --output")
     programs.add_option(parser)
     return parser.parse_intermixed_args()
 
 
-OF_DROPLET = {"terminal-speed": "speed of the droplet", "line-tension": "tension of the droplet"}  # entries of a laboratory
+# entries of a laboratory
+OF_DROPLET = {"terminal-speed": "speed of the droplet", "line-tension": "tension of the droplet"}
 
 
-def told(length: float) -> str:
+def as_number(length: float) -> str:
     return f"{length:.4g}" if math.isfinite(length) else ""
 
 
@@ -58,15 +62,19 @@ def body() -> int:
         if key not in ("line-tension", "obstacles") and ("," in value or ".." in value or "(" in value):
             raise UserError(f"invalid {key}={value} (only line-tension takes a list here); give one value")
         if arguments.lab and key in OF_DROPLET and re.search("[A-Za-z]", value):
-            raise UserError(f"invalid {key}={value} (is without a unit here); write it into {arguments.lab} as the {OF_DROPLET[key]}, or give it in the model's unit")
+            raise UserError(f"invalid {key}={value} (is without a unit here); "
+                            f"write it into {arguments.lab} as the {OF_DROPLET[key]}, or give it in the model's unit")
     if arguments.measured and not arguments.output:
         raise UserError("no picture for the lengths of --with; give --output NAME")
     if arguments.output:
         outputs.refuse_unwritable_picture(arguments.output)
     folder_of_programs = programs.programs_in(arguments.programs)
-    droplet: Any = laboratory.units(arguments.lab, folder=folder_of_programs) if arguments.lab else {}  # a list for several droplets
+    droplet: Any = {}  # a list for several droplets
+    if arguments.lab:
+        droplet = laboratory.units(arguments.lab, folder=folder_of_programs)
     if isinstance(droplet, list):
-        raise UserError(f"no place for --lab {arguments.lab} (it describes {len(droplet)} droplets); give one diameter and one angle")
+        raise UserError(f"no place for --lab {arguments.lab} (it describes {len(droplet)} droplets); "
+                        "give one diameter and one angle")
     for key in OF_DROPLET:
         if (value := droplet.get(key.replace("-", "_"))) is not None:
             keys.setdefault(key, f"{value:.4g}")
@@ -74,17 +82,21 @@ def body() -> int:
     of_droplet = {key: value for key, value in keys.items() if key not in of_array}
     with tempfile.TemporaryDirectory(prefix="clogsweep-predict-") as name:
         folder = pathlib.Path(name)
-        array = prediction.read_array(folder_of_programs / "clogrun", folder, of_array, *command_line.lab_options(arguments))
+        array = prediction.read_array(folder_of_programs / "clogrun", folder, of_array,
+                                      *command_line.lab_options(arguments))
         droplets = prediction.Droplets(folder_of_programs / "clogsweep", folder, of_droplet)
         found = list(prediction.predict(droplets, array))
     print("line_tension,clogging_length,squeezed,wrapped,doubts" + (",clogging_length_mm" if droplet else ""))
     for one in found:
-        print(f"{one.tension:g}", *map(told, one[1:]), " ".join(prediction.doubts_of(one.tension, one.length)),
-              *([told(one.length * droplet["diameter_mm"])] if droplet else []), sep=",")
+        print(f"{one.tension:g}", *map(as_number, one[1:]), " ".join(prediction.doubts_of(one.tension, one.length)),
+              *([as_number(one.length * droplet["diameter_mm"])] if droplet else []), sep=",")
     if arguments.output:
-        fit = fits.told(folder_of_programs / "clogfit", arguments.measured) if arguments.measured else {"groups": [], "confidence": 0.95}
+        fit: dict[str, Any] = {"groups": [], "confidence": 0.95}
+        if arguments.measured:
+            fit = fits.told(folder_of_programs / "clogfit", arguments.measured)
         from .. import style  # loads matplotlib, which only a picture needs
         from ..drawing import predicted
 
-        style.Picture(predicted.draw(found, fit["groups"], fit["confidence"], [f"{key}={value}" for key, value in keys.items() if key != "line-tension"])).save(arguments.output)
+        shared = [f"{key}={value}" for key, value in keys.items() if key != "line-tension"]
+        style.Picture(predicted.draw(found, fit["groups"], fit["confidence"], shared)).save(arguments.output)
     return 0

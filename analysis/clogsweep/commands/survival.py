@@ -25,14 +25,16 @@ def add_mixture(parser: argparse.ArgumentParser) -> None:
 
 
 def body() -> int:
-    arguments = command_line.sweep_to_draw(__doc__, "survival", "file of clogsweep --output, or table of measured distances",
+    arguments = command_line.sweep_to_draw(__doc__, "survival",
+                                           "file of clogsweep --output, or table of measured distances",
                                            [command_line.add_width, add_mixture])
     mixture = None
     if stored.is_distance_table(arguments.sweep):
         if arguments.mixture:
             raise UserError("no place for --mixture (measured distances have no seeds); leave it out")
-        told = json.loads(programs.run_program(programs.programs_in(arguments.programs) / "clogfit", "lengths", arguments.sweep, "--format", "json"))
-        curves, unit, source = survival_curve.of_table(told), told["unit"], f"clogfit lengths {arguments.sweep}"
+        clogfit = programs.programs_in(arguments.programs) / "clogfit"
+        answer = json.loads(programs.run_program(clogfit, "lengths", arguments.sweep, "--format", "json"))
+        curves, unit, source = survival_curve.of_table(answer), answer["unit"], f"clogfit lengths {arguments.sweep}"
     else:
         options = ["--mixture", arguments.mixture] if arguments.mixture else []
         fitted = fit.read(arguments.sweep, arguments.programs, *options)

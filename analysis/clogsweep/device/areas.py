@@ -48,7 +48,8 @@ def polygon(corners: Numbers) -> Any:
     found = library("shapely.geometry", "python3-shapely").Polygon(corners)
     if not found.is_valid:
         x, y = corners.mean(axis=0)
-        raise UserError(f"an outline around x={x:.6g}, y={y:.6g} in the drawing crosses itself; correct it there (a picture: even out its light, and make it black and white)")
+        raise UserError(f"an outline around x={x:.6g}, y={y:.6g} in the drawing crosses itself; "
+                        "correct it there (a picture: even out its light, and make it black and white)")
     return found
 
 
@@ -75,7 +76,8 @@ def fill(drawing: Drawing, boundaries: list[Numbers], is_even_odd: bool) -> None
     if len(boundaries) == 1:
         drawing.outlines += boundaries
     elif boundaries:
-        add(drawing, filled(boundaries, "evenodd") if is_even_odd else union([polygon(corners) for corners in boundaries]))
+        add(drawing,
+            filled(boundaries, "evenodd") if is_even_odd else union([polygon(corners) for corners in boundaries]))
 
 
 def filled(boundaries: list[Numbers], rule: str) -> Any:
@@ -88,7 +90,8 @@ def filled(boundaries: list[Numbers], rule: str) -> Any:
     turns = np.array([1 if rule == "evenodd" or shape.exterior.is_ccw else -1 for shape in shapes])
 
     def is_filled(place: Any) -> bool:
-        near = np.flatnonzero((bounds[:, 0] <= place.x) & (place.x <= bounds[:, 2]) & (bounds[:, 1] <= place.y) & (place.y <= bounds[:, 3]))
+        near = np.flatnonzero((bounds[:, 0] <= place.x) & (place.x <= bounds[:, 2]) & (bounds[:, 1] <= place.y)
+                              & (place.y <= bounds[:, 3]))
         winding = sum(int(turns[i]) for i in near.tolist() if shapes[i].contains(place))
         return bool(winding % 2 if rule == "evenodd" else winding)
 
@@ -129,13 +132,16 @@ def posts_of_holes(drawing: Drawing) -> None:
     first, because programs cut areas with holes into pieces. Outlines within holes fill them.
     @throws UserError  if there are no holes"""
     geometry, ops = (library(f"shapely.{name}", "python3-shapely") for name in ("geometry", "ops"))
-    tolerance = NEAR * float(np.ptp(np.vstack([*drawing.outlines, np.zeros((0, 2))]), axis=0).max()) if drawing.outlines else 0.0
+    extent = np.ptp(np.vstack(drawing.outlines), axis=0).max() if drawing.outlines else 0.0
+    tolerance = NEAR * float(extent)
     circles = [geometry.Point(x, y).buffer(diameter / 2, 64) for x, y, diameter in drawing.circles]
     shapes = [*(geometry.Polygon(outline).buffer(0) for outline in drawing.outlines), *circles]
     holes = [geometry.Polygon(hole).buffer(0) for hole in drawing.holes]
     inside = [shape for shape in shapes if any(hole.contains(shape) for hole in holes)]
     outside = [shape for shape in shapes if not walls.is_one_of(shape, inside)]
-    area = union(outside, tolerance).difference(ops.unary_union(holes)).union(ops.unary_union(inside)) if outside else geometry.Polygon()
+    area = geometry.Polygon()
+    if outside:
+        area = union(outside, tolerance).difference(ops.unary_union(holes)).union(ops.unary_union(inside))
     parts = [part for part in getattr(area, "geoms", [area]) if part.geom_type == "Polygon"]
     if not any(part.interiors for part in parts):
         raise UserError(f"the drawing has no holes; leave out --holes{drawing.layers_in_words()}")
@@ -210,14 +216,18 @@ def leave_out_beyond(drawing: Drawing, page: Box) -> None:
     beyond: list[Numbers] = []
     for kind, kept in visible.items():
         for one in getattr(drawing, kind):
-            points = np.asarray([np.subtract(one[:2], one[2] / 2), np.add(one[:2], one[2] / 2)]) if kind == "circles" else one[1] if kind == "lines" else one
+            if kind == "circles":
+                points = np.asarray([np.subtract(one[:2], one[2] / 2), np.add(one[:2], one[2] / 2)])
+            else:
+                points = one[1] if kind == "lines" else one
             beyond.append(points) if is_beyond(points, page, kind == "outlines") else kept.append(one)
     drawing.circles, drawing.outlines, drawing.lines = visible.values()
     drawing.holes = [hole for hole in drawing.holes if not is_beyond(hole, page, True)]
     if beyond:
         own = drawing.to_own(np.vstack(beyond))
         (left, low), (right, high) = own.min(axis=0), own.max(axis=0)
-        drawing.notes.append(f"{rounded.counted(len(beyond), 'object')} wholly outside the page left out, at x={left:.6g} to {right:.6g}, y={low:.6g} to {high:.6g} "
+        drawing.notes.append(f"{rounded.counted(len(beyond), 'object')} wholly outside the page left out, "
+                             f"at x={left:.6g} to {right:.6g}, y={low:.6g} to {high:.6g} "
                              "(enlarge the page if they belong to the device)")
 
 
@@ -236,13 +246,15 @@ def is_beyond(points: Numbers, page: Box, is_closed: bool) -> bool:
 def is_on(points: Numbers, page: Box) -> bool:
     """Whether all points are on the page, apart from rounding."""
     near = NEAR * max(page[2] - page[0], page[3] - page[1])
-    return bool((points.min(axis=0) >= np.array(page[:2]) - near).all() and (points.max(axis=0) <= np.array(page[2:]) + near).all())
+    return bool((points.min(axis=0) >= np.array(page[:2]) - near).all()
+                and (points.max(axis=0) <= np.array(page[2:]) + near).all())
 
 
 def cut_at_page(drawing: Drawing, page: Box, tolerance: float) -> None:
     """Cuts the outlines and lines that cross the border of the page. An outline around the whole page becomes the
     border of the page. @param tolerance  as in fitted_circle()"""
-    inside, inside_lines = [outline for outline in drawing.outlines if is_on(outline, page)], [line for line in drawing.lines if is_on(line[1], page)]
+    inside, inside_lines = [outline for outline in drawing.outlines
+                            if is_on(outline, page)], [line for line in drawing.lines if is_on(line[1], page)]
     if len(inside) == len(drawing.outlines) and len(inside_lines) == len(drawing.lines):
         return
     drawing.outlines = [outline for outline in drawing.outlines if not walls.is_one_of(outline, inside)]
@@ -282,7 +294,8 @@ def cut(drawing: Drawing, region: Box, tolerance: float, name: str) -> tuple[int
                 around += 1
     drawing.outlines = inside
     lines = [(kind, box.intersection(geometry.LineString(line))) for kind, line in drawing.lines]
-    drawing.lines = [(kind, np.asarray(part.coords)) for kind, line in lines for part in getattr(line, "geoms", [line]) if part.length > 0]
+    drawing.lines = [(kind, np.asarray(part.coords)) for kind, line in lines
+                     for part in getattr(line, "geoms", [line]) if part.length > 0]
     outside = number - len(drawing.circles) - len(inside) - len(cuts) - around - sum(line.length > 0 for _, line in lines)
     for common in cuts:
         add(drawing, common)

@@ -38,7 +38,8 @@ def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
         try:
             add(found, entity)
         except (TypeError, ValueError, ArithmeticError) as error:
-            raise UserError(f"cannot read {path} ({entity.dxftype()} on layer {on_layer}: {error}); explode it in the drawing program") from error
+            raise UserError(f"cannot read {path} ({entity.dxftype()} on layer {on_layer}: {error}); "
+                            "explode it in the drawing program") from error
     return found
 
 
@@ -49,7 +50,8 @@ def metres_of(document: Any, path: pathlib.Path) -> float | None:
     if code == UNITLESS:
         return None
     if code not in UNITS:
-        raise UserError(f"cannot read {path} (its unit, $INSUNITS={code}, is not one of a drawing of this size); set $INSUNITS in the drawing program, 13 for um")
+        raise UserError(f"cannot read {path} (its unit, $INSUNITS={code}, is not one of a drawing of this size); "
+                        "set $INSUNITS in the drawing program, 13 for um")
     return UNITS[code]
 
 
@@ -71,7 +73,8 @@ def visible(entities: Any, layers: Any, parent: str | None, skipped: dict[str, i
             skipped[f"{kind} on frozen layer {name}"] += 1
         elif kind == "INSERT":
             if entity.block() is None or entity.block().block.is_xref:
-                raise UserError(f"the drawing inserts '{entity.dxf.name}', which is not in the file; bind external references in the drawing program")
+                raise UserError(f"the drawing inserts '{entity.dxf.name}', which is not in the file; "
+                                "bind external references in the drawing program")
             for copy in entity.multi_insert() if entity.mcount > 1 else [entity]:
                 parts = copy.virtual_entities(skipped_entity_callback=count_distorted)
                 yield from visible(parts, layers, name, skipped)

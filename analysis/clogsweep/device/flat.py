@@ -19,14 +19,21 @@ NAMESPACE = "{http://www.w3.org/2000/svg}"
 LINK = "{http://www.w3.org/1999/xlink}href"
 # What is no shape, and attributes and properties that would make librsvg draw pixels, or markers.
 NO_SHAPES = ("text", "image", "foreignObject")
-PIXELS = ("filter", "mask", "marker", "marker-start", "marker-mid", "marker-end", "mix-blend-mode", "isolation", "enable-background")
+PIXELS = ("filter", "mask", "marker", "marker-start", "marker-mid", "marker-end", "mix-blend-mode", "isolation",
+          "enable-background")
 # CSS that librsvg does not know, and that would move shapes or give them another size or colour.
-TRANSFORMS = {"transform-origin": r"(?<![\w-])transform-origin\s*[:=]", "transform-box": r"(?<![\w-])transform-box\s*[:=]", "translate, rotate or scale": r"(?<![\w-])(?:translate|rotate|scale)\s*:"}
+TRANSFORMS = {"transform-origin": r"(?<![\w-])transform-origin\s*[:=]",
+              "transform-box": r"(?<![\w-])transform-box\s*[:=]",
+              "translate, rotate or scale": r"(?<![\w-])(?:translate|rotate|scale)\s*:"}
 LENGTHS = {"lengths that depend on a font or a window": r"(?<![\w-])(?:[cr]?[xy]|r|width|height|[xy][12])\s*[:=]\s*[\"']?\s*[-+\d.]+(?:r?em|ex|ch|v[wh]|vmin|vmax)\b"}
 FUNCTION = r"(?:([\w-]+)\s*[:=]\s*[\"']?[^;:=\"'{}<>]*?)?\b(var|calc)\("  # the property, if it can be found, and the function
-IGNORED = {"@media": r"@media\b", "@layer": r"@layer\b", "@import": r"@import\b", "animations": r"<(?:\w+:)?(?:animate\w*|set)\b|(?<![\w-])animation(?:-name)?\s*:",
-           "blend modes": r"mix-blend-mode\s*:\s*(?!normal)\w", "masks": r"(?<![\w-])mask\s*[:=]", "filters": r"(?<![\w-])filter\s*[:=]", "patterns": r"<(?:\w+:)?pattern\b",
-           "markers": r"(?<![\w-])marker(?:-start|-mid|-end)?\s*[:=](?!\s*[\"']?\s*none\b)", "media of style sheets": r"<(?:\w+:)?style[^>]*\smedia\s*=", "style sheets in other files": r"<\?xml-stylesheet|<(?:\w+:)?link\b"}
+IGNORED = {"@media": r"@media\b", "@layer": r"@layer\b", "@import": r"@import\b",
+           "animations": r"<(?:\w+:)?(?:animate\w*|set)\b|(?<![\w-])animation(?:-name)?\s*:",
+           "blend modes": r"mix-blend-mode\s*:\s*(?!normal)\w", "masks": r"(?<![\w-])mask\s*[:=]",
+           "filters": r"(?<![\w-])filter\s*[:=]", "patterns": r"<(?:\w+:)?pattern\b",
+           "markers": r"(?<![\w-])marker(?:-start|-mid|-end)?\s*[:=](?!\s*[\"']?\s*none\b)",
+           "media of style sheets": r"<(?:\w+:)?style[^>]*\smedia\s*=",
+           "style sheets in other files": r"<\?xml-stylesheet|<(?:\w+:)?link\b"}
 # The longer side of the page, and the canvas around it with what is outside the page. librsvg has single precision, in
 # which powers of two are exact.
 PAGE, CANVAS, BEFORE = 2**16, 2**20, 2**19
@@ -65,8 +72,10 @@ def flatten(root: Any, width: float, height: float, path: pathlib.Path) -> Flat:
     inner = without_pixels(copy.deepcopy(root))
     longer = max(width, height)
     inner.attrib.setdefault("viewBox", f"0 0 {width!r} {height!r}")
-    inner.attrib.update({"x": "0", "y": "0", "width": repr(PAGE * width / longer), "height": repr(PAGE * height / longer), "overflow": "visible"})
-    outer = ElementTree.Element(NAMESPACE + "svg", {"width": f"{SIZE}px", "height": f"{SIZE}px", "viewBox": f"{-BEFORE} {-BEFORE} {CANVAS} {CANVAS}"})
+    inner.attrib.update({"x": "0", "y": "0", "width": repr(PAGE * width / longer),
+                         "height": repr(PAGE * height / longer), "overflow": "visible"})
+    outer = ElementTree.Element(NAMESPACE + "svg", {"width": f"{SIZE}px", "height": f"{SIZE}px",
+                                                    "viewBox": f"{-BEFORE} {-BEFORE} {CANVAS} {CANVAS}"})
     outer.append(inner)
     flat = ElementTree.fromstring(drawn(ElementTree.tostring(outer), path))
     replace_uses(flat)
@@ -92,12 +101,14 @@ def without_pixels(root: Any) -> Any:
 def drawn(svg: bytes, path: pathlib.Path) -> bytes:
     """The drawing as librsvg draws it with cairo."""
     try:
-        done = subprocess.run(["rsvg-convert", "--format=svg", "--unlimited", "--accept-language=en"], input=svg, capture_output=True, check=False)
+        done = subprocess.run(["rsvg-convert", "--format=svg", "--unlimited", "--accept-language=en"], input=svg,
+                              capture_output=True, check=False)
     except FileNotFoundError as error:
         raise UserError("cannot read such a drawing (rsvg-convert is not there); apt install librsvg2-bin") from error
     if done.returncode or not done.stdout:
         reason = done.stderr.decode(errors="replace").strip().splitlines()
-        raise UserError(f"cannot read {path} (librsvg: {reason[-1] if reason else 'no drawing'}); simplify it in the drawing program")
+        raise UserError(f"cannot read {path} (librsvg: {reason[-1] if reason else 'no drawing'}); "
+                        "simplify it in the drawing program")
     return done.stdout
 
 
@@ -120,8 +131,11 @@ def named_in(text: str, patterns: dict[str, str]) -> str:
 
 def refuse_unknown_css(text: str, path: pathlib.Path) -> None:
     """@param text  of a drawing. @throws UserError  if librsvg would draw it in another way than a browser"""
-    functions = dict.fromkeys(f"{function.lower()}()" + (f" in {name}" if name else "") for name, function in re.findall(FUNCTION, text, re.IGNORECASE))
-    for unknown, remedy in [(named_in(text, TRANSFORMS), "apply transforms in the drawing program, such as by ungrouping"), (", ".join(functions), "write the value itself in the drawing"),
+    functions = dict.fromkeys(f"{function.lower()}()" + (f" in {name}" if name else "")
+                              for name, function in re.findall(FUNCTION, text, re.IGNORECASE))
+    for unknown, remedy in [(named_in(text,
+                                      TRANSFORMS), "apply transforms in the drawing program, such as by ungrouping"),
+                            (", ".join(functions), "write the value itself in the drawing"),
                             (named_in(text, LENGTHS), "give lengths in px or mm")]:
         if unknown:
             raise UserError(f"cannot read {path} (librsvg does not know {unknown}); {remedy}")

@@ -27,22 +27,27 @@ def read_gds(path: pathlib.Path, layer: str | None, cell: str | None = None) -> 
             warnings.simplefilter("error", UserWarning)  # gdspy only prints a warning about records that it ignores
             content = exact_library(gdspy)(infile=stream, units="import")
     except UserWarning as warning:
-        raise UserError(f"cannot read {path} ({warning}); convert everything to polygons in the layout program") from warning
+        raise UserError(f"cannot read {path} ({warning}); "
+                        "convert everything to polygons in the layout program") from warning
     references = [part for cell in content.cell_dict.values() for part in cell.references]
     missing = {str(part.ref_cell) for part in references if not isinstance(part.ref_cell, gdspy.Cell)}
     if missing:
-        raise UserError(f"cannot read {path} (it lacks the cells {', '.join(sorted(missing))}, to which it refers); save it with these")
+        raise UserError(f"cannot read {path} (it lacks the cells {', '.join(sorted(missing))}, to which it refers); "
+                        "save it with these")
     # A gdspy that leaves a CellArray here does not call _create_array().
     if any(isinstance(part, gdspy.CellArray) for part in references):
-        raise UserError(f"cannot read {path} (gdspy {gdspy.__version__} may misplace its arrays of cells); flatten them in the layout program")
+        raise UserError(f"cannot read {path} (gdspy {gdspy.__version__} may misplace its arrays of cells); "
+                        "flatten them in the layout program")
     if cell is not None and cell not in content.cell_dict:
         raise UserError(f"{path} has no cell {cell}; its cells are {', '.join(sorted(content.cell_dict))}")
     cells = content.top_level() if cell is None else [content.cell_dict[cell]]
     drawn = [item for one in cells for item in one.get_polygons(by_spec=True).items()]
     texts = sum(len(one.get_labels()) for one in cells)
-    found = Drawing([], [], float(f"{content.unit:.12g}"), skipped=collections.Counter({"text": texts} if texts else {}))
+    found = Drawing([], [], float(f"{content.unit:.12g}"),
+                    skipped=collections.Counter({"text": texts} if texts else {}))
     if len(cells) > 1:
-        found.notes.append(f"{len(cells)} top cells, drawn together (--cell chooses one): {', '.join(one.name for one in cells)}")
+        found.notes.append(f"{len(cells)} top cells, drawn together (--cell chooses one): "
+                           f"{', '.join(one.name for one in cells)}")
     layers: collections.Counter[str] = collections.Counter()
     for (of_layer, datatype), polygons in drawn:
         name = f"{of_layer}/{datatype}"
@@ -68,13 +73,16 @@ def exact_library(gdspy: Any) -> Any:
                 return super()._create_path(xy=xy, **path)
             if path.get("ends") != "round":
                 raise UserWarning(f"a path of layer {path.get('layer', 0)} has no length")
-            return gdspy.Round(xy[:2], abs(path["width"]) / 2, number_of_points=CORNERS_OF_DISC, layer=path["layer"], datatype=path["datatype"])
+            return gdspy.Round(xy[:2],
+                               abs(path["width"]) / 2, number_of_points=CORNERS_OF_DISC, layer=path["layer"],
+                               datatype=path["datatype"])
 
         def _create_array(self, *, columns: int, rows: int, xy: Any, **reference: Any) -> list[Any]:
             """@param xy  three points: the origin, the point that is `columns` columns away from the origin, and the
             point that is `rows` rows away"""
             origin, end_of_columns, end_of_rows = np.reshape(xy, (3, 2))
             along, across = (end_of_columns - origin) / columns, (end_of_rows - origin) / rows
-            return [self._create_reference(xy=origin + i * along + j * across, **reference) for i in range(columns) for j in range(rows)]
+            return [self._create_reference(xy=origin + i * along + j * across, **reference)
+                    for i in range(columns) for j in range(rows)]
 
     return Library

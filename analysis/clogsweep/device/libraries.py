@@ -13,4 +13,5 @@ def library(name: str, package: str) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        raise UserError(f"cannot read such a drawing ({error}); apt install {package}, and start /usr/bin/python3") from error
+        raise UserError(f"cannot read such a drawing ({error}); "
+                        f"apt install {package}, and start /usr/bin/python3") from error

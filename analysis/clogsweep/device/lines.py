@@ -21,7 +21,8 @@ def join(drawing: Drawing) -> None:
     if not pieces:
         return
     try:
-        geometry, ops, prepared = (library(f"shapely.{name}", "python3-shapely") for name in ("geometry", "ops", "prepared"))
+        geometry, ops, prepared = (library(f"shapely.{name}", "python3-shapely")
+                                   for name in ("geometry", "ops", "prepared"))
     except UserError:
         drawing.can_join = False
         drawing.lines = pieces

@@ -22,7 +22,8 @@ X_RESOLUTION, Y_RESOLUTION, RESOLUTION_UNIT, DESCRIPTION, PHOTOMETRIC = 282, 283
 MODES = ("1", "L", "RGB", "RGBA")  # Modes of Pillow with up to 8 bits per channel.
 ORIENTATION = 274  # Tag of EXIF and TIFF.
 METRES_IN_TIFF = {2: METRES["in"], 3: METRES["cm"]}
-UNITS_OF_IMAGEJ = {"micron": "um", "microns": "um", "\\u00b5m": "um", "inch": "in", "centimeter": "cm", "millimeter": "mm"}
+UNITS_OF_IMAGEJ = {"micron": "um", "microns": "um", "\\u00b5m": "um", "inch": "in",
+                   "centimeter": "cm", "millimeter": "mm"}
 
 
 def read_picture(path: pathlib.Path, posts: str | None) -> Drawing:
@@ -37,7 +38,8 @@ def read_picture(path: pathlib.Path, posts: str | None) -> Drawing:
     is_dark = image <= threshold
     # half-way between dark and bright, so that outlines run between pixels.
     level = (image[is_dark].mean() + image[~is_dark].mean()) / 2
-    found = Drawing([], [], metres_of(path, tags), frame=(0.0, 0.0, float(image.shape[1]), float(image.shape[0])), is_picture=True, skipped=collections.Counter())
+    found = Drawing([], [], metres_of(path, tags), frame=(0.0, 0.0, float(image.shape[1]), float(image.shape[0])),
+                    is_picture=True, skipped=collections.Counter())
     found.unit_hint = printed(tags)
     high = image.shape[0]
     found.from_own = lambda points: np.array([0, high]) + np.asarray(points) * (1, -1)
@@ -74,9 +76,11 @@ def grey(path: pathlib.Path, tags: dict[int, Any]) -> Numbers:
     colour = library("skimage.color", "python3-skimage")
     image, is_inverted = pixels(path, tags)
     if tags.get(ORIENTATION, 1) != 1:
-        raise UserError(f"cannot read {path} (it is stored turned, and shown upright by its EXIF data); save it upright")
+        raise UserError(f"cannot read {path} (it is stored turned, and shown upright by its EXIF data); "
+                        "save it upright")
     if image.ndim not in (2, 3) or image.ndim == 3 and image.shape[2] > 4:
-        raise UserError(f"cannot read {path} (it has several slices or channels, {' x '.join(map(str, image.shape))}); save one slice as a picture of its own")
+        raise UserError(f"cannot read {path} (it has several slices or channels, {' x '.join(map(str, image.shape))}); "
+                        "save one slice as a picture of its own")
     full = 1.0 if image.dtype == bool else float(np.iinfo(image.dtype).max) if image.dtype.kind in "ui" else max(float(image.max()), 1e-300)
     image = np.asarray(image, dtype=float) / full
     if image.ndim == 3:

@@ -14,18 +14,23 @@ from .pictures import ENDINGS, read_picture
 from .svg import read_svg
 
 
-def read(path: pathlib.Path, layer: str | None = None, posts: str | None = None, cell: str | None = None, are_holes_posts: bool = False) -> Drawing:
+def read(path: pathlib.Path, layer: str | None = None, posts: str | None = None, cell: str | None = None,
+         are_holes_posts: bool = False) -> Drawing:
     """Reads a drawing.
     @param layer  the only layer to be read from a DXF or GDSII file, or None for all layers
     @param cell  the only cell to be read from a GDSII file, or None for the top cells
     @param posts  of a picture: dark or bright, or None if the picture decides
     @param are_holes_posts  whether the posts are holes in filled areas
     @throws UserError"""
-    readers: dict[str, Callable[[], Drawing]] = {".dxf": lambda: read_dxf(path, layer), ".gds": lambda: read_gds(path, layer, cell), ".gdsii": lambda: read_gds(path, layer, cell),
-                                                 ".svg": lambda: read_svg(path, are_holes_posts), **{ending: lambda: read_picture(path, posts) for ending in ENDINGS}}
+    readers: dict[str, Callable[[], Drawing]] = {".dxf": lambda: read_dxf(path, layer),
+                                                 ".gds": lambda: read_gds(path, layer, cell),
+                                                 ".gdsii": lambda: read_gds(path, layer, cell),
+                                                 ".svg": lambda: read_svg(path, are_holes_posts),
+                                                 **{ending: lambda: read_picture(path, posts) for ending in ENDINGS}}
     reader = readers.get(path.suffix.lower())
     if reader is None:
-        raise UserError(f"cannot read {path} (its ending is none of {', '.join(readers)}); save the drawing as one of these")
+        raise UserError(f"cannot read {path} (its ending is none of {', '.join(readers)}); "
+                        "save the drawing as one of these")
     if not path.is_file():
         raise UserError(f"cannot read {path} (no such file); check the name")
     try:

@@ -27,7 +27,8 @@ def shapely(part: str) -> Any:
     try:
         return library(f"shapely.{part}", "python3-shapely")
     except UserError as error:
-        raise UserError("--as-rows needs python3-shapely (apt install python3-shapely), and Debian's own /usr/bin/python3") from error
+        raise UserError("--as-rows needs python3-shapely (apt install python3-shapely), "
+                        "and Debian's own /usr/bin/python3") from error
 
 
 @dataclasses.dataclass
@@ -58,7 +59,8 @@ def as_rows(device: Device, corner: float) -> Rows:
         number += 1
         farthest = max(farthest, distance_left(part, made))
     rough = corner * (1 - np.sqrt(1 - SPACING**2 / 4))
-    made_of_them = dataclasses.replace(device, circles=np.vstack(circles), others=[], post_of=np.concatenate(posts), replaced=device.others)
+    made_of_them = dataclasses.replace(device, circles=np.vstack(circles), others=[], post_of=np.concatenate(posts),
+                                       replaced=device.others)
     return Rows(made_of_them, corner, farthest, float(rough))
 
 
@@ -66,9 +68,11 @@ def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:
     """Refuses outlines that need too many circles. @throws UserError  if there would be more circles than are usable"""
     number = sum(core.exterior.length / (SPACING * radius) for of_part in all_cores for core, radius in of_part)
     if number > MOST_CIRCLES:
-        raise UserError(f"--as-rows needs {number:.2g} circles (at most {MOST_CIRCLES}); give a larger --corner, or check --unit and --droplet")
+        raise UserError(f"--as-rows needs {number:.2g} circles (at most {MOST_CIRCLES}); "
+                        "give a larger --corner, or check --unit and --droplet")
     if number > MANY_CIRCLES:
-        print(f"--as-rows makes about {number:.2g} circles, which takes minutes; a larger --corner makes fewer, and so does the right --droplet", file=sys.stderr)
+        print(f"--as-rows makes about {number:.2g} circles, which takes minutes; "
+              "a larger --corner makes fewer, and so does the right --droplet", file=sys.stderr)
 
 
 def parts(shape: Any) -> list[Any]:
@@ -110,8 +114,11 @@ def of_part(core: Any, polygon: Any, radius: float) -> Numbers:
 def places(ring: Any, spacing: float) -> Numbers:
     """The corners of a ring, and evenly spaced points between them."""
     corners = np.asarray(ring.coords)
-    return np.vstack([begin + np.linspace(0, 1, max(1, int(np.ceil(np.hypot(*(end - begin)) / spacing))), endpoint=False)[:, None] * (end - begin)
-                      for begin, end in zip(corners, corners[1:])])
+    parts = []
+    for begin, end in zip(corners, corners[1:]):
+        number = max(1, int(np.ceil(np.hypot(*(end - begin)) / spacing)))
+        parts.append(begin + np.linspace(0, 1, number, endpoint=False)[:, None] * (end - begin))
+    return np.vstack(parts)
 
 
 def distance_left(polygon: Any, circles: Numbers) -> float:
@@ -120,6 +127,7 @@ def distance_left(polygon: Any, circles: Numbers) -> float:
     nearest = np.full(len(corners), np.inf)
     # The distances of all circles at once would need gigabytes.
     for some in np.array_split(circles, 1 + len(circles) // 1000):
-        gaps = np.hypot(corners[:, None, 0] - some[None, :, 0], corners[:, None, 1] - some[None, :, 1]) - some[None, :, 2] / 2
+        x, y = (corners[:, None, axis] - some[None, :, axis] for axis in (0, 1))
+        gaps = np.hypot(x, y) - some[None, :, 2] / 2
         nearest = np.minimum(nearest, gaps.min(axis=1))
     return float(nearest.max())

@@ -72,7 +72,8 @@ class Drawing:
 
     def layers_in_words(self) -> str:
         """The layers and their numbers of objects, such as "; it has layer 1/0 with 55 objects, 2/0 with 1 object"."""
-        named = ", ".join(f"{name} with {rounded.counted(count, 'object')}" for name, count in sorted(self.layers.items()))
+        named = ", ".join(f"{name} with {rounded.counted(count, 'object')}"
+                          for name, count in sorted(self.layers.items()))
         return f"; its layers are {named}" if named else ""
 
 
@@ -156,13 +157,15 @@ def length_in_metres(text: str, option: str) -> float:
     except ValueError:
         value = 0.0
     if value <= 0:
-        raise UserError(f"invalid {option}: {text} (must be a length with its unit, nm, um, mm, cm, m, in or mil) try 200um")
+        raise UserError(f"invalid {option}: {text} (must be a length with its unit, nm, um, mm, cm, m, "
+                        "in or mil) try 200um")
     return value
 
 
 def unit_name(metres: float) -> str:
     """The name of a unit, such as um. A unit without a name gets its length instead."""
-    return next((name for name, size in METRES.items() if np.isclose(size, metres, rtol=1e-6, atol=0)), f"{metres:.4g} m")
+    return next((name for name, size in METRES.items() if np.isclose(size, metres, rtol=1e-6, atol=0)),
+                f"{metres:.4g} m")
 
 
 def is_likely(length: float, width: float) -> bool:
@@ -182,7 +185,8 @@ def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_pi
     for name in () if is_picture else ("um", "mm"):
         length, width = drawn * METRES[name] / metres
         better += f", in {name} it would be {length:.2g} by {width:.2g}" if is_likely(length, width) else ""
-    raise UserError(f"the device is {drawn[0]:.2g} by {drawn[1]:.2g} droplet diameters (the drawing's unit is {unit}{better}); {remedy}, or check --droplet")
+    raise UserError(f"the device is {drawn[0]:.2g} by {drawn[1]:.2g} droplet diameters "
+                    f"(the drawing's unit is {unit}{better}); {remedy}, or check --droplet")
 
 
 def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
@@ -213,7 +217,8 @@ def fitted_circle(outline: Numbers, is_closed: bool, tolerance: float) -> tuple[
     return float(middle[0] + centre[0]), float(middle[1] + centre[1]), 2 * radius
 
 
-def edges_among(outlines: list[Numbers], holes: list[Numbers], centres: Numbers) -> tuple[Numbers | None, list[Numbers]]:
+def edges_among(outlines: list[Numbers], holes: list[Numbers],
+                centres: Numbers) -> tuple[Numbers | None, list[Numbers]]:
     """The edge of the device, and the other outlines. The edge is an outline that contains everything else. If a
     rectangle or a hole within this outline contains all the rest, the rectangle or hole is the edge.
     @param centres  of circles"""
@@ -274,7 +279,8 @@ def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float
         found = leave_out_centres_beyond(drawing, drawing.frame, found)
     if not found and not others:
         read = f" ({'; '.join(drawing.notes)})" if drawing.notes else ""
-        raise UserError(f"the drawing holds no posts{read}; choose another --layer or --region, or close the outlines{drawing.layers_in_words()}")
+        raise UserError(f"the drawing holds no posts{read}; "
+                        f"choose another --layer or --region, or close the outlines{drawing.layers_in_words()}")
     circles = distinct(np.reshape(found, (-1, 3))) if found else np.empty((0, 3))
     drawing.duplicates += len(found) - len(circles)
     frame = drawing.frame if edge is None else (*edge.min(axis=0), *edge.max(axis=0))
@@ -289,7 +295,8 @@ def holds_centre(region: Box, circle: tuple[float, float, float]) -> bool:
     return left - near <= circle[0] < right - near and bottom - near <= circle[1] < top - near
 
 
-def leave_out_centres_beyond(drawing: Drawing, frame: Box, circles: list[tuple[float, float, float]]) -> list[tuple[float, float, float]]:
+def leave_out_centres_beyond(drawing: Drawing, frame: Box,
+                             circles: list[tuple[float, float, float]]) -> list[tuple[float, float, float]]:
     """The circles with their centre within the frame of a picture or a region. Notes how many others there are."""
     kept = [circle for circle in circles if holds_centre(frame, circle)]
     if number := len(circles) - len(kept):
@@ -306,8 +313,10 @@ def refuse_swallowed(drawing: Drawing, outlines: list[Numbers]) -> None:
     """@param outlines  that will not become posts as they are. @throws UserError  if round posts became part of them"""
     number = sum(posts for outline, posts in drawing.swallowing if walls.is_one_of(outline, outlines))
     if number:
-        raise UserError(f"{rounded.counted(number, 'round post')} would vanish, because posts cross a larger outline, such as the rim of a reservoir, and were united with it; "
-                        f"choose the layer of the posts by --layer, or a part of the drawing by --region{drawing.layers_in_words()}")
+        raise UserError(f"{rounded.counted(number, 'round post')} would vanish, because posts cross a larger outline, "
+                        "such as the rim of a reservoir, and were united with it; "
+                        "choose the layer of the posts by --layer, "
+                        f"or a part of the drawing by --region{drawing.layers_in_words()}")
 
 
 def lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> list[Numbers]:
@@ -321,7 +330,8 @@ def lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> list
     def is_lost(hole: Numbers) -> bool:
         if (circle := fitted_circle(hole, True, tolerance)) is not None:
             return not (np.hypot(places[:, 0] - circle[0], places[:, 1] - circle[1]) <= places[:, 2] / 2).any()
-        return is_alone or edge is not None and holds(edge, [hole]) and not any(holds(outline, [hole]) for outline in hollow)
+        is_in_edge = edge is not None and holds(edge, [hole])
+        return is_alone or is_in_edge and not any(holds(outline, [hole]) for outline in hollow)
 
     return [hole for hole in drawing.holes if hole is not edge and is_lost(hole)]
 
@@ -332,7 +342,8 @@ def refuse_lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) 
         # The borders between several pieces of one area may cut holes, which are then not among these.
         least = "at least " if edge is None and len(drawing.outlines) > 1 else ""
         kind = "round hole" if all(fitted_circle(hole, True, tolerance) for hole in holes) else "hole"
-        raise UserError(f"the drawing has {least}{rounded.counted(len(holes), kind)}, which would not be posts; --holes reads holes as posts, and --layer or --region leave them out"
+        raise UserError(f"the drawing has {least}{rounded.counted(len(holes), kind)}, which would not be posts; "
+                        "--holes reads holes as posts, and --layer or --region leave them out"
                         f"{drawing.layers_in_words()}")
 
 
@@ -352,12 +363,16 @@ def refuse_indented(edge: Numbers | None, scale: float, droplet: float) -> None:
         number = int((is_deep & ~np.roll(is_deep, 1)).sum()) or 1
         micrometres = droplet / METRES["um"]
         x, y = scale * (points[np.argmax(depths)] - low) * micrometres
-        raise UserError(f"the device's edge is no rectangle: it has {rounded.counted(number, 'indentation')}, the deepest of {depths.max():.3g} droplet diameters "
-                        f"({depths.max() * micrometres:.4g} um) at x={x:.5g} um, y={y:.5g} um from the edge's lower left corner; the material there, such as posts at the edge, would be lost. "
-                        "Cut a rectangle within the edge by --region, or draw a rectangular edge and the material within it as outlines")
+        raise UserError(f"the device's edge is no rectangle: it has {rounded.counted(number, 'indentation')}, "
+                        f"the deepest of {depths.max():.3g} droplet diameters "
+                        f"({depths.max() * micrometres:.4g} um) at x={x:.5g} um, y={y:.5g} um from the edge's lower "
+                        "left corner; the material there, such as posts at the edge, would be lost. "
+                        "Cut a rectangle within the edge by --region, "
+                        "or draw a rectangular edge and the material within it as outlines")
 
 
-def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tuple[float, ...] | None, scale: float, droplet: float, turns: int) -> Device:
+def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tuple[float, ...] | None, scale: float,
+           droplet: float, turns: int) -> Device:
     """Turns all points, moves them to (0, 0), and converts lengths to droplet diameters."""
     turn = scale * np.linalg.matrix_power(np.array([[0, -1], [1, 0]]), turns % 4)
     circles = np.column_stack([circles[:, :2] @ turn.T, scale * circles[:, 2]])
@@ -378,8 +393,9 @@ def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tup
     high[1] = sides[-1][:, 1].min() if above else high[1]
     length, width = high - low
     circles[:, :2] -= low
-    return Device(circles=circles, others=[outline - low for outline in others], length=float(length), width=float(width), has_frame=frame is not None,
-                  droplet_metres=droplet, walls=[side - low for side in sides], lines=[(kind, line - low) for kind, line in lines])
+    return Device(circles=circles, others=[outline - low for outline in others], length=float(length),
+                  width=float(width), has_frame=frame is not None, droplet_metres=droplet,
+                  walls=[side - low for side in sides], lines=[(kind, line - low) for kind, line in lines])
 
 
 def is_within(line: Numbers, edges: Numbers) -> bool:
@@ -411,7 +427,8 @@ def valid(polygon: Any) -> Any:
     """@throws UserError  if its outline crosses itself"""
     if not polygon.is_valid:
         x, y = np.asarray(polygon.exterior.coords).mean(axis=0)
-        raise UserError(f"the outline around x={x:.4g}, y={y:.4g} in droplet diameters crosses itself; correct it in the drawing")
+        raise UserError(f"the outline around x={x:.4g}, y={y:.4g} in droplet diameters crosses itself; "
+                        "correct it in the drawing")
     return polygon
 
 
@@ -423,14 +440,16 @@ def as_circles(device: Device) -> Device:
         for outline in device.others:
             valid(geometry.Polygon(outline))
     made = [(*centroid(outline), 2 * np.sqrt(abs(area(outline)) / np.pi)) for outline in device.others]
-    return dataclasses.replace(device, circles=np.vstack([device.circles, np.array(made or np.empty((0, 3)))]), others=[])
+    return dataclasses.replace(device, circles=np.vstack([device.circles,
+                                                          np.array(made or np.empty((0, 3)))]), others=[])
 
 
 def csv_of(device: Device, source: str) -> str:
     """A CSV file of circles for clogsweep, in micrometres. Lengths are rounded to a nanometre, or to six digits of the
     smallest diameter or gap if this is finer."""
     unit = device.droplet_micrometres
-    lines = [f"# circles of {source}", f"# units=um droplet={unit:.10g}um", f"# the device is {device.length * unit:.10g} long and {device.width * unit:.10g} wide", "x,y,diameter"]
+    lines = [f"# circles of {source}", f"# units=um droplet={unit:.10g}um",
+             f"# the device is {device.length * unit:.10g} long and {device.width * unit:.10g} wide", "x,y,diameter"]
     smallest = unit * min(float(device.circles[:, 2].min(initial=np.inf)), device.smallest_gap())
     decimals = max(3, 5 - math.floor(math.log10(smallest))) if 0 < smallest < np.inf else 3
     lines += [",".join(f"{round(value * unit, decimals):.15g}" for value in circle) for circle in device.circles]

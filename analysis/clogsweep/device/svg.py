@@ -41,11 +41,13 @@ def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
     svgelements = library("svgelements", "python3-svgelements")
     page = svgelements.SVG.parse(io.BytesIO(ElementTree.tostring(empty(root))), reify=False)
     viewport = svgelements.Matrix(page.viewbox_transform) if page.viewbox else svgelements.Matrix()
-    found.from_own = lambda points: upwards(np.asarray(points) @ [[viewport.a, viewport.b], [viewport.c, viewport.d]] + [viewport.e, viewport.f])
+    found.from_own = lambda points: upwards(np.asarray(points) @ [[viewport.a, viewport.b], [viewport.c, viewport.d]]
+                                            + [viewport.e, viewport.f])
     size = size_of(page, text, path)
     if size is not None:
         found.page = (0.0, -size[1], size[0], 0.0)
-    found.skipped.update({name: number for name in flat.NO_SHAPES if (number := len(list(root.iter(NAMESPACE + name))))})
+    found.skipped.update({name: number
+                          for name in flat.NO_SHAPES if (number := len(list(root.iter(NAMESPACE + name))))})
     drawing = flat.flatten(root, *(size or (PAGE_WITHOUT_SIZE, PAGE_WITHOUT_SIZE)), path)
     read_flat(svgelements, drawing, found, are_holes_posts, transform_length(viewport))
     return found
@@ -57,12 +59,14 @@ def refuse_unknown(root: Any, path: pathlib.Path) -> None:
     for use in root.iter(NAMESPACE + "use"):
         link = next((use.get(name) for name in ("href", flat.LINK) if use.get(name)), "")
         if link[:1] != "#" or link[1:] not in names:
-            raise UserError(f"cannot read {path} (<use> refers to '{link[:60]}', which is not in the file); embed it, or unlink clones, in the drawing program")
+            raise UserError(f"cannot read {path} (<use> refers to '{link[:60]}', which is not in the file); "
+                            "embed it, or unlink clones, in the drawing program")
     if root.get("transform", "").strip() not in ("", "none"):
         raise UserError(f"cannot read {path} (transform of the whole <svg>); apply it in the drawing program")
     sizes = [root.get("width", ""), root.get("height", ""), *re.split(r"[\s,]+", root.get("viewBox", "").strip())[2:]]
     if any(re.match(r"\s*(-|[0.]+(?![\d.]))", size) for size in sizes):
-        raise UserError(f"cannot read {path} (its width, height or viewBox has no size); give the size of the page in the drawing program")
+        raise UserError(f"cannot read {path} (its width, height or viewBox has no size); "
+                        "give the size of the page in the drawing program")
 
 
 def set_scale(found: Drawing, root: Any) -> None:
@@ -76,8 +80,11 @@ def set_scale(found: Drawing, root: Any) -> None:
 
 def empty(root: Any) -> Any:
     """The drawing without its content. Without a size of its own, it has that of its viewBox."""
-    frame = ElementTree.Element(root.tag, {name: root.get(name) for name in ("width", "height", "viewBox", "preserveAspectRatio") if root.get(name)})
-    if not all(re.fullmatch(rf"\s*[0-9.eE+]+\s*({'|'.join(LENGTHS)}|px)?\s*", frame.get(name, "")) for name in ("width", "height")):
+    frame = ElementTree.Element(root.tag, {name: root.get(name)
+                                           for name in ("width", "height", "viewBox", "preserveAspectRatio")
+                                           if root.get(name)})
+    if not all(re.fullmatch(rf"\s*[0-9.eE+]+\s*({'|'.join(LENGTHS)}|px)?\s*", frame.get(name, ""))
+               for name in ("width", "height")):
         for name in ("width", "height"):
             frame.attrib.pop(name, None)
         view = re.split(r"[\s,]+", frame.get("viewBox", "").strip())
@@ -92,7 +99,8 @@ def size_of(page: Any, text: str, path: pathlib.Path) -> tuple[float, float] | N
     if page.values.get("width") and float(page.width) > 0 and float(page.height) > 0:
         return float(page.width), float(page.height)
     if re.search(r"[:=]\s*[\"']?\s*[-+\d.]+%", text):
-        raise UserError(f"cannot read {path} (it has lengths in per cent, but no size); give it width and height, or a viewBox, in the drawing program")
+        raise UserError(f"cannot read {path} (it has lengths in per cent, but no size); "
+                        "give it width and height, or a viewBox, in the drawing program")
     return None
 
 
@@ -113,20 +121,23 @@ def read_flat(svgelements: Any, drawing: Flat, found: Drawing, are_holes_posts: 
             parts = [closed(part) for part in parts]
         compound = [part for part in parts if is_closed(part)] if are_holes_posts and is_filled else []
         if len(compound) > 1:
-            clips.cut_area(found, element.values, areas.filled([part[:-1] for part in compound], element.values.get("fill-rule", "nonzero")))
+            clips.cut_area(found, element.values,
+                           areas.filled([part[:-1] for part in compound], element.values.get("fill-rule", "nonzero")))
             parts = [part for part in parts if not is_closed(part)]
         for part in parts:
             clips.cut(found, element.values, part)
         if is_filled and is_stroked and any(map(is_closed, parts)):
             widest = max(widest, float(element.stroke_width) * transform_length(element.transform) * drawing.pixel)
     if widest:
-        found.notes.append(f"strokes not counted (of filled shapes at most {widest / own_unit:.4g} wide); if a post includes its stroke, convert strokes to paths")
+        found.notes.append(f"strokes not counted (of filled shapes at most {widest / own_unit:.4g} wide); "
+                           "if a post includes its stroke, convert strokes to paths")
 
 
 def parts_of(svgelements: Any, element: Any, drawing: Flat) -> list[Numbers]:
     """The outlines and lines of a path, with y upwards."""
     matrix = element.transform
-    linear, shift = np.array([[matrix.a, matrix.b], [matrix.c, matrix.d]], dtype=float), np.array([matrix.e, matrix.f], dtype=float)
+    linear = np.array([[matrix.a, matrix.b], [matrix.c, matrix.d]], dtype=float)
+    shift = np.array([matrix.e, matrix.f], dtype=float)
     outlines = [corners_of(svgelements, svgelements.Path(part)) for part in svgelements.Path(element).as_subpaths()]
     return [upwards(drawing.to_page(corners @ linear + shift)) for corners in outlines if len(corners) > 1]
 
@@ -156,7 +167,8 @@ class Clips:
         for clip in drawing.root.iter(NAMESPACE + "clipPath"):
             content = svgelements.SVG.parse(io.BytesIO(ElementTree.tostring(with_content(clip))), reify=False)
             shapes = [element for element in content.elements() if isinstance(element, svgelements.Shape)]
-            self._areas[clip.get("id")] = [part for shape in shapes for part in parts_of(svgelements, shape, drawing) if len(part) > 2]
+            self._areas[clip.get("id")] = [part for shape in shapes
+                                           for part in parts_of(svgelements, shape, drawing) if len(part) > 2]
         self._mark(drawing.root, "")
 
     def _mark(self, element: Any, outer: str) -> None:
@@ -173,7 +185,8 @@ class Clips:
     def cut(self, found: Drawing, values: dict[str, Any], corners: Numbers) -> None:
         """Adds the part of an outline or a line that is inside all its clips."""
         clips = self._clips_of(values)
-        if len(corners) == 0 or all(len(clip) == 1 and walls.is_rectangle(clip[0][:-1]) and is_within(corners, clip[0]) for clip in clips):
+        if len(corners) == 0 or all(len(clip) == 1 and walls.is_rectangle(clip[0][:-1]) and is_within(corners, clip[0])
+                                    for clip in clips):
             add(found, corners)
             return
         geometry = library("shapely.geometry", "python3-shapely")
@@ -186,7 +199,9 @@ class Clips:
         elif is_closed(corners):
             areas.add(found, left)
         else:
-            found.pieces += [("open outline", np.asarray(part.coords)) for part in getattr(left, "geoms", [left]) if part.length > 0]
+            found.pieces += [("open outline", np.asarray(part.coords))
+                             for part in getattr(left, "geoms", [left])
+                             if part.length > 0]
 
     def cut_area(self, found: Drawing, values: dict[str, Any], area: Any) -> None:
         """Adds the part of an area that is inside all its clips."""
@@ -198,7 +213,11 @@ class Clips:
     def _visible(self, values: dict[str, Any], shape: Any) -> Any:
         """The part of a shape that is inside all its clips."""
         for clip in self._clips_of(values):
-            shape = shape.intersection(areas.union([areas.polygon(part) for part in clip], 0.0) if clip else library("shapely.geometry", "python3-shapely").Polygon())
+            if clip:
+                area = areas.union([areas.polygon(part) for part in clip], 0.0)
+            else:
+                area = library("shapely.geometry", "python3-shapely").Polygon()
+            shape = shape.intersection(area)
         return shape
 
 
@@ -220,7 +239,8 @@ def corners_of(svgelements: Any, outline: Any) -> Numbers:
     points: list[Numbers] = []
     for segment in outline:
         if isinstance(segment, svgelements.CubicBezier):
-            points.append(along_curve(np.array([(point.x, point.y) for point in (segment.start, segment.control1, segment.control2, segment.end)])))
+            controls = (segment.start, segment.control1, segment.control2, segment.end)
+            points.append(along_curve(np.array([(point.x, point.y) for point in controls])))
         elif segment.end is not None:
             points.append(np.array([(segment.end.x, segment.end.y)]))
     return np.concatenate(points) if points else np.empty((0, 2))
@@ -235,7 +255,8 @@ def along_curve(handles: Numbers) -> Numbers:
     if np.allclose(corner, other, rtol=0, atol=1e-3 * np.abs(end - start).max()):
         centre, angle = start + end - (corner + other) / 2, np.pi / 2 * share
         return np.asarray(centre + (start - centre) * np.cos(angle) + (end - centre) * np.sin(angle))
-    return np.asarray((1 - share) ** 3 * start + 3 * (1 - share) ** 2 * share * first + 3 * (1 - share) * share**2 * last + share**3 * end)
+    return np.asarray((1 - share)**3 * start + 3 * (1 - share)**2 * share * first + 3 * (1 - share) * share**2 * last
+                      + share**3 * end)
 
 
 def add(found: Drawing, corners: Numbers) -> None:

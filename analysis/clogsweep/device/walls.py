@@ -12,11 +12,13 @@ SLENDER = 3  # Smallest length of a wall divided by its thickness. So square pos
 FLAT = 0.05  # Largest deviation of a wall's outline from a rectangle [sigma].
 
 
-def among(circles: Numbers, outlines: list[Numbers], lines: list[Numbers], length: float) -> tuple[list[Numbers], list[Numbers]]:
+def among(circles: Numbers, outlines: list[Numbers], lines: list[Numbers],
+          length: float) -> tuple[list[Numbers], list[Numbers]]:
     """The lower and the upper walls among outlines and lines. The walls nearest to the posts come first. Lengths are in
     droplet diameters. If no other post would remain, both lists are empty."""
     flat = [candidate for candidate in [*outlines, *lines] if is_wall(candidate, length)]
-    posts = np.array([*circles[:, 1], *(outline.mean(axis=0)[1] for outline in outlines if not is_one_of(outline, flat))])
+    posts = np.array([*circles[:, 1],
+                      *(outline.mean(axis=0)[1] for outline in outlines if not is_one_of(outline, flat))])
     if len(posts) == 0:
         return [], []
     lower = [wall for wall in flat if (posts >= wall[:, 1].max()).all()]

@@ -29,15 +29,17 @@ def draw_on(axes: Axes, sessions: Sequence[Session]) -> None:
     begin = 0.0
     for index, session in enumerate(sessions):
         edges = [begin + min(i * session["stretch"], session["seconds"]) for i in range(len(session["busy"]) + 1)]
-        axes.stairs(session["busy"], [edge / unit for edge in edges], fill=True, color=style.COLOURS[0], alpha=0.6, linewidth=0)
-        axes.plot([begin / unit, (begin + session["seconds"]) / unit], [session["ranks"]] * 2, color="0.4", linewidth=1, linestyle="--",
-                  label="all ranks" if index == 0 else None)
+        axes.stairs(session["busy"], [edge / unit for edge in edges], fill=True, color=style.COLOURS[0], alpha=0.6,
+                    linewidth=0)
+        axes.plot([begin / unit, (begin + session["seconds"]) / unit], [session["ranks"]] * 2, color="0.4", linewidth=1,
+                  linestyle="--", label="all ranks" if index == 0 else None)
         if index > 0:
             axes.axvline(begin / unit, color="0.4", linewidth=0.8, linestyle=":")
         begin += session["seconds"]
     axes.set_xlim(0, whole / unit)
     axes.set_ylim(0, 1.1 * max(session["ranks"] for session in sessions))
-    axes.set_xlabel(f"time since the sweep began, without pauses [{name}]" if len(sessions) > 1 else f"time since the sweep began [{name}]")
+    without_pauses = ", without pauses" if len(sessions) > 1 else ""
+    axes.set_xlabel(f"time since the sweep began{without_pauses} [{name}]")
     axes.set_ylabel("busy ranks")
     axes.yaxis.get_major_locator().set_params(integer=True)
     style.grid(axes)
@@ -55,5 +57,6 @@ def lost(sessions: Sequence[Session]) -> str:
     """States the cost of idle ranks in a sentence."""
     whole = sum(session["ranks"] * session["seconds"] for session in sessions)
     idle, tail = (sum(session[name] for session in sessions) for name in ("idle_seconds", "tail_seconds"))
-    return (f"Of {hours(whole)} core-hours {hours(idle)} ({100 * idle / whole:.2g} %) were lost to ranks without work, {hours(tail)} "
-            f"({100 * tail / whole:.2g} %) of them in the tail: after the last task had been handed out.")
+    return (f"Of {hours(whole)} core-hours {hours(idle)} ({100 * idle / whole:.2g} %) were lost to ranks without work, "
+            f"{hours(tail)} ({100 * tail / whole:.2g} %) of them in the tail: "
+            "after the last task had been handed out.")

@@ -41,14 +41,16 @@ def of_polygons(rows: Records, path: object) -> list[np.void]:
     """The rows of the polygons that have clogged in arrays. @param path  the sweep's file. @throws UserError  if no
     droplet was in an array"""
     if len(rows) > 0 and are_passages(rows).all():
-        raise UserError(f"cannot draw clogs of {path} (its droplets were in a channel or on a wall); clogfit report draws their results")
+        raise UserError(f"cannot draw clogs of {path} (its droplets were in a channel or on a wall); "
+                        "clogfit report draws their results")
     return list(rows[are_clogged_polygons(rows) & ~are_passages(rows)])
 
 
 def tell_left_out(rows: Records) -> None:
     """Prints how many clogs of_polygons() leaves out, if any."""
     if number := int((are_clogged_polygons(rows) & are_passages(rows)).sum()):
-        print(f"left out: {rounded.counted(number, 'clog')} in a channel or on a wall; clogfit report draws them, after clogsweep select "
+        print(f"left out: {rounded.counted(number, 'clog')} in a channel or on a wall; "
+              "clogfit report draws them, after clogsweep select "
               "has made a sweep of one kind", file=sys.stderr)
 
 
@@ -62,10 +64,12 @@ def lacking(path: object, has_unfinished: bool) -> UserError:
     """The error for a sweep without a clogged polygon in an array.
     @param has_unfinished  whether the sweep can be resumed"""
     resume = "resume it, or " if has_unfinished else ""
-    return UserError(f"{path} holds no clogged polygon in an array (soft disks do not count); {resume}sweep with a longer max-time into another file")
+    return UserError(f"{path} holds no clogged polygon in an array (soft disks do not count); "
+                     f"{resume}sweep with a longer max-time into another file")
 
 
-def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: Collection[int] | None, most: int) -> list[np.void]:
+def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: Collection[int] | None,
+           most: int) -> list[np.void]:
     """Chooses the clogs to draw. @param rows  clogs of the sweep. @throws UserError  if one of `tasks` has no clog, or
     no clog has the mechanism"""
     if mechanism not in (None, *MECHANISMS):
@@ -80,7 +84,8 @@ def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: C
 
 def computed_once(rows: list[np.void]) -> list[np.void]:
     """Each run once, although several laboratories may have it."""
-    return list({tuple(row[name].tobytes() for name in ("line_tension", "seed", "release_x", "release_y", "distance", "time", "steps")): row for row in reversed(rows)}.values())[::-1]
+    names = ("line_tension", "seed", "release_x", "release_y", "distance", "time", "steps")
+    return list({tuple(row[name].tobytes() for name in names): row for row in reversed(rows)}.values())[::-1]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -150,9 +155,11 @@ def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, source: str, row: np.v
     output = pathlib.Path(folder) / f"{row['task']}.h5"
     # A run whose clog was certified ended before the droplet reached the equilibrium that is in its row. With --to-rest
     # the replay continues to the equilibrium.
-    replays.replay(clogrun, sweep, row["task"], output, "--to-rest", "--polygon-interval", "1e9", "--sample-interval", "1e9")
+    replays.replay(clogrun, sweep, row["task"], output, "--to-rest", "--polygon-interval",
+                   "1e9", "--sample-interval", "1e9")
     with stored.opened(output) as file:
-        return Clog(row, trajectory.refined(file["polygons"][-1], row), file["obstacles"][:], file["wedges"][:] if "wedges" in file else np.empty((0, 6)), source)
+        return Clog(row, trajectory.refined(file["polygons"][-1], row), file["obstacles"][:],
+                    file["wedges"][:] if "wedges" in file else np.empty((0, 6)), source)
 
 
 def run_all(clogrun: pathlib.Path, sweep: pathlib.Path, rows: Sequence[np.void], jobs: int) -> Clogs:
@@ -198,7 +205,8 @@ def title(row: np.void) -> str:
     """Describes the droplet and its clog in words."""
     wrapped = f"{row['num_wrapped']} wrapped ({100 * row['wrapped_support']:.0f} % of support)" if row["num_wrapped"] > 0 else "none wrapped"
     return (rf"{mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$, task {row['task']}" "\n"
-            rf"$\Gamma = {row['line_tension']:.4g}$, minimum gap ${row['obstacle_gap']:.4g}\,\sigma$, seed {row['seed']}" "\n"
+            rf"$\Gamma = {row['line_tension']:.4g}$, minimum gap ${row['obstacle_gap']:.4g}\,\sigma$, "
+            rf"seed {row['seed']}" "\n"
             f"{wrapped}, {rounded.counted(row['num_gaps'], 'gap')}, {rounded.counted(row['num_arcs'], 'arc')}")
 
 
@@ -223,7 +231,8 @@ def draw(axes: Axes, clog: Clog, view: Numbers, has_guides: bool = True) -> None
         patch.set_color("#0072B2" if len(touches) else "0.85")
         axes.add_patch(patch)
         for edge in touches:
-            axes.plot(*interface[:, [edge, (edge + 1) % interface.shape[1]]], color="#D00000", linewidth=2.4, solid_capstyle="butt")
+            axes.plot(*interface[:, [edge, (edge + 1) % interface.shape[1]]], color="#D00000", linewidth=2.4,
+                      solid_capstyle="butt")
     surroundings.frame_limits(axes, -view / 2, view / 2)
     axes.locator_params(nbins=5)
     if has_guides:

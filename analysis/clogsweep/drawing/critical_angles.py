@@ -16,7 +16,8 @@ def abscissa_of(table: pandas.DataFrame) -> str:
     @throws UserError  if no number varies"""
     numbers = [name for name in table.select_dtypes("number") if name not in FOUND]
     if not numbers:
-        raise UserError("cannot draw critical angles (one set of parameters has one angle, and nothing varies); vary line-tension")
+        raise UserError("cannot draw critical angles (one set of parameters has one angle, and nothing varies); "
+                        "vary line-tension")
     return max(numbers, key=lambda name: (name == "line_tension", table[name].nunique()))
 
 
@@ -37,9 +38,11 @@ def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> 
         with style.curve(axes, label):
             axes.errorbar(places, middle, yerr=half, label=label or None, capsize=2, **look)
             for bound, marker in (("lower", "^"), ("upper", "v")):  # draws brackets of which only one end is known
-                axes.plot(places[middle.isna()], points[bound][middle.isna()], marker, color=look["color"], fillstyle="none")
+                axes.plot(places[middle.isna()], points[bound][middle.isna()], marker, color=look["color"],
+                          fillstyle="none")
     unknown = int(table[["lower", "upper"]].isna().all(axis=1).sum())
     style.logarithmic_abscissa(axes, table[abscissa].tolist())
     axes.set_xlabel(axis_label(columns[abscissa]))
     note = "droplets follow the rows at the lower end of a bar and leave them at the upper end" + ("; a triangle is a bound" if table[["lower", "upper"]].isna().any(axis=None) else "")
-    style.finish(axes, "critical angle [degrees]", "", [note] + [f"{unknown} of {len(table)} points: the paths are too short"] * (unknown > 0))
+    style.finish(axes, "critical angle [degrees]", "",
+                 [note] + [f"{unknown} of {len(table)} points: the paths are too short"] * (unknown > 0))

@@ -57,12 +57,14 @@ class Place:
         for name in ("release_x", "release_y", "distance", "sound_distance", "lateral_displacement"):
             rows[name] *= droplet_mm
         lengths = {name: getattr(self, name) * droplet_mm for name in ("circles", "length", "width", "exit")}
-        return dataclasses.replace(self, name=self.name.rpartition("@")[0] or self.name, rows=rows, droplet=droplet_mm, unit="mm", **lengths)
+        return dataclasses.replace(self, name=self.name.rpartition("@")[0] or self.name, rows=rows, droplet=droplet_mm,
+                                   unit="mm", **lengths)
 
     def is_same_device(self, other: Place) -> bool:
         """Whether posts, edges and exit of both devices have the same places. Stored lengths are rounded."""
         return len(self.circles) == len(other.circles) and self.has_walls == other.has_walls and all(
-            np.allclose(getattr(self, name), getattr(other, name), rtol=1e-5, atol=1e-5 * self.droplet) for name in ("circles", "length", "width", "exit"))
+            np.allclose(getattr(self, name), getattr(other, name), rtol=1e-5, atol=1e-5 * self.droplet)
+            for name in ("circles", "length", "width", "exit"))
 
     def wrapped(self, points: Numbers) -> Numbers:
         """Maps positions (n, 2) back into the device in each direction in which the device is periodic."""
@@ -111,7 +113,8 @@ class Part:
     shares: Numbers | None = None  # The map of passages.
 
     def scaled(self, droplet_mm: float) -> Part:
-        return dataclasses.replace(self, place=self.place.scaled(droplet_mm), lines=[line * droplet_mm for line in self.lines])
+        return dataclasses.replace(self, place=self.place.scaled(droplet_mm),
+                                   lines=[line * droplet_mm for line in self.lines])
 
 
 DEVICE_COLUMNS = ["obstacles", "obstacle_diameter", "box", "boxes", "length", "side_walls", "exit"]
@@ -133,7 +136,8 @@ def places(path: AnyPath, folder: AnyPath | None = None) -> list[Place]:
         rows, circles, names = file["runs"][:], stored.circles(file), stored.circle_files(file)
     own = rows[rows["obstacle_filling"] == b"file"]
     if len(own) == 0:
-        raise UserError(f"{path} has no circles of your own; python3 -m clogsweep droplet and clogs show what droplets meet")
+        raise UserError(f"{path} has no circles of your own; "
+                        "python3 -m clogsweep droplet and clogs show what droplets meet")
     own = own[np.isfinite(own["release_x"])]
     own["release_x"] = beginnings_of_ways(own)
     if len(own) == 0:
@@ -144,8 +148,10 @@ def places(path: AnyPath, folder: AnyPath | None = None) -> list[Place]:
         radii = circles[check_sum][:, 2]
         table = circles[check_sum].copy()
         table[:, 2] = np.where(radii > 0, 2 * radii, kind["obstacle_diameter"])
-        found.append(Place(name=names.get(check_sum) or check_sum, circles=table, length=float(kind["length"] or kind["boxes"] * kind["box"]), width=float(kind["box"]),
-                           has_walls=kind["side_walls"] == b"on", exit=float(kind["exit"]), rows=own[own[DEVICE_COLUMNS] == kind]))
+        found.append(Place(name=names.get(check_sum) or check_sum, circles=table,
+                           length=float(kind["length"] or kind["boxes"] * kind["box"]), width=float(kind["box"]),
+                           has_walls=kind["side_walls"] == b"on", exit=float(kind["exit"]),
+                           rows=own[own[DEVICE_COLUMNS] == kind]))
     return found
 
 
@@ -168,7 +174,8 @@ def the_picture(found: Sequence[Place], groups: Groups, path: AnyPath) -> list[P
     drawn = pictures(found, groups)
     if len(drawn) > 1:
         names = ", ".join(sorted({f"{place.name}: {stored.text(place.rows[0]['obstacles'])}" for place in found}))
-        raise UserError(f"cannot draw {len(found)} devices as one; clogsweep select {path} obstacles=SUM --output one.h5 takes one of them ({names})")
+        raise UserError(f"cannot draw {len(found)} devices as one; "
+                        f"clogsweep select {path} obstacles=SUM --output one.h5 takes one of them ({names})")
     return drawn[0]
 
 
@@ -194,11 +201,13 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
     samples = STEP / min(float(row["terminal_speed"]) for row in rows)
     with tempfile.TemporaryDirectory(prefix="clogsweep-device-") as folder:
         runs = replays.follow_all(clogrun, sweep, rows, folder, jobs, samples)
-    return [np.array([row["release_x"], row["release_y"]]) + np.column_stack([run.table["distance"], run.table["lateral_displacement"]])
+    return [np.array([row["release_x"], row["release_y"]])
+            + np.column_stack([run.table["distance"], run.table["lateral_displacement"]])
             for row, run in zip(rows, runs)]
 
 
-def shown_parts(every: Sequence[Part], sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> tuple[list[Part], int]:
+def shown_parts(every: Sequence[Part], sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int,
+                jobs: int) -> tuple[list[Part], int]:
     """The parameter sets that have a panel, with their paths, and the number of all parameter sets. Prints a line if
     some parameter sets are left out.
     @param num_lines  number of runs of each panel whose paths are drawn as lines
@@ -208,7 +217,8 @@ def shown_parts(every: Sequence[Part], sweep: pathlib.Path, clogrun: pathlib.Pat
         raise UserError("no run among the circles has ended; let the sweep finish some first")
     shown = evenly(list(every), MOST_PANELS)
     if len(shown) < len(every):
-        print(f"{shown[0].place.name}: {len(shown)} of {len(every)} parameter sets are drawn; clogsweep select makes a sweep of the others", file=sys.stderr)
+        print(f"{shown[0].place.name}: {len(shown)} of {len(every)} parameter sets are drawn; "
+              "clogsweep select makes a sweep of the others", file=sys.stderr)
     for part in progress.shown(shown, "replayed panel", len(shown)):
         ways = ways_of(part.place, sweep, clogrun, max(num_lines, num_mapped), jobs)
         part.lines, part.mapped = evenly(ways, num_lines), evenly(ways, num_mapped)
@@ -235,11 +245,13 @@ def draw_ends(axes: Axes, place: Place) -> None:
     """Draws where droplets clogged and by which mechanism. Also draws where droplets passed the exit, broke up, or ran
     out of time. Failed droplets are only counted."""
     ends = place.wrapped(place.ends)
-    words = {"flowing": (".", "0.2", "still moving"), "passed": (">", "0.2", "passed"), "broken": ("*", style.CAUSE_COLOURS["broken"], "broken")}
+    words = {"flowing": (".", "0.2", "still moving"), "passed": (">", "0.2", "passed"),
+             "broken": ("*", style.CAUSE_COLOURS["broken"], "broken")}
     for status, (marker, colour, name) in words.items():
         of_status = place.rows["status"] == status.encode()
         if of_status.any():
-            axes.plot(*ends[of_status].T, marker, color=colour, markersize=5, linestyle="none", label=f"{name}: {of_status.sum()}", zorder=4)
+            axes.plot(*ends[of_status].T, marker, color=colour, markersize=5, linestyle="none",
+                      label=f"{name}: {of_status.sum()}", zorder=4)
     if num_failed := np.count_nonzero(place.rows["status"] == b"failed"):
         axes.plot([], [], linestyle="none", label=f"failed: {num_failed}")
     clogged = place.rows["status"] == b"clogged"
@@ -248,11 +260,13 @@ def draw_ends(axes: Axes, place: Place) -> None:
         others = ~np.isin(place.rows["mechanism"], [name.encode() for name in style.MECHANISM_MARKERS])
         of_kind = clogged & (named | others if mechanism == "other" else named)
         if of_kind.any():
-            axes.plot(*ends[of_kind].T, marker, color=style.MECHANISM_COLOURS[mechanism], markersize=6, markeredgecolor="white", linestyle="none",
+            axes.plot(*ends[of_kind].T, marker, color=style.MECHANISM_COLOURS[mechanism],
+                      markersize=6, markeredgecolor="white", linestyle="none",
                       label=f"clogged, {mechanism}: {of_kind.sum()}", zorder=5)
     for site, count in sites(ends[clogged], SITE * place.droplet):
         if count > 1:
-            axes.annotate(str(count), site, (4, 3), textcoords="offset points", fontsize=8, zorder=7, path_effects=[surroundings.HALO])
+            axes.annotate(str(count), site, (4, 3), textcoords="offset points", fontsize=8, zorder=7,
+                          path_effects=[surroundings.HALO])
 
 
 def sites(points: Numbers, reach: float) -> list[tuple[Numbers, int]]:
@@ -290,7 +304,8 @@ def came_past(place: Place) -> tuple[Numbers, Numbers]:
 def draw_passages(axes: Axes, parts: Sequence[Part]) -> None:
     """Draws the fraction of the droplets that passed each place along the flow."""
     for number, part in enumerate(parts):
-        axes.step(*came_past(part.place), where="mid", color=style.shades(len(parts))[number], linewidth=1.2, label=part.label)
+        axes.step(*came_past(part.place), where="mid", color=style.shades(len(parts))[number], linewidth=1.2,
+                  label=part.label)
     axes.set_ylabel("share that\ncame past")
     axes.set_ylim(bottom=0)
     style.grid(axes)
@@ -310,7 +325,9 @@ def passages(place: Place, ways: Sequence[Numbers]) -> Numbers:
         cells = np.unique((points / (place.length, place.width) * (columns, rows)).astype(int), axis=0)[:, ::-1]
         covered = (cells[:, None, :] + disk[None, :, :]).reshape(-1, 2)
         # No droplet moves beyond a wall or an exit. In a direction without walls or exit, the device repeats.
-        inside = ((not place.has_walls) | (covered[:, 0] >= 0) & (covered[:, 0] < rows)) & ((place.exit == 0) | (covered[:, 1] >= 0) & (covered[:, 1] < columns))
+        is_in_width = (not place.has_walls) | (covered[:, 0] >= 0) & (covered[:, 0] < rows)
+        is_in_length = (place.exit == 0) | (covered[:, 1] >= 0) & (covered[:, 1] < columns)
+        inside = is_in_width & is_in_length
         covered = covered[inside] % (rows, columns)
         over = np.zeros_like(counts, dtype=bool)
         over[covered[:, 0], covered[:, 1]] = True
@@ -327,8 +344,8 @@ def along(way: Numbers) -> Numbers:
 
 def draw_map(axes: Axes, place: Place, shares: Numbers) -> AxesImage:
     """Draws the map of passages."""
-    return axes.imshow(np.where(shares > 0, shares, np.nan), extent=(0, place.length, 0, place.width), origin="lower", cmap=style.PASSAGES,
-                       vmin=0, vmax=1, interpolation="nearest", aspect="equal", zorder=0)
+    return axes.imshow(np.where(shares > 0, shares, np.nan), extent=(0, place.length, 0, place.width), origin="lower",
+                       cmap=style.PASSAGES, vmin=0, vmax=1, interpolation="nearest", aspect="equal", zorder=0)
 
 
 def draw_scale(figure: Figure, panels: Sequence[Axes], drawn: AxesImage, parts: Sequence[Part]) -> None:
@@ -349,9 +366,11 @@ def draw_part(axes: Axes, part: Part, legend_columns: int) -> None:
     for number, way in enumerate(part.lines):
         axes.plot(*unbroken(way, place).T, color=style.COLOURS[number % len(style.COLOURS)], linewidth=1.0, zorder=3)
     axes.plot(*place.wrapped(place.releases).T, "|", color="#009E73", markersize=7, zorder=4,
-              label=f"released: {len(place.rows)}" + (f", displaced: {part.num_displaced}" if part.num_displaced else ""))
+              label=f"released: {len(place.rows)}"
+              + (f", displaced: {part.num_displaced}" if part.num_displaced else ""))
     draw_ends(axes, place)
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=legend_columns, fontsize=8, frameon=False, borderaxespad=0.2)
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=legend_columns, fontsize=8, frameon=False,
+                borderaxespad=0.2)
 
 
 def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None) -> Figure:
@@ -360,8 +379,12 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
     @param num_parts  number of all parameter sets of the device
     @param droplet_mm  diameter of the droplet [mm], if it is known"""
     place = parts[0].place
-    beside = BESIDE + OF_LETTER * max(len(part.label) for part in parts) if len(parts) > 1 else BESIDE if parts[0].mapped else 0
-    figure, (*panels, below) = device_plan.axes_for(place.length / place.droplet, place.width / place.droplet, len(parts), strip=1.5, beside=beside)
+    if len(parts) > 1:
+        beside = BESIDE + OF_LETTER * max(len(part.label) for part in parts)
+    else:
+        beside = BESIDE if parts[0].mapped else 0
+    figure, (*panels, below) = device_plan.axes_for(place.length / place.droplet, place.width / place.droplet,
+                                                    len(parts), strip=1.5, beside=beside)
     is_grid = below.get_gridspec().ncols > 1
     maps = [draw_map(axes, part.place, part.shares) for axes, part in zip(panels, parts) if part.shares is not None]
     for axes, part in zip(panels, parts):
@@ -370,10 +393,12 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
         draw_scale(figure, panels, maps[0], parts)
     device_plan.draw_flow(panels[-1], 26 if is_grid else 12)
     draw_passages(below, parts)
-    below.set_xlabel(f"{place.coordinate('x')}, along the flow" + (rf"; $\sigma$ = {droplet_mm:.4g} mm" if droplet_mm else ""))
+    below.set_xlabel(f"{place.coordinate('x')}, along the flow"
+                     + (rf"; $\sigma$ = {droplet_mm:.4g} mm" if droplet_mm else ""))
     walls = "between walls" if place.has_walls else "periodic across the flow"
     some = f"; {len(parts)} of {num_parts} parameter sets" if len(parts) < num_parts else ""
-    figure.suptitle(f"{literal(place.name)}: {place.length:.4g} x {place.width:.4g} {place.unit or 'droplet diameters'}, {walls}{some}", fontsize=9)
+    figure.suptitle(f"{literal(place.name)}: {place.length:.4g} x {place.width:.4g} "
+                    f"{place.unit or 'droplet diameters'}, {walls}{some}", fontsize=9)
     if not is_grid:
         align(below, panels[-1])
     return figure

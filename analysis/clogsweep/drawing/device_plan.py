@@ -23,17 +23,20 @@ TALLEST = 11.0  # Largest height of all panels together [inches].
 RED = "#D00000"
 
 
-def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0, beside: float = 0.0) -> tuple[Figure, list[Axes]]:
+def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0,
+             beside: float = 0.0) -> tuple[Figure, list[Axes]]:
     """A figure and its axes. The scales along and across a device of this size are equal. Panels are in one column, or
     in several columns if one would be too tall.
     @param strip  height of an additional panel below the devices [inches]
     @param beside  width for what is drawn beside the devices [inches]"""
     figure_width = min(WIDEST, max(NARROWEST, 0.45 * length))
     shapes = [(columns, -(-panels // columns)) for columns in range(1, panels + 1)]
-    columns, rows = next((shape for shape in shapes if figure_width / shape[0] * shape[1] * width / length <= TALLEST), shapes[-1])
+    columns, rows = next((shape for shape in shapes
+                          if figure_width / shape[0] * shape[1] * width / length <= TALLEST), shapes[-1])
     height = min(TALLEST / rows, max(2.2, figure_width / columns * width / length))
     heights = [height] * rows + ([strip] if strip else [])
-    figure = style.new_figure(figsize=(figure_width + beside, sum(heights) + 1.3 + 0.45 * (rows - 1)), layout="constrained")
+    figure = style.new_figure(figsize=(figure_width + beside, sum(heights) + 1.3 + 0.45 * (rows - 1)),
+                              layout="constrained")
     grid = figure.add_gridspec(len(heights), columns, height_ratios=heights)
     axes = [figure.add_subplot(grid[number // columns, number % columns]) for number in range(panels)]
     axes += [figure.add_subplot(grid[-1, :])] if strip else []
@@ -49,7 +52,8 @@ def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0, b
 def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> None:
     """Draws posts as filled circles. @param circles  (n, 3): x, y, diameter"""
     rings = [Polygon(ring) for ring in rings_among(circles)]
-    axes.add_collection(PatchCollection([*(Circle((x, y), diameter / 2) for x, y, diameter in circles), *rings], facecolor=colour, edgecolor="none"))
+    axes.add_collection(PatchCollection([*(Circle((x, y), diameter / 2) for x, y, diameter in circles), *rings],
+                                        facecolor=colour, edgecolor="none"))
 
 
 def rings_among(circles: Numbers) -> list[Numbers]:
@@ -68,7 +72,8 @@ def rings_among(circles: Numbers) -> list[Numbers]:
     return found
 
 
-def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[Numbers] = (), droplet: float = 1.0) -> None:
+def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[Numbers] = (),
+          droplet: float = 1.0) -> None:
     """Draws the edge of the device and its surroundings. @param beside  lines to include in the picture, unless they
     are farther away than the size of the device
     @param droplet  diameter of the droplet, in the unit of the axes"""
@@ -86,7 +91,8 @@ def draw_flow(axes: Axes, points_below: float) -> None:
     `points_below` points."""
     place = axes.transAxes + ScaledTranslation(0, -points_below / 72, axes.figure.dpi_scale_trans)
     start = axes.transAxes + ScaledTranslation(-0.6, -points_below / 72, axes.figure.dpi_scale_trans)
-    axes.annotate("flow", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9, annotation_clip=False,
+    axes.annotate("flow", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9,
+                  annotation_clip=False,
                   arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black", "shrinkB": 0})
 
 
@@ -105,11 +111,13 @@ def understood(device: Device, source: str) -> Figure:
         axes.plot(*line.T, color=RED, linewidth=1.0)
     for pair in device.overlaps():
         draw_posts(axes, device.circles[list(pair)], RED)
-    frame(axes, device.length, device.width, "--" if device.has_frame else ":", [*device.walls, *(line for _, line in device.lines)])
+    frame(axes, device.length, device.width, "--" if device.has_frame else ":",
+          [*device.walls, *(line for _, line in device.lines)])
     draw_flow(axes, 26)
     axes.set_xlabel(r"$x/\sigma$, along the flow")
     micrometres = device.droplet_micrometres
     red = f", {len(device.others)} not round (red)" if device.others else ""
     style.caption(axes, rf"{literal(source)}: {rounded.counted(device.num_posts(), 'post')}{red}, "
-                        rf"$\sigma$ = {micrometres:.4g} µm, device {device.length * micrometres:.5g} µm x {device.width * micrometres:.5g} µm")
+                        rf"$\sigma$ = {micrometres:.4g} µm, "
+                        rf"device {device.length * micrometres:.5g} µm x {device.width * micrometres:.5g} µm")
     return figure

@@ -20,10 +20,12 @@ def times_of(groups: Groups) -> list[float]:
     possible"""
     known = [group["dwells_known_from"] for group in groups.members]
     if None in known:
-        raise UserError("cannot draw dwells (the file holds rows of a version that did not look for them); compute the sweep anew, into another file")
+        raise UserError("cannot draw dwells (the file holds rows of a version that did not look for them); "
+                        "compute the sweep anew, into another file")
     first, last = max(known), max(groups.values("max_time"))
     if not 0 < first < last:
-        raise UserError(f"cannot draw dwells (they are known from {first:.4g} t0 on, and no run is longer); make max-time longer")
+        raise UserError(f"cannot draw dwells (they are known from {first:.4g} t0 on, and no run is longer); "
+                        "make max-time longer")
     # clogfit would refuse a first time that is rounded down, so both ends are exact.
     return [first, *np.geomspace(first, last, NUM_TIMES)[1:-1].tolist(), last]
 

@@ -78,7 +78,8 @@ class Camera:
         self._aspect = aspect
         self._middle = np.stack([smoothed(middle, frames_of_a_turn) for middle in ((low + high) / 2).T], axis=1)
         # The average of local maxima never makes the view too small for the droplet.
-        self._half_height = smoothed(ndimage.maximum_filter1d(half_height, 2 * frames_of_a_turn + 1, mode="nearest"), frames_of_a_turn)
+        self._half_height = smoothed(ndimage.maximum_filter1d(half_height, 2 * frames_of_a_turn + 1, mode="nearest"),
+                                     frames_of_a_turn)
 
     def corners(self, frame: int) -> tuple[Numbers, Numbers]:
         half = self._half_height[frame] * np.array([self._aspect, 1.0])
@@ -119,7 +120,8 @@ class Film:
     @param size  a key of SIZES
     """
 
-    def __init__(self, run: trajectory.Trajectory, frames: Sequence[int] | npt.NDArray[np.int64], colour: str, rate: int, size: str = "1080p") -> None:
+    def __init__(self, run: trajectory.Trajectory, frames: Sequence[int] | npt.NDArray[np.int64], colour: str,
+                 rate: int, size: str = "1080p") -> None:
         self._run = run
         self._frames = frames
         self._rate = rate
@@ -132,7 +134,8 @@ class Film:
         self.figure.text(0.01, 0.965, trajectory.described(run), va="center", fontsize=11)
         self._draw_surroundings()
         self._draw_droplet(colour)
-        self._frame = self._axes.add_patch(Rectangle((0, 0), 1, 1, transform=self._axes.transAxes, fill=False, linewidth=0.8, clip_on=False))
+        self._frame = self._axes.add_patch(Rectangle((0, 0), 1, 1, transform=self._axes.transAxes,
+                                                     fill=False, linewidth=0.8, clip_on=False))
         inset = self._draw_course()
         surroundings.draw_guides(self._axes)
         self._bar, = self._axes.artists
@@ -146,14 +149,16 @@ class Film:
     def _draw_legend(self, colour: str) -> Artist:
         shown: list[Artist] = [Line2D([], [], color=style.DROPLET, linewidth=1.5, label="path of the centre")]
         if colour == "mechanism":
-            shown += [Patch(facecolor=face, edgecolor="black", alpha=0.75, label=f"clogged, {name}") for name, face in style.MECHANISM_COLOURS.items()
+            shown += [Patch(facecolor=face, edgecolor="black", alpha=0.75, label=f"clogged, {name}")
+                      for name, face in style.MECHANISM_COLOURS.items()
                       if name == self._run.word("mechanism")]
         return self._axes.legend(handles=shown, loc="upper right", fontsize=9, edgecolor="0.7", framealpha=1)
 
     def _separate(self, inset: list[Artist], still: list[Artist]) -> None:
         """Separates the static parts from the moving parts. The scale bar is as long as a droplet is wide. So it
         changes when the camera zooms."""
-        under = [*self._axes.patches[:self._num_walls], self._obstacles, self._trail, self._inside, self._outline, self._frame]
+        under = [*self._axes.patches[:self._num_walls], self._obstacles, self._trail,
+                 self._inside, self._outline, self._frame]
         over = [self._course, self._head, self._clock, self._verdict]
         for artist in (*under, *inset, *still, *over, self._bar):
             artist.set_animated(True)
@@ -175,7 +180,8 @@ class Film:
         # There is one path per edge. All paths are views of one array, because making new paths for each frame would
         # take longer than drawing them.
         self._edges = np.zeros((self._run.polygons.shape[2], 2, 2))
-        self._outline = PathCollection([Path(edge) for edge in self._edges], cmap="viridis", facecolor="none", linewidth=2, capstyle="round")
+        self._outline = PathCollection([Path(edge) for edge in self._edges], cmap="viridis", facecolor="none",
+                                       linewidth=2, capstyle="round")
         self._axes.add_collection(self._outline)
         self._speeds = None
         if colour == "speed":
@@ -192,7 +198,8 @@ class Film:
     def _draw_course(self) -> list[Artist]:
         """Draws the axes of r(t). @return the artists that are static"""
         table = self._run.table
-        paper = self._axes.add_patch(Rectangle((0.69, 0), 0.31, 0.37, transform=self._axes.transAxes, facecolor="white", alpha=0.85))
+        paper = self._axes.add_patch(Rectangle((0.69, 0), 0.31, 0.37, transform=self._axes.transAxes,
+                                               facecolor="white", alpha=0.85))
         inset = self._axes.inset_axes((0.745, 0.1, 0.24, 0.25))
         inset.set_xlim(0, max(table["time"][-1], 1e-9))
         inset.set_ylim(min(0, table["distance"].min()), max(table["distance"].max(), 1e-9) * 1.05)
@@ -308,9 +315,11 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
     height, width, _ = pixels_of(film.figure).shape
     # The encoder takes most of the time. `veryfast` reduces its time to two thirds of the default, and makes the file a
     # sixth larger. Players require `yuv420p`.
-    command = ["ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba", "-video_size", f"{width}x{height}", "-framerate", str(rate),
+    command = ["ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo",
+               "-pix_fmt", "rgba", "-video_size", f"{width}x{height}", "-framerate", str(rate),
                "-i", "pipe:", "-c:v", "libx264", "-preset", "veryfast", "-pix_fmt", "yuv420p", f"file:{path}"]
-    with tempfile.TemporaryFile() as said, subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said) as process:
+    with (tempfile.TemporaryFile() as messages,
+          subprocess.Popen(command, stdin=subprocess.PIPE, stderr=messages) as process):
         assert process.stdin is not None
         try:
             for pixels in film.play_and_hold():
@@ -319,8 +328,8 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
         except BrokenPipeError:
             pass  # ffmpeg has ended, and prints the reason.
         if process.wait() != 0:
-            said.seek(0)
-            raise UserError(f"cannot write {path.name} (ffmpeg: {' '.join(said.read().decode(errors='replace').split())}); look at the folder and its disk")
+            messages.seek(0)
+            raise UserError(f"cannot write {path.name} (ffmpeg: {' '.join(messages.read().decode(errors='replace').split())}); look at the folder and its disk")
 
 
 def palette_of(first: Pixels) -> Image.Image:
@@ -341,7 +350,8 @@ def palette_of(first: Pixels) -> Image.Image:
 def write_gif(film: Film, path: pathlib.Path, rate: int) -> None:
     palette = palette_of(film.pixels(0))
     # All frames are held in memory until the last one is drawn, so each pixel has one byte.
-    frames = (Image.fromarray(pixels[..., :3]).quantize(palette=palette, dither=Image.Dither.NONE) for pixels in film.play_and_hold())
+    frames = (Image.fromarray(pixels[..., :3]).quantize(palette=palette, dither=Image.Dither.NONE)
+              for pixels in film.play_and_hold())
     next(frames).save(path, save_all=True, append_images=frames, duration=1000 / rate, loop=0)
 
 

@@ -30,7 +30,8 @@ HOLLOW_MARKERS = {
 def reasons_for_hollow_marker(group: Group) -> list[str]:
     """The doubts that make a group's marker hollow. A group without clogs has an arrow instead of a marker, which
     already shows that clogs are few."""
-    return [doubt for doubt in style.doubts(group) if doubt in HOLLOW_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
+    return [doubt for doubt in style.doubts(group)
+            if doubt in HOLLOW_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
 
 
 SPEED_NOTES = ["bars: standard errors"]
@@ -49,7 +50,8 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
     labels = {line.get_label() for axes in panels for line in axes.lines}
     marks = [f"bars: {100 * confidence:g} % confidence intervals"] if any(group["clogs"] > 0 for group in groups) else []
     if any(group["clogs"] == 0 for group in groups):
-        marks.append("arrows: lower bounds (no run clogged)" + (", joined by dotted lines" if THROUGH_BOUNDS in labels else ""))
+        marks.append("arrows: lower bounds (no run clogged)"
+                     + (", joined by dotted lines" if THROUGH_BOUNDS in labels else ""))
     if labels & {FITTED, FITTED_TO_COMMON_OBSTACLES}:
         marks.append(f"lines: fitted curves, with {100 * confidence:g} % bands")
     lines = ["; ".join(marks)] if marks else []
@@ -61,7 +63,8 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
 def flaw_notes(groups: Collection[Group]) -> list[str]:
     """Explains hollow markers, and states how many points have unfinished or failed runs."""
     lines = []
-    if reasons := dict.fromkeys(HOLLOW_MARKERS[reason] for group in groups for reason in reasons_for_hollow_marker(group)):
+    reasons = dict.fromkeys(HOLLOW_MARKERS[reason] for group in groups for reason in reasons_for_hollow_marker(group))
+    if reasons:
         lines += textwrap.wrap(f"hollow: {', or '.join(reasons)}", NOTE_WIDTH)
     return lines + failure_notes(groups)
 
@@ -72,7 +75,8 @@ def failure_notes(groups: Collection[Group], noun: str = "point") -> list[str]:
     if num_incomplete := sum("incomplete" in style.doubts(group) for group in groups):
         lines.append(f"incomplete: runs of {num_incomplete} of {rounded.counted(len(groups), noun)} are unfinished")
     if num_failed := sum((group.get("failed") or 0) > 0 for group in groups):
-        lines.append(f"failed: some runs of {num_failed} of {rounded.counted(len(groups), noun)} (not clogged up to their last check)")
+        lines.append(f"failed: some runs of {num_failed} of {rounded.counted(len(groups), noun)} "
+                     "(not clogged up to their last check)")
     return lines
 
 
@@ -80,7 +84,8 @@ def automatic_notes(groups: Groups) -> list[str]:
     """States how many points are at an automatic value of the abscissa, which the user has not chosen."""
     number = groups.num_automatic(groups.abscissa) if groups.varies(groups.abscissa) else 0
     key = groups.abscissa_key().replace("_", " ")
-    return [f"automatic: the {key} of {number} of {rounded.counted(len(groups.members), 'point')} follows from other parameters"] if number else []
+    return [f"automatic: the {key} of {number} of {rounded.counted(len(groups.members), 'point')} follows "
+            "from other parameters"] if number else []
 
 
 def excluded_notes(groups: Groups) -> list[str]:
@@ -89,17 +94,19 @@ def excluded_notes(groups: Groups) -> list[str]:
     return textwrap.wrap(f"not in a curve: {'; '.join(excluded)}", NOTE_WIDTH) if excluded else []
 
 
-def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs", title: str = "") -> None:
+def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs",
+                   title: str = "") -> None:
     """Adds the ordinate, the legend and the caption to a picture of clogging lengths.
     @param drawn  all groups that were passed to draw_lengths()
     @param other, title  see style.legend()"""
     style.logarithmic_ordinate(axes)
-    style.finish(axes, (LABORATORY if groups.are_in_mm else AXES)["length"], groups.caption(), [*length_notes(drawn, groups.confidence, [axes]), *automatic_notes(groups), *excluded_notes(groups)], drawn,
-                 other, title)
+    style.finish(axes, (LABORATORY if groups.are_in_mm else AXES)["length"], groups.caption(),
+                 [*length_notes(drawn, groups.confidence, [axes]), *automatic_notes(groups), *excluded_notes(groups)],
+                 drawn, other, title)
 
 
-def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
-                 size: float = 5.5, unit: str = "") -> None:
+def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str,
+                 linestyle: str | tuple[int, tuple[int, ...]] | None = None, size: float = 5.5, unit: str = "") -> None:
     """Draws clogging lengths with clogfit's intervals. The shape of a marker shows the most frequent mechanism of the
     clogs. The marker is hollow if the length is in doubt (HOLLOW_MARKERS). If no run clogged, an arrow begins at the
     lower bound.
@@ -111,34 +118,39 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     # A length is NaN if no run clogged. The solid line is interrupted there, and a dotted line continues it.
     middle, lower, upper = (f"clogging_length{end}{unit}" for end in ("", "_lower", "_upper"))
     lengths = [math.nan if group["clogs"] == 0 else group[middle] for group in groups]
-    bars = [[math.nan if group["clogs"] == 0 else abs(group[middle] - group[end]) for group in groups] for end in (lower, upper)]
+    bars = [[math.nan if group["clogs"] == 0 else abs(group[middle] - group[end]) for group in groups]
+            for end in (lower, upper)]
     colour, line = (style.curve_style(index)[name] for name in ("color", "linestyle"))
     has_bars = any(group["clogs"] > 0 for group in groups)
-    axes.errorbar(places, lengths, yerr=bars if has_bars else None, color=colour, linestyle=linestyle or line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
-                  gid=style.mark("curve", groups))
+    axes.errorbar(places, lengths, yerr=bars if has_bars else None, color=colour, linestyle=linestyle or line,
+                  linewidth=1, elinewidth=1, capsize=2.5, label=label, gid=style.mark("curve", groups))
     for x, y, group in zip(places, lengths, groups):
         # "auto" follows the line's colour, even if a user changes it later.
         face = "white" if reasons_for_hollow_marker(group) else "auto"
-        axes.plot(x, y, color=colour, marker=style.MECHANISM_MARKERS[style.main_mechanism(group)], markerfacecolor=face, markersize=size, zorder=3,
-                  gid=style.mark("point", [group]) if group["clogs"] > 0 else None)
+        axes.plot(x, y, color=colour, marker=style.MECHANISM_MARKERS[style.main_mechanism(group)], markerfacecolor=face,
+                  markersize=size, zorder=3, gid=style.mark("point", [group]) if group["clogs"] > 0 else None)
     if linestyle != "none" and len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
         through = [group[lower if group["clogs"] == 0 else middle] for group in groups]
         axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1, label=THROUGH_BOUNDS)
     bounds = [(x, group) for x, group in zip(places, groups) if group["clogs"] == 0]
-    axes.plot([x for x, _ in bounds], [group[lower] for _, group in bounds], color=colour, marker=style.LOWER_BOUND, markerfacecolor="none",
-              markersize=4.5 * size, linestyle="none", gid=style.mark("point", [group for _, group in bounds]))
+    axes.plot([x for x, _ in bounds], [group[lower] for _, group in bounds], color=colour, marker=style.LOWER_BOUND,
+              markerfacecolor="none", markersize=4.5 * size, linestyle="none",
+              gid=style.mark("point", [group for _, group in bounds]))
 
 
-def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, column: str = "relative_speed") -> None:
+def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str,
+                column: str = "relative_speed") -> None:
     """Draws mean speeds relative to the terminal speed. If a group has several runs, its bar is the standard error from
     the scatter between runs.
     @param column  "relative_speed" is the mean of the runs that went far enough to have a speed, as published. The
     other columns are OF_ALL_RUNS and "lateral_slope"."""
-    points = sorted(((place, group) for place, group in zip(places, groups) if group[column] is not None), key=lambda point: point[0])
+    points = sorted(((place, group) for place, group in zip(places, groups) if group[column] is not None),
+                    key=lambda point: point[0])
     known = [group for _, group in points]
-    drawn = axes.errorbar(
-        [x for x, _ in points], [group[column] for group in known], yerr=[group[f"{column}_error"] or 0.0 for group in known],
-        **style.curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label, gid=style.mark("curve", known))
+    drawn = axes.errorbar([x for x, _ in points],
+                          [group[column] for group in known], yerr=[group[f"{column}_error"] or 0.0 for group in known],
+                          **style.curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label,
+                          gid=style.mark("curve", known))
     drawn.lines[0].set_gid(style.mark("point", known))
 
 
@@ -157,7 +169,8 @@ def speed_notes(groups: Collection[Group]) -> list[str]:
     if speed_column(groups) == OF_ALL_RUNS:
         return ["distance divided by time, of all runs; bars: standard errors"]
     fewer = any(group["relative_speed_runs"] < group["runs"] for group in groups)
-    return ["mean of the runs that went far enough, the fast ones where droplets clog; bars: standard errors"] if fewer else SPEED_NOTES
+    return ["mean of the runs that went far enough, the fast ones where droplets clog; "
+            "bars: standard errors"] if fewer else SPEED_NOTES
 
 
 def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
@@ -215,11 +228,13 @@ def draw_fitted(axes: Axes, groups: Groups, members: Sequence[Group], index: int
     if not fitted:
         return False
     x = [place[groups.abscissa] for place in fitted["curve"]]
-    lengths, lower, upper = ([place[f"clogging_length{end}"] for place in fitted["curve"]] for end in ("", "_lower", "_upper"))
+    lengths, lower, upper = ([place[f"clogging_length{end}"] for place in fitted["curve"]]
+                             for end in ("", "_lower", "_upper"))
     style_of_curve = style.curve_style(index)
     axes.fill_between(x, lower, upper, color=style_of_curve["color"], alpha=0.13, linewidth=0, zorder=0)
     label = FITTED_TO_COMMON_OBSTACLES if fitted["common_obstacles"] else FITTED
-    axes.plot(x, lengths, color=style_of_curve["color"], linestyle=style_of_curve["linestyle"], linewidth=1.2, label=label, zorder=1)
+    axes.plot(x, lengths, color=style_of_curve["color"], linestyle=style_of_curve["linestyle"], linewidth=1.2,
+              label=label, zorder=1)
     return True
 
 
@@ -228,7 +243,8 @@ def draw_on(axes: Axes, groups: Groups) -> None:
     lines join the points."""
     def draw_curve(axes: Axes, places: Sequence[float], members: Sequence[Group], index: int, label: str) -> None:
         is_fitted = draw_fitted(axes, groups, members, index)
-        draw_lengths(axes, places, members, index, label, linestyle="none" if is_fitted else None, unit="_mm" if groups.are_in_mm else "")
+        draw_lengths(axes, places, members, index, label, linestyle="none" if is_fitted else None,
+                     unit="_mm" if groups.are_in_mm else "")
 
     draw_curves(axes, groups, draw_curve)
     finish_lengths(axes, groups, groups.members, title=groups.legend_title())
@@ -240,4 +256,6 @@ def draw_speeds_on(axes: Axes, groups: Groups) -> None:
     add_laboratory(axes, groups, "speed")
     has_points = any(curve.lines[0].get_xdata().size for curve in axes.containers)
     of_all = " of all runs" if speed_column(groups.members) == OF_ALL_RUNS else ""
-    style.finish(axes, AXES["speed"] + of_all, groups.caption(), [*speed_notes(groups.members), *automatic_notes(groups)] if has_points else [], title=groups.legend_title())
+    style.finish(axes, AXES["speed"] + of_all, groups.caption(),
+                 [*speed_notes(groups.members), *automatic_notes(groups)] if has_points else [],
+                 title=groups.legend_title())

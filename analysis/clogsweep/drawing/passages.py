@@ -35,10 +35,13 @@ class Kind:
 
 
 CHANNEL = Kind(
-    "Passages", "passed", {"passed": "passed", "clogged": "clogged", "broken": "broken up", "flowing": "flowing at the end"},
-    {"largest_shape_parameter": r"largest shape parameter $\mathcal{A}$", "smallest_relative_speed": r"smallest speed $v_g/v_t$",
+    "Passages", "passed", {"passed": "passed", "clogged": "clogged", "broken": "broken up",
+                           "flowing": "flowing at the end"},
+    {"largest_shape_parameter": r"largest shape parameter $\mathcal{A}$",
+     "smallest_relative_speed": r"smallest speed $v_g/v_t$",
      "largest_relative_speed": r"largest speed $v_g/v_t$"},
-    {"largest_shape_parameter": "largest A", "largest_shape_parameter_at": "at h/&sigma;", "smallest_relative_speed": "smallest v<sub>g</sub>/v<sub>t</sub>",
+    {"largest_shape_parameter": "largest A", "largest_shape_parameter_at": "at h/&sigma;",
+     "smallest_relative_speed": "smallest v<sub>g</sub>/v<sub>t</sub>",
      "smallest_relative_speed_at": "at h/&sigma;", "largest_relative_speed": "largest v<sub>g</sub>/v<sub>t</sub>",
      "largest_relative_speed_at": "at h/&sigma;"},
     "where its shape parameter is largest",
@@ -69,19 +72,23 @@ def draw_curves(axes: Axes, groups: Groups, column: str) -> None:
     """Draws one point for each droplet. A cross means that the droplet clogged in a channel. A hollow marker means that
     the run ended before the droplet passed or came to rest."""
     kind = kind_of(groups)
-    markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}
+    markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"},
+               "broken": {"marker": "^"}}
     for index, (label, members) in enumerate(groups.curves()):
-        members = sorted((group for group in members if group[column] is not None), key=lambda group: float(group[groups.abscissa]))
+        members = sorted((group for group in members if group[column] is not None),
+                         key=lambda group: float(group[groups.abscissa]))
         look = {name: style.curve_style(index)[name] for name in ("color", "linestyle")}
-        axes.plot([group[groups.abscissa] for group in members], [group[column] for group in members], linewidth=1, **look,
-                  label=f"{label}: {share(kind, members)}" if label else share(kind, members), gid=style.mark("curve", members))
+        axes.plot([group[groups.abscissa] for group in members], [group[column] for group in members], linewidth=1,
+                  **look, label=f"{label}: {share(kind, members)}" if label else share(kind, members),
+                  gid=style.mark("curve", members))
         for group in members:
-            axes.plot(group[groups.abscissa], group[column], color=look["color"], markersize=6, gid=style.mark("point", [group]),
-                      **markers.get(group["status"], {"marker": "X"}))
+            axes.plot(group[groups.abscissa], group[column], color=look["color"], markersize=6,
+                      gid=style.mark("point", [group]), **markers.get(group["status"], {"marker": "X"}))
     lengths.draw_abscissa(axes, groups)
     ends = {group["status"] for group in groups.members}
     style.finish(axes, kind.curves[column], groups.caption(), ["; ".join(
-        f"{sign}: {kind.outcomes[status]}" for sign, status in (("dots", kind.goal), ("crosses", "clogged"), ("triangles", "broken"), ("hollow", "flowing"))
+        f"{sign}: {kind.outcomes[status]}" for sign, status in (
+            ("dots", kind.goal), ("crosses", "clogged"), ("triangles", "broken"), ("hollow", "flowing"))
         if status in ends and (sign == "dots" or status != kind.goal))])
 
 
@@ -89,16 +96,19 @@ def shares(groups: Groups, value: Callable[[Any], str]) -> list[tuple[str, str]]
     """For every curve, its label and the number of its droplets that passed or came to rest. @param value  formats the
     value of a parameter"""
     kind, names = kind_of(groups), groups.curve_parameters()
-    return [(", ".join(f"{name.replace('_', ' ')} {value(members[0][name])}" for name in names), share(kind, members)) for _, members in groups.curves()]
+    return [(", ".join(f"{name.replace('_', ' ')} {value(members[0][name])}" for name in names), share(kind, members))
+            for _, members in groups.curves()]
 
 
 def examples(rows: npt.NDArray[np.void], count: int) -> list[np.void]:
     """Rows spread evenly over the sweep, including the first and the last."""
     over = [row for row in rows if stored.text(row["status"]) in FINISHED and row["model"] == b"dp"]
-    return [over[place] for place in sorted({round(place) for place in np.linspace(0, len(over) - 1, min(count, len(over)))})]
+    places = {round(place) for place in np.linspace(0, len(over) - 1, min(count, len(over)))}
+    return [over[place] for place in sorted(places)]
 
 
-def followed(rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path, folder: str | os.PathLike[str]) -> list[Trajectory]:
+def followed(rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path,
+             folder: str | os.PathLike[str]) -> list[Trajectory]:
     """Replays the droplet of each row. @param folder  for the files of the replays"""
     if not rows:
         return []
@@ -107,7 +117,8 @@ def followed(rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path
     return replays.follow_all(clogrun, sweep, rows, folder, 2, frame, frame)
 
 
-def draw_outlines(groups: Groups, rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path, folder: str | os.PathLike[str]) -> list[Figure]:
+def draw_outlines(groups: Groups, rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path,
+                  folder: str | os.PathLike[str]) -> list[Figure]:
     """Draws one picture for each row's droplet."""
     pictures = []
     for run in followed(rows, clogrun, sweep, folder):
@@ -127,5 +138,7 @@ def draw_outline(axes: Axes, groups: Groups, run: Trajectory) -> None:
     axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along the flow")
     axes.set_ylabel(r"$y/\sigma$")
     names = [*groups.curve_parameters(), groups.abscissa]
-    said = ", ".join(groups.said(name, run.word(name) if run.row[name].dtype.kind == "S" else float(run.row[name])) for name in names)
-    axes.set_title(f"task {run.path.stem.rsplit('-', 1)[1]}: {said}\n{kind.outcomes[run.word('status')]}; {kind.outline}", fontsize=8)
+    said = ", ".join(groups.said(name, run.word(name) if run.row[name].dtype.kind == "S" else float(run.row[name]))
+                     for name in names)
+    axes.set_title(f"task {run.path.stem.rsplit('-', 1)[1]}: {said}\n{kind.outcomes[run.word('status')]}; "
+                   f"{kind.outline}", fontsize=8)

@@ -19,17 +19,21 @@ def draw(found: Sequence[Prediction], measured: Sequence[Group], confidence: flo
     caption"""
     figure, axes = style.subplots(figsize=(6.8, 5.0))
     tensions = [one.tension for one in found]
-    for label, name, look in (("both", "length", {"color": "0.8", "linewidth": 5}), ("squeezed, by two obstacles", "squeezed", {"color": style.COLOURS[0]}),
+    for label, name, look in (("both", "length", {"color": "0.8", "linewidth": 5}),
+                              ("squeezed, by two obstacles", "squeezed", {"color": style.COLOURS[0]}),
                               ("wrapped, by one obstacle", "wrapped", {"color": style.COLOURS[1]})):
         # Where only one of the two laws has a length, the line for both also has this length.
-        known = [math.isfinite(max(one.squeezed, one.wrapped) if name == "length" else getattr(one, name)) for one in found]
+        known = [math.isfinite(max(one.squeezed, one.wrapped) if name == "length" else getattr(one, name))
+                 for one in found]
         if any(known):
-            axes.plot(tensions, np.where(known, [getattr(one, name) for one in found], np.nan), marker=".", label=f"predicted: {label}", **look)
+            axes.plot(tensions, np.where(known, [getattr(one, name) for one in found], np.nan), marker=".",
+                      label=f"predicted: {label}", **look)
     style.logarithmic_abscissa(axes, [*tensions, *(group["line_tension"] for group in measured)])
     if measured:
         draw_lengths(axes, [group["line_tension"] for group in measured], measured, 2, "measured", linestyle="none")
     style.logarithmic_ordinate(axes)
     axes.set_xlabel(AXES["line_tension"])
     notes = length_notes(measured, confidence, [axes]) if measured else []
-    style.finish(axes, AXES["length"], ", ".join([*shared, *([runs_a_point(measured)] if measured else [])]), [*notes, "no line: no obstacle and no pair holds the droplet"], measured)
+    style.finish(axes, AXES["length"], ", ".join([*shared, *([runs_a_point(measured)] if measured else [])]),
+                 [*notes, "no line: no obstacle and no pair holds the droplet"], measured)
     return figure

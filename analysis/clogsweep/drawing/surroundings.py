@@ -28,7 +28,8 @@ def draw_droplet(axes: Axes, trajectory: Trajectory, frame: int, origin: Point =
     surroundings."""
     draw_surroundings(axes, trajectory, origin)
     outline = with_middles(with_middles(trajectory.polygons[frame]))
-    axes.fill(*(outline - np.asarray(origin)[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
+    axes.fill(*(outline - np.asarray(origin)[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black",
+              linewidth=1)
 
 
 def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0) -> None:
@@ -49,7 +50,8 @@ def draw_guides(axes: Axes) -> None:
 
 def draw_bar(axes: Axes, droplet: float = 1.0) -> None:
     """Draws a bar as long as a droplet is wide."""
-    bar = AnchoredSizeBar(axes.transData, droplet, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True, frameon=False)
+    bar = AnchoredSizeBar(axes.transData, droplet, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2,
+                          label_top=True, frameon=False)
     bar.set_zorder(6)
     axes.add_artist(bar)
     for artist in (bar.size_bar.get_children()[0], *bar.findobj(Text)):

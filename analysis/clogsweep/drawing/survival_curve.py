@@ -30,49 +30,53 @@ def probability(group: Group, distances: Sequence[float] | Numbers) -> Numbers:
     return values[np.searchsorted([step["distance"] for step in steps], distances, side="right")]
 
 
-def draw(axes: Axes, group: Group, colour: str | Sequence[float], label: str, label_of_ticks: str | None = None, begin: float = 0.0) -> None:
+def draw(axes: Axes, group: Group, colour: str | Sequence[float], label: str, label_of_ticks: str | None = None,
+         begin: float = 0.0) -> None:
     """Draws the estimate up to the longest distance. Each run that still moved at its end has a tick.
     @param begin  distance at which the curve begins [sigma]; clogs before it, upstream of the release, are not drawn"""
     clogs = [step["distance"] for step in group["survival"]]
     corners = [*(distance for distance in clogs if distance >= begin), longest_way(group)]
     first = 1.0 if not clogs or begin <= clogs[0] else probability(group, [begin])[0]
-    axes.step([begin, *corners], [first, *probability(group, corners)], where="post", color=colour, linewidth=1.2, label=label,
-              gid=style.mark("point", [group]))
+    axes.step([begin, *corners], [first, *probability(group, corners)], where="post", color=colour, linewidth=1.2,
+              label=label, gid=style.mark("point", [group]))
     censored = group["censored_distances"]
     if censored:
-        axes.plot(censored, probability(group, censored), linestyle="none", marker="|", markersize=9, markeredgewidth=1.2, color=colour,
-                  label=label_of_ticks)
+        axes.plot(censored, probability(group, censored), linestyle="none", marker="|", markersize=9,
+                  markeredgewidth=1.2, color=colour, label=label_of_ticks)
 
 
 def scaled(group: Group, factor: float) -> Group:
     """The group with its distances multiplied by a factor."""
     steps = [step | {"distance": factor * step["distance"]} for step in group["survival"]]
-    return group | {"survival": steps, "censored_distances": [factor * distance for distance in group["censored_distances"]]}
+    return group | {"survival": steps,
+                    "censored_distances": [factor * distance for distance in group["censored_distances"]]}
 
 
 def of_groups(groups: Groups) -> list[Curve]:
     """The curves of a sweep."""
-    return [(groups.label_of(group), scaled(group, group["diameter_mm"] if groups.are_in_mm else 1)) for group in groups.members if group["runs"]]
+    return [(groups.label_of(group), scaled(group, group["diameter_mm"] if groups.are_in_mm else 1))
+            for group in groups.members if group["runs"]]
 
 
-def of_table(told: dict[str, Any]) -> list[Curve]:
-    """The curves of measured distances. @param told  the JSON output of clogfit lengths"""
+def of_table(answer: dict[str, Any]) -> list[Curve]:
+    """The curves of measured distances. @param answer  the JSON output of clogfit lengths"""
     droplets = {column["key"]: column for column in fits.droplet_columns().values()}
 
     def words(label: str, value: Any) -> str:
         return said(droplets[label], value) if label in droplets and value is not None else literal(f"{label} {value:g}" if isinstance(value, int | float) else f"{label} {value}")
 
-    return [(", ".join(words(label, group[label]) for label in told["labels"]), group) for group in told["groups"]]
+    return [(", ".join(words(label, group[label]) for label in answer["labels"]), group) for group in answer["groups"]]
 
 
-def of_mixture(told: dict[str, Any], unit: str) -> Curve | None:
+def of_mixture(answer: dict[str, Any], unit: str) -> Curve | None:
     """The curve of clogfit --mixture, if the JSON output of clogfit has one. @throws UserError  if its distances are in
     another unit than those of the groups"""
-    mixture = told.get("mixture")
+    mixture = answer.get("mixture")
     if mixture is None:
         return None
     if mixture["unit"] != unit:
-        raise UserError(f"cannot draw a mixture in {mixture['unit']} beside groups in {unit} (some have no laboratory); leave "
+        raise UserError(f"cannot draw a mixture in {mixture['unit']} beside groups in {unit} "
+                        "(some have no laboratory); leave "
                         "them out with clogsweep select")
     shares = ", ".join(f"{value} ({100 * share:.4g} %)" for value, share in mixture["weights"].items())
     return literal(f"mixture of {mixture['column']} {shares}"), mixture
@@ -102,4 +106,5 @@ def draw_on(axes: Axes, curves: Sequence[Curve], unit: str, mixture: Curve | Non
     style.label(axes, r"displacement along the flow $r/\sigma$" if unit == "sigma" else "displacement along the flow $r$ [mm]", "$P(r)$, not yet clogged")
     if any(label for label, _ in curves):
         style.legend(axes)
-    style.notes(axes, ["steps: clogs; ticks: droplets that were last seen moving", *lengths.failure_notes([group for _, group in curves], "curve")])
+    style.notes(axes, ["steps: clogs; ticks: droplets that were last seen moving",
+                       *lengths.failure_notes([group for _, group in curves], "curve")])

@@ -22,12 +22,14 @@ def data_array(parent: xml.Element, name: str, values: npt.ArrayLike, components
     if components > 1:
         element.set("NumberOfComponents", str(components))
     if not np.isfinite(values).all():
-        raise UserError(f"{name} contains NaN or infinity, which VTK's readers reject; replay the droplet (clogrun replay)")
+        raise UserError(f"{name} contains NaN or infinity, which VTK's readers reject; "
+                        "replay the droplet (clogrun replay)")
     element.text = " ".join(map(repr, values.ravel().tolist()))
     return element
 
 
-def polydata(outlines: Sequence[Numbers], point_data: Mapping[str, Numbers] | None = None, cell_data: Mapping[str, Numbers] | None = None,
+def polydata(outlines: Sequence[Numbers], point_data: Mapping[str, Numbers] | None = None,
+             cell_data: Mapping[str, Numbers] | None = None,
              field_data: Mapping[str, float] | None = None) -> xml.ElementTree:
     """Closed polygons as PolyData. @param outlines  arrays n x 2; @param point_data, cell_data  arrays by name"""
     root = xml.Element("VTKFile", type="PolyData", version="1.0", byte_order="LittleEndian", header_type="UInt64")
@@ -43,7 +45,8 @@ def polydata(outlines: Sequence[Numbers], point_data: Mapping[str, Numbers] | No
         element = xml.SubElement(piece, kind)
         for name, values in (data or {}).items():
             data_array(element, name, values)
-    data_array(xml.SubElement(piece, "Points"), "Points", np.column_stack([points, np.zeros(len(points))]), components=3)
+    data_array(xml.SubElement(piece, "Points"), "Points", np.column_stack([points, np.zeros(len(points))]),
+               components=3)
     polygons = xml.SubElement(piece, "Polys")
     data_array(polygons, "connectivity", np.arange(len(points)))
     data_array(polygons, "offsets", np.cumsum([len(outline) for outline in outlines], dtype=np.int64))
@@ -85,7 +88,8 @@ def export(run: trajectory.Trajectory, output: pathlib.Path) -> pathlib.Path:
     columns = stored.columns_of(run.table)
     names = []
     for frame, (polygon, time) in enumerate(zip(run.polygons, run.times)):
-        fields = {name: float(np.interp(time, run.table["time"], run.table[name])) for name in columns if name != "time"}
+        fields = {name: float(np.interp(time, run.table["time"], run.table[name]))
+                  for name in columns if name != "time"}
         fields = {name: value for name, value in fields.items() if math.isfinite(value)}
         fields["TimeValue"] = float(time)
         names.append(f"{folder.name}/droplet-{frame:05d}.vtp")

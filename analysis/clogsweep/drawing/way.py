@@ -50,13 +50,14 @@ def draw_strips(run: trajectory.Trajectory, num_outlines: int) -> Figure:
             strips.append((begin, end, across.min() - 0.5, across.max() + 0.5, inside))
     width = 12.0
     heights = [(top - bottom) * width / (end - begin) for begin, end, bottom, top, _ in strips]
-    figure, all_axes = style.subplots(len(strips), 1, figsize=(width, sum(heights) + 0.45 * len(strips) + 0.9), squeeze=False,
-                                      gridspec_kw={"height_ratios": heights})
+    figure, all_axes = style.subplots(len(strips), 1, figsize=(width, sum(heights) + 0.45 * len(strips) + 0.9),
+                                      squeeze=False, gridspec_kw={"height_ratios": heights})
     for axes, (begin, end, bottom, top, inside) in zip(all_axes[:, 0], strips):
         surroundings.draw_surroundings(axes, run)
         surroundings.frame_limits(axes, (begin, bottom), (end, top))
         axes.set_ylabel(r"$y/\sigma$")
-        draw_outlines(axes, run, [inside[place] for place in trajectory.along_the_way(run.polygons[inside], num_outlines)])
+        draw_outlines(axes, run,
+                      [inside[place] for place in trajectory.along_the_way(run.polygons[inside], num_outlines)])
     surroundings.draw_guides(all_axes[0, 0])
     all_axes[0, 0].set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
     all_axes[-1, 0].set_xlabel(r"$x/\sigma$, along the flow; the path continues from strip to strip")
@@ -91,6 +92,6 @@ def draw_outlines(axes: Axes, run: trajectory.Trajectory, frames: Iterable[int],
     for frame in frames:
         x, y = run.polygons[frame] - np.asarray(origin)[:, None]
         is_last = frame == len(run.polygons) - 1
-        axes.fill(
-            x, y, facecolor=style.DROPLET if is_last else "none", alpha=0.75 if is_last else 1.0,
-            edgecolor="black" if is_last else colours.to_rgba(run.times[frame]), linewidth=1.0, zorder=3 if is_last else 2)
+        axes.fill(x, y, facecolor=style.DROPLET if is_last else "none", alpha=0.75 if is_last else 1.0,
+                  edgecolor="black" if is_last else colours.to_rgba(run.times[frame]), linewidth=1.0,
+                  zorder=3 if is_last else 2)

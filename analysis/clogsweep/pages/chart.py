@@ -35,7 +35,8 @@ def element(name: str, **attributes: str) -> ElementTree.Element:
 def luminance(colour: Colour) -> float:
     """The relative luminance as WCAG 2.1 defines it, from 0 to 1. @param colour  red, green and blue, each from 0 to
     255"""
-    linear: list[float] = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in (channel / 255 for channel in colour)]
+    linear: list[float] = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+                           for c in (channel / 255 for channel in colour)]
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
 
@@ -91,9 +92,11 @@ class Charts:
     def colours(self) -> tuple[str, str]:
         """CSS declarations of the colours that were drawn so far, in light and in dark mode."""
         def declared(colours: Iterable[tuple[str, Colour]]) -> str:
-            return " ".join(f"--c{name}: #{''.join(f'{round(channel):02x}' for channel in colour)};" for name, colour in colours)
+            return " ".join(f"--c{name}: #{''.join(f'{round(channel):02x}' for channel in colour)};"
+                            for name, colour in colours)
 
-        named = {name: (int(name[:2], 16), int(name[2:4], 16), int(name[4:], 16)) for name in sorted(self._colours | {BLACK})}
+        named = {name: (int(name[:2], 16), int(name[2:4], 16), int(name[4:], 16))
+                 for name in sorted(self._colours | {BLACK})}
         return declared(named.items()), declared((name, in_the_dark(colour)) for name, colour in named.items())
 
     def _rename(self, root: ElementTree.Element) -> None:
@@ -135,7 +138,8 @@ class Charts:
             for line in node.findall(f"{{{SVG}}}path"):  # the lines through the points
                 line.attrib |= {"class": "curve", "data-groups": " ".join(groups)}
             for (parent, marker), group in zip(markers, groups, strict=True):
-                reach = element("circle", cx=marker.get("x", ""), cy=marker.get("y", ""), r=str(REACH), **{"class": "reach"})
+                reach = element("circle", cx=marker.get("x", ""), cy=marker.get("y", ""), r=str(REACH),
+                                **{"class": "reach"})
                 place = list(parent).index(marker)
                 parent[place] = self._point(group, "point", [reach, marker])
         else:

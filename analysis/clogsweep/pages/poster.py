@@ -94,8 +94,10 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
     if lengths.have_speeds(groups.members):
         first.append(partial(lengths.draw_speeds_on, groups=groups))
     curves = shown_curves(groups)
-    survivals = [partial(report.draw_survival, groups=groups, label=label, members=members) for label, members in curves if any(group["survival"] for group in members)]
-    ends = [partial(report.draw_causes, groups=groups, label=label, members=counted) for label, members in curves if (counted := report.with_runs(members))]
+    survivals = [partial(report.draw_survival, groups=groups, label=label, members=members)
+                 for label, members in curves if any(group["survival"] for group in members)]
+    ends = [partial(report.draw_causes, groups=groups, label=label, members=counted)
+            for label, members in curves if (counted := report.with_runs(members))]
     # If there is a single curve, P(r) and the causes are side by side.
     below: list[Row] = [(1.35, survivals + ends)] if len(curves) == 1 else [(1.35, survivals), (1.0, ends)]
     rows: list[Row] = [(1.6, first), *((height, drawings) for height, drawings in below if drawings)]
@@ -113,7 +115,8 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
         passages.draw_outline(axes, groups, run)
         axes.xaxis.label.set_size(8)  # Three drawings are side by side, so the letters are small.
 
-    rows: list[Row] = [(1.2, [partial(passages.draw_curves, groups=groups, column=column)]) for column in passages.drawn_columns(groups)]
+    rows: list[Row] = [(1.2, [partial(passages.draw_curves, groups=groups, column=column)])
+                       for column in passages.drawn_columns(groups)]
     with tempfile.TemporaryDirectory(prefix="clogsweep-poster-") as folder:
         runs = passages.followed(passages.examples(stored.read_rows(sweep, clogrun.parent), 3), clogrun, sweep, folder)
     return [*rows, (1.2, [partial(draw_outline, run=run) for run in runs])] if runs else rows

@@ -67,16 +67,18 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
     """Draws, for the members of one curve, the probability that a run ends by each cause within a distance r. The
     causes compete with each other (estimator of Aalen and Johansen)."""
     names = occurring_causes(members)
-    figure, all_axes = style.subplots(1, len(names), figsize=(3.2 * len(names), 4.8), sharex=True, sharey=True, squeeze=False)
+    figure, all_axes = style.subplots(1, len(names), figsize=(3.2 * len(names), 4.8), sharex=True, sharey=True,
+                                      squeeze=False)
     longest = max(survival_curve.longest_way(group) for group in members)
-    begin = 0.5 * min((step["distance"] for group in members for steps in group["incidence"].values() for step in steps if step["distance"] > 0), default=longest)
+    begin = 0.5 * min((step["distance"] for group in members for steps in group["incidence"].values()
+                       for step in steps if step["distance"] > 0), default=longest)
     for axes, name in zip(all_axes[0], names):
         for group, colour in zip(members, style.shades(len(members))):
             steps = group["incidence"].get(name, [])
             way = [begin, *(step["distance"] for step in steps), survival_curve.longest_way(group)]
             share = [0, *(step["probability"] for step in steps)]
-            axes.step(way, [*share, share[-1]], where="post", color=colour, linewidth=1.2, label=groups.said(groups.abscissa, group[groups.abscissa]),
-                      gid=style.mark("point", [group]))
+            axes.step(way, [*share, share[-1]], where="post", color=colour, linewidth=1.2,
+                      label=groups.said(groups.abscissa, group[groups.abscissa]), gid=style.mark("point", [group]))
         axes.set_title(name, fontsize=10)
         axes.set_xlim(begin, longest)
         style.logarithmic_abscissa(axes)
@@ -85,7 +87,8 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
         style.grid(axes)
     all_axes[0][0].set_ylabel("probability of having ended this way within $r$")
     mark_steps(all_axes[0][0])
-    figure.suptitle(style.in_lines(label or groups.caption(), lambda line: len(line) <= 16 * figure.get_figwidth()), fontsize=8)
+    title = style.in_lines(label or groups.caption(), lambda line: len(line) <= 16 * figure.get_figwidth())
+    figure.suptitle(title, fontsize=8)
     return figure
 
 
@@ -111,16 +114,20 @@ def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]
         base += share
     tension = groups.abscissa == "line_tension" and "tension_mN_per_m" in members[0]
     below = [f"\n{rounded.plain(group['tension_mN_per_m'])}" if tension else "" for group in members]
-    axes.set_xticks(ranks, [f"{group[groups.abscissa]:g}{more}" for group, more in zip(members, below)], rotation=0 if len(members) <= 10 else 90)
+    axes.set_xticks(ranks, [f"{group[groups.abscissa]:g}{more}" for group, more in zip(members, below)],
+                    rotation=0 if len(members) <= 10 else 90)
     axes.set_xlabel(groups.axis_label() + (f"\n{LABORATORY['line_tension']}" if tension else ""))
     axes.set_ylabel("share of the runs")
-    axes.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=5, fontsize=8, title=label, title_fontsize=8)
+    axes.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=5, fontsize=8, title=label,
+                title_fontsize=8)
 
 
 def length(group: Group) -> str:
     """The clogging length with its interval, or its lower bound."""
     ends = [group[f"clogging_length_{end}"] for end in ("lower", "upper")]
-    return rounded.with_interval(group["clogging_length"], *ends) if group["clogs"] > 0 else f"> {rounded.plain(ends[0])}"
+    if group["clogs"] == 0:
+        return f"> {rounded.plain(ends[0])}"
+    return rounded.with_interval(group["clogging_length"], *ends)
 
 
 def speed(group: Group) -> str:
@@ -137,7 +144,8 @@ def speed(group: Group) -> str:
 
 def laboratory_columns(groups: Groups) -> dict[str, str]:
     """The headings of those columns of the table that are in laboratory units."""
-    named = {"tension_mN_per_m": "tension [mN/m]", "clogging_length_mm": "&lambda; [mm]", "speed_mm_per_s": "v<sub>g</sub> [mm/s]", "time_to_clog_s": "time to clog [s]"}
+    named = {"tension_mN_per_m": "tension [mN/m]", "clogging_length_mm": "&lambda; [mm]",
+             "speed_mm_per_s": "v<sub>g</sub> [mm/s]", "time_to_clog_s": "time to clog [s]"}
     if not any("laboratory_scale" in group for group in groups.members):
         return {}
     return {column: title for column, title in named.items() if column != "tension_mN_per_m" or groups.are_polygons}
@@ -184,7 +192,8 @@ def seeds_of(values: dict[str, Any], rows: pandas.DataFrame) -> str:
 
 def doubts_of(group: Group, sentences: dict[str, str]) -> str:
     """The words for a group's doubts. Each word has a sentence that explains it."""
-    return ", ".join(f'<abbr title="{html.escape(sentences[name])}">{name.replace("_", " ")}</abbr>' for name in style.doubts(group))
+    return ", ".join(f'<abbr title="{html.escape(sentences[name])}">{name.replace("_", " ")}</abbr>'
+                     for name in style.doubts(group))
 
 
 def table_cell(text: str) -> str:
@@ -204,7 +213,8 @@ def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequenc
     @param doubts  doubts of each group, in HTML
     """
     head = "".join(f'<th scope="col">{title}</th>' for title in [*titles, "doubts"])
-    body = "\n".join(f'<tr data-groups="{number}">' + "".join(table_cell(cell) for cell in cells) + f'<td class="doubt">{doubt}</td></tr>'
+    body = "\n".join(f'<tr data-groups="{number}">' + "".join(table_cell(cell) for cell in cells)
+                     + f'<td class="doubt">{doubt}</td></tr>'
                      for number, (cells, doubt) in enumerate(zip(lines, doubts)))
     return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
 
@@ -220,20 +230,25 @@ def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.Dat
     passed = ["passed", "flowing"] if any(group["passed"] for group in groups.members) else []
     has_failed = any(group["failed"] for group in groups.members)
     titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *mechanisms, *passed,
-              *(["failed", "failed per 1000&sigma;"] if has_failed else []), f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
-              *(["lateral/r", "along rows"] if groups.are_lattices else []), "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", *laboratory_columns(groups).values(), "Ca", "seeds"]
+              *(["failed", "failed per 1000&sigma;"] if has_failed else []),
+              f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
+              *(["lateral/r", "along rows"] if groups.are_lattices else []), "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>",
+              *laboratory_columns(groups).values(), "Ca", "seeds"]
     lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
               *(str(group[name]) for name in [*mechanisms, *passed]),
               *([str(group["failed"]), rounded.plain(per_1000_sigma(group))] if has_failed else []), length(group),
-              *([migration(group, "lateral_slope"), migration(group, "row_share")] if groups.are_lattices else []), speed(group), *(in_laboratory(group, name) for name in laboratory_columns(groups)),
-              rounded.plain(group["capillary_number"]), seeds_of(groups.row_values(group), rows)] for group in groups.members]
+              *([migration(group, "lateral_slope"), migration(group, "row_share")] if groups.are_lattices else []),
+              speed(group), *(in_laboratory(group, name) for name in laboratory_columns(groups)),
+              rounded.plain(group["capillary_number"]), seeds_of(groups.row_values(group), rows)]
+             for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
 
 def table_of_passages(groups: Groups, sentences: dict[str, str]) -> str:
     kind, names = passages.kind_of(groups), parameters(groups)
     titles = [*(name.replace("_", " ") for name in names), "outcome", *kind.columns.values()]
-    lines = [[*(cell(groups, group, name) for name in names), kind.outcomes[group["status"]], *(value(group[name], 4) for name in kind.columns)]
+    lines = [[*(cell(groups, group, name) for name in names), kind.outcomes[group["status"]],
+              *(value(group[name], 4) for name in kind.columns)]
              for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
@@ -299,14 +314,16 @@ def progress_of(status: dict[str, Any]) -> str:
     return f"{status['finished']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
 
 
-LENGTHS = ("&lambda; is the distance that a fraction 1/e of the droplets travels without clogging, in droplet diameters; v<sub>t</sub> is the speed of a free droplet. "
+LENGTHS = ("&lambda; is the distance that a fraction 1/e of the droplets travels without clogging, "
+           "in droplet diameters; v<sub>t</sub> is the speed of a free droplet. "
            "Each point of a curve has a row of the table.")
 
 
 def label_of_length(groups: Groups, group: Group) -> str:
     """The title of a point. Browsers show it even without a script."""
     known = "" if speed(group) == "-" else f", speed {speed(group)}"
-    return (f"{valued(groups, group)}: length {length(group)}{known}, {group['clogs']} of {rounded.counted(group['runs'], 'run')} clogged")
+    return (f"{valued(groups, group)}: "
+            f"length {length(group)}{known}, {group['clogs']} of {rounded.counted(group['runs'], 'run')} clogged")
 
 
 def valued(groups: Groups, group: Group) -> str:
@@ -325,12 +342,15 @@ def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Pa
 
     def drawn(every: list[device.Part]) -> str:
         parts = device.shown_parts(every, sweep, clogrun, count, MAPPED if count else 0, 2)
-        return framed(charts.draw(device.draw(*parts, groups.laboratory.get("length_mm")), caption), f"{parts[0][0].place.name}: {caption}", "wide")
+        return framed(charts.draw(device.draw(*parts, groups.laboratory.get("length_mm")), caption),
+                      f"{parts[0][0].place.name}: {caption}", "wide")
 
-    return {"Devices": "".join(drawn(parts) for parts in device.pictures(device.places(sweep, clogrun.parent), groups) if parts)}
+    return {"Devices": "".join(drawn(parts)
+                               for parts in device.pictures(device.places(sweep, clogrun.parent), groups) if parts)}
 
 
-def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
+def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path,
+               charts: Charts) -> dict[str, str]:
     """The sections about droplets among obstacles. @param count  number of clogs to show. @return the contents of the
     sections by title"""
     def chart(figure: Figure, caption: str) -> str:
@@ -340,15 +360,19 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
     curves = [chart(style.figure_of(curve.draw_on, groups), curve.heading(groups))] if with_runs(groups.members) else []
     if lengths.have_speeds(groups.members):
         curves.append(chart(style.figure_of(lengths.draw_speeds_on, groups), "mean speed over terminal speed"))
-    survivals = [chart(style.figure_of(draw_survival, groups, label, members), "P(r), to the longest way") for label, members in groups.curves()
+    survivals = [chart(style.figure_of(draw_survival, groups, label, members), "P(r), to the longest way")
+                 for label, members in groups.curves()
                  if any(group["survival"] for group in members)]
     survivals += [chart(incidence(groups, label, members), "ends by cause") for label, members in groups.curves()
                   if len(occurring_causes(members)) > 1]
-    ends = [chart(style.figure_of(draw_causes, groups, label, members), "ends by cause, shares") for label, all_of_it in groups.curves()
+    ends = [chart(style.figure_of(draw_causes, groups, label, members), "ends by cause, shares")
+            for label, all_of_it in groups.curves()
             if (members := with_runs(all_of_it))]
     shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
-    return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals), "What becomes of them": side_by_side(ends),
-            **devices(groups, sweep, count, clogrun, charts), "Example clogs": example_pictures(shown, sweep, clogrun, charts)}
+    return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals),
+            "What becomes of them": side_by_side(ends),
+            **devices(groups, sweep, count, clogrun, charts),
+            "Example clogs": example_pictures(shown, sweep, clogrun, charts)}
 
 
 def label_of_passage(groups: Groups, group: Group) -> str:
@@ -356,14 +380,19 @@ def label_of_passage(groups: Groups, group: Group) -> str:
     return f"{valued(groups, group)}: {kind.outcomes[group['status']]}"
 
 
-def of_passages(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
+def of_passages(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path,
+                charts: Charts) -> dict[str, str]:
     """The sections about droplets in a channel or on a wall. @param count  number of outlines to show"""
     kind = passages.kind_of(groups)
-    curves = [framed(charts.draw(style.figure_of(passages.draw_curves, groups, column), name), name) for column, name in passages.drawn_columns(groups).items()]
+    curves = [framed(charts.draw(style.figure_of(passages.draw_curves, groups, column), name), name)
+              for column, name in passages.drawn_columns(groups).items()]
     with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
-        drawn = passages.draw_outlines(groups, passages.examples(stored.read_rows(sweep, clogrun.parent), count), clogrun, sweep, folder)
-    outlines = side_by_side(framed(charts.draw(figure, f"outline {kind.outline}"), f"outline {kind.outline}") for figure in drawn)
-    reached = "".join(f"<li>{html.escape(f'{curve}: {said}' if curve else said)}</li>" for curve, said in passages.shares(groups, value))
+        drawn = passages.draw_outlines(groups, passages.examples(stored.read_rows(sweep, clogrun.parent), count),
+                                       clogrun, sweep, folder)
+    outlines = side_by_side(framed(charts.draw(figure, f"outline {kind.outline}"), f"outline {kind.outline}")
+                            for figure in drawn)
+    reached = "".join(f"<li>{html.escape(f'{curve}: {said}' if curve else said)}</li>"
+                      for curve, said in passages.shares(groups, value))
     return {kind.heading: f"<ul>{reached}</ul>{side_by_side(curves)}", "Outlines": outlines or "<p>None.</p>"}
 
 
@@ -381,14 +410,16 @@ def side_by_side(pictures: Iterable[str]) -> str:
     return f'<div class="pictures">{shown}</div>' if shown else ""
 
 
-PROVENANCE = ("command_line", "parts", "version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
+PROVENANCE = ("command_line", "parts", "version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version",
+              "start_time", "num_ranks")
 RANDOM_ARRAYS = ("obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacle-layout")
 
 
 def settings(config: str) -> str:
     """The settings of a sweep. With user-supplied circles, the keys of random arrays are left out."""
     own_circles = stored.settings(config).get("obstacles", "none") != "none"
-    return "\n".join(line for line in config.split("\n") if not (own_circles and line.partition(" = ")[0] in RANDOM_ARRAYS))
+    return "\n".join(line for line in config.split("\n")
+                     if not (own_circles and line.partition(" = ")[0] in RANDOM_ARRAYS))
 
 
 def laboratories_of(groups: Groups) -> list[str]:
@@ -396,12 +427,14 @@ def laboratories_of(groups: Groups) -> list[str]:
     lines: dict[str, None] = {}
     for group in groups.members:
         if scale := group.get("laboratory_scale"):
-            units = ", ".join(f"{name.replace('_', ' ')} {rounded.plain(value)}" for name, value in scale.items() if value is not None)
+            units = ", ".join(f"{name.replace('_', ' ')} {rounded.plain(value)}" for name, value in scale.items()
+                              if value is not None)
             lines[f"laboratory: {groups.laboratories.get(group['laboratory'], 'of --lab')} ({units})"] = None
     return list(lines)
 
 
-def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts, fitted_by: str) -> str:
+def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts,
+         fitted_by: str) -> str:
     """The page in HTML. @param sections  contents by title; @param charts  the charts in these sections;
     @param fitted_by  version of clogfit"""
     def part(ending: str) -> str:
@@ -413,25 +446,27 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
         progress=html.escape(f"{progress}, {rounded.counted(len(groups.members), 'point')}"),
         meaning=passages.kind_of(groups).about if groups.are_passages else LENGTHS,
         sections="\n".join(f"<h2>{title}</h2>{content}" for title, content in sections.items() if content),
-        provenance=html.escape("\n".join([*(f"{key}: {about[key]}" for key in PROVENANCE if key in about), *laboratories_of(groups), f"fitted by clogfit {fitted_by}"])),
+        provenance=html.escape("\n".join([*(f"{key}: {about[key]}" for key in PROVENANCE if key in about),
+                                          *laboratories_of(groups), f"fitted by clogfit {fitted_by}"])),
         config=html.escape(settings(about.get("config", ""))))
 
 
-def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: pathlib.Path, *options: object) -> pathlib.Path:
+def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: pathlib.Path,
+          *options: object) -> pathlib.Path:
     """Writes the page. An earlier page is replaced, but no other file.
     @param examples  number of clogs or outlines to show; @param folder  of the programs; @param options  of clogfit
     @return the output
     @throws UserError, ProgramFailed"""
     outputs.refuse_unwritable(output, "html", sweep)
-    told, circle_files = fits.fitted(folder / "clogfit", sweep, *options)
+    answer, circle_files = fits.fitted(folder / "clogfit", sweep, *options)
     status = json.loads(programs.run_program(folder / "clogsweep", "status", sweep, "--format", "json"))
-    groups = Groups(told, circle_files).finished(sweep).fit_curves(sweep, folder)
+    groups = Groups(answer, circle_files).finished(sweep).fit_curves(sweep, folder)
     for number, group in enumerate(groups.members):
         group["number"] = number  # identifies the group in the page (style.mark())
     rows = stored.read_table(sweep, folder)
     with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)
-    sentences = told["doubts"]
+    sentences = answer["doubts"]
     label, tell = (label_of_passage, of_passages) if groups.are_passages else (label_of_length, of_lengths)
     charts = Charts([label(groups, group) for group in groups.members])
     curves, *pictures = tell(groups, sweep, examples, folder / "clogrun", charts).items()
@@ -441,5 +476,6 @@ def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: path
                      *pictures,
                      ("How busy the ranks were", busy_ranks(about, charts))])
     with outputs.replaced(output) as fresh:
-        fresh.write_text(page(sweep.name, groups, sections, progress_of(status), about, charts, stored.writer(told)), encoding="utf-8")
+        fresh.write_text(page(sweep.name, groups, sections, progress_of(status), about, charts, stored.writer(answer)),
+                         encoding="utf-8")
     return output

@@ -34,9 +34,12 @@ HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
 
 def numbers(groups: Sequence[Group], label: str, **more: Sequence[Any]) -> list[dict[str, Any]]:
     """The numbers from clogfit that a figure draws, for each group."""
-    columns = ["model", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter", "obstacle_density", "near_wall_drag", "runs", "clogs",
-               "clogging_length", "clogging_length_lower", "clogging_length_upper", STEADY, f"{STEADY}_error", "capillary_number", "doubts"]
-    return [{"curve": label, **{name: group[name] for name in columns}, **{name: values[i] for name, values in more.items()}}
+    columns = ["model", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter",
+               "obstacle_density", "near_wall_drag", "runs", "clogs",
+               "clogging_length", "clogging_length_lower", "clogging_length_upper",
+               STEADY, f"{STEADY}_error", "capillary_number", "doubts"]
+    return [{"curve": label, **{name: group[name] for name in columns},
+             **{name: values[i] for name, values in more.items()}}
             for i, group in enumerate(groups)]
 
 
@@ -46,11 +49,13 @@ def of_each(curve: Sequence[Group], *names: str) -> dict[str, list[Any]]:
 
 def by(groups: Iterable[Group], name: str) -> list[tuple[Any, list[Group]]]:
     """The groups of each curve, with the value that distinguishes the curve."""
-    return [(value, [group for group in groups if group[name] == value]) for value in sorted({group[name] for group in groups})]
+    return [(value, [group for group in groups if group[name] == value])
+            for value in sorted({group[name] for group in groups})]
 
 
 # the function that draws each quantity
-DRAWINGS: dict[str, Callable[..., None]] = {"length": draw_lengths, "speed": functools.partial(draw_speeds, column=STEADY)}
+DRAWINGS: dict[str, Callable[..., None]] = {"length": draw_lengths,
+                                            "speed": functools.partial(draw_speeds, column=STEADY)}
 
 
 def with_speeds(shop: Workshop, config: str) -> list[Group]:
@@ -58,7 +63,8 @@ def with_speeds(shop: Workshop, config: str) -> list[Group]:
     there are none"""
     groups = [group for group in shop.sweep(config) if group[STEADY] is not None]
     if not groups:
-        raise UserError(f"no group of {shop.sweep_file(config)} has a {STEADY} (version 1.0 did not record it, and it needs three runs beyond 5 sigma/v_t); "
+        raise UserError(f"no group of {shop.sweep_file(config)} has a {STEADY} (version 1.0 did not record it, "
+                        "and it needs three runs beyond 5 sigma/v_t); "
                         "give more seeds or a larger max-time, or remove a file of version 1.0")
     return [group | {"capillary_number": group[STEADY] * math.pi / (4 * group["line_tension"])} if group["model"] == "dp" else group for group in groups]
 
@@ -67,7 +73,8 @@ def of_quantity(shop: Workshop, config: str, quantity: str) -> list[Group]:
     return with_speeds(shop, config) if quantity == "speed" else shop.sweep(config)
 
 
-def finish(axes: Axes, shop: Workshop, config: str, drawn: Sequence[Group], abscissa: str, quantity: str, varied: Sequence[str]) -> None:
+def finish(axes: Axes, shop: Workshop, config: str, drawn: Sequence[Group], abscissa: str, quantity: str,
+           varied: Sequence[str]) -> None:
     """Adds the legend, the labels of the axes, the caption and the notes. @param quantity  a key of DRAWINGS;
     @param varied  columns that the caption leaves out"""
     if quantity == "length":
@@ -103,14 +110,16 @@ def enter(name: str, caption: str, config: str, cost: str, *, abscissa: str, par
 
 enter("6c-saturated", "the same as 6c in saturated arrays, walls without friction", "clogging-saturated", "5 min",
       abscissa="line_tension", parameter="obstacle_gap", quantity="length")
-enter("7a", "clogging length against wall stiffness for four values of the minimum gap (soft disk), dilute arrays", "clogging-sp", "1 min",
-      abscissa="wall_stiffness", parameter="obstacle_gap", quantity="length")
-enter("7a-saturated", "the same as 7a in saturated arrays", "clogging-sp-saturated", "10 s", abscissa="wall_stiffness", parameter="obstacle_gap", quantity="length")
+enter("7a", "clogging length against wall stiffness for four values of the minimum gap (soft disk), dilute arrays",
+      "clogging-sp", "1 min", abscissa="wall_stiffness", parameter="obstacle_gap", quantity="length")
+enter("7a-saturated", "the same as 7a in saturated arrays", "clogging-sp-saturated", "10 s", abscissa="wall_stiffness",
+      parameter="obstacle_gap", quantity="length")
 enter("8a", "mean speed against line tension for four wide gaps (deformable polygon)", "speed", "1 min",
       abscissa="line_tension", parameter="obstacle_gap", quantity="speed")
 enter("8b", "mean speed against line tension for three obstacle diameters", "speed-diameter", "1 min",
       abscissa="line_tension", parameter="obstacle_diameter", quantity="speed")
-enter("8ca", "the speeds of 8a against the capillary number", "speed", "1 min, shared with 8a", abscissa="capillary_number", parameter="obstacle_gap", quantity="speed")
+enter("8ca", "the speeds of 8a against the capillary number", "speed", "1 min, shared with 8a",
+      abscissa="capillary_number", parameter="obstacle_gap", quantity="speed")
 enter("9a", "mean speed against wall stiffness for four wide gaps (soft disk)", "speed-sp", "5 s",
       abscissa="wall_stiffness", parameter="obstacle_gap", quantity="speed")
 enter("E", "mean speed against line tension for three near-wall drags", "near-wall-drag", "1 min",
@@ -141,7 +150,8 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data, drawn = [], []
     for index, (config, label, chosen) in enumerate(curves):
-        groups = [group for group in chosen(of_quantity(shop, config, quantity)) if math.isclose(group["obstacle_gap"], gap)]
+        groups = [group for group in chosen(of_quantity(shop, config, quantity))
+                  if math.isclose(group["obstacle_gap"], gap)]
         if not groups:
             raise UserError(f"sweep {config} has no runs with obstacle-gap={gap}; add it to the list")
         places = sags(shop, config, groups)
@@ -150,18 +160,21 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
         drawn += groups
     style.logarithmic_abscissa(axes)
     axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)
-    axes.text(0.25, 0.02, " published\n curves separate", ha="left", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
+    axes.text(0.25, 0.02, " published\n curves separate", ha="left", color="0.4", fontsize=8,
+              transform=axes.get_xaxis_transform())
     finish(axes, shop, curves[0][0], drawn, "top_sag", quantity, ["line_tension"])
     return Plate(drawing, data)
 
 
 figure("7c-saturated", "the same as 7c in saturated arrays, walls without friction", ["clogging-saturated", "clogging-sp-saturated"], "shared with 6c-saturated, 7a-saturated")(
-    lambda shop: over_sag(shop, [("clogging-saturated", "deformable polygon", list), ("clogging-sp-saturated", "soft disk", list)], 0.2, "length"))
+    lambda shop: over_sag(shop, [("clogging-saturated", "deformable polygon", list),
+                                 ("clogging-sp-saturated", "soft disk", list)], 0.2, "length"))
 figure("9b", "mean speed against sag, deformable polygon and soft disk, minimum gap 1.1", ["speed", "speed-sp"], "shared with 8a, 9a")(
     lambda shop: over_sag(shop, [("speed", "deformable polygon", list), ("speed-sp", "soft disk", list)], 1.1, "speed"))
 
 
-@figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", ["channel"], "1 s")
+@figure("7b", "what the sag is: a soft disk and a polygon on a wall, "
+              "before and after gravity sets in", ["channel"], "1 s")
 def sag_picture(shop: Workshop) -> Plate:
     line_tension, stiffness = 0.3, 1.0
     on_wall = {"obstacle-layout": "wall"}
@@ -177,11 +190,13 @@ def sag_picture(shop: Workshop) -> Plate:
     circle = np.array([0.5 * np.cos(angle), 0.5 + 0.5 * np.sin(angle)])
     for axes, before, after, sag, title in [
         (panels[0], circle, circle - np.array([[0], [disk_sag]]), disk_sag, rf"soft disk, $E_w = {stiffness:g}$"),
-        (panels[1], outlines[0], outlines[-1], polygon_sag, rf"deformable polygon, $\Gamma = {line_tension:g}$, {interface_of(polygon.word('preset'))}"),
+        (panels[1], outlines[0], outlines[-1], polygon_sag,
+         rf"deformable polygon, $\Gamma = {line_tension:g}$, {interface_of(polygon.word('preset'))}"),
     ]:
         axes.axhspan(-0.3, 0, facecolor=style.OBSTACLE)
         axes.fill(*after, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1.2, label="with weight")
-        axes.plot(*np.append(before, before[:, :1], axis=1), color="black", linestyle="--", linewidth=1, label="without")
+        axes.plot(*np.append(before, before[:, :1], axis=1), color="black", linestyle="--", linewidth=1,
+                  label="without")
         top = before[1].max()
         axes.plot([-0.08, 0.08], [top, top], color="black", linewidth=1)
         axes.plot([-0.08, 0.08], [top - sag, top - sag], color="black", linewidth=1)
@@ -208,7 +223,8 @@ def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pand
     shop.sweep(CLOGS)
     rows = shop.rows(CLOGS)
     if "mechanism" not in rows or not rows.mechanism.any():
-        raise UserError(f"{shop.sweep_file(CLOGS)} does not know how droplets clogged (it is of an earlier version); remove it and sweep again")
+        raise UserError(f"{shop.sweep_file(CLOGS)} does not know how droplets clogged (it is of an earlier version); "
+                        "remove it and sweep again")
     is_wrapped = mechanism == "wrapped"
     clogs = rows[(rows.status == "clogged") & (rows.mechanism == mechanism)]
     if is_wrapped and clogs.empty:
@@ -226,12 +242,14 @@ def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pand
 
 
 def clog_title(run: trajectory.Trajectory, row: pandas.Series) -> str:
-    return (rf"{trajectory.end_of(run)}: $\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, "
+    return (rf"{trajectory.end_of(run)}: "
+            rf"$\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, "
             rf"$\mu = {row.friction:g}$, seed {row.seed}, after $r = {row.distance:.2f}\sigma$")
 
 
 def clog_numbers(run: trajectory.Trajectory, row: pandas.Series, frame: int) -> list[dict[str, Any]]:
-    return [{"mechanism": row.mechanism, "line_tension": row.line_tension, "obstacle_gap": row.obstacle_gap, "seed": row.seed,
+    return [{"mechanism": row.mechanism, "line_tension": row.line_tension, "obstacle_gap": row.obstacle_gap,
+             "seed": row.seed,
              "distance": row.distance, "x": x, "y": y} for x, y in run.polygons[frame].T]
 
 
@@ -263,11 +281,14 @@ def snapshot(shop: Workshop, mechanism: str) -> Plate:
     return Plate(drawing, clog_numbers(run, row, -1))
 
 
-figure("6a", "a clog by wrapping, from the sweep of 6c", [CLOGS], "shared with 6c")(lambda shop: snapshot(shop, "wrapped"))
-figure("6b", "a clog by squeezing, from the sweep of 6c", [CLOGS], "shared with 6c")(lambda shop: snapshot(shop, "squeezed"))
+figure("6a", "a clog by wrapping, from the sweep of 6c", [CLOGS], "shared with 6c")(
+    lambda shop: snapshot(shop, "wrapped"))
+figure("6b", "a clog by squeezing, from the sweep of 6c", [CLOGS], "shared with 6c")(
+    lambda shop: snapshot(shop, "squeezed"))
 
 
-@figure("5", "how droplets wrap around an obstacle and squeeze into a gap: the last outlines before two clogs of 6c", [CLOGS], "shared with 6c")
+@figure("5", "how droplets wrap around an obstacle and squeeze into a gap: the last outlines before two clogs of 6c",
+        [CLOGS], "shared with 6c")
 def two_ways(shop: Workshop) -> Plate:
     kinds = []
     for mechanism in ("wrapped", "squeezed"):
@@ -295,7 +316,8 @@ def two_ways(shop: Workshop) -> Plate:
 
 def energies(shop: Workshop) -> dict[float, trajectory.Trajectory]:
     """The paths of Fig. C1 by their gap. The droplet clogs in one gap and flows in the other."""
-    rows = shop.runs("energy", "trajectory", {"seeds": 1, "line-tension": 0.5, "obstacle-gap": [0.3, 1.1], "clog-detection": "threshold"})
+    rows = shop.runs("energy", "trajectory",
+                     {"seeds": 1, "line-tension": 0.5, "obstacle-gap": [0.3, 1.1], "clog-detection": "threshold"})
     return {row["obstacle_gap"]: way for row, way in zip(rows, shop.ways("energy", rows, 1))}
 
 
@@ -307,15 +329,18 @@ def kinetic_energy(shop: Workshop) -> Plate:
         energy = np.where(run.table["kinetic_energy_ratio"] > 0, run.table["kinetic_energy_ratio"], math.nan)
         label = rf"$w_\mathrm{{ob}} = {gap}\sigma$: {run.word('status')} at $r = {run.row['distance']:.2f}\sigma$"
         axes.plot(run.table["time"], energy, color=style.COLOURS[index], linewidth=0.9, label=label)
-        data += [{"obstacle_gap": gap, "time": t, "kinetic_energy_ratio": e} for t, e in zip(run.table["time"], run.table["kinetic_energy_ratio"])]
+        data += [{"obstacle_gap": gap, "time": t, "kinetic_energy_ratio": e}
+                 for t, e in zip(run.table["time"], run.table["kinetic_energy_ratio"])]
     threshold = run.row["clog_energy"]
     axes.axhline(threshold, color="0.5", linewidth=0.8, linestyle="--")
-    axes.text(0.99, threshold * 2, "threshold of a clog", ha="right", fontsize=8, color="0.4", transform=axes.get_yaxis_transform())
+    axes.text(0.99, threshold * 2, "threshold of a clog", ha="right", fontsize=8, color="0.4",
+              transform=axes.get_yaxis_transform())
     axes.set_yscale("log")
     style.label(axes, r"time $t/t_0$", r"kinetic energy / kinetic energy at terminal speed $E_k/E_t$")
     axes.legend(frameon=False)
     row = run.row
-    style.caption(axes, rf"$\Gamma = 0.5$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated arrays, $V_t = {row['terminal_speed']:g}$, "
+    style.caption(axes, rf"$\Gamma = 0.5$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, "
+                        rf"saturated arrays, $V_t = {row['terminal_speed']:g}$, "
                   rf"$N_v = {row['vertices']}$, seed {row['seed']}, {interface_of(run.word('preset'))}")
     return Plate(drawing, data)
 
@@ -356,16 +381,19 @@ def survival(shop: Workshop) -> Plate:
     axes.set_xlim(0, 1.02 * end)
     style.label(axes, r"displacement along the flow $r/\sigma$", r"probability of not having clogged $P(r)$")
     axes.legend(frameon=False)
-    style.caption(axes, f"{describe(shop.columns('survival'), [group])}\nWeibull's exponent {group['weibull_shape']:.2f}, 1 if exponential (p = {group['weibull_p_value']:.2f})")
+    style.caption(axes, f"{describe(shop.columns('survival'), [group])}\nWeibull's exponent "
+                        f"{group['weibull_shape']:.2f}, 1 if exponential (p = {group['weibull_p_value']:.2f})")
     names = ["distance", "probability", "standard_error", "lower", "upper"]
-    return Plate(drawing, [{"distance": 0.0, "probability": 1.0}] + [{name: step[name] for name in names} for step in group["survival"]]
+    return Plate(drawing, [{"distance": 0.0, "probability": 1.0}]
+                 + [{name: step[name] for name in names} for step in group["survival"]]
                  + [{"censored_distance": distance} for distance in group["censored_distances"]]
                  + [{"clogging_length": length, "clogging_length_lower": lower, "clogging_length_upper": upper}])
 
 
 def displacements(shop: Workshop) -> dict[float, trajectory.Trajectory]:
     """The paths of Fig. D by their line tension."""
-    rows = shop.runs("displacement", "trajectory", {"seeds": 1, "line-tension": [0.04, 0.1, 0.2, 0.5, 1.0], "obstacle-gap": 1.1, "preset": "elastic"})
+    rows = shop.runs("displacement", "trajectory",
+                     {"seeds": 1, "line-tension": [0.04, 0.1, 0.2, 0.5, 1.0], "obstacle-gap": 1.1, "preset": "elastic"})
     return {row["line_tension"]: way for row, way in zip(rows, shop.ways("displacement", rows, 2))}
 
 
@@ -385,17 +413,21 @@ def displacement(shop: Workshop) -> Plate:
         speed = steady_speed(run.row)
         label = rf"$\Gamma = {line_tension:g}$" + (rf": $v_g = {speed:.2f}\,v_t$" if math.isfinite(speed) else "") + (
             ", clogged" if run.word("status") == "clogged" else "")
-        line, = axes.plot(run.table["time"], run.table["distance"], color=style.COLOURS[index], linewidth=1.2, label=label)
+        line, = axes.plot(run.table["time"], run.table["distance"], color=style.COLOURS[index], linewidth=1.2,
+                          label=label)
         ends[line] = run.table["distance"][-1]
         if run.word("status") == "clogged":
             axes.plot(run.table["time"][-1], run.table["distance"][-1], "x", color=style.COLOURS[index], markersize=8)
-        data += [{"line_tension": line_tension, "time": t, "distance": r} for t, r in zip(run.table["time"], run.table["distance"])]
+        data += [{"line_tension": line_tension, "time": t, "distance": r}
+                 for t, r in zip(run.table["time"], run.table["distance"])]
     row = run.row
     t = np.array([0, axes.get_xlim()[1]])
     fastest, = axes.plot(t, row["terminal_speed"] * t, ":", color="0.5", linewidth=1, label="terminal speed $v_t$")
     axes.set_xlim(0, t[1]), axes.set_ylim(bottom=0)
     style.label(axes, r"time $t/t_0$", r"displacement along the flow $r/\sigma$")
     axes.legend(handles=[fastest, *sorted(ends, key=ends.__getitem__, reverse=True)], frameon=False)
-    style.caption(axes, rf"$w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated array, "
-                  rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}, {interface_of(run.word('preset'))}")
+    style.caption(axes, rf"$w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, "
+                        rf"$\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated array, "
+                  rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}, "
+                  rf"{interface_of(run.word('preset'))}")
     return Plate(drawing, data)

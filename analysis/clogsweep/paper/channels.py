@@ -22,7 +22,8 @@ SMOOTH = 512  # With at least this many vertices, a passage through w = 0.4 show
 def passages(shop: Workshop, name: str, **keys: object) -> list[np.void]:
     """The rows of a sweep of channels. @param keys  keys of Workshop.runs(), with _ instead of -"""
     start, end = (-10, 3) if shop.size == "full" else (-2, 2)
-    return shop.runs(name, "channel", {"obstacle-layout": "channel", "start": start, "end": end} | {key.replace("_", "-"): value for key, value in keys.items()})
+    return shop.runs(name, "channel", {"obstacle-layout": "channel", "start": start, "end": end}
+                     | {key.replace("_", "-"): value for key, value in keys.items()})
 
 
 def profiles(shop: Workshop, name: str, outlines: bool = False, **keys: object) -> list[Trajectory]:
@@ -50,13 +51,15 @@ def draw_profile(axes: Axes, run: Trajectory, column: str, index: int, label: st
     style_of = style.curve_style(index)
     axes.plot(run.table["h"], run.table[column], color=style_of["color"], linewidth=1.4, label=label)
     if run.word("status") != "passed":
-        axes.plot(run.table["h"][-1:], run.table[column][-1:], color=style_of["color"], marker="x", markersize=7, linestyle="none")
+        axes.plot(run.table["h"][-1:], run.table[column][-1:], color=style_of["color"], marker="x", markersize=7,
+                  linestyle="none")
 
 
 def draw_measured(paths: Iterable[pathlib.Path], axes: Axes, column: str) -> None:
     for number, table in enumerate(map(measured, paths)):
         if column in table:
-            axes.plot(table["h"], table[column], "o", color="black", markerfacecolor="none", markersize=4, label="measured" if number == 0 else None)
+            axes.plot(table["h"], table[column], "o", color="black", markerfacecolor="none", markersize=4,
+                      label="measured" if number == 0 else None)
 
 
 def finish(axes: Axes, ordinate: str, reach: float = 1.6) -> None:
@@ -73,24 +76,29 @@ def finish(axes: Axes, ordinate: str, reach: float = 1.6) -> None:
 def extremes(run: Trajectory, label: str) -> dict[str, Any]:
     """The largest and smallest values of the passage, as the row states them."""
     return {"curve": label} | {f"{extreme}{at}": run.row[f"{extreme}{at}"] for at in ("", "_at")
-                               for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed")}
+                               for extreme in ("largest_shape_parameter", "smallest_relative_speed",
+                                               "largest_relative_speed")}
 
 
 def profile_rows(run: Trajectory, label: str) -> list[dict[str, Any]]:
     step = max(1, len(run.table) // 400)
-    return [{"curve": label, "h": frame["h"], "speed_ratio": frame["speed_ratio"], "shape_parameter": frame["shape_parameter"]}
+    return [{"curve": label, "h": frame["h"], "speed_ratio": frame["speed_ratio"],
+             "shape_parameter": frame["shape_parameter"]}
             for frame in run.table[::step]]
 
 
 def narrow(shop: Workshop) -> Trajectory:
     """The passage in Figs. 1 and 2."""
-    return profiles(shop, "channel-0.4", outlines=True, orifice=0.4, line_tension=0.16, near_wall_drag=0.064, terminal_speed=0.08)[0]
+    return profiles(shop, "channel-0.4", outlines=True, orifice=0.4, line_tension=0.16, near_wall_drag=0.064,
+                    terminal_speed=0.08)[0]
 
 
-@figure("1", "geometry: a droplet in a narrow channel, and one among obstacles with its trajectory", ["channel", "trajectory"], "1 s")
+@figure("1", "geometry: a droplet in a narrow channel, and one among obstacles with its trajectory",
+        ["channel", "trajectory"], "1 s")
 def geometry(shop: Workshop) -> Plate:
     channel = narrow(shop)
-    released, = shop.runs("geometry", "trajectory", {"seeds": 1, "line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0})
+    released, = shop.runs("geometry", "trajectory",
+                          {"seeds": 1, "line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0})
     array, = shop.ways("geometry", [released], 1, 4)
     drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 4.4), width_ratios=[1, 1.5])
     middle = channel.middle
@@ -111,7 +119,8 @@ def geometry(shop: Workshop) -> Plate:
     half = max(2.4, (centres[:, 1].max() - centres[:, 1].min()) / 2 + 1.5)
     surroundings.frame_limits(right, (-1, middle_y - half), (centres[-1, 0] + 1, middle_y + half))
     row = array.row
-    style.caption(right, rf"(b) $w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, "
+    style.caption(right, rf"(b) $w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, "
+                         rf"$\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, "
                   rf"$\Gamma = {row['line_tension']:g}$, {interface_of(array.word('preset'))}" "\n" rf"circles: centre, every {np.diff(array.times[:2])[0]:.3g} $t_0$; seed {row['seed']}")
     for axes in (left, right):
         axes.set_xlabel(r"$x/\sigma$, along the flow")
@@ -120,7 +129,8 @@ def geometry(shop: Workshop) -> Plate:
     return Plate(drawing, data)
 
 
-@figure("2", "a droplet squeezes through an orifice of 0.4 diameters: outlines, shape parameter, speed", ["channel"], "1 s")
+@figure("2", "a droplet squeezes through an orifice of 0.4 diameters: "
+             "outlines, shape parameter, speed", ["channel"], "1 s")
 def squeezing(shop: Workshop) -> Plate:
     run = narrow(shop)
     drawing = style.new_figure(figsize=(9.6, 6.2), layout="constrained")
@@ -153,7 +163,8 @@ CALIBRATED = {0.9: (1.7, 0.21, 0.028), 0.7: (1.08, 0.07, 0.032)}
 def passage(shop: Workshop, orifice: float) -> Trajectory:
     """A passage in Fig. 3. @param orifice  0.9 or 0.7"""
     line_tension, drag, speed = CALIBRATED[orifice]
-    return profiles(shop, f"channel-{orifice}", outlines=True, orifice=orifice, line_tension=line_tension, near_wall_drag=drag, terminal_speed=speed)[0]
+    return profiles(shop, f"channel-{orifice}", outlines=True, orifice=orifice, line_tension=line_tension,
+                    near_wall_drag=drag, terminal_speed=speed)[0]
 
 
 @figure("3", "shape and speed through orifices of 0.9 and 0.7 diameters", ["channel"], "3 s")
@@ -189,7 +200,8 @@ OVERSHOOTS = {0.7: 0.02, 0.8: 0.0}  # near-wall drag for each orifice of Fig. 4
 def overshooting(shop: Workshop, orifice: float) -> dict[float, Trajectory]:
     """The passages in Fig. 4 by line tension. @param orifice  0.7 or 0.8"""
     line_tensions = [1.85, 1.11, 0.83]
-    return dict(zip(line_tensions, profiles(shop, f"overshoot-{orifice}", orifice=orifice, line_tension=line_tensions, near_wall_drag=OVERSHOOTS[orifice],
+    return dict(zip(line_tensions, profiles(shop, f"overshoot-{orifice}", orifice=orifice,
+                                            line_tension=line_tensions, near_wall_drag=OVERSHOOTS[orifice],
                                             terminal_speed=0.032)))
 
 
@@ -197,7 +209,8 @@ def overshooting(shop: Workshop, orifice: float) -> dict[float, Trajectory]:
 def overshoot(shop: Workshop) -> Plate:
     drawing, panels = style.subplots(1, 2, figsize=(9.6, 4.6))
     data = []
-    for axes, (orifice, drag), origin in zip(panels, OVERSHOOTS.items(), ("parameters of the article", "not published, for comparison")):
+    for axes, (orifice, drag), origin in zip(panels, OVERSHOOTS.items(),
+                                             ("parameters of the article", "not published, for comparison")):
         for index, (line_tension, run) in enumerate(overshooting(shop, orifice).items()):
             draw_profile(axes, run, "speed_ratio", index, rf"$\Gamma = {line_tension:g}$" + ending(run))
             data += profile_rows(run, f"w={orifice} b_0={drag:g} Gamma={line_tension:g}")
@@ -213,18 +226,23 @@ def drag_of_walls(shop: Workshop) -> tuple[list[float], list[np.void], list[floa
     """Droplets midway between two walls, as in Fig. A1. @return distances from a wall, rows, speeds [v_t], and the fit
     of clogfit drag"""
     distances = [0.03, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2]
-    rows = passages(shop, "walls", start=-1.5, end=1.5, wedge_angle=0, orifice=[1 + 2 * distance for distance in distances],
-                    line_tension=1, near_wall_drag=0.07, terminal_speed=0.03)
+    rows = passages(shop, "walls", start=-1.5, end=1.5, wedge_angle=0,
+                    orifice=[1 + 2 * distance for distance in distances], line_tension=1, near_wall_drag=0.07,
+                    terminal_speed=0.03)
     speeds = [row["mean_speed"] / row["terminal_speed"] for row in rows]
     if not np.isfinite(speeds).all():
-        raise UserError(f"droplets of {shop.sweep_file('walls')} went too short a way for a mean speed; raise max-time, e.g. --set channel:max-time=3000")
-    return distances, rows, speeds, shop.fit("drag", shop.table("walls", ["d [sigma]", "v [v_t]"], zip(distances, speeds)), "--format", "json")
+        raise UserError(f"droplets of {shop.sweep_file('walls')} went too short a way for a mean speed; "
+                        "raise max-time, e.g. --set channel:max-time=3000")
+    table = shop.table("walls", ["d [sigma]", "v [v_t]"], zip(distances, speeds))
+    return distances, rows, speeds, shop.fit("drag", table, "--format", "json")
 
 
-@figure("A1", "near-wall drag: speed between parallel walls against the distance from them, and its exponent", ["channel"], "3 s")
+@figure("A1", "near-wall drag: speed between parallel walls against the distance from them, and its exponent",
+        ["channel"], "3 s")
 def near_wall_drag(shop: Workshop) -> Plate:
     distances, rows, speeds, fit = drag_of_walls(shop)
-    data = [{"distance": distance, "speed_ratio": speed, "ratio": speed / (1 - speed)} for distance, speed in zip(distances, speeds)]
+    data = [{"distance": distance, "speed_ratio": speed, "ratio": speed / (1 - speed)}
+            for distance, speed in zip(distances, speeds)]
     row = rows[0]
     drawing, axes = style.subplots(figsize=(6.4, 4.8))
     ratio = np.array([point["ratio"] for point in data])
@@ -238,13 +256,16 @@ def near_wall_drag(shop: Workshop) -> Plate:
     exponent, height = row["near_wall_exponent"], 0.5 * (1 - np.abs(np.sin(np.linspace(0, 2 * np.pi, row["vertices"], endpoint=False))))
     circle = 1 / (row["near_wall_drag"] * np.mean((d[:, None] + height) ** -exponent, axis=1))
     axes.plot(d, circle, ":", color="black", linewidth=1, label="sum over the vertices of a circle (no fit)")
-    axes.plot(d, ratio[-1] * (d / distances[-1]) ** exponent, "--", color="0.4", linewidth=1, label=rf"exponent {exponent:.3g} of each vertex")
+    axes.plot(d, ratio[-1] * (d / distances[-1])**exponent, "--", color="0.4", linewidth=1,
+              label=rf"exponent {exponent:.3g} of each vertex")
     style.logarithmic_abscissa(axes)
     axes.set_yscale("log")
     style.label(axes, r"distance between wall and droplet $d/\sigma$", r"$v_g/(v_t - v_g)$")
     axes.legend(frameon=False)
-    style.caption(axes, rf"$\Gamma = 1$, $b_0/b_\infty = 0.07$, $V_t = 0.03$, $N_v = {row['vertices']}$, one run per point" "\n"
-                  "drag of a droplet grows less steeply than that of its vertices: near a wall only the nearest ones feel it")
+    style.caption(axes, rf"$\Gamma = 1$, $b_0/b_\infty = 0.07$, $V_t = 0.03$, $N_v = {row['vertices']}$, "
+                        r"one run per point" "\n"
+                  "drag of a droplet grows less steeply than that of its vertices: "
+                  "near a wall only the nearest ones feel it")
     return Plate(drawing, data)
 
 
@@ -253,7 +274,8 @@ def meshes(shop: Workshop) -> dict[int, Trajectory]:
     in the config, because the finest run takes most of the time."""
     line_tension, most = (1.08, 4) if shop.size == "full" else (0.83, 2)
     counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= most * int(shop.keys("channel")["vertices"])]
-    return dict(zip(counts, profiles(shop, "vertices", orifice=0.7, line_tension=line_tension, near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)))
+    return dict(zip(counts, profiles(shop, "vertices", orifice=0.7, line_tension=line_tension,
+                                     near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)))
 
 
 @figure("B1", "speed through an orifice of 0.7 diameters for different numbers of vertices", ["channel"], "4 s")
@@ -263,14 +285,17 @@ def vertices(shop: Workshop) -> Plate:
     data = []
     for index, (count, run) in enumerate(meshes(shop).items()):
         for panel in (axes, inset):
-            draw_profile(panel, run, "speed_ratio", index, rf"$N_v = {count}$, slowest ${round(run.row['smallest_relative_speed'], 3) + 0.0:.3f}\,v_t$" + ending(run))
+            draw_profile(panel, run, "speed_ratio", index,
+                         rf"$N_v = {count}$, slowest ${round(run.row['smallest_relative_speed'], 3) + 0.0:.3f}\,v_t$"
+                         + ending(run))
         data += [*profile_rows(run, f"N_v={count}"), extremes(run, f"N_v={count}")]
     finish(axes, "profile")
     inset.set_xlim(-0.4, -0.1)
     inset.set_ylim(0, 0.5)
     inset.tick_params(labelsize=7)
     axes.legend(frameon=False, fontsize=8, loc="lower left")
-    style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, $V_t = 0.032$, {interface_of(run.word('preset'))}"
+    style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, "
+                        rf"$V_t = 0.032$, {interface_of(run.word('preset'))}"
                   "\ninset: near the first minimum")
     return Plate(drawing, data)
 
@@ -281,8 +306,8 @@ def perimeter_springs(shop: Workshop) -> Plate:
     ratios = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0]
     data = []
     for index, preset in enumerate(["elastic", "literal"]):
-        runs = profiles(shop, f"springs-{preset}", orifice=0.9, line_tension=1.7, near_wall_drag=0.21, terminal_speed=0.028, preset=preset,
-                        perimeter_spring="rest", perimeter_stiffness_ratio=ratios)
+        runs = profiles(shop, f"springs-{preset}", orifice=0.9, line_tension=1.7, near_wall_drag=0.21,
+                        terminal_speed=0.028, preset=preset, perimeter_spring="rest", perimeter_stiffness_ratio=ratios)
         files = []
         for ratio, run in zip(ratios, runs):
             # The compared passages are longer than the reference, so that each of its frames lies within them.

@@ -20,7 +20,8 @@ from .workshop import Workshop
 # The length and its error [sigma], at Gamma = 1.09 and a minimum gap of 0.2 sigma.
 PUBLISHED_LENGTH, PUBLISHED_ERROR = 24.0, 1.0
 NORMAL_QUANTILE = 1.96  # two-sided 95 %
-CONFIGS = {"density-robust": "constant tension", "density-elastic": "tension grows with the perimeter", "density-friction": r"likewise, wall friction $\mu = 0.05$"}
+CONFIGS = {"density-robust": "constant tension", "density-elastic": "tension grows with the perimeter",
+           "density-friction": r"likewise, wall friction $\mu = 0.05$"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,10 +66,13 @@ def fit_density(densities: Sequence[float], lengths: Sequence[float], clogs: Seq
 
 def fitted(groups: Sequence[Group]) -> DensityFit:
     closed = [group for group in groups if group["clogs"] > 0]
-    return fit_density(*([group[name] for group in closed] for name in ("obstacle_density", "clogging_length", "clogs")))
+    return fit_density(*([group[name] for group in closed]
+                         for name in ("obstacle_density", "clogging_length", "clogs")))
 
 
-@figure("density", "clogging length of stiff droplets against the density of obstacles, and the density of the published arrays", CONFIGS, "5 min")
+@figure("density",
+        "clogging length of stiff droplets against the density of obstacles, and the density of the published arrays",
+        CONFIGS, "5 min")
 def density_of_the_published_arrays(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     families = {label: shop.sweep(config) for config, label in CONFIGS.items()}
@@ -79,16 +83,20 @@ def density_of_the_published_arrays(shop: Workshop) -> Plate:
         fit = fitted(groups)
         text = rounded.with_interval(fit.density, fit.lower, fit.upper)
         shift = style.side_by_side(index, len(families), places)
-        draw_lengths(axes, [group["obstacle_density"] * shift for group in groups], groups, index, f"{label}: {text}", linestyle="none")
+        draw_lengths(axes, [group["obstacle_density"] * shift for group in groups], groups, index, f"{label}: {text}",
+                     linestyle="none")
         line = np.geomspace(places[0], places[-1], 100)
         axes.plot(line, fit.length(line), color=style.COLOURS[index], linewidth=1)
         share = [number / saturated_density(groups[0]) for number in (fit.density, fit.lower, fit.upper)]
         data += numbers(groups, label)
-        data.append({"curve": label, "published_length": PUBLISHED_LENGTH, "density": fit.density, "density_lower": fit.lower, "density_upper": fit.upper,
+        data.append({"curve": label, "published_length": PUBLISHED_LENGTH, "density": fit.density,
+                     "density_lower": fit.lower, "density_upper": fit.upper,
                      "share_of_saturated": share[0], "share_lower": share[1], "share_upper": share[2],
                      "chi_squared": fit.chi_squared, "degrees_of_freedom": fit.degrees_of_freedom})
-        print(f"{label}: {text} per sigma^2, {rounded.with_interval(*(100 * number for number in share))} % of the saturated density", flush=True)
-    axes.axhspan(PUBLISHED_LENGTH - PUBLISHED_ERROR, PUBLISHED_LENGTH + PUBLISHED_ERROR, color="0.85", zorder=0, label="published: 24 \u00b1 1")
+        print(f"{label}: {text} per sigma^2, "
+              f"{rounded.with_interval(*(100 * number for number in share))} % of the saturated density", flush=True)
+    axes.axhspan(PUBLISHED_LENGTH - PUBLISHED_ERROR, PUBLISHED_LENGTH + PUBLISHED_ERROR,
+                 color="0.85", zorder=0, label="published: 24 \u00b1 1")
     style.logarithmic_ordinate(axes)
     style.logarithmic_abscissa(axes, places)
     style.grid(axes)

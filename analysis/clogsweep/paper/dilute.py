@@ -29,7 +29,8 @@ PUBLISHED = {"line_tension": 1.09, "obstacle_gap": 0.2, "clogging_length": 24.0,
 ENOUGH_CLOGS = 10  # With at least this many clogs, clogfit tests whether P(r) is exponential.
 FINER = (0, (4, 2))
 # The star is hollow, so that it hides no point.
-STAR = {"color": "black", "marker": "*", "markersize": 15, "markeredgewidth": 1.4, "markerfacecolor": "none", "linestyle": "none"}
+STAR = {"color": "black", "marker": "*", "markersize": 15, "markeredgewidth": 1.4,
+        "markerfacecolor": "none", "linestyle": "none"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -61,13 +62,15 @@ FAMILIES = [
 
 
 def draw_published(axes: Axes) -> None:
-    axes.errorbar([PUBLISHED["line_tension"]], [PUBLISHED["clogging_length"]], yerr=[PUBLISHED["error"]], zorder=5, **STAR)
+    axes.errorbar([PUBLISHED["line_tension"]], [PUBLISHED["clogging_length"]], yerr=[PUBLISHED["error"]],
+                  zorder=5, **STAR)
 
 
 def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
     """Draws a panel for each family, with a curve for each gap. @param finer  also draws the sweep CONFIG-mesh, which
     has a second mesh"""
-    kinds = [(family, family.of(shop.sweep(family.config)), family.of(shop.sweep(f"{family.config}-mesh")) if finer else []) for family in chosen]
+    kinds = [(family, family.of(shop.sweep(family.config)),
+              family.of(shop.sweep(f"{family.config}-mesh")) if finer else []) for family in chosen]
     kinds = [(family, coarse, fine) for family, coarse, fine in kinds if coarse]
     every = [group for _, coarse, fine in kinds for group in [*coarse, *fine]]
     gaps = sorted({group["obstacle_gap"] for group in every})
@@ -85,26 +88,33 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
                 places = [tensions.index(group["line_tension"]) for group in curve]
                 for part in np.split(np.array(curve, dtype=object), np.flatnonzero(np.diff(places) > 1) + 1):
                     curves.append((list(part), gaps.index(gap), label, options))
-                data += numbers(curve, f"{family.config}, friction {family.friction:g}, gap {gap:g}, {curve[0]['vertices']} vertices",
+                data += numbers(curve, f"{family.config}, friction {family.friction:g}, gap {gap:g}, "
+                                       f"{curve[0]['vertices']} vertices",
                                 **of_each(curve, "friction", *HOLDS))
         found.append((f"{family.label}\n{interface_of(coarse[0]['preset'])}", curves))
     meshes = sorted({group["vertices"] for group in every})
-    marks: list[tuple[Artist, str]] = [(Line2D([], [], color="0.4", marker="s", markersize=3, linestyle=FINER), rf"{meshes[-1]} vertices, at fewer $\Gamma$ (else {meshes[0]})")] \
+    marks: list[tuple[Artist, str]] = [(Line2D([], [], color="0.4", marker="s", markersize=3,
+                                               linestyle=FINER), rf"{meshes[-1]} vertices, at fewer $\Gamma$ (else {meshes[0]})")] \
         if any(fine for _, _, fine in kinds) else []
     marks.append((Line2D([], [], **STAR), r"published, $w_\mathrm{ob} = 0.2\sigma$"))
     return Plate(panels.draw(shop, kinds[0][0].config, found, ["preset"], marks=marks, on_each=draw_published), data)
 
 
-FILLINGS = [Family("clogging-elastic", "the same density in every array"), Family("clogging-filling", "an eighth of the saturated density of each gap")]
+FILLINGS = [Family("clogging-elastic", "the same density in every array"),
+            Family("clogging-filling", "an eighth of the saturated density of each gap")]
 
-figure("6c", "clogging length against line tension for four values of the minimum gap, dilute arrays: what holds droplets, on two meshes",
-       ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "25 min")(
+figure("6c", "clogging length against line tension for four values of the minimum gap, dilute arrays: "
+             "what holds droplets, on two meshes",
+       ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh",
+        "clogging-elastic", "clogging-elastic-mesh"], "25 min")(
     lambda shop: families(shop, FAMILIES, True))
-figure("6c-filling", "6c without friction at the same density for every gap, and at the same share of the saturated density",
+figure("6c-filling", "6c without friction at the same density for every gap, "
+                     "and at the same share of the saturated density",
        ["clogging-elastic", "clogging-filling"], "5 min, shared with 6c")(lambda shop: families(shop, FILLINGS, False))
 figure("7c", "clogging length against sag, deformable polygons and soft disk, minimum gap 0.2, dilute arrays",
        ["clogging-robust", "clogging-friction", "clogging-elastic", "clogging-sp"], "shared with 6c, 7a")(
-    lambda shop: over_sag(shop, [*((family.config, family.label, family.of) for family in FAMILIES), ("clogging-sp", "soft disk", list)], 0.2, "length"))
+    lambda shop: over_sag(shop, [*((family.config, family.label, family.of)
+                                   for family in FAMILIES), ("clogging-sp", "soft disk", list)], 0.2, "length"))
 
 
 # The map
@@ -144,14 +154,16 @@ def draw_cell(axes: Axes, x: int, y: int, group: Group, norm: LogNorm) -> None:
     ink = "black" if norm(length) > 0.55 else "white"
     exponential = is_exponential(group)
     if exponential is not None:
-        axes.add_patch(Rectangle((x - 0.43, y - 0.43), 0.86, 0.86, fill=False, edgecolor=ink, linewidth=1.4 if exponential else 1,
+        axes.add_patch(Rectangle((x - 0.43, y - 0.43), 0.86, 0.86, fill=False, edgecolor=ink,
+                                 linewidth=1.4 if exponential else 1,
                                  linestyle="-" if exponential else ":"))
     text = f"{float(f'{length:.2g}'):g}" if length < 1e5 else f"{length:.1g}"
     axes.text(x, y, ("> " if group["clogs"] == 0 else "") + text, ha="center", va="center", fontsize=7.5, color=ink,
               bbox={"facecolor": face, "edgecolor": "none", "pad": 0.6})
 
 
-@figure("map", "clogging length against line tension, obstacle density and gap, walls without and with friction", ["map-robust", "map-friction"], "5 min")
+@figure("map", "clogging length against line tension, obstacle density and gap, walls without and with friction",
+        ["map-robust", "map-friction"], "5 min")
 def lengths_on_a_map(shop: Workshop) -> Plate:
     kinds = [(family, shop.sweep(family.config)) for family in MAPS]
     every = [group for _, groups in kinds for group in groups]
@@ -159,29 +171,38 @@ def lengths_on_a_map(shop: Workshop) -> Plate:
     tensions = sorted({group["line_tension"] for group in every})
     lines = sorted({density_key(group) for group in every})
     norm = LogNorm(0.1, max(1e3, *map(known_length, every)), clip=True)
-    drawing, panels = style.subplots(len(kinds), len(gaps), figsize=(1.0 + 2.9 * len(gaps), 1.4 + 2.8 * len(kinds)), sharex=True, sharey=True, squeeze=False)
+    drawing, panels = style.subplots(len(kinds), len(gaps), figsize=(1.0 + 2.9 * len(gaps), 1.4 + 2.8 * len(kinds)),
+                                     sharex=True, sharey=True, squeeze=False)
     data = []
     for (family, groups), row in zip(kinds, panels):
         for (gap, members), axes in zip(by(groups, "obstacle_gap"), row):
             for group in members:
                 draw_cell(axes, tensions.index(group["line_tension"]), lines.index(density_key(group)), group, norm)
             axes.set_title(f"{family.label}\n{said(shop.columns(family.config)['obstacle_gap'], gap)}", fontsize=9)
-            data += numbers(members, family.config, **of_each(members, "friction", "obstacle_filling", "weibull_shape", "weibull_p_value", *HOLDS))
+            data += numbers(members, family.config,
+                            **of_each(members, "friction", "obstacle_filling", "weibull_shape",
+                                      "weibull_p_value", *HOLDS))
         row[0].set_ylabel(r"obstacle density $\rho_\mathrm{ob}\sigma^2$")
     for axes in panels.flat:
         axes.set_xlim(-0.5, len(tensions) - 0.5)
         axes.set_ylim(-0.5, len(lines) - 0.5)
         axes.set_xticks(range(len(tensions)), [f"{value:g}" for value in tensions])
-        axes.set_yticks(range(len(lines)), ["saturated" if is_saturated else f"{value:g}" for is_saturated, value in lines])
+        axes.set_yticks(range(len(lines)),
+                        ["saturated" if is_saturated else f"{value:g}" for is_saturated, value in lines])
     for axes in panels[-1]:
         axes.set_xlabel(AXES["line_tension"])
     numbered = [value for is_saturated, value in lines if not is_saturated]
-    for axes in [axes for axes, gap in zip(panels.T, gaps) if math.isclose(gap, PUBLISHED["obstacle_gap"]) for axes in axes]:
-        axes.plot(place_of(tensions, PUBLISHED["line_tension"]) + 0.33, place_of(numbered, PUBLISHED["obstacle_density"]) + 0.28, marker="*", color="black",
+    for axes in [axes for axes, gap in zip(panels.T, gaps) if math.isclose(gap, PUBLISHED["obstacle_gap"])
+                 for axes in axes]:
+        axes.plot(place_of(tensions, PUBLISHED["line_tension"]) + 0.33,
+                  place_of(numbered, PUBLISHED["obstacle_density"]) + 0.28, marker="*", color="black",
                   markerfacecolor="gold", markersize=11)
     drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=AXES["length"], shrink=0.8, extend="min")
-    drawing.suptitle(describe(shop.columns(MAPS[0].config), every, ["obstacle_density", "preset"]), fontsize=8, color="0.25")
+    drawing.suptitle(describe(shop.columns(MAPS[0].config), every, ["obstacle_density", "preset"]), fontsize=8,
+                     color="0.25")
     style.notes_of_panels(drawing, [
-        f"frames where {ENOUGH_CLOGS} runs or more clogged: solid if $P(r)$ is exponential (Weibull's exponent compatible with 1) and $\\lambda$ longer than one obstacle spacing, else dotted",
-        "hatched, >: lower bound (no run clogged); star: the published $\\lambda = 24\\sigma$, at the density that gives this length here"])
+        f"frames where {ENOUGH_CLOGS} runs or more clogged: solid if $P(r)$ is exponential "
+        "(Weibull's exponent compatible with 1) and $\\lambda$ longer than one obstacle spacing, else dotted",
+        "hatched, >: lower bound (no run clogged); "
+        "star: the published $\\lambda = 24\\sigma$, at the density that gives this length here"])
     return Plate(drawing, data)

@@ -13,7 +13,8 @@ from .plate import CATALOGUE, Entry, Plate
 from .workshop import Workshop
 
 ORDER = [
-    "1", "2", "3", "4", "5", "6a", "6b", "6c", "6c-filling", "6c-saturated", "7a", "7a-saturated", "7b", "7c", "7c-saturated", "map", "density",
+    "1", "2", "3", "4", "5", "6a", "6b", "6c", "6c-filling", "6c-saturated", "7a",
+    "7a-saturated", "7b", "7c", "7c-saturated", "map", "density",
     "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2", "W3"]
 
 
@@ -43,7 +44,8 @@ def write(plate: Plate, entry: Entry, shop: Workshop, command: str) -> None:
     version = programs.run_program(shop.programs / "clogsweep", "--version").splitlines()[0]
     about = "\n".join([f"Figure {entry.name}, {shop.size} size: {entry.caption}", f"drawn by {command}",
                        f"{version}, {datetime.datetime.now(datetime.timezone.utc):%Y-%m-%dT%H:%M:%SZ}", "from", *sources]) + "\n"
-    style.save(plate.figure, output, {"Title": f"Figure {entry.name}: {entry.caption}", "Description": about, "Software": "clogsweep"})
+    style.save(plate.figure, output, {"Title": f"Figure {entry.name}: {entry.caption}",
+                                      "Description": about, "Software": "clogsweep"})
     columns = list(dict.fromkeys(name for row in plate.data for name in row))
     with outputs.replaced(f"{output}.csv") as fresh, open(fresh, "w", newline="", encoding="utf-8") as out:
         table = csv.DictWriter(out, columns)

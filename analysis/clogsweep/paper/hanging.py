@@ -29,23 +29,29 @@ def by_mesh(shop: Workshop, config: str, kinds: Sequence[tuple[str, Sequence[Gro
     @param kinds  for each panel, words that distinguish it, and its groups
     @param config, without  see panels.draw()"""
     meshes = sorted({group["vertices"] for _, groups in kinds for group in groups})
-    found: list[panels.Panel] = [(title, [(curve, meshes.index(vertices), f"$N_v = {vertices}$", {}) for vertices, curve in by(groups, "vertices")]) for title, groups in kinds]
-    data = [row for title, groups in kinds for row in numbers(groups, title.replace("\n", ", "), **of_each(groups, "vertices", "friction", *HOLDS))]
+    found: list[panels.Panel] = [(title, [(curve, meshes.index(vertices), f"$N_v = {vertices}$", {})
+                                          for vertices, curve in by(groups, "vertices")]) for title, groups in kinds]
+    data = [row for title, groups in kinds
+            for row in numbers(groups, title.replace("\n", ", "), **of_each(groups, "vertices", "friction", *HOLDS))]
     return Plate(panels.draw(shop, config, found, ["vertices", *without]), data)
 
 
-@figure("W1", "how the clogging length depends on the mesh: line tension, numbers of vertices, interfaces", ["hanging-robust", "hanging-elastic"], "5 min")
+@figure("W1", "how the clogging length depends on the mesh: line tension, numbers of vertices, interfaces",
+        ["hanging-robust", "hanging-elastic"], "5 min")
 def lengths_by_mesh(shop: Workshop) -> Plate:
     sweeps = {config: by(shop.sweep(config), "obstacle_gap") for config in ("hanging-robust", "hanging-elastic")}
     kinds = [(f"{interface_of(groups[0]['preset'])}\n{said(shop.columns(config)['obstacle_gap'], gap)}", groups)
-             for of_gap in zip(*([(config, *one) for one in found] for config, found in sweeps.items())) for config, gap, groups in of_gap]
+             for of_gap in zip(*([(config, *one) for one in found] for config, found in sweeps.items()))
+             for config, gap, groups in of_gap]
     return by_mesh(shop, "hanging-robust", kinds, ["preset", "obstacle_gap"])
 
 
-@figure("W2", "the clogging length with friction of walls: line tension, coefficients of friction, numbers of vertices", ["hanging-friction"], "5 min")
+@figure("W2", "the clogging length with friction of walls: line tension, coefficients of friction, numbers of vertices",
+        ["hanging-friction"], "5 min")
 def lengths_by_friction(shop: Workshop) -> Plate:
     config = "hanging-friction"
-    kinds = [(f"wall friction {said(shop.columns(config)['friction'], friction)}", groups) for friction, groups in by(shop.sweep(config), "friction")]
+    kinds = [(f"wall friction {said(shop.columns(config)['friction'], friction)}", groups)
+             for friction, groups in by(shop.sweep(config), "friction")]
     return by_mesh(shop, config, kinds, [])
 
 
@@ -54,7 +60,8 @@ def over_a_post(shop: Workshop, films: str) -> Trajectory:
     film-friction"""
     obstacles = shop.table("post", ["x", "y", "diameter"], [POST])
     row, = shop.runs(f"post-{films}", None, {
-        "obstacles": obstacles, "box": 10, "boxes": 8, "preset": "elastic", "line-tension": 0.05, "friction": 0.3, "film-friction": films,
+        "obstacles": obstacles, "box": 10, "boxes": 8, "preset": "elastic", "line-tension": 0.05,
+        "friction": 0.3, "film-friction": films,
         "vertices": 512, "max-time": 2600, "seeds": 1})
     return shop.ways(f"post-{films}", [row], 20, 20)[0]
 
@@ -80,15 +87,18 @@ def interfaces(vertices: Numbers) -> Iterator[Numbers]:
     yield from sorted(np.split(near, breaks), key=lambda part: apart[part].min())
 
 
-@figure("W3", "a droplet over a post: the tensions of its two interfaces, with friction on both of them and on the lower one alone", [], "1 min")
+@figure("W3", "a droplet over a post: the tensions of its two interfaces, "
+              "with friction on both of them and on the lower one alone", [], "1 min")
 def tensions_over_a_post(shop: Workshop) -> Plate:
     held, slides = over_a_post(shop, "on"), over_a_post(shop, "off")
     drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 3.8), width_ratios=[1.3, 1])
     last = held.polygons[-1][:, ::2]  # Without the middles of the edges.
     # The moment at which the other droplet, which slides, passes the position at which this droplet is held.
-    passing = slides.polygons[int(np.argmin(np.abs(slides.polygons[:, 0].mean(axis=1) - held.polygons[-1][0].mean())))][:, ::2]
+    beyond = slides.polygons[:, 0].mean(axis=1) - held.polygons[-1][0].mean()
+    passing = slides.polygons[int(np.argmin(np.abs(beyond)))][:, ::2]
     edges = np.stack([last.T, np.roll(last, -1, axis=1).T], axis=1) - POST[:2]
-    line = left.add_collection(LineCollection(edges, array=tensions(last, held.row) / held.row["line_tension"], cmap="viridis", linewidth=1.8))
+    line = left.add_collection(LineCollection(edges, array=tensions(last, held.row) / held.row["line_tension"],
+                                              cmap="viridis", linewidth=1.8))
     drawing.colorbar(line, ax=left, label=r"tension/$\Gamma$")
     left.add_patch(Circle((0, 0), POST[2] / 2, color="0.8"))
     surroundings.frame_limits(left, (-0.4, -0.9), (4.2, 0.9))
@@ -100,12 +110,14 @@ def tensions_over_a_post(shop: Workshop) -> Plate:
             angles = np.degrees(np.arctan2(vertices[1, part] - POST[1], POST[0] - vertices[0, part]))
             values = tensions(vertices, run.row)[part] / run.row["line_tension"]
             right.plot(angles, values, dashes, color=colour, label=f"{interface}, {label}")
-            data += [{"friction on": label, "interface": interface, "angle": angle, "tension": value} for angle, value in zip(angles, values)]
+            data += [{"friction on": label, "interface": interface, "angle": angle, "tension": value}
+                     for angle, value in zip(angles, values)]
     right.set_xlabel("angle around the post from its top [degrees]")
     right.set_ylabel(r"tension/$\Gamma$")
     style.grid(right)
     style.legend(right, title="interface, friction on")
     row = held.row
-    drawing.suptitle(rf"$\Gamma = {row['line_tension']:g}$, $\mu = {row['friction']:g}$, $N_v = {row['vertices']}$, {interface_of(held.word('preset'))}; "
+    drawing.suptitle(rf"$\Gamma = {row['line_tension']:g}$, $\mu = {row['friction']:g}$, $N_v = {row['vertices']}$, "
+                     rf"{interface_of(held.word('preset'))}; "
                      "the lower interface touches the post; left: friction on both", fontsize=9, color="0.25")
     return Plate(drawing, data)

@@ -30,8 +30,8 @@ def explain_gap(axes: Axes, tensions: Sequence[float], groups: Sequence[Group]) 
     left, right = axes.get_xlim()[0], math.sqrt(first * tensions[tensions.index(first) - 1])
     axes.axvspan(left, right, color="0.94", zorder=0)
     clogs = sum(group["clogs"] for group in groups if group["line_tension"] == first)
-    axes.text(math.sqrt(left * right), 0.5, "not run" + ("" if clogs else f":\nno droplet\nclogs at {first:g}"), ha="center", va="center", fontsize=8, color="0.35",
-              transform=axes.get_xaxis_transform())
+    axes.text(math.sqrt(left * right), 0.5, "not run" + ("" if clogs else f":\nno droplet\nclogs at {first:g}"),
+              ha="center", va="center", fontsize=8, color="0.35", transform=axes.get_xaxis_transform())
 
 
 def draw(shop: Workshop, config: str, panels: Sequence[Panel], without: Collection[str], across: int = 2,
@@ -59,7 +59,8 @@ def draw(shop: Workshop, config: str, panels: Sequence[Panel], without: Collecti
         style.grid(axes)
         axes.set_title(title, fontsize=9)
         explain_gap(axes, tensions, [group for groups, *_ in curves for group in groups])
-        entries |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels()) if label not in entries or handle.has_yerr}
+        entries |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels())
+                    if label not in entries or handle.has_yerr}
     for axes in list(all_axes.flat)[len(panels):]:
         axes.axis("off")
     for line in all_axes:

@@ -84,7 +84,8 @@ class Workshop:
         self._model_versions: dict[str, set[int]] = {}
         for override in self.overrides:
             if override.config and not self.config(override.config).exists():
-                raise UserError(f"invalid --set {override.config}:{override.key}={override.value} (no figure has a config of that name) "
+                raise UserError(f"invalid --set {override.config}:{override.key}={override.value} "
+                                "(no figure has a config of that name) "
                                 "use one of the sweeps that figures list shows")
 
     # Configs
@@ -105,7 +106,8 @@ class Workshop:
             return ["--points", str(file)]
         replaced = ", ".join(sorted(overridden & points[0].keys()))
         print(printable(f"--set {replaced} replaces {file.name}, which pairs {' and '.join(points[0])}"), flush=True)
-        return [f"{key}={','.join(point[key] for point in points)}" for key in points[0] if key not in overridden and all(point[key] for point in points)]
+        return [f"{key}={','.join(point[key] for point in points)}"
+                for key in points[0] if key not in overridden and all(point[key] for point in points)]
 
     def keys(self, name: str) -> dict[str, str]:
         """The settings of a config, changed by --set."""
@@ -124,7 +126,8 @@ class Workshop:
             # In a channel or on a wall nothing is random or periodic. So a --set of a key for random or periodic arrays
             # concerns other sweeps.
             keys = {key: value for key, value in keys.items() if key not in ("seeds", "box")}
-        return ["--config", str(self.config(name)), *(f"{key}={value}" for key, value in keys.items() if in_file.get(key) != value)]
+        return ["--config", str(self.config(name)),
+                *(f"{key}={value}" for key, value in keys.items() if in_file.get(key) != value)]
 
     # Programs
 
@@ -162,20 +165,25 @@ class Workshop:
         @param keys  for each key a value or a list of values, such as {"line-tension": [0.3, 1]}
         @return the rows, in the order of the lists; the last list varies fastest
         """
-        lists = {key: [as_text(value) for value in (values if isinstance(values, list) else [values])] for key, values in keys.items()}
+        lists = {key: [as_text(value) for value in (values if isinstance(values, list) else [values])]
+                 for key, values in keys.items()}
         words = {key: ",".join(values) for key, values in lists.items()}
         wanted = list(itertools.product(*lists.values()))
-        self._complete(name, self._arguments(config, words) if config else [f"{key}={word}" for key, word in words.items()],
+        self._complete(name,
+                       self._arguments(config, words) if config else [f"{key}={word}" for key, word in words.items()],
                        min(self.ranks, len(wanted)))
         # The file may contain other rows, too. If a key has no column, its value is the same in all rows.
-        known = {tuple(in_row(row, key, values[0]) for key, values in lists.items()): row for row in stored.read_rows(self.sweep_file(name), self.programs)}
+        known = {tuple(in_row(row, key, values[0]) for key, values in lists.items()): row
+                 for row in stored.read_rows(self.sweep_file(name), self.programs)}
         if missing := [values for values in wanted if values not in known]:
             which = ", ".join(map("=".join, zip(lists, missing[0])))
-            raise NotThere(f"{self.sweep_file(name)} holds no run of {which}; leave out --draw-only, or give another --output")
+            raise NotThere(f"{self.sweep_file(name)} holds no run of {which}; "
+                           "leave out --draw-only, or give another --output")
         found = [known[values] for values in wanted]
         for row in found:
             if row["status"] == b"failed":
-                raise UserError(f"task {row['task']} of {self.sweep_file(name)} failed ({stored.text(row['message'])}); clogrun replay shows how far it came")
+                raise UserError(f"task {row['task']} of {self.sweep_file(name)} failed "
+                                f"({stored.text(row['message'])}); clogrun replay shows how far it came")
         return found
 
     def columns(self, name: str) -> dict[str, Column]:
@@ -202,7 +210,8 @@ class Workshop:
 
     # Ways of single droplets
 
-    def ways(self, name: str, rows: Iterable[np.void], samples: float, outlines: float | None = None) -> list[Trajectory]:
+    def ways(self, name: str, rows: Iterable[np.void], samples: float,
+             outlines: float | None = None) -> list[Trajectory]:
         """Replays rows of a sweep, see replays.follow_all(). If a file already contains a replay, the replay is not
         repeated."""
         folder = self.folder / "runs"
@@ -254,8 +263,10 @@ def measured(path: pathlib.Path) -> pandas.DataFrame:
     except FileNotFoundError as error:
         raise UserError(f"cannot read {path} (no such file); check the name") from error
     except (OSError, ValueError) as error:
-        raise UserError(f"cannot read {path} ({error}); give a CSV file with the header h [sigma], v [v_t], A") from error
+        raise UserError(f"cannot read {path} ({error}); "
+                        "give a CSV file with the header h [sigma], v [v_t], A") from error
     table.columns = [name.strip() for name in table.columns]
     if not {"h [sigma]", "v [v_t]"} <= set(table.columns):
-        raise UserError(f"cannot read {path} (no columns h [sigma] and v [v_t]); give a CSV file with the header h [sigma], v [v_t], A")
+        raise UserError(f"cannot read {path} (no columns h [sigma] and v [v_t]); "
+                        "give a CSV file with the header h [sigma], v [v_t], A")
     return table.rename(columns={"h [sigma]": "h", "v [v_t]": "v"})

@@ -30,7 +30,8 @@ def is_of(known: Trajectory, row: np.void, options: list[str]) -> bool:
         known.row[column].tobytes() == row[column].tobytes() for column in set(stored.columns_of(row)) - CIRCUMSTANCES)
 
 
-def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, folder: AnyPath, options: list[str]) -> Trajectory:
+def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, folder: AnyPath,
+           options: list[str]) -> Trajectory:
     """The trajectory of a row, from a file in the folder. The row is replayed only if the file does not contain its
     trajectory yet.
 
@@ -48,8 +49,8 @@ def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, fold
     return trajectory.read(file, needs_frames=False)
 
 
-def follow_all(clogrun: pathlib.Path | None, sweep: pathlib.Path, rows: Iterable[np.void], folder: AnyPath, jobs: int, samples: float,
-               outlines: float | None = None) -> list[Trajectory]:
+def follow_all(clogrun: pathlib.Path | None, sweep: pathlib.Path, rows: Iterable[np.void], folder: AnyPath, jobs: int,
+               samples: float, outlines: float | None = None) -> list[Trajectory]:
     """The trajectories of several rows, as from follow().
     @param jobs  number of simultaneous replays
     @param samples  time between two samples [t0]

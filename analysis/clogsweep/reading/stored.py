@@ -30,7 +30,8 @@ READABLE_VERSIONS = ("9", "10", "11")
 SWEEP, RUN = "sweep", "run"
 KINDS = {"clogsweep sweep": SWEEP, "clogsweep trajectory": RUN}  # kind of a file by its attribute `kind`
 WRITERS: dict[str | None, str] = {
-    SWEEP: "the output of clogsweep", RUN: "the output of clogrun with --polygon-interval", None: "a file of clogsweep or clogrun"}
+    SWEEP: "the output of clogsweep", RUN: "the output of clogrun with --polygon-interval",
+    None: "a file of clogsweep or clogrun"}
 
 
 def is_sealed(path: AnyPath) -> bool:
@@ -63,7 +64,8 @@ def check_kind(path: AnyPath, file: h5py.File, kind: str | None) -> None:
         raise unreadable(path, "an HDF5 file, but not one of clogsweep or clogrun", kind)
     version = text(file.attrs["format_version"])
     if version not in READABLE_VERSIONS:
-        raise UserError(f"cannot read {path} (format version {version}, this program reads {READABLE_VERSIONS[0]} to {READABLE_VERSIONS[-1]}); "
+        raise UserError(f"cannot read {path} (format version {version}, "
+                        f"this program reads {READABLE_VERSIONS[0]} to {READABLE_VERSIONS[-1]}); "
                         "use the program that wrote it, or compute the rows anew")
     if kind == SWEEP and found == RUN:
         raise unreadable(path, "holds one run of clogrun, not a sweep", kind)
@@ -95,7 +97,8 @@ def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
 
 
 def changed_run(path: AnyPath) -> UserError:
-    return UserError(f"cannot trust {path} (another program copied or changed it, and outlines have no checksums of their own); "
+    return UserError(f"cannot trust {path} (another program copied or changed it, "
+                     "and outlines have no checksums of their own); "
                      "give the file that clogrun wrote, or run the droplet again")
 
 
@@ -127,7 +130,8 @@ def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None
             if kind == RUN:
                 raise changed_run(path)
             now = os.stat(path)
-            check_copy(os.path.realpath(path), str(folder) if folder else None, now.st_dev, now.st_ino, now.st_size, now.st_ctime_ns)
+            check_copy(os.path.realpath(path),
+                       str(folder) if folder else None, now.st_dev, now.st_ino, now.st_size, now.st_ctime_ns)
         opened_file = h5py.File(path, "r")
     except FileNotFoundError as error:
         raise UserError(f"cannot read {path} (no such file); check the name") from error
@@ -191,13 +195,15 @@ def unescaped(value: str) -> str:
 
 def circle_files(file: h5py.File) -> dict[str, str]:
     """The names of the files of user-supplied circles, by the checksums in the rows."""
-    return {sum_: pathlib.Path(text(circles.attrs["file"])).name for sum_, circles in file.get("obstacles", {}).items() if "file" in circles.attrs}
+    return {sum_: pathlib.Path(text(circles.attrs["file"])).name
+            for sum_, circles in file.get("obstacles", {}).items() if "file" in circles.attrs}
 
 
 def circles(file: h5py.File) -> dict[str, Numbers]:
     """User-supplied circles by their checksums: x, y and radius [sigma]. A radius of 0 means half of the row's
     obstacle_diameter."""
-    return {sum_: np.column_stack([circles[name] for name in ("x", "y", "radius")]) for sum_, circles in file.get("obstacles", {}).items()}
+    return {sum_: np.column_stack([circles[name] for name in ("x", "y", "radius")])
+            for sum_, circles in file.get("obstacles", {}).items()}
 
 
 def columns_of(rows: Records | np.void) -> tuple[str, ...]:

@@ -101,7 +101,8 @@ def wedge_outline(wedge: Numbers, reach: float = 50.0) -> Numbers:
     def direction(angle: float) -> Numbers:
         return np.array([math.cos(angle), math.sin(angle)])
 
-    sides = [(direction(axis + sign * half_angle), direction(axis + sign * (half_angle + math.pi / 2))) for sign in (1, -1)]
+    sides = [(direction(axis + sign * half_angle), direction(axis + sign * (half_angle + math.pi / 2)))
+             for sign in (1, -1)]
     (flank, normal), (other_flank, other_normal) = sides
     start, end = axis + half_angle + math.pi / 2, axis - half_angle - math.pi / 2 + 2 * math.pi
     arc = [centre + radius * direction(angle) for angle in np.linspace(start, end, 40)]
@@ -122,7 +123,8 @@ def described(trajectory: Trajectory) -> str:
 
 def end_of(trajectory: Trajectory) -> str:
     """Describes in words how the run ended."""
-    ends = {"wrapped": "clogged by wrapping", "squeezed": "clogged by squeezing", "hybrid": "clogged by wrapping and squeezing"}
+    ends = {"wrapped": "clogged by wrapping", "squeezed": "clogged by squeezing",
+            "hybrid": "clogged by wrapping and squeezing"}
     status = trajectory.word("status")
     return ends.get(trajectory.word("mechanism"), status) if status == "clogged" else {"flowing": "still flowing", "broken": "broken up"}.get(status, status)
 

@@ -17,9 +17,12 @@ if TYPE_CHECKING:
 
     from ..style import Picture
 
-LENGTHS = ("runs", "clogs", "clogging_length", "clogging_length_lower", "clogging_length_upper", "clogging_length_met", "relative_speed_all",
-           "relative_speed_all_error", "lateral_slope", "tension_mN_per_m", "clogging_length_mm", "speed_mm_per_s", "time_to_clog_s", "doubts")
-PASSAGE = ("status", "largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed", "sag", "top_sag", "doubts")
+LENGTHS = ("runs", "clogs", "clogging_length", "clogging_length_lower", "clogging_length_upper",
+           "clogging_length_met", "relative_speed_all",
+           "relative_speed_all_error", "lateral_slope", "tension_mN_per_m", "clogging_length_mm",
+           "speed_mm_per_s", "time_to_clog_s", "doubts")
+PASSAGE = ("status", "largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed",
+           "sag", "top_sag", "doubts")
 HDF5_BEGINNING = b"\x89HDF\r\n\x1a\n"
 
 
@@ -45,7 +48,8 @@ class Fit:
         """The provenance of the rows, their number, and the program that fitted them. Files of older programs state no
         provenance."""
         sweep = self.told.get("sweep", {})
-        lines = [stored.source(sweep) if sweep else "", sweep.get("config", "").strip(), f"{self._counted()}, fitted by clogfit {stored.writer(self.told)}"]
+        lines = [stored.source(sweep) if sweep else "", sweep.get("config", "").strip(),
+                 f"{self._counted()}, fitted by clogfit {stored.writer(self.told)}"]
         return "\n".join(filter(None, lines))
 
     def _counted(self) -> str:
@@ -58,7 +62,8 @@ class Fit:
         `told`."""
         import pandas
 
-        flat = [{name: value for name, value in group.items() if not isinstance(value, list | dict)} for group in self.told["groups"]]
+        flat = [{name: value for name, value in group.items() if not isinstance(value, list | dict)}
+                for group in self.told["groups"]]
         return pandas.DataFrame(flat)
 
     def survival(self, group: int) -> pandas.DataFrame:
@@ -79,7 +84,8 @@ class Fit:
         self.known.with_lengths()
         told = self.told["groups"][group]
         first = min((step["distance"] for step in told["survival"]), default=0.0)
-        start = {"distance": min(0.0, first), "at_risk": told["runs"], "clogs": 0, "probability": 1.0, "standard_error": 0.0, "lower": 1.0, "upper": 1.0}
+        start = {"distance": min(0.0, first), "at_risk": told["runs"], "clogs": 0,
+                 "probability": 1.0, "standard_error": 0.0, "lower": 1.0, "upper": 1.0}
         steps = [start, *told["survival"]]
         beyond = [distance for distance in told["censored_distances"] if distance > steps[-1]["distance"]]
         if beyond:
@@ -130,7 +136,8 @@ def read(path: pathlib.Path, folder: pathlib.Path | None, *options: object) -> F
     except FileNotFoundError as error:
         raise UserError(f"cannot read {path} (no such file); check the name") from error
     except OSError as error:
-        raise UserError(f"cannot read {path} ({error.strerror}); give a sweep, or the output of clogfit --format json") from error
+        raise UserError(f"cannot read {path} ({error.strerror}); "
+                        "give a sweep, or the output of clogfit --format json") from error
     if content.startswith(HDF5_BEGINNING):
         clogfit = programs.programs_in(folder) / "clogfit"
         told = Fit(*fits.fitted(clogfit, path, *options))
@@ -139,6 +146,8 @@ def read(path: pathlib.Path, folder: pathlib.Path | None, *options: object) -> F
     try:
         return Fit(json.loads(content))
     except ValueError as error:
-        raise UserError(f"cannot read {path} (neither HDF5 nor JSON); give a sweep, or the output of clogfit --format json") from error
+        raise UserError(f"cannot read {path} (neither HDF5 nor JSON); "
+                        "give a sweep, or the output of clogfit --format json") from error
     except (KeyError, TypeError) as error:
-        raise UserError(f"cannot read {path} (JSON, but not of clogfit); give a sweep, or the output of clogfit --format json") from error
+        raise UserError(f"cannot read {path} (JSON, but not of clogfit); "
+                        "give a sweep, or the output of clogfit --format json") from error

@@ -15,8 +15,9 @@ from ..tools.errors import UserError
 OneOrMore = float | Sequence[float] | None
 
 
-def units(lab: str | os.PathLike[str] | Mapping[str, str], *, length: OneOrMore = None, time: OneOrMore = None, line_tension: OneOrMore = None,
-          terminal_speed: OneOrMore = None, wall_stiffness: OneOrMore = None, folder: str | os.PathLike[str] | None = None) -> dict[str, Any]:
+def units(lab: str | os.PathLike[str] | Mapping[str, str], *, length: OneOrMore = None, time: OneOrMore = None,
+          line_tension: OneOrMore = None, terminal_speed: OneOrMore = None, wall_stiffness: OneOrMore = None,
+          folder: str | os.PathLike[str] | None = None) -> dict[str, Any]:
     """The answer of `clogfit units`, with numbers. For a file of several droplets it is a list of answers.
 
     @param lab  a file, or its lines, such as {"diameter": "3.5 mm", "angle": "28 deg", "tension": "9.6 mN/m", "speed":
@@ -28,8 +29,10 @@ def units(lab: str | os.PathLike[str] | Mapping[str, str], *, length: OneOrMore 
     """
     import numpy as np
 
-    numbers = {"--length": length, "--time": time, "--line-tension": line_tension, "--terminal-speed": terminal_speed, "--wall-stiffness": wall_stiffness}
-    options = [word for name, value in numbers.items() if value is not None for word in (name, ",".join(repr(float(one)) for one in np.atleast_1d(value)))]
+    numbers = {"--length": length, "--time": time, "--line-tension": line_tension,
+               "--terminal-speed": terminal_speed, "--wall-stiffness": wall_stiffness}
+    options = [word for name, value in numbers.items() if value is not None
+               for word in (name, ",".join(repr(float(one)) for one in np.atleast_1d(value)))]
     clogfit = programs.programs_in(folder) / "clogfit"
     if not isinstance(lab, Mapping):
         return json.loads(programs.run_program(clogfit, "units", os.fspath(lab), *options, "--format", "json"))
@@ -38,4 +41,5 @@ def units(lab: str | os.PathLike[str] | Mapping[str, str], *, length: OneOrMore 
     with tempfile.TemporaryDirectory(prefix="clogsweep-units-") as place:
         file = pathlib.Path(place) / "lab.cfg"
         file.write_text("".join(f"{key} = {value}\n" for key, value in lab.items()), encoding="utf-8")
-        return units(file, length=length, time=time, line_tension=line_tension, terminal_speed=terminal_speed, wall_stiffness=wall_stiffness, folder=folder)
+        return units(file, length=length, time=time, line_tension=line_tension, terminal_speed=terminal_speed,
+                     wall_stiffness=wall_stiffness, folder=folder)

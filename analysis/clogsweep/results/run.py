@@ -67,7 +67,8 @@ class Run:
         trajectory.require_frames(self.trajectory)
         return Picture(way.draw(self.trajectory, outlines), stored.source(self.attributes))
 
-    def film(self, output: str | os.PathLike[str], *, colour: str = "speed", rate: int = 20, most_frames: int = 600, size: str | None = None) -> Film:
+    def film(self, output: str | os.PathLike[str], *, colour: str = "speed", rate: int = 20, most_frames: int = 600,
+             size: str | None = None) -> Film:
         """Writes a film. A file that exists is never replaced.
 
         @param output  name of the film, ending in .mp4 (needs ffmpeg) or .gif; without an ending, the one that can be
@@ -87,7 +88,8 @@ class Run:
         checked.whole("most_frames", most_frames, 1)
         trajectory.require_frames(self.trajectory)
         path = film.path_of(pathlib.Path(output))
-        moving = film.Film(self.trajectory, film.chosen_frames(self.trajectory, most_frames), colour, rate, size or film.size_for(path))
+        frames = film.chosen_frames(self.trajectory, most_frames)
+        moving = film.Film(self.trajectory, frames, colour, rate, size or film.size_for(path))
         return Film(film.write_film(moving, path, rate))
 
     def export_vtk(self, output: str | os.PathLike[str]) -> pathlib.Path:

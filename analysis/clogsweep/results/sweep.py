@@ -71,7 +71,8 @@ class Sweep:
         @param lab  file that describes the laboratory; lengths and speeds are then also given in its units
         @throws ProgramFailed  with the reason of clogfit
         """
-        given = {"--dwell": dwell, "--from-distance": from_distance, "--confidence": confidence, "--row-angle": row_angle}
+        given = {"--dwell": dwell, "--from-distance": from_distance, "--confidence": confidence,
+                 "--row-angle": row_angle}
         options = [word for name, value in given.items() if value is not None for word in (name, repr(float(value)))]
         of_lab = ["--lab", os.fspath(lab)] if lab is not None else []
         fit = Fit(*fits.fitted(self._program("clogfit"), self.path, *options, *of_lab))
@@ -92,9 +93,11 @@ class Sweep:
 
     def status(self) -> dict[str, Any]:
         """The progress of the sweep, as clogsweep status reports it."""
-        return Status(json.loads(programs.run_program(self._program("clogsweep"), "status", self.path, "--format", "json")))
+        return Status(json.loads(programs.run_program(self._program("clogsweep"),
+                                                      "status", self.path, "--format", "json")))
 
-    def clogs(self, *, mechanism: str | None = None, tasks: Collection[int] | None = None, most: int = 6, jobs: int = 2) -> Clogs:
+    def clogs(self, *, mechanism: str | None = None, tasks: Collection[int] | None = None, most: int = 6,
+              jobs: int = 2) -> Clogs:
         """Clogged polygons, which are replayed until they rest.
 
         @param mechanism  only "wrapped", "squeezed", "hybrid" or "other"
@@ -131,7 +134,8 @@ class Sweep:
         checked.whole("jobs", jobs, 1)
         found = device.places(self.path, self._programs)
         groups = self.fit().known.finished(self.path)
-        parts = device.shown_parts(device.the_picture(found, groups, self.path), self.path, self._program("clogrun"), ways, map, jobs)
+        parts = device.shown_parts(device.the_picture(found, groups, self.path), self.path, self._program("clogrun"),
+                                   ways, map, jobs)
         return Picture(device.draw(*parts, groups.laboratory.get("length_mm")), stored.source(self.attributes))
 
     def replay(self, task: int, output: str | os.PathLike[str] | None = None, *, interval: float = 1.0) -> Run:
@@ -146,7 +150,8 @@ class Sweep:
         with tempfile.TemporaryDirectory(prefix="clogsweep-replay-") as folder:
             return self.replay(task, pathlib.Path(folder) / f"{self.path.stem}-{task}.h5", interval=interval)
 
-    def report(self, output: str | os.PathLike[str], examples: int = 4, *, lab: str | os.PathLike[str] | None = None) -> pathlib.Path:
+    def report(self, output: str | os.PathLike[str], examples: int = 4, *,
+               lab: str | os.PathLike[str] | None = None) -> pathlib.Path:
         """Writes an HTML page about the sweep. The page may replace an earlier page, but no other file.
         @param examples  number of clogs to show
         @param lab  file that describes the laboratory; results are then also given in its units
@@ -167,7 +172,8 @@ class Sweep:
         from ..pages import poster
         from ..style import Picture
 
-        return Picture(poster.draw(self.path, programs.programs_in(self._programs), *(["--lab", lab] if lab is not None else [])), stored.source(self.attributes))
+        return Picture(poster.draw(self.path, programs.programs_in(self._programs),
+                                   *(["--lab", lab] if lab is not None else [])), stored.source(self.attributes))
 
     def export(self, output: str | os.PathLike[str]) -> pathlib.Path:
         """Writes `rows` for other programs, with the units of the columns. A .csv has one table, and a .h5 has a
@@ -183,7 +189,8 @@ class Sweep:
             return self.rows
         told = self.fit().told["groups"]
         known = {name: {group["laboratory"]: group.get(name) for group in told} for name in fits.DROPLETS}
-        droplets = {name: self.rows["laboratory"].map(of).astype(float) for name, of in known.items() if any(of.values())}
+        droplets = {name: self.rows["laboratory"].map(of).astype(float)
+                    for name, of in known.items() if any(of.values())}
         table = self.rows.assign(**droplets)
         for name in droplets:
             table.attrs["units"] = table.attrs["units"] | {name: fits.DROPLETS[name]["unit"]}

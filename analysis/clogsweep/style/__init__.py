@@ -130,7 +130,8 @@ def mechanism_entries(groups: Collection[Group], other: str = "other clogs") -> 
     """Legend entries for the markers that draw_lengths() gave these groups. @param other  the name for clogs of no
     mechanism"""
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
-    return [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else other)
+    return [(Line2D([], [], color="0.4", marker=marker, linestyle="none"),
+             f"most clogs {name}" if name != "other" else other)
             for name, marker in MECHANISM_MARKERS.items() if name in names]
 
 
@@ -138,9 +139,11 @@ def legend_off_curves(axes: Axes, entries: Sequence[tuple[Artist, str]], title: 
     """Finds a place for the legend where nothing is drawn. If there is none, the ordinate is extended."""
     # matplotlib only avoids lines, so error bars and bands are represented by lines.
     rising: Any = np.geomspace if axes.get_yscale() == "log" else np.linspace
-    bars = [bar for drawn in axes.containers if isinstance(drawn, ErrorbarContainer) for part in drawn.lines[2] for bar in part.get_segments() if len(bar)]
+    bars = [bar for drawn in axes.containers if isinstance(drawn, ErrorbarContainer)
+            for part in drawn.lines[2] for bar in part.get_segments() if len(bar)]
     points = [(x, y) for (x, low), (_, high) in bars if low < high for y in [*rising(low, high, 9), math.nan]]
-    points += [point for band in axes.collections if isinstance(band, PolyCollection) for path in band.get_paths() for point in path.vertices]
+    points += [point for band in axes.collections if isinstance(band, PolyCollection)
+               for path in band.get_paths() for point in path.vertices]
     axes.plot(*np.reshape(points, (-1, 2)).T, linestyle="none", label="_bars")
     axes.figure.figure.draw_without_rendering()  # computes the layout
     paths = [line.get_transform().transform_path(line.get_path()) for line in axes.lines if len(line.get_xdata())]
@@ -176,8 +179,8 @@ def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs
     if len(entries) > len(COLOURS):
         before = axes.get_legend()
         width_before = width_of(before) if before and len(before.get_texts()) > len(COLOURS) else 0.0
-        made = axes.legend(*zip(*entries), title=title, frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
-                           loc="upper left", bbox_to_anchor=(1, 1))
+        made = axes.legend(*zip(*entries), title=title, frameon=False, fontsize=7, handlelength=4,
+                           ncols=math.ceil(len(entries) / 28), loc="upper left", bbox_to_anchor=(1, 1))
         figure = axes.figure
         if isinstance(figure, Figure):  # The width of a part of a figure is fixed.
             figure.set_figwidth(figure.get_figwidth() + width_of(made) - width_before)
@@ -199,7 +202,8 @@ def side_by_side(index: int, num_curves: int, values: Collection[float]) -> floa
     ordered = sorted(set(values))
     outermost = max(num_curves - 1, 1) / 2
     nearest = min((b / a for a, b in zip(ordered, ordered[1:])), default=2.0)
-    step = min(0.007 * math.log(max(ordered[-1] / ordered[0], 6)), 0.2 * math.log(nearest) / outermost, 0.7 * math.log(logarithmic_margin(values)) / outermost)
+    step = min(0.007 * math.log(max(ordered[-1] / ordered[0], 6)), 0.2 * math.log(nearest) / outermost,
+               0.7 * math.log(logarithmic_margin(values)) / outermost)
     return math.exp(step * (index - (num_curves - 1) / 2))
 
 
@@ -227,7 +231,8 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
         axis.set_ticks(lower, minor=True)
         labelled = far_apart(lower, span)
         axis.set_minor_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}" if value in labelled else ""))
-        axis.set_tick_params(which="minor", pad=4 + 1.2 * matplotlib.font_manager.FontProperties(size=matplotlib.rcParams["xtick.labelsize"]).get_size_in_points())
+        axis.set_tick_params(which="minor",
+                             pad=4 + 1.2 * matplotlib.font_manager.FontProperties(size=matplotlib.rcParams["xtick.labelsize"]).get_size_in_points())
     else:
         low, high = (min(values), max(values)) if values else axes.get_xlim()
         plain_logarithmic(axis, high / low)
@@ -282,7 +287,8 @@ def caption(axes: Axes, text: str) -> None:
     axes.set_title(in_lines(text, fitting(axes.figure, 8, widest)), fontsize=8, color="0.25")
 
 
-def finish(axes: Axes, up: str, shared: str, lines: Sequence[str], groups: Collection[Group] = (), other: str = "other clogs", title: str = "") -> None:
+def finish(axes: Axes, up: str, shared: str, lines: Sequence[str], groups: Collection[Group] = (),
+           other: str = "other clogs", title: str = "") -> None:
     """Adds the ordinate's label, grid, legend, caption and notes to a picture of curves. @param groups, other, title
     see legend()"""
     axes.set_ylabel(up)
@@ -295,14 +301,15 @@ def finish(axes: Axes, up: str, shared: str, lines: Sequence[str], groups: Colle
 
 def notes(axes: Axes, lines: Sequence[str]) -> None:
     """Writes notes that explain the marks below the label of the abscissa."""
-    axes.annotate("\n".join(lines), (0.5, 0), xycoords=axes.xaxis.label, xytext=(0, -4), textcoords="offset points", ha="center", va="top",
-                  fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
+    axes.annotate("\n".join(lines), (0.5, 0), xycoords=axes.xaxis.label, xytext=(0, -4), textcoords="offset points",
+                  ha="center", va="top", fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
 
 
 def notes_of_panels(figure: Figure, lines: Sequence[str]) -> None:
     """Writes notes that explain the marks below all panels. Lines that are wider than the figure are broken."""
     fits = fitting(figure, NOTE_SIZE, 0.97 * figure.bbox.width)
-    figure.supxlabel("\n".join(in_lines(line, fits, " ") for line in lines), fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
+    figure.supxlabel("\n".join(in_lines(line, fits, " ") for line in lines), fontsize=NOTE_SIZE,
+                     color="0.25", gid=NOTES)
 
 
 def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None, dpi: float = 160) -> None:

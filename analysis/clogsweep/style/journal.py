@@ -58,9 +58,10 @@ def draw_legend(axes: Axes, size: float) -> float:
     earlier = axes.get_legend()
     title = earlier.get_title().get_text() if earlier else ""
     for columns in range(len(labels), 0, -1):
-        made = axes.legend(artists, labels, title=title, title_fontsize=size, frameon=False, fontsize=size, ncols=columns, loc="upper center", bbox_to_anchor=(0.5, 1),
-                           bbox_transform=figure.transFigure, borderaxespad=0.2, borderpad=0.2, labelspacing=0.3, columnspacing=0.8, handlelength=1.3,
-                           handletextpad=0.4)
+        made = axes.legend(artists, labels, title=title, title_fontsize=size, frameon=False, fontsize=size,
+                           ncols=columns, loc="upper center", bbox_to_anchor=(0.5, 1),
+                           bbox_transform=figure.transFigure, borderaxespad=0.2, borderpad=0.2, labelspacing=0.3,
+                           columnspacing=0.8, handlelength=1.3, handletextpad=0.4)
         extent = made.get_window_extent(figure.canvas.get_renderer())
         if extent.width <= figure.bbox.width:
             break
@@ -88,7 +89,7 @@ def lay_out(figure: Figure, width: float, height: float | None, size: float) -> 
         raise UserError(f"cannot lay out a picture of {len(figure.axes)} panels for a column; draw one panel")
     axes, = figure.axes
     texts = [axes.title, *(text for text in axes.texts if text.get_gid() == NOTES)]
-    told = "\n".join(text.get_text() for text in texts if text.get_text())
+    caption = "\n".join(text.get_text() for text in texts if text.get_text())
     axes.set_title("")
     for text in texts[1:]:
         text.remove()
@@ -103,7 +104,8 @@ def lay_out(figure: Figure, width: float, height: float | None, size: float) -> 
     if height is None:
         figure.set_figheight(figure.get_figheight() + above)
     if above > 0.6 * figure.get_figheight() and height:
-        raise UserError(f"cannot lay out a picture {height:g} cm high (its legend alone takes {INCH * above:.1f} cm); make it higher, or draw fewer curves")
+        raise UserError(f"cannot lay out a picture {height:g} cm high (its legend alone takes {INCH * above:.1f} cm); "
+                        "make it higher, or draw fewer curves")
     figure.set_layout_engine("constrained", rect=(0, 0, 1, 1 - above / figure.get_figheight()))
     figure.draw_without_rendering()
     frame = axes.get_window_extent()
@@ -113,4 +115,4 @@ def lay_out(figure: Figure, width: float, height: float | None, size: float) -> 
     figure.draw_without_rendering()
     for axis in scales:
         hide_overlapping(axis)
-    return told
+    return caption

@@ -13,7 +13,8 @@ from .errors import UserError
 are_of_command = False
 
 # The first bytes of the files that commands make.
-BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-", "vtk": b"<?xml", "csv": b"# circles of ", "text": b""}
+BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-",
+              "vtk": b"<?xml", "csv": b"# circles of ", "text": b""}
 
 
 def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> None:
@@ -28,7 +29,8 @@ def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> N
     if path.is_dir():
         raise UserError(f"cannot write {path} (it is a folder); give the name of a file")
     if path.exists() and not path.is_file():
-        raise UserError(f"cannot write {path} (not a regular file: a pipe, device or socket); give another name, or move it away")
+        raise UserError(f"cannot write {path} (not a regular file: a pipe, device or socket); "
+                        "give another name, or move it away")
     target = path.resolve()
     if not (os.access(target.parent, os.W_OK) and os.access(target if target.exists() else target.parent, os.W_OK)):
         raise UserError(f"cannot write {path} (permission denied); give another --output")
@@ -60,7 +62,8 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
                 shutil.copymode(target, fresh)
             os.replace(fresh, target)
     except OSError as error:
-        raise UserError(f"cannot write {path} ({error.strerror or error}); look at the folder and its disk, or give another --output") from error
+        raise UserError(f"cannot write {path} ({error.strerror or error}); "
+                        "look at the folder and its disk, or give another --output") from error
 
 
 # Endings of pictures and films. Other text after a dot may be a part of the name, as in gap-0.3.

@@ -30,7 +30,8 @@ class StatusLine:
         if now - self.last >= (0.2 if self.on_terminal else 10):
             self.last = now
             shown = text(now - self.begin)
-            print(f"\r{shown}\x1b[K" if self.on_terminal else shown, end="" if self.on_terminal else "\n", file=sys.stderr, flush=True)
+            print(f"\r{shown}\x1b[K" if self.on_terminal else shown, end="" if self.on_terminal else "\n",
+                  file=sys.stderr, flush=True)
 
     def wipe(self) -> None:
         if self.on_terminal:
@@ -42,5 +43,6 @@ def shown(items: Iterable[Item], what: str, total: int) -> Iterator[Item]:
     line = StatusLine()
     for number, item in enumerate(items, start=1):
         yield item
-        line.renew(lambda seconds: f"{what} {number} of {total}, {readable_duration(seconds * (total / number - 1))} left")
+        line.renew(lambda seconds: f"{what} {number} of {total}, "
+                                   f"{readable_duration(seconds * (total / number - 1))} left")
     line.wipe()

@@ -23,10 +23,12 @@ def read_text(path: str) -> str:
     try:
         mode = os.stat(path).st_mode
         if not stat.S_ISREG(mode) and not stat.S_ISFIFO(mode):
-            raise UserError(f"cannot read {path} (a folder, device or socket, neither a file nor a pipe); give another name")
+            raise UserError(f"cannot read {path} (a folder, device or socket, neither a file nor a pipe); "
+                            "give another name")
         content = pathlib.Path(path).read_bytes()
     except OSError as error:
-        raise UserError(f"cannot read {path} ({(error.strerror or str(error)).lower()}); check name and permissions") from error
+        raise UserError(f"cannot read {path} ({(error.strerror or str(error)).lower()}); "
+                        "check name and permissions") from error
     for encoding in ("utf-16",) if content.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "latin-1"):
         with contextlib.suppress(UnicodeDecodeError):
             return content.decode(encoding)
@@ -41,7 +43,8 @@ def cells_of(line: str, separator: str) -> list[str]:
 
 def refuse(cell: str, number: int) -> None:
     """@param number  of the cell in its line, from 1. @throws UserError"""
-    raise UserError(f"column {number} is '{cell}', an error of a spreadsheet; correct this cell, or begin comments with '# '")
+    raise UserError(f"column {number} is '{cell}', an error of a spreadsheet; "
+                    "correct this cell, or begin comments with '# '")
 
 
 def refuse_lost_line(comment: str, separator: str) -> None:
@@ -72,8 +75,10 @@ class Numbers:
         if len(self._first) == 2:
             words = {",": "comma", ".": "point"}
             own, other = (",", ".") if "," in cell else (".", ",")
-            raise UserError(f"{column}: '{cell}' may have a decimal comma or separated thousands; write all numbers with decimal points and without commas" if other in cell else
-                            f"{column}: '{cell}' has a {words[own]}, but '{self._first[other]}' above has a {words[other]}; write all numbers of the file with decimal points, and without commas")
+            raise UserError(f"{column}: '{cell}' may have a decimal comma or separated thousands; "
+                            "write all numbers with decimal points and without commas" if other in cell else
+                            f"{column}: '{cell}' has a {words[own]}, but '{self._first[other]}' above has "
+                            f"a {words[other]}; write all numbers of the file with decimal points, and without commas")
         if "," in cell:
             is_ambiguous = re.fullmatch(r"[+-]?[1-9]\d{0,2}(,\d{3})+", cell)
             self._are_decimal = self._are_decimal or not is_ambiguous
@@ -89,7 +94,8 @@ class Numbers:
     def check(self, path: str) -> None:
         """Call this after the last line. @throws UserError  if each comma may separate thousands"""
         if self._ambiguous and not self._are_decimal:
-            raise UserError(f"{path}: '{self._ambiguous}' may have a decimal comma or separated thousands; write all numbers with decimal points and without commas")
+            raise UserError(f"{path}: '{self._ambiguous}' may have a decimal comma or separated thousands; "
+                            "write all numbers with decimal points and without commas")
 
 
 def rows(path: str) -> Iterator[tuple[int, list[str]]]:
