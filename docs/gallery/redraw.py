@@ -68,8 +68,10 @@ def main(programs, *names):
     table = pandas.read_csv(TABLE, dtype=str, keep_default_na=False).set_index("picture", drop=False)
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        subprocess.run([sys.executable, "-m", "clogsweep", "figures", *names, "--from-rows", "--output", folder, "--programs", programs], check=True)
         for name in names:
+            command = [sys.executable, "-m", "clogsweep", "figures", name, "--from-rows", "--output", folder, "--programs", programs]
+            if subprocess.run(command).returncode:
+                continue
             keep(name, folder)
             fresh = line(name, programs, folder)
             table.loc[name] = [str(fresh[column]) for column in table.columns]
