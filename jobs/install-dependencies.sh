@@ -33,7 +33,9 @@ docs=(
 for group in "$@"; do
   case $group in
     tests) packages+=("${tests[@]}") ;;
-    gates) packages+=("${tests[@]}" "${docs[@]}" clang clang-format clang-tidy aspell aspell-en shellcheck flake8 mypy) ;;
+    gates)
+      packages+=("${tests[@]}" "${docs[@]}" clang clang-format clang-tidy aspell aspell-en codespell shellcheck flake8 mypy)
+      ;;
     docs) packages+=("${docs[@]}") ;;
     drawings) packages+=("${drawings[@]}") ;;
     package) packages+=(dpkg-dev file) ;;

@@ -3,7 +3,7 @@
 # clang-tidy looks at what changed, with --all at everything. Exit code 1: a gate has found something. See README.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-every=(format width spelling phrases ages scripts types docs warnings tidy)
+every=(format width spelling codespell phrases ages scripts types docs warnings tidy)
 limits=(--changed --most 40)
 if [ "${1:-}" = --all ]; then
   limits=()
@@ -18,6 +18,10 @@ done
 look() {
   case $1 in
     format | scripts) "tests/gates/$1.sh" ;;
+    codespell)
+      git ls-files -z --cached --others --exclude-standard -- ':!*.ipynb' ':!tests/faults/fuzz/corpus' |
+        xargs -0 codespell --ignore-words tests/gates/codespell.txt
+      ;;
     types) mypy --config-file tests/gates/mypy.ini analysis/clogsweep ;;
     ages) python3 tests/gates/ages.py ;;
     docs) docs/build.sh && /usr/bin/python3 tests/gates/site.py build/docs/html ;;

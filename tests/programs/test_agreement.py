@@ -13,8 +13,10 @@ import stored_rows
 from drawing import Analysis
 from support import BIN
 
-from clogsweep.agreement import evidence, lengths, passages, statements
-from clogsweep.agreement.statements import AGREES, BY_MESH, DOES_NOT, FITTED, FORCED, IN_KIND, NOT_KNOWN, NOT_RUN
+from clogsweep.agreement import evidence, lengths, passages
+from clogsweep.agreement.statements import STATEMENTS
+from clogsweep.agreement.verdicts import (AGREES, BY_MESH, DOES_NOT, FITTED, FORCED, IN_KIND, NOT_KNOWN, NOT_RUN,
+                                          Finding, the_version, with_variants)
 from clogsweep.paper import dilute
 from clogsweep.tools.errors import UserError
 
@@ -110,8 +112,8 @@ class Evidence(unittest.TestCase):
         slides, rubbed, _, pinned = dilute.FAMILIES
         for nearest, friction, corners, verdict in [(AGREES, DOES_NOT, DOES_NOT, AGREES), (DOES_NOT, AGREES, AGREES, FORCED), (NOT_KNOWN, IN_KIND, AGREES, BY_MESH),
                                                     (DOES_NOT, IN_KIND, DOES_NOT, DOES_NOT), (IN_KIND, AGREES, AGREES, IN_KIND)]:
-            found = {family: statements.Finding(one, "1") for family, one in zip((slides, rubbed, pinned), (nearest, friction, corners))}
-            self.assertEqual(statements.with_variants(found), statements.Finding(
+            found = {family: Finding(one, "1") for family, one in zip((slides, rubbed, pinned), (nearest, friction, corners))}
+            self.assertEqual(with_variants(found), Finding(
                 verdict, "1", f"wall friction (0.05): {friction}, 1; no friction, corner pinning: {corners}, 1",
                 f"{friction}: all" if friction == corners else
                 f"{friction}: wall friction (0.05); {corners}: no friction, corner pinning"))
@@ -122,9 +124,9 @@ class Evidence(unittest.TestCase):
             self.assertEqual(evidence.overall(verdicts), together)
 
     def test_rows_of_several_model_versions_are_refused(self):
-        self.assertEqual(statements.the_version({"speed": [7], "clogging-sp": [7]}), 7)
+        self.assertEqual(the_version({"speed": [7], "clogging-sp": [7]}), 7)
         with self.assertRaisesRegex(UserError, "older than 7: clogging-sp$"):
-            statements.the_version({"speed": [7], "clogging-sp": [6, 7]})
+            the_version({"speed": [7], "clogging-sp": [6, 7]})
 
 
 class Table(Analysis):
@@ -138,15 +140,15 @@ class Table(Analysis):
         text = " ".join(self.agreement().split())
         self.assertIn("No sweep has been run.", text)
         self.assertNotIn("model version", text)
-        self.assertEqual(text.count(f"**{NOT_RUN}**"), sum(bool(one.figures) for one in statements.STATEMENTS))
+        self.assertEqual(text.count(f"**{NOT_RUN}**"), sum(bool(one.figures) for one in STATEMENTS))
 
     def test_the_table_is_made_from_the_sweeps_that_are_there(self):
         self.draw("figures", "7a", "--output", ".", "--programs", BIN, *(word for setting in self.SETTINGS for word in ("--set", setting)))
         rows = list(csv.DictReader(io.StringIO(self.agreement("--format", "csv"))))
-        self.assertEqual(len(rows), len(statements.STATEMENTS))
+        self.assertEqual(len(rows), len(STATEMENTS))
         of_disks = {row["statement"]: row for row in rows if row["where"] == "4.2, figure 7a"}
         self.assertEqual({row["verdict"] for row in of_disks.values()}, {AGREES}, of_disks)
-        for row, one in zip(rows, statements.STATEMENTS, strict=True):
+        for row, one in zip(rows, STATEMENTS, strict=True):
             if row["where"] != "4.2, figure 7a" and one.figures:
                 self.assertEqual(row["verdict"], NOT_RUN)
                 self.assertRegex(row["here"], r"^python3 -m clogsweep figures \w+")

@@ -11,14 +11,15 @@ from typing import Any
 from ..paper.arrays import STEADY
 from ..tools import rounded
 from ..tools.hints import Group
-from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
+from .verdicts import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
 
 LEAST_LINEARITY = 0.99
 
 
 def bounds(group: Group) -> tuple[float, float]:
     """The confidence interval of a clogging length. The upper end is infinite if no run clogged."""
-    return group["clogging_length_lower"], math.inf if group["clogging_length_upper"] is None else group["clogging_length_upper"]
+    upper = group["clogging_length_upper"]
+    return group["clogging_length_lower"], math.inf if upper is None else upper
 
 
 def shorter(first: Group, second: Group) -> bool:
@@ -35,7 +36,8 @@ def slower(first: Group, second: Group) -> bool:
 def length_of(group: Group) -> str:
     if group["clogs"] == 0:
         return f"> {rounded.plain(group['clogging_length_lower'])}"
-    return rounded.with_interval(group["clogging_length"], group["clogging_length_lower"], group["clogging_length_upper"])
+    return rounded.with_interval(*(group[name] for name in (
+        "clogging_length", "clogging_length_lower", "clogging_length_upper")))
 
 
 def speed_of(group: Group) -> str:
@@ -65,13 +67,15 @@ def trend(is_as_published: bool, is_opposite: bool) -> str:
     return (IN_KIND if is_opposite else AGREES) if is_as_published else DOES_NOT if is_opposite else NOT_KNOWN
 
 
-def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callable[[Group, Group], bool], said: Callable[[Group], str]) -> Finding:
+def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callable[[Group, Group], bool],
+                        value_of: Callable[[Group], str]) -> Finding:
     """Judges from one curve for each gap whether the clogging length of soft disks falls with the wall stiffness
     E_w."""
     ordered = {gap: sorted(curve, key=lambda group: group["wall_stiffness"]) for gap, curve in found.items()}
+    words = {gap: [f"{value_of(end)} at {end['wall_stiffness']:g}" for end in (curve[0], curve[-1])]
+             for gap, curve in ordered.items()}
     return Finding(overall([trend(falls(curve, is_less), rises(curve, is_less)) for curve in ordered.values()]),
-                   "; ".join(f"gap {gap:g}: {said(curve[0])} at {curve[0]['wall_stiffness']:g}, {said(curve[-1])} at {curve[-1]['wall_stiffness']:g}"
-                             for gap, curve in ordered.items()))
+                   "; ".join(f"gap {gap:g}: {', '.join(ends)}" for gap, ends in words.items()))
 
 
 def overall(verdicts: Sequence[str]) -> str:

@@ -8,12 +8,14 @@ from scipy import stats
 from ..paper import arrays
 from ..paper.workshop import Workshop
 from ..tools.hints import Group
-from .evidence import LEAST_LINEARITY, by_tolerance, curves, fall_with_stiffness, falls, overall, rises, slower, speed_of, trend
-from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding, statement
+from .evidence import (LEAST_LINEARITY, by_tolerance, curves, fall_with_stiffness, falls, overall, rises, slower,
+                       speed_of, trend)
+from .verdicts import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
 
 
 def speed_curves(shop: Workshop, config: str, parameter: str, abscissa: str) -> dict[Any, list[Group]]:
-    return {value: sorted(curve, key=lambda group: group[abscissa]) for value, curve in curves(arrays.with_speeds(shop, config), parameter).items()}
+    found = curves(arrays.with_speeds(shop, config), parameter)
+    return {value: sorted(curve, key=lambda group: group[abscissa]) for value, curve in found.items()}
 
 
 def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Finding:
@@ -22,60 +24,56 @@ def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Findi
     for value, curve in speed_curves(shop, config, parameter, "line_tension").items():
         verdicts.append(trend(rises(curve, slower), falls(curve, slower)))
         top = max(curve, key=lambda group: group[arrays.STEADY])
-        words.append(f"{name} {value:g}: " + ", ".join(f"{speed_of(group)} at {group['line_tension']:g}" for group in (curve[0], top, curve[-1])))
+        words.append(f"{name} {value:g}: " + ", ".join(f"{speed_of(group)} at {group['line_tension']:g}"
+                                                       for group in (curve[0], top, curve[-1])))
     return Finding(overall(verdicts), "; ".join(words))
-
-
-statement("4.3, figure 8a", "the mean speed rises with Γ in gaps of 1 and wider", "8a", in_kind="the speed has a maximum, then falls to the plateau",
-          does_not_agree="walls do not slow soft droplets down")(lambda shop: speeds_rise(shop, "speed", "obstacle_gap", "gap"))
 
 
 def plateau(shop: Workshop, config: str, parameter: str) -> list[Group]:
     return [curve[-1] for curve in speed_curves(shop, config, parameter, "line_tension").values()]
 
 
-@statement("4.3, figure 8a, b", "at large Γ the speed reaches a plateau set by the gap", "8a")
 def plateau_by_gap(shop: Workshop) -> Finding:
     stiff = plateau(shop, "speed", "obstacle_gap")
     return Finding(trend(slower(stiff[0], stiff[-1]), slower(stiff[-1], stiff[0])),
                    ", ".join(f"{speed_of(group)} in gaps of {group['obstacle_gap']:g}" for group in stiff))
 
 
-@statement("4.3, figure 8b", "at large Γ the speed does not depend on the obstacle diameter", "8b")
+def at_diameters(groups: list[Group]) -> str:
+    return ", ".join(f"{speed_of(group)} for a diameter of {group['obstacle_diameter']:g}" for group in groups)
+
+
 def plateau_by_diameter(shop: Workshop) -> Finding:
     stiff = plateau(shop, "speed-diameter", "obstacle_diameter")
     differ = rises(stiff, slower) or falls(stiff, slower)
-    return Finding(DOES_NOT if differ else AGREES, ", ".join(f"{speed_of(group)} for a diameter of {group['obstacle_diameter']:g}" for group in stiff))
+    return Finding(DOES_NOT if differ else AGREES, at_diameters(stiff))
 
 
-@statement("4.3, figure 8b", "at small Γ droplets pass larger obstacles faster", "8b",
-           not_known="the difference is less than two standard errors, and 2.7 at the published size (figure-8b-full.csv)")
 def soft_by_diameter(shop: Workshop) -> Finding:
     soft = [curve[0] for curve in speed_curves(shop, "speed-diameter", "obstacle_diameter", "line_tension").values()]
-    return Finding(trend(slower(soft[0], soft[-1]), slower(soft[-1], soft[0])), ", ".join(f"{speed_of(group)} for a diameter of {group['obstacle_diameter']:g}" for group in soft))
+    return Finding(trend(slower(soft[0], soft[-1]), slower(soft[-1], soft[0])), at_diameters(soft))
 
 
-@statement("4.3, text on figure 8a", "the speed is nearly constant at small Ca and falls at large Ca", "8ca",
-           in_kind="the speed is not constant at small Ca")
 def speed_by_capillary_number(shop: Workshop) -> Finding:
     verdicts, words = [], []
     for gap, curve in speed_curves(shop, "speed", "obstacle_gap", "capillary_number").items():
-        small = [group for group in curve if group["capillary_number"] < 1]
-        spread = max(group[arrays.STEADY] for group in small) - min(group[arrays.STEADY] for group in small) if small else math.nan
-        verdicts.append(NOT_KNOWN if not small else DOES_NOT if not falls(curve, slower) else AGREES if spread < 0.05 else IN_KIND)
-        words.append(f"gap {gap:g}: below Ca = 1 speeds differ by up to {spread:.2f}, {speed_of(curve[-1])} at Ca = {curve[-1]['capillary_number']:.2g}")
+        small = [group[arrays.STEADY] for group in curve if group["capillary_number"] < 1]
+        spread = max(small) - min(small) if small else math.nan
+        is_as_published = AGREES if spread < 0.05 else IN_KIND
+        verdicts.append(NOT_KNOWN if not small else is_as_published if falls(curve, slower) else DOES_NOT)
+        words.append(f"gap {gap:g}: below Ca = 1 speeds differ by up to {spread:.2f}, "
+                     f"{speed_of(curve[-1])} at Ca = {curve[-1]['capillary_number']:.2g}")
     return Finding(overall(verdicts), "; ".join(words))
 
 
-statement("4.3, figure 9a", "the speed of soft disks falls with E_w", "9a")(
-    lambda shop: fall_with_stiffness(speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness"), slower, speed_of))
+def disks_fall_with_stiffness(shop: Workshop) -> Finding:
+    return fall_with_stiffness(speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness"), slower, speed_of)
 
 
-@statement("4.3, figure 9a", "the speed of soft disks tends to v_t as E_w tends to 0", "9a",
-           in_kind="the softest are not soft enough")
 def soft_disks_are_free(shop: Workshop) -> Finding:
     soft = [curve[0] for curve in speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness").values()]
-    return Finding(overall([by_tolerance(group[arrays.STEADY], 1, 0.02) for group in soft]), ", ".join(f"{speed_of(group)} at {group['wall_stiffness']:g}" for group in soft))
+    return Finding(overall([by_tolerance(group[arrays.STEADY], 1, 0.02) for group in soft]),
+                   ", ".join(f"{speed_of(group)} at {group['wall_stiffness']:g}" for group in soft))
 
 
 def speed_pairs(shop: Workshop) -> list[tuple[float, Group, float, Group]]:
@@ -88,42 +86,37 @@ def speed_pairs(shop: Workshop) -> list[tuple[float, Group, float, Group]]:
     return [(*found[0][end], *found[1][end]) for end in (0, -1)]
 
 
-@statement("4.3, figure 9b", "stiff droplets of both models have the same speed", "9b")
 def stiff_models_agree(shop: Workshop) -> Finding:
     _, polygon, _, disk = speed_pairs(shop)[0]
-    return Finding(DOES_NOT if slower(polygon, disk) or slower(disk, polygon) else AGREES, f"polygon {speed_of(polygon)}, disk {speed_of(disk)}")
+    differ = slower(polygon, disk) or slower(disk, polygon)
+    return Finding(DOES_NOT if differ else AGREES, f"polygon {speed_of(polygon)}, disk {speed_of(disk)}")
 
 
-@statement("4.3, figure 9b", "soft polygons are slower than soft disks", "9b")
 def soft_models_differ(shop: Workshop) -> Finding:
     sag, polygon, disk_sag, disk = speed_pairs(shop)[1]
-    return Finding(AGREES if slower(polygon, disk) else DOES_NOT, f"polygon {speed_of(polygon)} at a sag of {sag:.2f}, disk {speed_of(disk)} at {disk_sag:.2f}")
+    return Finding(AGREES if slower(polygon, disk) else DOES_NOT,
+                   f"polygon {speed_of(polygon)} at a sag of {sag:.2f}, disk {speed_of(disk)} at {disk_sag:.2f}")
 
 
-@statement("4.3, appendix D", "no droplet clogs in gaps wider than 1", "8a", in_kind="few droplets do",
-           does_not_agree="soft droplets hang over obstacles, held by corner pinning (`m`)")
 def nothing_clogs_in_wide_gaps(shop: Workshop) -> Finding:
     groups = [group for group in shop.sweep("speed") if group["obstacle_gap"] > 1.0]
     runs, clogs, on_mesh = (sum(group[name] for group in groups) for name in ("runs", "clogs", "on_mesh"))
-    return Finding(AGREES if clogs == 0 else IN_KIND if clogs <= 0.05 * runs else DOES_NOT, f"{clogs} of {runs} runs clogged, {on_mesh} of them by corner pinning")
+    return Finding(AGREES if clogs == 0 else IN_KIND if clogs <= 0.05 * runs else DOES_NOT,
+                   f"{clogs} of {runs} runs clogged, {on_mesh} of them by corner pinning")
 
 
-@statement("appendix D, figure D", "r(t) is linear", "D", in_kind="the softest droplet stops and goes")
 def displacement_is_linear(shop: Workshop) -> Finding:
-    found = {tension: stats.linregress(run.table["time"], run.table["distance"]).rvalue ** 2 for tension, run in arrays.displacements(shop).items()}
+    found = {tension: stats.linregress(run.table["time"], run.table["distance"]).rvalue ** 2
+             for tension, run in arrays.displacements(shop).items()}
     right = [r_squared >= LEAST_LINEARITY for r_squared in found.values()]
-    return Finding(AGREES if all(right) else IN_KIND if any(right) else DOES_NOT, "R² = " + ", ".join(f"{r_squared:.4f} at {tension:g}" for tension, r_squared in found.items()))
+    return Finding(AGREES if all(right) else IN_KIND if any(right) else DOES_NOT,
+                   "R² = " + ", ".join(f"{r_squared:.4f} at {tension:g}" for tension, r_squared in found.items()))
 
 
-@statement("appendix E, figure E", "near-wall drag slows droplets down", "E")
 def drag_slows_down(shop: Workshop) -> Finding:
     lines = list(speed_curves(shop, "near-wall-drag", "near_wall_drag", "line_tension").values())
     pairs = [(first, last) for first in lines[0] for last in lines[-1] if first["line_tension"] == last["line_tension"]]
     right = [slower(last, first) for first, last in pairs]
+    speeds = "; ".join(f"{speed_of(first)} and {speed_of(last)} at {first['line_tension']:g}" for first, last in pairs)
     return Finding(AGREES if all(right) else IN_KIND if any(right) else DOES_NOT,
-                   f"b_0/b_∞ {lines[0][0]['near_wall_drag']:g} and {lines[-1][0]['near_wall_drag']:g}: "
-                   + "; ".join(f"{speed_of(first)} and {speed_of(last)} at {first['line_tension']:g}" for first, last in pairs))
-
-
-statement("appendix E, figure E", "the speed rises monotonically with Γ for every near-wall drag", "E", in_kind="the speed has a maximum")(
-    lambda shop: speeds_rise(shop, "near-wall-drag", "near_wall_drag", "b_0/b_∞"))
+                   f"b_0/b_∞ {lines[0][0]['near_wall_drag']:g} and {lines[-1][0]['near_wall_drag']:g}: {speeds}")

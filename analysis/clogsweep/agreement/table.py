@@ -6,13 +6,14 @@ import io
 import textwrap
 from collections.abc import Callable, Sequence
 
-from .statements import VERDICTS, Judged
+from .verdicts import VERDICTS, Judged
 
 COLUMNS = ["where", "statement", "here", "verdict", "reason", "variants"]
 
 
 def cells(one: Judged) -> list[str]:
-    return [one.statement.where, one.statement.text, one.finding.value, one.finding.verdict, one.reason, one.finding.variants]
+    statement, finding = one.statement, one.finding
+    return [statement.where, statement.text, finding.value, finding.verdict, one.reason, finding.variants]
 
 
 def counts(judged: Sequence[Judged]) -> str:
@@ -32,16 +33,20 @@ def markdown(judged: Sequence[Judged], version: int | None) -> str:
     """A table for each section of the article. Of several results it shows the first and the last. For variants it
     shows only the verdicts."""
     rows = "No sweep has been run" if version is None else f"All rows have model version {version}"
-    lines = [textwrap.fill(f"The verdicts on the article's {len(judged)} statements are {counts(judged)}. {rows}.", 118)]
+    summary = f"The verdicts on the article's {len(judged)} statements are {counts(judged)}. {rows}."
+    lines = [textwrap.fill(summary, 118)]
     place_of = {id(one): one.statement.where.partition(", ") for one in judged}
     for section in dict.fromkeys(place[0] for place in place_of.values()):
         members = [one for one in judged if place_of[id(one)][0] == section]
         variants = {id(one): one.finding.brief or one.finding.variants for one in members}
         has_variants = any(variants.values())
-        lines += ["", f"**{section[0].upper()}{section[1:]}**", "", "| statement | here | verdict |" + " variants |" * has_variants, "|---|---|---|" + "---|" * has_variants]
+        lines += ["", f"**{section[0].upper()}{section[1:]}**", "",
+                  "| statement | here | verdict |" + " variants |" * has_variants,
+                  "|---|---|---|" + "---|" * has_variants]
         for one in members:
-            place, reason = place_of[id(one)][2], one.reason
-            lines.append(f"| {place}{': ' if place else ''}{one.statement.text} | {shortened(one.finding.value)} | **{one.finding.verdict}**{': ' if reason else ''}{reason} |"
+            statement = ": ".join(filter(None, [place_of[id(one)][2], one.statement.text]))
+            verdict = ": ".join(filter(None, [f"**{one.finding.verdict}**", one.reason]))
+            lines.append(f"| {statement} | {shortened(one.finding.value)} | {verdict} |"
                          + f" {variants[id(one)]} |" * has_variants)
     return "\n".join(lines) + "\n"
 
