@@ -49,7 +49,8 @@ def in_row(row: np.void, key: str, otherwise: str) -> str:
     if key == "perimeter-stiffness-ratio":
         return as_text(row["perimeter_stiffness"] / row["line_tension"])
     column = key.replace("-", "_")
-    return as_text(row[column]) if column in stored.columns_of(row) and not isinstance(row[column], bytes) else otherwise
+    has_number = column in stored.columns_of(row) and not isinstance(row[column], bytes)
+    return as_text(row[column]) if has_number and otherwise.lstrip("+-.")[:1].isdigit() else otherwise
 
 
 @dataclasses.dataclass(frozen=True)
