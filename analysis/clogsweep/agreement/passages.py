@@ -14,7 +14,7 @@ from .evidence import by_tolerance
 from .verdicts import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
 
 
-# Of the shape parameter, in the article: the largest deviation Delta_A of a simulation from its experiment.
+# The largest deviation Delta_A of a published simulation from its experiment, as an error of the shape parameter.
 PUBLISHED_ERROR = 0.01
 
 
