@@ -79,11 +79,13 @@ def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callabl
 
 
 def overall(verdicts: Sequence[str]) -> str:
-    """One verdict for several curves: their common verdict, or `qualitatively` if their known verdicts differ."""
-    known = set(verdicts) - {NOT_KNOWN}
-    if not known:
+    """One verdict for several curves: their common verdict. If they differ, it is NOT_KNOWN if this is the verdict on
+    more than half of them; otherwise IN_KIND, or DOES_NOT if no curve is as published."""
+    if len(set(verdicts)) == 1:
+        return verdicts[0]
+    if not verdicts or 2 * list(verdicts).count(NOT_KNOWN) > len(verdicts):
         return NOT_KNOWN
-    return known.pop() if len(known) == 1 else IN_KIND
+    return DOES_NOT if set(verdicts) == {DOES_NOT, NOT_KNOWN} else IN_KIND
 
 
 def by_tolerance(value: float, published: float, tolerance: float) -> str:

@@ -14,20 +14,24 @@ from .evidence import by_tolerance
 from .verdicts import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
 
 
-def shape_at(shop: Workshop, h: float, published: float) -> Finding:
-    way = channels.narrow(shop).table
+# The largest deviation Delta_A of a published simulation from its experiment, as an error of the shape parameter.
+PUBLISHED_ERROR = 0.01
+
+
+def shape_at(shop: Workshop, h: float, published: float, contact: str) -> Finding:
+    way = channels.narrow(shop, contact).table
     shape = float(np.interp(h, way["h"], way["shape_parameter"]))
-    return Finding(by_tolerance(shape, published, 0.015), f"{shape:.3f}")
+    return Finding(by_tolerance(shape, published, PUBLISHED_ERROR), f"{shape:.3f}")
 
 
-def largest_shape(shop: Workshop, orifice: float, published: float, tolerance: float) -> Finding:
-    row = channels.passage(shop, orifice).row
+def largest_shape(shop: Workshop, orifice: float, published: float, tolerance: float, contact: str) -> Finding:
+    row = channels.passage(shop, orifice, contact).row
     shape = row["largest_shape_parameter"]
     return Finding(by_tolerance(shape, published, tolerance), f"{shape:.3f}, {row['status'].decode()}")
 
 
-def first_minimum(shop: Workshop) -> Finding:
-    h = slowest_before(channels.passage(shop, 0.7).table)
+def first_minimum(shop: Workshop, contact: str) -> Finding:
+    h = slowest_before(channels.passage(shop, 0.7, contact).table)
     return Finding(by_tolerance(h, -0.25, 0.1), f"{h:.2f}")
 
 
@@ -55,16 +59,16 @@ def tops_of_speeds(shop: Workshop, orifice: float) -> tuple[list[float], str]:
     return [top["speed_ratio"] for top in tops.values() if top is not None], text
 
 
-def overshoots(shop: Workshop) -> Finding:
-    top = top_behind(channels.passage(shop, 0.7).table)
+def overshoots(shop: Workshop, contact: str) -> Finding:
+    top = top_behind(channels.passage(shop, 0.7, contact).table)
     if top is None:
         return Finding(DOES_NOT, "the droplet does not pass")
     verdict = DOES_NOT if top["speed_ratio"] <= 1 else by_tolerance(top["h"], 0.3, 0.1)
-    return Finding(verdict, f"{top['speed_ratio']:.2f} at h = {top['h']:.2f}", tops_of_speeds(shop, 0.7)[1])
+    return Finding(verdict, f"{top['speed_ratio']:.2f} at h = {top['h']:.2f}")
 
 
-def second_minimum(shop: Workshop) -> Finding:
-    way = channels.passage(shop, 0.7).table
+def second_minimum(shop: Workshop, contact: str) -> Finding:
+    way = channels.passage(shop, 0.7, contact).table
     top = top_behind(way)
     if top is None:
         return Finding(DOES_NOT, "the droplet does not pass")
@@ -146,6 +150,37 @@ def tensions_scale(_: Workshop) -> Finding:
                  for value, published, error in zip(found, (1.7, 1.08), (0.1, 0.09))]
     return Finding(AGREES if all(is_within) else IN_KIND if any(is_within) else DOES_NOT,
                    ", ".join(f"{value:.3g} ± {value / 16:.1g}" for value in found))
+
+
+def calibrated_to_measured(_: Workshop) -> Finding:
+    """Divides the calibrated line tensions by those that follow from the published measurements."""
+    found = [calibrated / measured for calibrated, measured in zip((0.16, 1.7, 1.08), (0.57, 5.80, 3.47))]
+    return arithmetic(found, (0.28, 0.29, 0.31), 0.02)
+
+
+def tension_times_tilt(_: Workshop) -> Finding:
+    """Gamma is inversely proportional to the sine of the tilt, so their product is the same for all tilts."""
+    products = [tension * math.sin(math.radians(tilt)) for tension, tilt in channels.TILTS.items()]
+    return arithmetic(products, (products[0],) * 3, 0.02)
+
+
+def springs_reach_a_plateau(shop: Workshop) -> Finding:
+    """Two profiles that deviate from one experiment by 0.08 each deviate from each other by at most 0.16."""
+    most = 2 * 0.08
+    of_presets = {preset: channels.spring_deviations(shop, preset)[1] for preset in ("elastic", "literal")}
+    found = {preset: max(entry["delta_v"] for ratio, entry in deviations.items() if ratio < 0.01)
+             for preset, deviations in of_presets.items()}
+    return Finding(AGREES if max(found.values()) <= most else DOES_NOT if min(found.values()) > most else IN_KIND,
+                   "Δ_v between K_l/Γ = 1e-3 and 1e-4: "
+                   + ", ".join(f"{value:.2f} ({preset})" for preset, value in found.items()))
+
+
+def shapes_deviate_less(shop: Workshop) -> Finding:
+    """Compares the deviations of shapes and of speeds between passages with different springs."""
+    entries = channels.spring_deviations(shop, "elastic")[1].values()
+    shares = [entry["delta_a"] / entry["delta_v"] for entry in entries]
+    return Finding(AGREES if max(shares) <= 0.2 else IN_KIND if max(shares) < 1 else DOES_NOT,
+                   f"Δ_A/Δ_v of {min(shares):.2g} to {max(shares):.2g} between springs of different stiffness")
 
 
 def not_published(_: Workshop) -> Finding:

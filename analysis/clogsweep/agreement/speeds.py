@@ -6,6 +6,7 @@ from typing import Any
 from scipy import stats
 
 from ..paper import arrays
+from ..paper.dilute import Family
 from ..paper.workshop import Workshop
 from ..tools.hints import Group
 from .evidence import (LEAST_LINEARITY, by_tolerance, curves, fall_with_stiffness, falls, overall, rises, slower,
@@ -16,6 +17,14 @@ from .verdicts import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
 def speed_curves(shop: Workshop, config: str, parameter: str, abscissa: str) -> dict[Any, list[Group]]:
     found = curves(arrays.with_speeds(shop, config), parameter)
     return {value: sorted(curve, key=lambda group: group[abscissa]) for value, curve in found.items()}
+
+
+# The published model has no corner pinning.
+WALLS = [Family("speed-robust", "no friction, no corner pinning"), Family("speed", "no friction, corner pinning")]
+
+
+def speeds_rise_among_walls(shop: Workshop, family: Family) -> Finding:
+    return speeds_rise(shop, family.config, "obstacle_gap", "gap")
 
 
 def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Finding:
@@ -68,6 +77,15 @@ def speed_by_capillary_number(shop: Workshop) -> Finding:
 
 def disks_fall_with_stiffness(shop: Workshop) -> Finding:
     return fall_with_stiffness(speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness"), slower, speed_of)
+
+
+def disks_are_faster_in_wide_gaps(shop: Workshop) -> Finding:
+    verdicts, words = [], []
+    for stiffness, members in curves(arrays.with_speeds(shop, "speed-sp"), "wall_stiffness").items():
+        narrow, wide = (choose(members, key=lambda group: group["obstacle_gap"]) for choose in (min, max))
+        verdicts.append(trend(slower(narrow, wide), slower(wide, narrow)))
+        words.append(f"{speed_of(narrow)} and {speed_of(wide)} at {stiffness:g}")
+    return Finding(overall(verdicts), f"narrowest and widest gap: {'; '.join(words)}")
 
 
 def soft_disks_are_free(shop: Workshop) -> Finding:

@@ -8,12 +8,13 @@ from collections.abc import Callable, Sequence
 
 from .verdicts import VERDICTS, Judged
 
-COLUMNS = ["where", "statement", "here", "verdict", "reason", "variants"]
+COLUMNS = ["where", "statement", "judged by", "criterion", "here", "verdict", "reason", "variants"]
 
 
 def cells(one: Judged) -> list[str]:
     statement, finding = one.statement, one.finding
-    return [statement.where, statement.text, finding.value, finding.verdict, one.reason, finding.variants]
+    return [statement.where, statement.text, statement.model, statement.criterion, finding.value, finding.verdict,
+            one.reason, finding.variants]
 
 
 def counts(judged: Sequence[Judged]) -> str:

@@ -36,12 +36,16 @@ class Finding:
 class Statement:
     """A statement of the article.
     @param where  its place in the article
+    @param model  the model, interface and contact that the verdict is for
+    @param criterion  what `agrees` and other verdicts mean, with thresholds; written before the runs are read
     @param judge  finds the verdict
     @param figures  the figures whose sweeps the judge needs
     @param reasons  the reason for each verdict that has one, in addition to ALWAYS"""
 
     where: str
     text: str
+    model: str
+    criterion: str
     judge: Callable[[Workshop], Finding]
     figures: tuple[str, ...] = ()
     reasons: Mapping[str, str] = dataclasses.field(default_factory=dict)
@@ -66,16 +70,31 @@ def with_variants(found: Mapping[Family, Finding]) -> Finding:
     if verdict in (DOES_NOT, NOT_KNOWN):
         helps = [family for family, finding in others if finding.verdict == AGREES]
         verdict = FORCED if any(family.friction > 0 for family in helps) else BY_MESH if helps else verdict
-    variants = "; ".join(f"{family.in_words}: {finding.verdict}" + (f", {finding.value}" if finding.value else "")
-                         for family, finding in others)
-    names: dict[str, list[str]] = {}
-    for family, finding in others:
-        names.setdefault(finding.verdict, []).append(family.in_words)
-    if len(names) == 1 and len(others) > 1:
-        brief = f"{others[0][1].verdict}: all"
-    else:
-        brief = "; ".join(f"{one}: {', '.join(of_verdict)}" for one, of_verdict in names.items())
+    variants, brief = words_of_variants([(family.in_words, finding) for family, finding in others])
     return Finding(verdict, nearest.value, variants, brief)
+
+
+def words_of_variants(found: Sequence[tuple[str, Finding]]) -> tuple[str, str]:
+    """The verdicts on variants with their values, and without. @param found  names and findings"""
+    variants = "; ".join(f"{name}: {finding.verdict}" + (f", {finding.value}" if finding.value else "")
+                         for name, finding in found)
+    names: dict[str, list[str]] = {}
+    for name, finding in found:
+        names.setdefault(finding.verdict, []).append(name)
+    if len(names) == 1 and len(found) > 1:
+        return variants, f"{found[0][1].verdict}: all"
+    return variants, "; ".join(f"{one}: {', '.join(of_verdict)}" for one, of_verdict in names.items())
+
+
+def for_contacts(judge: Callable[..., Finding], **arguments: Any) -> Callable[[Workshop], Finding]:
+    """Judges a statement on passages through orifices with the published contact, which begins at half the distance of
+    two vertices from the wall, and as a variant with contact at the surface.
+    @param judge  has a parameter `contact`"""
+    def of_contacts(shop: Workshop) -> Finding:
+        published, surface = (judge(shop, contact=contact, **arguments) for contact in ("half-vertex", "surface"))
+        return Finding(published.verdict, published.value, *words_of_variants([("contact at the surface", surface)]))
+
+    return of_contacts
 
 
 def for_families(judge: Callable[[Workshop, Family], Finding],
@@ -113,7 +132,7 @@ class Judged:
 def judge(shop: Workshop, one: Statement) -> Judged:
     found = tried(one.judge, shop)
     if found.verdict == NOT_RUN:
-        found = Finding(NOT_RUN, f"python3 -m clogsweep figures {' '.join(one.figures)}")
+        found = Finding(NOT_RUN, "python3 -m clogsweep agreement --run")
     return Judged(one, found)
 
 

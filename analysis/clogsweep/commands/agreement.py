@@ -13,6 +13,7 @@ import argparse
 import pathlib
 
 from .. import agreement
+from ..paper import finished
 from ..paper.workshop import Workshop
 from ..reading import programs
 from . import command_line
@@ -24,6 +25,8 @@ def parse() -> argparse.Namespace:
                         help="size of the figures' sweeps (reduced)")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"),
                         help="folder that python3 -m clogsweep figures wrote (results/figures)")
+    parser.add_argument("--from-rows", type=pathlib.Path, nargs="?", const=finished.FOLDER, metavar="FOLDER",
+                        help="judge by the full sweeps in docs/gallery/rows of the sources, and repeat single runs only")
     parser.add_argument("--run", action="store_true",
                         help="first run the missing sweeps, which takes an hour in reduced size")
     parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="MPI ranks of the sweeps (2)")
@@ -35,7 +38,8 @@ def parse() -> argparse.Namespace:
 
 def body() -> int:
     arguments = parse()
-    shop = Workshop(size=arguments.size, ranks=arguments.ranks, folder=arguments.output / arguments.size,
-                    programs=programs.programs_in(arguments.programs), overrides=[], draw_only=not arguments.run)
+    size = "full" if arguments.from_rows else arguments.size
+    shop = Workshop(size=size, ranks=arguments.ranks, folder=arguments.output / size, programs=programs.programs_in(arguments.programs), overrides=[],
+                    draw_only=not (arguments.run or arguments.from_rows), rows_folder=arguments.from_rows)
     print(agreement.WRITERS[arguments.format](*agreement.judge_all(shop)), end="")
     return 0

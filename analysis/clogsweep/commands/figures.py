@@ -12,11 +12,12 @@ import argparse
 import pathlib
 import sys
 
-from ..paper import figures
+from ..paper import figures, finished
 from ..paper.plate import CATALOGUE
 from ..paper.workshop import Override, Workshop, measured
 from ..reading import programs
-from ..tools.errors import UserError
+from ..tools.errors import NotThere, UserError
+from ..tools.texts import printable
 from . import command_line
 
 
@@ -31,6 +32,9 @@ def parse() -> argparse.Namespace:
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"),
                         help="folder of the results (results/figures)")
     parser.add_argument("--draw-only", action="store_true", help="draw from existing results and run nothing")
+    parser.add_argument("--from-rows", type=pathlib.Path, nargs="?", const=finished.FOLDER, metavar="FOLDER",
+                        help="draw the full size from the runs in docs/gallery/rows of the sources, "
+                             "and repeat single runs only")
     parser.add_argument("--profile", type=pathlib.Path, action="append", default=[], metavar="FILE.csv",
                         help="measured passage (columns h [sigma], v [v_t], A), drawn in figures 2, 3 (two profiles: "
                              "orifices of 0.9, then 0.7 sigma) and 4, and compared with the simulation in figure B2")
@@ -50,10 +54,16 @@ def body() -> int:
     for name in names:
         if name not in CATALOGUE:
             raise UserError(f"no figure {name}; {command_line.name()} list names them")
-    shop = Workshop(size=arguments.size, ranks=arguments.ranks, folder=arguments.output / arguments.size,
+    if arguments.from_rows and arguments.draw_only:
+        raise UserError("invalid --from-rows with --draw-only (single runs are repeated, which takes seconds); "
+                        "leave out --draw-only")
+    if arguments.from_rows and arguments.set:
+        raise UserError("invalid --from-rows with --set (the rows are of the full configs); leave out one of them")
+    size = "full" if arguments.from_rows else arguments.size
+    shop = Workshop(size=size, ranks=arguments.ranks, folder=arguments.output / size, rows_folder=arguments.from_rows,
                     programs=programs.programs_in(arguments.programs),
-                    overrides=[Override.parse(text) for text in getattr(arguments, "set")], profiles=arguments.profile,
-                    draw_only=arguments.draw_only)
+                    overrides=[Override.parse(text) for text in getattr(arguments, "set")],
+                    profiles=arguments.profile, draw_only=arguments.draw_only)
     for path in arguments.profile:
         measured(path)
     try:
@@ -64,5 +74,11 @@ def body() -> int:
         figures.refuse_unwritable(name, shop)
     command = " ".join([command_line.name(), *sys.argv[1:]])
     for name in names:
-        figures.write(CATALOGUE[name].draw(shop), CATALOGUE[name], shop, command)
+        try:
+            figures.write(CATALOGUE[name].draw(shop), CATALOGUE[name], shop, command)
+        except NotThere as missing:
+            if not (arguments.from_rows and arguments.names == ["all"]):
+                raise
+            shop.take_sources()
+            print(printable(f"figure {name} is not drawn: {missing}"), file=sys.stderr)
     return 0

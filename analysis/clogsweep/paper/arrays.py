@@ -63,7 +63,7 @@ def with_speeds(shop: Workshop, config: str) -> list[Group]:
     there are none"""
     groups = [group for group in shop.sweep(config) if group[STEADY] is not None]
     if not groups:
-        raise UserError(f"no group of {shop.sweep_file(config)} has a {STEADY} (version 1.0 did not record it, "
+        raise UserError(f"no group of {shop.place_of(config)} has a {STEADY} (version 1.0 did not record it, "
                         "and it needs three runs beyond 5 sigma/v_t); "
                         "give more seeds or a larger max-time, or remove a file of version 1.0")
     return [group | {"capillary_number": group[STEADY] * math.pi / (4 * group["line_tension"])} if group["model"] == "dp" else group for group in groups]
@@ -152,6 +152,8 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
     for index, (config, label, chosen) in enumerate(curves):
         groups = [group for group in chosen(of_quantity(shop, config, quantity))
                   if math.isclose(group["obstacle_gap"], gap)]
+        if not groups and shop.rows_folder:
+            continue
         if not groups:
             raise UserError(f"sweep {config} has no runs with obstacle-gap={gap}; add it to the list")
         places = sags(shop, config, groups)
@@ -223,21 +225,21 @@ def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pand
     shop.sweep(CLOGS)
     rows = shop.rows(CLOGS)
     if "mechanism" not in rows or not rows.mechanism.any():
-        raise UserError(f"{shop.sweep_file(CLOGS)} does not know how droplets clogged (it is of an earlier version); "
+        raise UserError(f"{shop.place_of(CLOGS)} does not know how droplets clogged (it is of an earlier version); "
                         "remove it and sweep again")
     is_wrapped = mechanism == "wrapped"
     clogs = rows[(rows.status == "clogged") & (rows.mechanism == mechanism)]
     if is_wrapped and clogs.empty:
         clogs = rows[(rows.status == "clogged") & (rows.mechanism == "hybrid")]
     if clogs.empty:
-        raise UserError(f"no {mechanism} clog in {shop.sweep_file(CLOGS)}; more seeds, or other line tensions")
+        raise UserError(f"no {mechanism} clog in {shop.place_of(CLOGS)}; more seeds, or other line tensions")
     if is_wrapped:
         row = clogs.sort_values(["shape_parameter", "task"]).iloc[len(clogs) // 2]
     else:
         travelled = clogs[clogs.distance >= 0.5]
         row = (clogs if travelled.empty else travelled).sort_values(["line_tension", "task"]).iloc[-1]
-    stored_row = [one for one in stored.read_rows(shop.sweep_file(CLOGS), shop.programs) if one["task"] == row.task]
-    run, = shop.ways(CLOGS, stored_row, 1, max(0.5, row.time / 400))
+    sweep, record = shop.record(CLOGS, mechanism, row)
+    run, = shop.ways(sweep, [record], 1, max(0.5, row.time / 400))
     return run, row
 
 
@@ -366,7 +368,7 @@ def lowest_shown(group: Group, end: float) -> float:
 def survival(shop: Workshop) -> Plate:
     group = shop.sweep("survival")[0]
     if not group["survival"]:
-        raise UserError(f"no run has clogged in {shop.sweep_file('survival')}; raise max-time or seeds")
+        raise UserError(f"no run has clogged in {shop.place_of('survival')}; raise max-time or seeds")
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     draw_band(axes, group)
     survival_curve.draw(axes, group, style.COLOURS[0], f"estimate from {rounded.counted(group['runs'], 'run')}",

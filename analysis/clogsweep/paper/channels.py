@@ -87,10 +87,16 @@ def profile_rows(run: Trajectory, label: str) -> list[dict[str, Any]]:
             for frame in run.table[::step]]
 
 
-def narrow(shop: Workshop) -> Trajectory:
+def with_contact(contact: str) -> tuple[str, dict[str, object]]:
+    """The end of a sweep's name, and keys. @param contact  "surface", the default, or "half-vertex", as published"""
+    return ("", {}) if contact == "surface" else (f"-{contact}", {"contact_range": contact})
+
+
+def narrow(shop: Workshop, contact: str = "surface") -> Trajectory:
     """The passage in Figs. 1 and 2."""
-    return profiles(shop, "channel-0.4", outlines=True, orifice=0.4, line_tension=0.16, near_wall_drag=0.064,
-                    terminal_speed=0.08)[0]
+    ending, keys = with_contact(contact)
+    return profiles(shop, f"channel-0.4{ending}", outlines=contact == "surface", orifice=0.4, line_tension=0.16,
+                    near_wall_drag=0.064, terminal_speed=0.08, **keys)[0]
 
 
 @figure("1", "geometry: a droplet in a narrow channel, and one among obstacles with its trajectory",
@@ -160,11 +166,12 @@ def squeezing(shop: Workshop) -> Plate:
 CALIBRATED = {0.9: (1.7, 0.21, 0.028), 0.7: (1.08, 0.07, 0.032)}
 
 
-def passage(shop: Workshop, orifice: float) -> Trajectory:
+def passage(shop: Workshop, orifice: float, contact: str = "surface") -> Trajectory:
     """A passage in Fig. 3. @param orifice  0.9 or 0.7"""
     line_tension, drag, speed = CALIBRATED[orifice]
-    return profiles(shop, f"channel-{orifice}", outlines=True, orifice=orifice, line_tension=line_tension,
-                    near_wall_drag=drag, terminal_speed=speed)[0]
+    ending, keys = with_contact(contact)
+    return profiles(shop, f"channel-{orifice}{ending}", outlines=contact == "surface", orifice=orifice,
+                    line_tension=line_tension, near_wall_drag=drag, terminal_speed=speed, **keys)[0]
 
 
 @figure("3", "shape and speed through orifices of 0.9 and 0.7 diameters", ["channel"], "3 s")
@@ -197,12 +204,20 @@ def two_orifices(shop: Workshop) -> Plate:
 OVERSHOOTS = {0.7: 0.02, 0.8: 0.0}  # near-wall drag for each orifice of Fig. 4
 
 
+# The tilts of Fig. 4 by their line tension [degrees]. At 5 degrees V_t was 0.032, and it grows as sqrt(sin tilt).
+TILTS = {1.85: 2.7, 1.11: 4.5, 0.83: 6.0}
+
+
+def terminal_speed(tilt: float) -> float:
+    """V_t = v_t/sqrt(sigma g) of the droplet of figure 4 at a tilt [degrees]"""
+    return round(0.032 * math.sqrt(math.sin(math.radians(tilt)) / math.sin(math.radians(5))), 4)
+
+
 def overshooting(shop: Workshop, orifice: float) -> dict[float, Trajectory]:
     """The passages in Fig. 4 by line tension. @param orifice  0.7 or 0.8"""
-    line_tensions = [1.85, 1.11, 0.83]
-    return dict(zip(line_tensions, profiles(shop, f"overshoot-{orifice}", orifice=orifice,
-                                            line_tension=line_tensions, near_wall_drag=OVERSHOOTS[orifice],
-                                            terminal_speed=0.032)))
+    return {line_tension: profiles(shop, f"overshoot-{orifice}-{line_tension}", orifice=orifice,
+                                   line_tension=line_tension, near_wall_drag=OVERSHOOTS[orifice],
+                                   terminal_speed=terminal_speed(tilt))[0] for line_tension, tilt in TILTS.items()}
 
 
 @figure("4", "speed behind an orifice, which overshoots the terminal speed, for three line tensions", ["channel"], "3 s")
@@ -212,10 +227,12 @@ def overshoot(shop: Workshop) -> Plate:
     for axes, (orifice, drag), origin in zip(panels, OVERSHOOTS.items(),
                                              ("parameters of the article", "not published, for comparison")):
         for index, (line_tension, run) in enumerate(overshooting(shop, orifice).items()):
-            draw_profile(axes, run, "speed_ratio", index, rf"$\Gamma = {line_tension:g}$" + ending(run))
+            label = rf"$\Gamma = {line_tension:g}$, $V_t = {run.row['terminal_speed']:g}$" + ending(run)
+            draw_profile(axes, run, "speed_ratio", index, label)
             data += profile_rows(run, f"w={orifice} b_0={drag:g} Gamma={line_tension:g}")
         finish(axes, "profile")
-        style.caption(axes, rf"{origin}: $w = {orifice}\sigma$, $b_0/b_\infty = {drag:g}$" "\n" rf"$V_t = 0.032$, $N_v = {run.row['vertices']}$, {interface_of(run.word('preset'))}")
+        style.caption(axes, rf"{origin}: $w = {orifice}\sigma$, $b_0/b_\infty = {drag:g}$" "\n"
+                      rf"$N_v = {run.row['vertices']}$, {interface_of(run.word('preset'))}")
     draw_measured(shop.profiles, panels[0], "v")
     for axes in panels:
         axes.legend(frameon=False, fontsize=8, loc="lower right")
@@ -300,23 +317,32 @@ def vertices(shop: Workshop) -> Plate:
     return Plate(drawing, data)
 
 
+SPRINGS = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0]  # perimeter stiffness divided by line tension, of figure B2
+
+
+def spring_deviations(shop: Workshop, preset: str) -> tuple[Trajectory, dict[float, dict[str, float]]]:
+    """The passages of Fig. B2. @return the last passage, and the deviations `delta_v` and `delta_a` by the ratio of
+    SPRINGS: from the measured profile, or from the profile of the softest springs if there is none"""
+    runs = profiles(shop, f"springs-{preset}", orifice=0.9, line_tension=1.7, near_wall_drag=0.21, terminal_speed=0.028,
+                    preset=preset, perimeter_spring="rest", perimeter_stiffness_ratio=SPRINGS)
+    files = []
+    for ratio, run in zip(SPRINGS, runs):
+        # The compared passages are longer than the reference, so that each of its frames lies within them.
+        frames = run.table[np.abs(run.table["h"]) < (1.2 if run is runs[0] and not shop.profiles else np.inf)]
+        files.append(shop.table(f"springs-{preset}-{ratio:g}", ["h [sigma]", "v [v_t]", "A"],
+                                zip(frames["h"], frames["speed_ratio"], frames["shape_parameter"])))
+    reference, compared = (shop.profiles[0], files) if shop.profiles else (files[0], files[1:])
+    places = SPRINGS if shop.profiles else SPRINGS[1:]
+    return runs[-1], dict(zip(places, shop.fit("deviation", reference, *compared)["deviations"], strict=True))
+
+
 @figure("B2", "deviation of the speed profile as the perimeter's springs stiffen", ["channel"], "15 s")
 def perimeter_springs(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(6.4, 4.8))
-    ratios = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0]
     data = []
     for index, preset in enumerate(["elastic", "literal"]):
-        runs = profiles(shop, f"springs-{preset}", orifice=0.9, line_tension=1.7, near_wall_drag=0.21,
-                        terminal_speed=0.028, preset=preset, perimeter_spring="rest", perimeter_stiffness_ratio=ratios)
-        files = []
-        for ratio, run in zip(ratios, runs):
-            # The compared passages are longer than the reference, so that each of its frames lies within them.
-            frames = run.table[np.abs(run.table["h"]) < (1.2 if run is runs[0] and not shop.profiles else np.inf)]
-            files.append(shop.table(f"springs-{preset}-{ratio:g}", ["h [sigma]", "v [v_t]", "A"],
-                                    zip(frames["h"], frames["speed_ratio"], frames["shape_parameter"])))
-        reference, compared = (shop.profiles[0], files) if shop.profiles else (files[0], files[1:])
-        places = ratios if shop.profiles else ratios[1:]
-        found = [entry["delta_v"] for entry in shop.fit("deviation", reference, *compared)["deviations"]]
+        run, deviations = spring_deviations(shop, preset)
+        places, found = list(deviations), [entry["delta_v"] for entry in deviations.values()]
         axes.plot(places, found, **style.curve_style(index), markersize=5, linewidth=1, label=interface_of(preset))
         data += [{"preset": preset, "stiffness_ratio": x, "delta_v": y} for x, y in zip(places, found)]
     style.logarithmic_abscissa(axes, places)

@@ -16,6 +16,7 @@ from matplotlib.patches import Rectangle
 
 from .. import style
 from ..labels import AXES, interface_of, said
+from ..tools.errors import NotThere
 from ..tools.hints import Group
 from . import panels
 from .arrays import HOLDS, by, numbers, of_each, over_sag
@@ -70,8 +71,12 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
     """Draws a panel for each family, with a curve for each gap. @param finer  also draws the sweep CONFIG-mesh, which
     has a second mesh"""
     kinds = [(family, family.of(shop.sweep(family.config)),
-              family.of(shop.sweep(f"{family.config}-mesh")) if finer else []) for family in chosen]
+              family.of(shop.sweep(f"{family.config}-mesh")) if finer and shop.has(f"{family.config}-mesh") else [])
+             for family in chosen if shop.has(family.config)]
     kinds = [(family, coarse, fine) for family, coarse, fine in kinds if coarse]
+    if not kinds:
+        configs = ", ".join(family.config for family in chosen)
+        raise NotThere(f"{shop.rows_folder} holds no finished group of {configs}; run it with --size full")
     every = [group for _, coarse, fine in kinds for group in [*coarse, *fine]]
     gaps = sorted({group["obstacle_gap"] for group in every})
     found: list[panels.Panel] = []
@@ -114,7 +119,8 @@ figure("6c-filling", "6c without friction at the same density for every gap, "
 figure("7c", "clogging length against sag, deformable polygons and soft disk, minimum gap 0.2, dilute arrays",
        ["clogging-robust", "clogging-friction", "clogging-elastic", "clogging-sp"], "shared with 6c, 7a")(
     lambda shop: over_sag(shop, [*((family.config, family.label, family.of)
-                                   for family in FAMILIES), ("clogging-sp", "soft disk", list)], 0.2, "length"))
+                                   for family in FAMILIES if shop.has(family.config)),
+                                 ("clogging-sp", "soft disk", list)], 0.2, "length"))
 
 
 # The map

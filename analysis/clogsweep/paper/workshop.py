@@ -6,6 +6,7 @@ import csv
 import dataclasses
 import itertools
 import json
+import math
 import pathlib
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
@@ -19,6 +20,7 @@ from ..tools import outputs, tables
 from ..tools.errors import NotThere, UserError
 from ..tools.hints import Column, Group
 from ..tools.texts import printable
+from . import finished
 
 if TYPE_CHECKING:
     import pandas
@@ -47,7 +49,8 @@ def in_row(row: np.void, key: str, otherwise: str) -> str:
     if key == "perimeter-stiffness-ratio":
         return as_text(row["perimeter_stiffness"] / row["line_tension"])
     column = key.replace("-", "_")
-    return as_text(row[column]) if column in stored.columns_of(row) and not isinstance(row[column], bytes) else otherwise
+    has_number = column in stored.columns_of(row) and not isinstance(row[column], bytes)
+    return as_text(row[column]) if has_number and otherwise.lstrip("+-.")[:1].isdigit() else otherwise
 
 
 @dataclasses.dataclass(frozen=True)
@@ -69,6 +72,8 @@ class Override:
 
 @dataclasses.dataclass
 class Workshop:
+    """@param rows_folder  a folder of finished sweeps: they are read, and no sweep is run"""
+
     size: str
     ranks: int
     folder: pathlib.Path
@@ -76,10 +81,12 @@ class Workshop:
     overrides: list[Override]
     profiles: list[pathlib.Path] = dataclasses.field(default_factory=list)
     draw_only: bool = False
+    rows_folder: pathlib.Path | None = None
 
     def __post_init__(self) -> None:
         self._complete_sweeps: set[str] = set()
         self._fits: dict[str, dict[str, Any]] = {}
+        self._finished: dict[str, finished.Finished] = {}
         self._sources: list[str] = []
         self._model_versions: dict[str, set[int]] = {}
         for override in self.overrides:
@@ -139,6 +146,10 @@ class Workshop:
     def sweep_file(self, name: str) -> pathlib.Path:
         return self.folder / "sweeps" / f"{name}.h5"
 
+    def place_of(self, name: str) -> pathlib.Path:
+        """The file that holds the runs of a sweep."""
+        return finished.files_of(name, self.rows_folder)[0] if self.rows_folder else self.sweep_file(name)
+
     def _complete(self, name: str, arguments: list[str], ranks: int) -> None:
         """Runs the part of a sweep that is missing."""
         file = self.sweep_file(name)
@@ -151,12 +162,30 @@ class Workshop:
             self._complete_sweeps.add(name)
         self._note_sweep(name)
 
+    def has(self, name: str) -> bool:
+        """Whether the folder of finished sweeps has this sweep; True if sweeps are run."""
+        return self.rows_folder is None or finished.files_of(name, self.rows_folder)[0].exists()
+
     def sweep(self, name: str) -> list[Group]:
         """Runs the part of a config's sweep that is missing. @return clogfit's groups"""
+        if self.rows_folder:
+            return self._read_finished(name).groups
         self._complete(name, self._arguments(name, {}) + self._points(name), self.ranks)
         if name not in self._fits:
             self._fits[name] = json.loads(self._call("clogfit", self.sweep_file(name), "--format", "json"))
         return [group for group in self._fits[name]["groups"] if group["runs"] > 0]
+
+    def _read_finished(self, name: str) -> finished.Finished:
+        assert self.rows_folder
+        if name not in self._finished:
+            self._finished[name] = finished.read(name, self.rows_folder)
+            self._fits[name] = self._finished[name].fit
+        sweep = self._finished[name]
+        self._model_versions[name] = {source["model_version"] for source in sweep.fit["sources"]}
+        self._sources += [f"{source['command']}\n    clogsweep {source['clogsweep']}, begun {source['begun']}"
+                          for source in sweep.fit["sources"]]
+        self._sources += [f"not drawn: {finished.words_of(group)}" for group in sweep.incomplete]
+        return sweep
 
     def runs(self, name: str, config: str | None, keys: Mapping[str, object]) -> list[np.void]:
         """Runs the missing part of a sweep over keys that the figure itself sets.
@@ -196,7 +225,24 @@ class Workshop:
 
     def rows(self, name: str) -> pandas.DataFrame:
         """The table of a sweep. sweep() must have run the sweep."""
+        if self.rows_folder:
+            return self._finished[name].rows
         return stored.read_table(self.sweep_file(name), self.programs)
+
+    def record(self, name: str, mechanism: str, row: pandas.Series) -> tuple[str, np.void]:
+        """One run of a sweep as its file has it, and the name of this file. A run of a finished sweep, whose file is
+        not there, is repeated. @param row  of rows()"""
+        if not self.rows_folder:
+            rows = stored.read_rows(self.sweep_file(name), self.programs)
+            return name, next(one for one in rows if one["task"] == row.task)
+        keys = {"line-tension": row.line_tension, "obstacle-gap": row.obstacle_gap, "friction": row.friction,
+                "seeds": int(row.seed)}
+        again, = self.runs(f"{name}-{mechanism}", name, keys)
+        if not math.isclose(again["distance"], row.distance, rel_tol=1e-9):
+            raise UserError(f"the {mechanism} droplet of {name} goes {again['distance']:.9g} sigma now, and went "
+                            f"{row.distance:.9g} in {self.rows_folder}; use programs of the same model version and "
+                            "the same instruction set")
+        return f"{name}-{mechanism}", again
 
     def _note_sweep(self, name: str) -> None:
         with stored.opened(self.sweep_file(name), folder=self.programs) as file:
@@ -247,7 +293,7 @@ class Workshop:
 
     def take_sources(self) -> list[str]:
         """Returns the sources of the numbers in the last figure, and forgets them."""
-        sources, self._sources = self._sources, []
+        sources, self._sources = list(dict.fromkeys(self._sources)), []
         return sources
 
 

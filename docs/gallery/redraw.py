@@ -1,0 +1,83 @@
+"""Draws figures of the gallery at their full size, and notes in pictures.csv from which runs they were drawn.
+
+    docs/gallery/redraw.py PROGRAMS FIGURE...        such as: build/release/bin 6c 7a
+
+Sweeps come from the folder rows; runs of single droplets are made now, and their numbers go to rows/figures. Figures
+whose sweep is not in the folder are not drawn.
+"""
+
+import datetime
+import gzip
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import pandas
+from clogsweep.paper import figures, finished
+from clogsweep.paper.plate import CATALOGUE
+from clogsweep.paper.workshop import CONFIGS, config_keys
+from PIL import Image
+
+HERE = pathlib.Path(__file__).resolve().parent
+PICTURES = HERE.parent / "pictures"
+TABLE = HERE / "pictures.csv"
+THUMBNAIL = (280, 160)
+
+
+def line(name, programs, folder):
+    """The figure's line in pictures.csv: what was run for it."""
+    sweeps = [config for config in CATALOGUE[name].configs if config in finished.names_in()]
+    read = [finished.read(config) for config in sweeps]
+    groups = [group for sweep in read for group in sweep.groups]
+    planned = sorted({group["planned"] for group in groups})
+    times = sorted({float(config_keys(CONFIGS / f"{config}.full.cfg")["max-time"]) for config in sweeps})
+    version = subprocess.run([programs / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout
+    sources = [source for sweep in read for source in sweep.fit["sources"]]
+    return {"picture": name, "size": "full" if sweeps else "single runs", "sweeps": " ".join(sweeps),
+            "runs per point": " to ".join(map(str, dict.fromkeys([planned[0], planned[-1]]))) if planned else "1",
+            "max-time": " to ".join(f"{time:g}" for time in dict.fromkeys([times[0], times[-1]])) if times else "",
+            "core-hours": f"{sum(sweep.core_hours for sweep in read):.2f}" if read else "",
+            "git": re.search(r"git (?:\S*-g)?([0-9a-f]{7})", sources[0]["clogsweep"] if sources else version)[1],
+            "model version": max([source["model_version"] for source in sources], default=model_version(folder)),
+            "date": datetime.date.today().isoformat(), "note": ""}
+
+
+def model_version(folder):
+    from clogsweep.reading import stored
+    return max(int(stored.read_rows(file)["model_version"].max()) for file in (folder / "full" / "sweeps").glob("*.h5"))
+
+
+def keep(name, folder):
+    """Copies a picture to the handbook, with a palette of 256 colours, and the numbers of single runs to
+    rows/figures."""
+    drawn = folder / "full" / f"figure-{name}"
+    picture = Image.open(f"{drawn}.png").convert("RGB")
+    small = picture.copy()
+    small.thumbnail(THUMBNAIL, Image.Resampling.LANCZOS)
+    for one, target in ((picture, PICTURES), (small, PICTURES / "thumbnails")):
+        one.quantize(256).save(target / f"figure-{name}.png", optimize=True)
+    if not set(CATALOGUE[name].configs) & set(finished.names_in()):
+        series = HERE / "rows" / "figures" / f"{name}.csv.gz"
+        series.parent.mkdir(exist_ok=True)
+        series.write_bytes(gzip.compress(pathlib.Path(f"{drawn}.csv").read_bytes(), 9, mtime=0))
+
+
+def main(programs, *names):
+    programs = pathlib.Path(programs).resolve()
+    table = pandas.read_csv(TABLE, dtype=str, keep_default_na=False).set_index("picture", drop=False)
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        for name in names:
+            options = ["--from-rows", "--output", folder, "--programs", programs]
+            if subprocess.run([sys.executable, "-m", "clogsweep", "figures", name, *options]).returncode:
+                continue
+            keep(name, folder)
+            fresh = line(name, programs, folder)
+            table.loc[name] = [str(fresh[column]) for column in table.columns]
+    order = [name for name in [*figures.ORDER, *table.index] if name in table.index]
+    table.loc[list(dict.fromkeys(order))].to_csv(TABLE, index=False)
+
+
+main(*sys.argv[1:])
