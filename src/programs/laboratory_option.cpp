@@ -206,10 +206,12 @@ sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
                         const laboratory::Texts& given, sweep::Points points) {
   if (points.rows.empty()) points.rows.emplace_back();
   std::vector<laboratory::Texts> sets;
+  std::vector<int> lines;  // of the points of the sets
   std::set<std::string> keys;
   for (const laboratory::Laboratory& lab : droplets.all) {
     const laboratory::Scales scales = laboratory::scales_of(lab);
-    for (const std::vector<std::string>& row : points.rows) {
+    for (std::size_t place = 0; place < points.rows.size(); ++place) {
+      const std::vector<std::string>& row = points.rows[place];
       laboratory::Texts own;
       for (std::size_t i = 0; i < row.size(); ++i)
         if (!row[i].empty()) own[points.keys[i]] = row[i];
@@ -220,13 +222,14 @@ sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
       if (droplets.have_several_sizes) refuse_lengths_without_unit(line, own);
       for (const std::string& model : models) {
         laboratory::Texts& set = sets.emplace_back(own_set);
+        if (!points.lines.empty()) lines.push_back(points.lines[place]);
         if (models.size() > 1) set["model"] = model;
         set.merge(texts_of(lab, droplets, given, line.settings(), model));
         for (const auto& [key, text] : set) keys.insert(key);
       }
     }
   }
-  sweep::Points expanded{.keys = {keys.begin(), keys.end()}, .rows = {}};
+  sweep::Points expanded{.keys = {keys.begin(), keys.end()}, .rows = {}, .file = {}, .lines = lines};
   for (const laboratory::Texts& set : sets) {
     std::vector<std::string>& row = expanded.rows.emplace_back();
     for (const std::string& key : keys) row.push_back(set.contains(key) ? set.at(key) : "");
