@@ -57,8 +57,11 @@ sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& ta
   if (const std::string fault = sweep::fault_of(row); !fault.empty()) refuse(fault, "the row is damaged");
   for (const store::CircleFile& one : file.circles)
     if (row.parameters.obstacles.own == one.circles) row.parameters.obstacles.own = one.circles;
-  if (row.parameters.model == Model::dp) use_instruction_set(row.instruction_set);
   return row;
+}
+
+void use_instruction_set_of(const sweep::RunRow& row) {
+  if (row.parameters.model == Model::dp) use_instruction_set(row.instruction_set);
 }
 
 /// Counts runs that have ended according to the journal of a stopped sweep, but not according to its table.

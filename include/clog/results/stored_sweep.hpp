@@ -40,8 +40,11 @@ struct RunCount {
 };
 RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);
 
-/// The row of a task to be replayed. Switches this process to the row's instruction set. @throws Error if
-/// there is no such row, if its task is not over, or if this program would give another result
+/// The row of a task that can be replayed; use_instruction_set_of() has to precede the replay. @throws Error
+/// if there is no such row, if its task is not over, or if this program would give another result
 sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& task);
+/// Switches this process to the instruction set of a row, if its model uses one. @throws Error if this
+/// processor lacks it
+void use_instruction_set_of(const sweep::RunRow& row);
 
 }  // namespace clog::results
