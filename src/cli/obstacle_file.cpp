@@ -126,7 +126,7 @@ bool is_header(const std::vector<std::string>& cells) {
 /// The columns that a header names. @throws Error if x or y is missing, or if sizes are ambiguous
 Columns columns_named(std::vector<std::string> cells) {
   Columns columns{.x = -1, .y = -1, .diameter = -1, .radius = -1, .header = {}, .unit = ""};
-  while (!cells.empty() && cells.back().empty()) cells.pop_back();
+  cells = console::without_surplus_cells(std::move(cells), 0);
   bool are_all = true;
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (!take_column(columns, static_cast<int>(i), cells[i]) && !cells[i].empty()) are_all = false;
@@ -154,43 +154,22 @@ std::optional<Columns> columns_in(std::string comment) {
   return columns.x >= 0 && columns.y >= 0 ? std::optional(columns) : std::nullopt;
 }
 
-/// Reads the numbers of a table, and refuses ambiguous commas.
-class Numbers {
- public:
-  /// @param place  number of the cell in its line, from 0. @throws Error
-  double read(const console::TableLine& line, const Columns& columns, int place) {
-    const std::string& cell = line.cells[static_cast<std::size_t>(place)];
-    const std::string name = columns.header.empty() ? fmt::format("cell {}", place + 1)
-                                                    : columns.header[static_cast<std::size_t>(place)];
-    try {
-      if (cell.empty()) throw Error("is empty; fill it, or remove the line");
-      return number_in(cell, line.separator);
-    } catch (const Error& error) {
-      throw Error(fmt::format("{}: {}", excerpt(name), error.what()));
-    }
+/// The number in a cell. @param place  number of the cell in its line, from 0. @throws Error
+double number_in(const console::TableLine& line, const Columns& columns, int place,
+                 console::DecimalCommas& commas) {
+  const std::string& cell = line.cells[static_cast<std::size_t>(place)];
+  const std::string name = columns.header.empty() ? fmt::format("cell {}", place + 1)
+                                                  : excerpt(columns.header[static_cast<std::size_t>(place)]);
+  if (cell.empty()) throw Error(name + ": is empty; fill it, or remove the line");
+  const std::string with_point = commas.with_point(name, cell, line.separator);
+  try {
+    return sweep::to_number(with_point);
+  } catch (const Error&) {
+    throw Error(fmt::format(
+        "{}: '{}' is not a finite number; correct it, or put # before a line that is none of the table", name,
+        excerpt(cell)));
   }
-  /// Call this after the last line. @throws Error if every comma may be a thousands separator
-  void check(const std::string& path) const { commas_.check(path); }
-
- private:
-  console::DecimalCommas commas_;
-
-  double number_in(const std::string& cell, char separator) {
-    const std::string with_points = with_point(cell, separator);
-    try {
-      return sweep::to_number(with_points);
-    } catch (const Error&) {
-      throw Error(fmt::format(
-          "'{}' is not a finite number; correct it, or put # before a line that is none of the table",
-          excerpt(cell)));
-    }
-  }
-
-  std::string with_point(const std::string& cell, char separator) {
-    if (separator == ',' && console::may_have_thousands(cell)) console::DecimalCommas::refuse("", cell);
-    return commas_.with_point(cell);
-  }
-};
+}
 
 /// Checks the unit that the header names. @throws Error if the file's comment does not define this unit, or
 /// contradicts it
@@ -214,13 +193,16 @@ void check_number_of_cells(const std::vector<std::string>& cells, const Columns&
                             sweep::counted(std::ssize(cells), "cell"), columns.header.size()));
 }
 
-Obstacle parse_circle(console::TableLine line, const Columns& columns, const Scale& scale, Numbers& numbers) {
-  while (line.cells.size() > std::max<std::size_t>(columns.header.size(), 1) && line.cells.back().empty())
-    line.cells.pop_back();
+Obstacle parse_circle(console::TableLine line, const Columns& columns, const Scale& scale,
+                      console::DecimalCommas& commas) {
+  line.cells =
+      console::without_surplus_cells(std::move(line.cells), std::max<std::size_t>(columns.header.size(), 1));
   check_number_of_cells(line.cells, columns);
   check_unit(columns, scale);
   const auto has = [&](int column) { return column >= 0 && column < std::ssize(line.cells); };
-  const auto number = [&](int column) { return scale.in_diameters(numbers.read(line, columns, column)); };
+  const auto number = [&](int column) {
+    return scale.in_diameters(number_in(line, columns, column, commas));
+  };
   Obstacle circle{number(columns.x), number(columns.y)};
   if (has(columns.diameter)) circle.radius = number(columns.diameter) / 2;
   if (has(columns.radius)) circle.radius = number(columns.radius);
@@ -231,10 +213,6 @@ Obstacle parse_circle(console::TableLine line, const Columns& columns, const Sca
                 " and obstacle-diameter in droplet diameters");
   return circle;
 }
-
-}  // namespace
-
-namespace {
 
 /// Parts of a name like posts.csv@0.8mm: the file, and the diameter of the droplet to which its circles are
 /// scaled [m].
@@ -261,7 +239,7 @@ OwnCircles read_circles(const std::string& name) {
   std::map<std::array<double, 3>, int> lines;  // the line of each circle
   Columns columns;
   Scale scale;
-  Numbers numbers;
+  console::DecimalCommas commas;
   bool is_first = true;
   const auto scale_to = [&scale](const std::optional<double>& other_droplet) {
     return other_droplet ? Scale{scale.unit, *other_droplet} : scale;
@@ -273,7 +251,7 @@ OwnCircles read_circles(const std::string& name) {
           columns = columns_named(line.cells);
           return;
         }
-        const Obstacle circle = parse_circle(line, columns, scale_to(droplet), numbers);
+        const Obstacle circle = parse_circle(line, columns, scale_to(droplet), commas);
         const auto [known, is_new] =
             lines.emplace(std::array{circle.x, circle.y, circle.radius}, line.number);
         if (!is_new)
@@ -285,7 +263,7 @@ OwnCircles read_circles(const std::string& name) {
         read_scale(comment, scale, !circles.empty());
         if (is_first) columns = columns_in(comment).value_or(columns);
       });
-  numbers.check(path);
+  commas.check(path);
   if (circles.empty()) throw Error(path + " holds no obstacles; lines are x,y[,diameter]");
   if (droplet && scale.unit.empty())
     throw Error(path +

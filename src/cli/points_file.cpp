@@ -41,11 +41,7 @@ std::string value_of(const sweep::Key& key, const std::string& cell, char separa
   // A comma in a list of seeds is never decimal: the list may end with 0.
   const bool may_be_decimal = separator != ',' && commas == 1 && key.name != "seeds";
   const auto with_point = [&](const std::string& number) {
-    try {
-      return decimal_commas.with_point(number);
-    } catch (const Error& error) {
-      throw Error(key.name + ": " + error.what());
-    }
+    return decimal_commas.with_point(key.name, number, separator);
   };
   if (is_integer && (cell.ends_with(".0") || (may_be_decimal && cell.ends_with(",0"))))
     return with_point(cell).substr(0, cell.size() - 2);
@@ -65,34 +61,27 @@ std::string value_of(const sweep::Key& key, const std::string& cell, char separa
   return with_point(number) + unit;
 }
 
-/// @param num_columns  number of columns of the first line. @throws Error  if a value is invalid
+/// The values of the keys, which Settings::set_points() checks.
+/// @param num_columns  number of columns of the first line. @throws Error  if a comma is ambiguous
 std::vector<std::string> values_of(const console::TableLine& line, const std::vector<std::string>& keys,
                                    const std::vector<std::size_t>& columns, std::size_t num_columns,
-                                   console::DecimalCommas& commas, Units units) {
-  std::vector<std::string> cells = line.cells;
-  while (cells.size() > num_columns && cells.back().empty()) cells.pop_back();
+                                   console::DecimalCommas& commas) {
+  const std::vector<std::string> cells = console::without_surplus_cells(line.cells, num_columns);
   if (cells.size() != num_columns)
     throw Error(fmt::format("has {}, but the first line names {}",
                             sweep::counted(static_cast<std::int64_t>(cells.size()), "cell"),
                             sweep::counted(static_cast<std::int64_t>(num_columns), "key")));
-  static const sweep::Settings defaults;
-  sweep::Settings scratch = defaults;
   std::vector<std::string> values;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
+  values.reserve(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i)
     values.push_back(value_of(sweep::find_key(keys[i]), cells[columns[i]], line.separator, commas));
-    try {
-      if (!values.back().empty()) scratch.set(keys[i], values.back());
-    } catch (const sweep::NumberWithUnit&) {
-      if (units == Units::refused) throw;
-    }
-  }
   return values;
 }
 
 }  // namespace
 
-sweep::Points read_points(const std::string& path, Units units) {
-  sweep::Points points;
+sweep::Points read_points(const std::string& path) {
+  sweep::Points points{.keys = {}, .rows = {}, .file = path};
   std::vector<std::size_t> columns;
   std::size_t num_columns = 0;
   console::DecimalCommas commas;
@@ -100,10 +89,10 @@ sweep::Points read_points(const std::string& path, Units units) {
     if (num_columns == 0) {
       columns = columns_of(line.cells);
       for (const std::size_t column : columns) points.keys.push_back(line.cells[column]);
-      num_columns = line.cells.size();
-      while (num_columns > 0 && line.cells[num_columns - 1].empty()) --num_columns;
+      num_columns = console::without_surplus_cells(line.cells, 0).size();
     } else {
-      points.rows.push_back(values_of(line, points.keys, columns, num_columns, commas, units));
+      points.rows.push_back(values_of(line, points.keys, columns, num_columns, commas));
+      points.lines.push_back(line.number);
     }
   });
   commas.check(path);

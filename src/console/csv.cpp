@@ -266,6 +266,11 @@ UnitsComment units_in(std::string comment) {
   return found;
 }
 
+std::vector<std::string> without_surplus_cells(std::vector<std::string> cells, std::size_t num_columns) {
+  while (cells.size() > num_columns && cells.back().empty()) cells.pop_back();
+  return cells;
+}
+
 void read_table(const std::string& path, const std::function<void(const TableLine& line)>& each,
                 const std::function<void(const std::string& text)>& comment) {
   std::istringstream file(read_table_text(path));

@@ -41,6 +41,15 @@ std::string DecimalCommas::with_point(std::string number) {
   return number;
 }
 
+std::string DecimalCommas::with_point(const std::string& column, const std::string& cell, char separator) {
+  try {
+    if (separator == ',' && may_have_thousands(cell)) refuse("", cell);
+    return with_point(cell);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", column, error.what()));
+  }
+}
+
 void DecimalCommas::check(const std::string& path) const {
   if (!is_one_decimal_ && !perhaps_thousands_.empty()) refuse(path + ": ", perhaps_thousands_);
 }

@@ -15,7 +15,6 @@
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
-#include "clog/core/tools/split.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::laboratory {
@@ -154,10 +153,10 @@ Laboratory laboratory_of(const Entries& entries) {
 
 /// The values of a list; empty for a missing key.
 std::vector<std::string> values_of(const Entries& entries, const std::string& key) {
-  std::vector<std::string> values;
-  if (!entries.contains(key)) return values;
-  for (const std::string& value : split_at_commas(entries.at(key))) values.push_back(console::trimmed(value));
-  return values;
+  const auto found = entries.find(key);
+  if (found == entries.end()) return {};
+  const std::vector<std::string_view> values = sweep::split_list(found->second);
+  return {values.begin(), values.end()};
 }
 
 /// The entries of each droplet at each tilt.

@@ -11,12 +11,14 @@
 #include <numbers>
 #include <regex>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/sweep/keys.hpp"
+#include "clog/sweep/value_list.hpp"
 
 namespace clog::laboratory {
 namespace {
@@ -137,13 +139,15 @@ std::string in_model_units(const std::string& key, const std::string& text, cons
       {"g rho sigma^2", {"tension", scales.tension}}};
   const auto unit = units.find(known.parameter ? known.parameter->unit : "");
   static const std::regex number_with_unit(
-      "([0-9.]+(?:[eE][-+]?[0-9]+)?) *(/?[A-Za-z\xc2\xb5\xce\xbc][A-Za-z/^2]*)");
+      "[-+]?([0-9.]+(?:[eE][-+]?[0-9]+)?) *((?:/?[A-Za-z]|\xc2\xb5|\xce\xbc)[A-Za-z/^2]*)");
   std::string converted;
-  auto rest = text.begin();
-  for (std::sregex_iterator found(text.begin(), text.end(), number_with_unit), end; found != end; ++found) {
-    const std::string number = (*found)[1], its_unit = (*found)[2];
-    converted.append(rest, (*found)[0].first);
-    rest = (*found)[0].second;
+  const char* rest = text.data();
+  for (const std::string_view written : sweep::numbers_in(text)) {
+    std::cmatch parts;
+    if (!std::regex_match(written.data(), written.data() + written.size(), parts, number_with_unit)) continue;
+    const std::string number = parts[1], its_unit = parts[2];
+    converted.append(rest, parts[1].first);
+    rest = parts[2].second;
     try {
       if (unit == units.end()) throw Error("numbers have no unit here");
       const auto& [quantity, size] = unit->second;
@@ -155,7 +159,7 @@ std::string in_model_units(const std::string& key, const std::string& text, cons
       throw Error(fmt::format("invalid {}={} ({})", key, text, error.what()));
     }
   }
-  return converted.append(rest, text.end());
+  return converted.append(rest, text.data() + text.size());
 }
 
 double line_tension_upright(const Laboratory& lab) {

@@ -91,6 +91,7 @@ int clogrun_replay(cli::CommandLine& line) {
     throw Error("missing sweep file or task; try clogrun replay sweep.h5 0 --output run.h5");
   const store::SweepFile file = results::read_with_caution(line.get("file"));
   sweep::RunRow row = results::replayable_row(file, line.get("task"));
+  results::use_instruction_set_of(row);
   if (line.has("to-rest")) row.parameters.clog_detection = ClogDetection::threshold;
   if (scene_of(row.parameters).finding != Finding::clogging_length)
     refuse_options(line, "replay of a channel or a wall", {"write-obstacles"});

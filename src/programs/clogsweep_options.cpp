@@ -83,7 +83,7 @@ void add_plan_options(cli::CommandLine& line) {
   std::string path = line.has("lab") ? line.get("lab") : "";
   if (line.has("points")) {
     path = line.get("points");
-    points = cli::read_points(path, line.has("lab") ? cli::Units::kept : cli::Units::refused);
+    points = cli::read_points(path);
     for (std::size_t i = 0; i < points.keys.size(); ++i)
       if (const std::string& key = points.keys[i]; line.has(key) && is_full(points, i))
         throw Error(fmt::format(
@@ -91,11 +91,8 @@ void add_plan_options(cli::CommandLine& line) {
   }
   use_laboratories(line, points);
   if (!path.empty() && !points.empty()) {
-    try {
-      settings.set_points(points);
-    } catch (const Error& error) {
-      throw Error(fmt::format("{}: {}", path, error.what()));
-    }
+    points.file = path;
+    settings.set_points(points);
     for (const std::string& file : settings.missing_files()) settings.attach(file, cli::read_circles(file));
   }
   if (!line.has("shard")) return;

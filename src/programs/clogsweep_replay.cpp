@@ -37,6 +37,7 @@ row's instruction set; a run that was resumed with another instruction set canno
   const std::string path = line.require("file"), task = line.require("task");
   const store::SweepFile file = results::read_with_caution(path);
   const sweep::RunRow row = results::replayable_row(file, task);
+  results::use_instruction_set_of(row);
   const auto [again, differing] = results::repeat(row);
   fmt::print(std::cout, "task {}: {}, {:.3g} s\n", task, outcome(again), again.wall_seconds);
   if (differing.empty()) {

@@ -19,7 +19,6 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
-#include "clog/core/tools/split.hpp"
 #include "clog/laboratory/lab_file.hpp"
 #include "clog/laboratory/scales.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -94,34 +93,25 @@ struct Droplets {
   }
 };
 
-std::vector<std::string> circle_files(const std::string& list) {
-  std::vector<std::string> names = split_at_commas(list);
-  for (std::string& name : names) name = console::trimmed(name);
-  return names;
+std::vector<std::string> items_of(const std::string& list) {
+  const std::vector<std::string_view> items = sweep::split_list(list);
+  return {items.begin(), items.end()};
 }
 
 /// The names of these files, each followed by the droplet's diameter if its circles are to be scaled.
 std::string scaled_circles(const std::string& list, const laboratory::Laboratory& lab,
                            const Droplets& droplets) {
   constexpr double milli = 1e-3;
-  std::vector<std::string> names = circle_files(list);
+  std::vector<std::string> names = items_of(list);
   for (std::string& name : names)
     if (droplets.have_several_sizes && name != "none")
       name += fmt::format("@{:.12g}mm", lab.experiment.diameter / milli);
   return joined(names, ",");
 }
 
-/// The numbers of a list; of `lin(0.3mm,0.5mm,3)` only the first two.
-std::vector<std::string> numbers_of(const std::string& list) {
-  std::vector<std::string> numbers = split_at_commas(list);
-  std::erase_if(numbers, [](const std::string& number) { return number.ends_with(')'); });
-  for (std::string& number : numbers) number = console::trimmed(number.substr(number.find('(') + 1));
-  return numbers;
-}
+bool is_zero(std::string_view number) { return std::strtod(std::string(number).c_str(), nullptr) == 0; }
 
-bool is_zero(const std::string& number) { return std::strtod(number.c_str(), nullptr) == 0; }
-
-bool is_plain_number(const std::string& text) {
+bool is_plain_number(std::string_view text) {
   return text.find_first_not_of("0123456789.eE+-") == std::string::npos;
 }
 
@@ -135,7 +125,7 @@ bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, c
                           ? is_of_file
                           : parameter.shapes_array && parameter.role == ParameterRole::physics;
   return counts && parameter.applies_to(run) && (unit == "sigma" || unit == "1/sigma^2") &&
-         std::ranges::any_of(numbers_of(text), [](const std::string& number) {
+         std::ranges::any_of(sweep::numbers_in(text), [](std::string_view number) {
            return is_plain_number(number) && !is_zero(number);
          });
 }
@@ -153,12 +143,13 @@ void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory:
     const auto given = texts.find(key);
     return given == texts.end() ? settings.text(key) : given->second;
   };
+  const std::string pitch = text_of("pitch");
   for (const std::string& layout : settings.values("obstacle-layout"))
     for (const Parameter& parameter : parameter_schema()) {
       const std::string text = text_of(parameter.key);
       const bool replaced_by_pitch = layout == "lattice" &&
                                      parameter.key == std::string_view("obstacle-gap") &&
-                                     std::ranges::none_of(numbers_of(text_of("pitch")), is_zero);
+                                     std::ranges::none_of(sweep::numbers_in(pitch), is_zero);
       if (!replaced_by_pitch && is_length_without_unit(parameter, *meant_by<ObstacleLayout>(layout), text))
         throw Error(fmt::format(
             "invalid {0}={1} (a number without a unit is in droplet diameters, but {2} has several droplets, "
@@ -215,27 +206,30 @@ sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
                         const laboratory::Texts& given, sweep::Points points) {
   if (points.rows.empty()) points.rows.emplace_back();
   std::vector<laboratory::Texts> sets;
+  std::vector<int> lines;  // of the points of the sets
   std::set<std::string> keys;
   for (const laboratory::Laboratory& lab : droplets.all) {
     const laboratory::Scales scales = laboratory::scales_of(lab);
-    for (const std::vector<std::string>& row : points.rows) {
+    for (std::size_t place = 0; place < points.rows.size(); ++place) {
+      const std::vector<std::string>& row = points.rows[place];
       laboratory::Texts own;
       for (std::size_t i = 0; i < row.size(); ++i)
         if (!row[i].empty()) own[points.keys[i]] = row[i];
       const laboratory::Texts own_set = converted(own, lab, scales, droplets);
       const std::vector<std::string> models =
-          own.contains("model") ? split_at_commas(own["model"]) : line.settings().values("model");
+          own.contains("model") ? items_of(own["model"]) : line.settings().values("model");
       own.insert(given.begin(), given.end());
       if (droplets.have_several_sizes) refuse_lengths_without_unit(line, own);
       for (const std::string& model : models) {
         laboratory::Texts& set = sets.emplace_back(own_set);
+        if (!points.lines.empty()) lines.push_back(points.lines[place]);
         if (models.size() > 1) set["model"] = model;
         set.merge(texts_of(lab, droplets, given, line.settings(), model));
         for (const auto& [key, text] : set) keys.insert(key);
       }
     }
   }
-  sweep::Points expanded{.keys = {keys.begin(), keys.end()}, .rows = {}};
+  sweep::Points expanded{.keys = {keys.begin(), keys.end()}, .rows = {}, .file = {}, .lines = lines};
   for (const laboratory::Texts& set : sets) {
     std::vector<std::string>& row = expanded.rows.emplace_back();
     for (const std::string& key : keys) row.push_back(set.contains(key) ? set.at(key) : "");
@@ -257,7 +251,7 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
     circle_lists.insert(circles);
   }
   for (const std::string& list : circle_lists)
-    for (const std::string& name : circle_files(list))
+    for (const std::string& name : items_of(list))
       if (name != "none")
         if (const auto drawn_for = cli::read_circles(name).droplet()) droplets.note_size(*drawn_for);
   if (!line.has("quiet")) say_law_of_speed(line, droplets);

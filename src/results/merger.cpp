@@ -159,7 +159,7 @@ void add_circles(const store::SweepFile& file, std::vector<store::CircleFile>& a
 void add_runs(const Part& part, RunList& runs) {
   const sweep::Plan plan = stored_plan(part.path, part.table);
   if (attribute(part.table.provenance, "stopping_rule").empty()) runs.add(plan);
-  for (const RunRow& row : part.table.rows) runs.add(plan, row);
+  runs.add_rows(part.path, plan, part.table.rows);
 }
 
 std::vector<const store::SweepFile*> tables_of(const std::vector<Part>& parts) {
@@ -284,7 +284,8 @@ store::SweepFile read_together(const std::vector<std::string>& paths) {
     const sweep::Settings settings = runs.settings();
     config = settings.to_config();
     number_tasks(settings, merged.table);
-  } catch (const Error&) {  // the config is from a version with other keys
+  } catch (const Error& error) {  // a config is from a version with other keys, or two contradict each other
+    say_unread(joined(paths), "read together without their settings", error);
   }
   merged.table.provenance =
       joint_provenance(parts.front().table.provenance, config, tables_of(parts), lines_of(parts));

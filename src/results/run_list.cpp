@@ -9,8 +9,10 @@
 #include <optional>
 #include <utility>
 
+#include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::results {
@@ -35,6 +37,10 @@ double number_or_infinity(const std::string& text) try {
 /// Sorts numbers by size, then other texts.
 bool is_less(const std::string& a, const std::string& b) {
   return std::pair(number_or_infinity(a), a) < std::pair(number_or_infinity(b), b);
+}
+
+bool is_run(const RunParameters& run, const sweep::RunRow& row) {
+  return sweep::identity_in_any_version(sweep::describe(run)) == sweep::identity_in_any_version(row);
 }
 
 /// The seeds as text, such as `1..10,15`; as several texts if many seeds are not consecutive.
@@ -116,29 +122,37 @@ void RunList::fill_seeds(std::size_t number) {
     for (std::uint32_t seed = 1; set.is_random && set.seeds.size() < number; ++seed) set.seeds.insert(seed);
 }
 
-bool RunList::add(const sweep::Plan& plan, const sweep::RunRow& row) try {
-  if (add_seed(row)) return true;
-  const std::string identity = sweep::identity_in_any_version(row);
-  const auto is_the_run = [&](const RunParameters& run) {
-    return sweep::identity_in_any_version(sweep::describe(run)) == identity;
-  };
-  const bool is_of_plan = row.task >= 0 && row.task < plan.size() && is_the_run(plan.task(row.task));
-  if (is_of_plan) {
-    set_of(plan, row, plan.texts(plan.group_of(row.task))).seeds.insert(row.parameters.seed);
-    return true;
-  }
-  std::optional<Texts> texts = texts_of(row, plan);
-  if (!texts) return false;
+namespace {
+
+/// Whether these texts, with the seed of the row and the circles of the plan, describe the row's run.
+bool describe_run(const Texts& texts, const sweep::RunRow& row, const sweep::Plan& plan) try {
   sweep::Settings settings;
-  set_all(settings, *texts);
+  set_all(settings, texts);
   settings.set(seeds_key, std::to_string(row.parameters.seed));
   for (const auto& [name, circles] : plan.circle_files()) settings.attach(name, circles);
-  const sweep::Plan one(settings);
-  if (!is_the_run(one.task(0))) return false;
-  set_of(plan, row, std::move(*texts)).seeds.insert(row.parameters.seed);
-  return true;
+  return is_run(sweep::Plan(settings).task(0), row);
 } catch (const Error&) {  // the row is from a version with other keys or ranges
   return false;
+}
+
+}  // namespace
+
+bool RunList::add(const sweep::Plan& plan, const sweep::RunRow& row) {
+  if (add_seed(row)) return true;
+  const bool is_of_plan = row.task >= 0 && row.task < plan.size() && is_run(plan.task(row.task), row);
+  std::optional<Texts> texts = is_of_plan ? plan.texts(plan.group_of(row.task)) : texts_of(row, plan);
+  if (!texts || (!is_of_plan && !describe_run(*texts, row, plan))) return false;
+  set_of(plan, row, std::move(*texts)).seeds.insert(row.parameters.seed);
+  return true;
+}
+
+void RunList::add_rows(const std::string& path, const sweep::Plan& plan,
+                       const std::vector<sweep::RunRow>& rows) {
+  const auto num_left_out = std::ranges::count_if(
+      rows, [&](const sweep::RunRow& row) { return !add(plan, row) && sweep::fault_of(row).empty(); });
+  if (num_left_out > 0)
+    console::say(fmt::format("{}: no settings of this version describe {}; the rows are kept", path,
+                             sweep::counted(num_left_out, "run")));
 }
 
 namespace {

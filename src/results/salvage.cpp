@@ -17,10 +17,12 @@
 namespace clog::results {
 namespace {
 
-/// Fixed values by which records of this sweep are recognised; nullopt if the sweep's config is lost.
+/// Fixed values by which records of this sweep are recognised; nullopt if the sweep's config is lost, or of
+/// another version.
 std::optional<FixedValues> fixed_values(const std::string& path, const store::SweepFile& table) try {
   return FixedValues(stored_plan(path, table), stored_settings(path, table.provenance));
-} catch (const Error&) {
+} catch (const Error& error) {
+  say_unread(path, "records of its journal may be of another sweep", error);
   return std::nullopt;
 }
 
@@ -39,6 +41,7 @@ std::vector<store::Journal::Entry> records_of(const std::string& path, Salvage& 
     found.damage.push_back(fmt::format("its journal was not used: {}", error.what()));
     return {};
   }
+  if (records.empty()) return {};
   const std::optional<FixedValues> fixed = fixed_values(path, found.table);
   const std::size_t num_foreign = std::erase_if(records, [&](const store::Journal::Entry& record) {
     return !sweep::fault_of(record.row).empty() || (fixed && !fixed->differing_keys(record.row).empty());

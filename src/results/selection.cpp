@@ -129,7 +129,7 @@ store::SweepFile select(const std::string& path, const std::vector<std::string>&
   for (sweep::RunRow& row : file.rows)
     if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
   RunList runs;
-  for (const sweep::RunRow& row : file.rows) runs.add(plan, row);
+  runs.add_rows(path, plan, file.rows);
   const std::string part = part_line(path, file, joined(conditions, " and "));
   std::string config;
   if (!runs.empty()) {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "clog/console/streams.hpp"
@@ -57,15 +58,27 @@ sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& ta
   if (const std::string fault = sweep::fault_of(row); !fault.empty()) refuse(fault, "the row is damaged");
   for (const store::CircleFile& one : file.circles)
     if (row.parameters.obstacles.own == one.circles) row.parameters.obstacles.own = one.circles;
-  if (row.parameters.model == Model::dp) use_instruction_set(row.instruction_set);
   return row;
 }
 
+void use_instruction_set_of(const sweep::RunRow& row) {
+  if (row.parameters.model == Model::dp) use_instruction_set(row.instruction_set);
+}
+
+void say_unread(const std::string& path, const std::string& consequence, const Error& why) {
+  console::say(fmt::format("{}: {}: {}", path, consequence, why.what()));
+}
+
 /// Counts runs that have ended according to the journal of a stopped sweep, but not according to its table.
-static std::int64_t num_ended_in_journal(const std::string& path, const store::SweepFile& file) try {
-  const std::string journal = store::journal_path(path);
-  if (store::Journal::is_open(journal)) return 0;
-  const auto contents = store::Journal::look(journal);
+static std::int64_t num_ended_in_journal(const std::string& path, const store::SweepFile& file) {
+  std::optional<store::Journal::Contents> contents;
+  try {
+    const std::string journal = store::journal_path(path);
+    if (store::Journal::is_open(journal)) return 0;
+    contents = store::Journal::look(journal);
+  } catch (const Error& error) {  // the journal is of another version, or another kind of file
+    say_unread(path, "runs that only its journal has are missing here", error);
+  }
   if (!contents) return 0;
   std::set<std::string> ended;
   for (const store::Journal::Entry& entry : contents->entries)
@@ -74,9 +87,6 @@ static std::int64_t num_ended_in_journal(const std::string& path, const store::S
   for (const sweep::RunRow& row : file.rows)
     if (sweep::is_final(row)) ended.erase(sweep::identity(row));
   return static_cast<std::int64_t>(ended.size());
-} catch (const Error&) {  // the journal of another version, or another kind of file: the sweep's command
-                          // reports it
-  return 0;
 }
 
 store::SweepFile read_with_caution(const std::string& path) {
@@ -126,16 +136,22 @@ static bool is_listed(const sweep::Key& key, const sweep::Settings& settings) {
   return settings.values(key.name).size() > 1 || std::ranges::find(keys, key.name) != keys.end();
 }
 
-std::vector<std::string> listed_columns(const store::Provenance& provenance) try {
-  const sweep::Settings settings = settings_from(attribute(provenance, "config"));
+std::vector<std::string> listed_columns(const store::Provenance& provenance) {
+  const std::string config = attribute(provenance, "config");
+  if (config.empty()) return {};
+  std::optional<sweep::Settings> settings;
+  try {
+    settings = settings_from(config);
+  } catch (const Error& error) {  // the config is from a version with other keys
+    console::say(fmt::format("the lists of the stored settings are unknown here: {}", error.what()));
+    return {};
+  }
   std::vector<std::string> columns;
-  const auto values = settings.all_values();
+  const auto values = settings->all_values();
   for (const sweep::Key& key : sweep::keys())
-    if (key.parameter && values.at(key.name).size() > 1 && is_listed(key, settings))
+    if (key.parameter && values.at(key.name).size() > 1 && is_listed(key, *settings))
       columns.emplace_back(key.parameter->column);
   return columns;
-} catch (const Error&) {
-  return {};  // the config is from a version with other keys
 }
 
 std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,

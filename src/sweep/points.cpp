@@ -9,13 +9,24 @@
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
+namespace {
+
+std::string in_file(const Points& points) { return points.file.empty() ? "" : points.file + ": "; }
+
+/// @param place  of a point that cannot be read
+std::string where(const Points& points, std::size_t place) {
+  if (place < points.lines.size()) return fmt::format("{} line {}: ", points.file, points.lines[place]);
+  return fmt::format("{}point {}: ", in_file(points), place + 1);
+}
+
+}  // namespace
 
 void Points::begin(const std::vector<std::string>& names) {
   if (names.empty()) throw Error("points have no keys");
   for (const std::string& name : names) {
     find_key(name);
     if (std::ranges::count(names, name) > 1)
-      throw Error(fmt::format("the key {} stands twice among those of the points", name));
+      throw Error(fmt::format("{}the key {} stands twice among those of the points", in_file(*this), name));
   }
   keys = names;
   rows.clear();
@@ -27,13 +38,14 @@ void Points::add(const std::vector<std::string>& texts) {
     throw Error(fmt::format("a point has {} for {}", counted(std::ssize(texts), "value"),
                             counted(std::ssize(keys), "key")));
   if (rows.size() == most_points)
-    throw Error(fmt::format("there are more than {} points; make several sweeps of them", most_points));
+    throw Error(fmt::format("{}there are more than {} points; make several sweeps of them", in_file(*this),
+                            most_points));
   Settings scratch;
   try {
     for (std::size_t i = 0; i < texts.size(); ++i)
       if (!texts[i].empty()) scratch.set(keys[i], texts[i]);
   } catch (const Error& error) {
-    throw Error(fmt::format("point {}: {}", rows.size() + 1, error.what()));
+    throw Error(where(*this, rows.size()) + error.what());
   }
   rows.push_back(texts);
 }

@@ -164,7 +164,7 @@ std::vector<std::string> Settings::missing_files() const {
 }
 
 void Settings::set_points(const Points& points) {
-  Points checked;
+  Points checked = points;
   checked.begin(points.keys);
   for (const std::vector<std::string>& row : points.rows) checked.add(row);
   if (checked.rows.empty()) throw Error("there are no points");

@@ -23,22 +23,12 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// Splits at commas outside parentheses.
-std::vector<std::string_view> split(std::string_view text) {
-  std::vector<std::string_view> items;
-  int depth = 0;
-  std::size_t begin = 0;
-  for (std::size_t i = 0; i <= text.size(); ++i) {
-    if (i == text.size() || (text[i] == ',' && depth == 0)) {
-      items.push_back(trimmed(text.substr(begin, i - begin)));
-      begin = i + 1;
-    } else if (text[i] == '(') {
-      ++depth;
-    } else if (text[i] == ')') {
-      --depth;
-    }
-  }
-  return items;
+/// Whether n values from a to b are meant, lin(a,b,n) or log(a,b,n).
+bool is_spaced(std::string_view item) { return item.starts_with("lin(") || item.starts_with("log("); }
+
+/// The arguments of lin(a,b,n) or log(a,b,n), whether or not a parenthesis closes them.
+std::vector<std::string_view> arguments_of(std::string_view item) {
+  return split_list(item.substr(4, item.size() - (item.ends_with(')') ? 5 : 4)));
 }
 
 [[noreturn]] void refuse(std::string_view item, const std::string& why) {
@@ -53,7 +43,7 @@ void check_length(std::string_view item, long long length) {
 std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
   const bool logarithmic = item.starts_with("log(");
   if (!item.ends_with(")")) refuse(item, "lacks its closing parenthesis");
-  const auto arguments = split(item.substr(4, item.size() - 5));
+  const std::vector<std::string_view> arguments = arguments_of(item);
   if (arguments.size() != 3) refuse(item, "needs three arguments: first, last, number of values");
   const double first = to_number(arguments[0]);
   const double last = to_number(arguments[1]);
@@ -141,7 +131,7 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
     refuse(item, "is not one of " + joined(words) + (near.empty() ? "" : "; did you mean " + near + '?'));
   }
   if (kind == ValueKind::file || kind == ValueKind::text) return {std::string(item)};
-  if (item.starts_with("lin(") || item.starts_with("log(")) return expand_spaced(item, kind);
+  if (is_spaced(item)) return expand_spaced(item, kind);
   if (const auto dots = item.find(".."); dots != std::string_view::npos) {
     if (kind == ValueKind::integer) return expand_range(item, dots);
     refuse(item, fmt::format(
@@ -173,10 +163,41 @@ std::string question_of_comma(std::string_view text) {
 
 }  // namespace
 
+std::vector<std::string_view> split_list(std::string_view list) {
+  std::vector<std::string_view> items;
+  int depth = 0;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i <= list.size(); ++i) {
+    if (i == list.size() || (list[i] == ',' && depth == 0)) {
+      items.push_back(trimmed(list.substr(begin, i - begin)));
+      begin = i + 1;
+    } else if (list[i] == '(') {
+      ++depth;
+    } else if (list[i] == ')') {
+      --depth;
+    }
+  }
+  return items;
+}
+
+std::vector<std::string_view> numbers_in(std::string_view list) {
+  std::vector<std::string_view> numbers;
+  for (const std::string_view item : split_list(list)) {
+    if (!is_spaced(item)) {
+      numbers.push_back(item);
+      continue;
+    }
+    const std::vector<std::string_view> arguments = arguments_of(item);
+    numbers.insert(numbers.end(), arguments.begin(),
+                   arguments.begin() + std::min<std::ptrdiff_t>(2, std::ssize(arguments)));
+  }
+  return numbers;
+}
+
 std::vector<std::string> expand_values(std::string_view text, ValueKind kind,
                                        const std::vector<std::string>& words) {
   std::vector<std::string> values;
-  for (const std::string_view item : split(trimmed(text))) {
+  for (const std::string_view item : split_list(text)) {
     for (std::string& value : expand_item(item, kind, words)) values.push_back(std::move(value));
     if (std::ssize(values) > longest_list) throw Error("has more than a million values in all");
   }

@@ -94,5 +94,11 @@ TEST(Trimmed, IsWithoutTheBlanksAround) {
   EXPECT_EQ(trimmed(" \r\t"), "");
 }
 
+TEST(SurplusCells, AreEmptyAndBeyondTheColumns) {
+  EXPECT_EQ(without_surplus_cells({"1", "", "", ""}, 2), (std::vector<std::string>{"1", ""}));
+  EXPECT_EQ(without_surplus_cells({"1", "", "2", ""}, 2), (std::vector<std::string>{"1", "", "2"}));
+  EXPECT_EQ(without_surplus_cells({"1"}, 2), std::vector<std::string>{"1"});
+}
+
 }  // namespace
 }  // namespace clog::console

@@ -48,5 +48,17 @@ TEST(DecimalCommas, AreRefusedBesideDecimalPoints) {
   }
 }
 
+TEST(DecimalCommas, MaySeparateThousandsWhereCommasSeparateCells) {
+  DecimalCommas commas;
+  EXPECT_EQ(commas.with_point("x", "1,350", ';'), "1.350");
+  EXPECT_EQ(commas.with_point("x", "0,350", ','), "0.350");
+  for (const auto& [cell, separator] : {std::pair{"1,350", ','}, {"1,350.5", ';'}, {"0.5", ';'}}) try {
+      commas.with_point("x", cell, separator);
+      FAIL() << cell;
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).find(std::string("x: '") + cell), 0U) << error.what();
+    }
+}
+
 }  // namespace
 }  // namespace clog::console

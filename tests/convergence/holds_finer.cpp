@@ -106,8 +106,11 @@ int main(int argc, char** argv) try {
       "task,vertices,line_tension,friction,distance,mechanism,mesh_hold,moved,status,time,"
       "moved_without_more_vertices\n");
   for (const sweep::RunRow& row : file.rows)
-    if (row.status == RunStatus::clogged && row.task % parts == part)
-      try_finer(results::replayable_row(file, std::to_string(row.task)));
+    if (row.status == RunStatus::clogged && row.task % parts == part) {
+      const sweep::RunRow same = results::replayable_row(file, std::to_string(row.task));
+      results::use_instruction_set_of(same);
+      try_finer(same);
+    }
   return EXIT_SUCCESS;
 } catch (const std::exception& error) {
   fmt::print(stderr, "holds_finer: {}\n", error.what());

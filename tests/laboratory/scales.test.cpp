@@ -69,6 +69,8 @@ TEST(InModelUnits, ConvertsEachNumberThatHasAUnit) {
   const Scales scales{.length = 2e-3, .time = 0.5, .tension = 4e-3};
   EXPECT_EQ(in_model_units("obstacle-gap", "0.5mm, 600 um,0.3sigma,0.4", scales), "0.25, 0.3,0.3,0.4");
   EXPECT_EQ(in_model_units("obstacle-gap", "log(0.2mm,2e0mm,3)", scales), "log(0.1,1,3)");
+  EXPECT_EQ(in_model_units("obstacle-gap", "500µm,lin(200 μm,1mm,3)", scales), "0.25,lin(0.1,0.5,3)");
+  EXPECT_EQ(in_model_units("obstacle-gap", "-1mm, lin(1mm", scales), "-0.5, lin(0.5");
   EXPECT_EQ(in_model_units("obstacle-density", "0.5/mm^2,saturated,12%", scales), "2,saturated,12%");
   EXPECT_EQ(in_model_units("max-time", "2min", scales), "240");
   EXPECT_EQ(in_model_units("terminal-speed", "1 mm/s", scales), "0.25");

@@ -159,6 +159,26 @@ class Damage(ProgramTest):
         self.refuse("clogsweep", *[word.replace("=60", "=70") for word in SETTINGS[:-1]], "whole.h5",
                     words=["other settings: max-time=70 (file: 60)"])
 
+    def told_once(self, words, *command):
+        self.assertEqual(self.succeed(*command).stderr.count(words), 1, command)
+
+    def test_a_journal_that_cannot_be_read_is_named(self):
+        self.write("s.h5.journal", "a journal of another version")
+        for command in (["clogfit", "s.h5"], ["clogsweep", "replay", "s.h5", 0], ["clogsweep", "status", "s.h5"]):
+            self.told_once("s.h5: runs that only its journal has are missing here: cannot read ", *command)
+
+    def test_settings_of_another_version_are_named(self):
+        shutil.copyfile(self.file, self.folder / "other.h5")
+        stored_rows.change_attribute(self.file, "config", "viscosity = 3\n")
+        self.told_once("the lists of the stored settings are unknown here: unknown key", "clogfit", "s.h5", "--format", "json")
+        self.told_once("s.h5, other.h5: read together without their settings: cannot read s.h5 (its attribute config: ", "clogfit", "s.h5", "other.h5")
+
+    def test_rows_that_no_settings_describe_are_counted(self):
+        stored_rows.change_columns(self.file, preset=b"viscous")
+        stored_rows.change_attribute(self.file, "config", "line-tension = 3\n")
+        self.told_once("s.h5: no settings of this version describe 6 runs; the rows are kept\n", "clogsweep", "select", "s.h5", "seed>=1", "--output", "part.h5")
+        self.assertEqual(len(table(self.folder / "part.h5")), 6)
+
     def test_copies_by_other_programs_are_read_with_a_warning(self):
         with h5py.File(self.file) as file, h5py.File(self.folder / "copy.h5", "w") as copy:
             file.copy("runs", copy)

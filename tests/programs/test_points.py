@@ -258,6 +258,16 @@ class Merged(PointsTest):
                             ("c", ""), ("d", "")]:
             self.assertEqual(self.succeed("clogsweep", "merge", "a.h5", f"{other}.h5", "--output", f"a{other}.h5").stderr, said)
 
+    def test_files_with_different_circles_of_one_name_are_not_merged(self):
+        own = ["vertices=32", "box=10", "boxes=3", "max-time=30", "line-tension=1", "obstacles=c.csv", "release=anywhere", "seeds=1..2"]
+        for name, size, words in [("a.h5", 0.5, []), ("b.h5", 0.6, []), ("c.h5", 0.7, ["--until-precision=90%", "--most-seeds=2"])]:
+            self.write("c.csv", f"x,y,diameter\n2,2,0.5\n5,5,{size}\n8,3,0.5\n")
+            self.run_program("clogsweep", *own, *words, "--output", name)
+            self.assertEqual(len(self.rows(name)), 2)
+        for other in ("b.h5", "c.h5"):
+            self.refuse("clogsweep", "merge", "a.h5", other, "--output", "all.h5", words=["different circles under the same name c.csv"])
+            self.assertEqual(self.succeed("clogfit", "a.h5", other).stderr.count(f"a.h5, {other}: read together without their settings: two files contain different circles"), 1)
+
     def test_a_stopped_sweep_goes_on_in_the_merged_file(self):
         long = [*SMALL, "max-time=3000", "obstacle-gap=0.6", "line-tension=0.5", "--report-seconds=0.05"]
         self.succeed("clogsweep", *long, "seeds=1..3", "--output", "whole.h5")

@@ -28,7 +28,6 @@ from clogsweep.refinement import choice, critical_angle, curve_search, driver, g
 from clogsweep.refinement.curve_search import CurveSearch, Options, combinations  # noqa: E402
 from clogsweep.refinement.goals import Goal  # noqa: E402
 from clogsweep.refinement.membership import Membership, tasks_of  # noqa: E402
-from clogsweep.tools import lists  # noqa: E402
 from clogsweep.tools.errors import UserError  # noqa: E402
 
 SCHEMA = json.loads(subprocess.run([BIN / "clogsweep", "--schema"], check=True, capture_output=True, text=True).stdout)
@@ -172,11 +171,14 @@ class Values(unittest.TestCase):
         self.assertTrue(all(value == float(f"{value:.3g}") for value in values))
         self.assertEqual(choice.spread(values, 7), [0.3, 0.442, 0.649, 0.953, 1.4, 2.05, 3])
 
+<<<<<<< HEAD
     def test_lists_are_read_as_clogsweep_reads_them(self):
         self.assertEqual(lists.numbers("0.2, 1..3,1..8:3,log(1,100,3),lin(0,1,3)"),
                          [0.2, 1, 2, 3, 1, 4, 7, 1, 10, 100, 0, 0.5, 1])
         self.assertTrue(math.isnan(lists.numbers("20%")[0]))
 
+=======
+>>>>>>> lists
 
 class Choice(unittest.TestCase):
     """Tests the choice of blocks of seeds for 41 places. The errors of neighbouring places are correlated."""

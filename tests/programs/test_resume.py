@@ -202,6 +202,12 @@ class Resumed(SweepTest):
         self.assertIn("1 run resumes from the last checkpoint", done.stderr)
         self.check_equal("salvaged.h5", undisturbed(FEW_LONG))
 
+    def test_salvage_says_that_records_were_not_compared_with_the_settings(self):
+        self.stop_with_unfinished_runs(FEW_LONG)
+        stored_rows.change_attribute(self.folder / "s.h5", "config", "viscosity = 3\n")
+        done = self.succeed("clogsweep", "salvage", "s.h5", "--output", "salvaged.h5")
+        self.assertEqual(done.stderr.count("s.h5: records of its journal may be of another sweep: cannot read s.h5 (its attribute config: "), 1)
+
     def test_a_journal_without_its_table_is_refused(self):
         self.stop_with_unfinished_runs(FEW_LONG)
         (self.folder / "s.h5").unlink()

@@ -210,6 +210,14 @@ class Units(ProgramTest):
         pointed = table(self.folder / "p.h5").set_index("model")
         for name, model in (("line_tension", "dp"), ("wall_stiffness", "sp")):
             self.assertEqual(pointed[name][model], rows[name][model])
+        self.write("p.csv", 'model\n"dp, sp"\n')
+        told = self.succeed("clogsweep", "--lab", "lab.cfg", "--points", "p.csv", "box=20", "max-time=20", "seeds=1", "--dry-run").stdout
+        self.assertIn("2 parameter sets", told)
+
+    def test_points_with_units_are_named_with_their_line(self):
+        lab = self.lab()
+        self.write("p.csv", "line-tension,obstacle-gap\n1,0.3mm\n\nx,0.4mm\n")
+        self.refuse("clogsweep", "--lab", lab, "--points", "p.csv", "--output", "s.h5", words=["p.csv line 4: invalid line-tension=x"])
 
     def sweeps_of_two_droplets(self):
         """Files of sweeps with droplets of 0.8 and 1.2 mm in the same cell. Both droplets have the same interfacial

@@ -303,6 +303,11 @@ TEST(Plan, NamesThePointThatCannotBe) {
   EXPECT_NE(message({{"lime-tension"}, {{"1"}}}).find("did you mean line-tension"), std::string::npos);
   EXPECT_NE(message({{"line-tension"}, {{"1", "2"}}}).find("2 values for 1 key"), std::string::npos);
   EXPECT_NE(message({{"line-tension"}, {}}).find("no points"), std::string::npos);
+  EXPECT_NE(
+      message({{"line-tension"}, {{"1"}, {"x"}}, "p.csv"}).find("p.csv: point 2: invalid line-tension=x"),
+      std::string::npos);
+  EXPECT_NE(message({{"line-tension"}, {{"1"}, {"x"}}, "p.csv", {2, 4}}).find("p.csv line 4: invalid"),
+            std::string::npos);
   for (const char* text : {"0/5", "6/5", "2", "a/b", "2/5/7", "-1/5"})
     EXPECT_THROW(Shard::from(text), Error) << text;
 }

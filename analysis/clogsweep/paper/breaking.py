@@ -3,6 +3,7 @@ scaling of Meer et al., Soft Matter 2026, doi 10.1039/D5SM01266J."""
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from scipy import stats
@@ -29,7 +30,7 @@ def break_up_by_symmetry(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(6.4, 4.8))
     folder = shop.folder / "runs"
     folder.mkdir(parents=True, exist_ok=True)
-    data = []
+    data: list[dict[str, Any]] = []
     for index, preset in enumerate(("robust", "elastic")):
         collisions = collision.Collisions(shop.programs / "clogsweep", folder, {"preset": preset})
         found = [(offset, *collisions.threshold(offset)) for offset in OFFSETS]

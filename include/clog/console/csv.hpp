@@ -41,6 +41,8 @@ struct TableLine {
   std::vector<std::string> cells;  ///< without quotes and blanks around them; empty cells are kept
   char separator;                  ///< the separator between cells; a blank stands for one or more blanks
 };
+/// The cells without empty ones at the end beyond the number of columns: a spreadsheet adds such cells.
+std::vector<std::string> without_surplus_cells(std::vector<std::string> cells, std::size_t num_columns);
 
 /// Reads a table line by line. Supports files of spreadsheets, pandas, R and ImageJ: the first line shows
 /// whether semicolons, tabs, commas or blanks separate the cells, unless `sep=;` precedes it; cells may be

@@ -15,6 +15,11 @@ class DecimalCommas {
   /// The number with a decimal point in place of its comma.
   /// @throws Error if some numbers so far have a comma, and others a point
   std::string with_point(std::string number);
+  /// The number in a cell with a decimal point. @param separator  between the cells of the table; if this is
+  /// a comma, a comma in a quoted cell may separate thousands
+  /// @throws Error, which begins with the column's name, as with_point() or if the comma may separate
+  /// thousands
+  std::string with_point(const std::string& column, const std::string& cell, char separator);
   /// @throws Error if every comma so far may separate thousands, so that the numbers are ambiguous.
   /// @param path  of the table
   void check(const std::string& path) const;

@@ -18,10 +18,11 @@ class RunList {
  public:
   /// Adds all runs of a plan. @throws Error if another plan has other circles under the same name
   void add(const sweep::Plan& plan);
-  /// Adds a run that may be outside the plan, for instance one of an earlier command of the sweep. The texts
-  /// of the run are those of the plan's first parameter set, except where the row has other values. Returns
-  /// whether the resulting texts describe this run.
-  bool add(const sweep::Plan& plan, const sweep::RunRow& row);
+  /// Adds runs that may be outside the plan, for instance those of an earlier command of the sweep. The texts
+  /// of such a run are those of the plan's first parameter set, except where the row has other values. Prints
+  /// how many runs these texts do not describe. @throws Error as add()
+  /// @param path  of the file that contains the rows
+  void add_rows(const std::string& path, const sweep::Plan& plan, const std::vector<sweep::RunRow>& rows);
 
   /// Adds the seed of a run whose parameter set is known. Returns whether it is.
   bool add_seed(const sweep::RunRow& row);
@@ -44,6 +45,8 @@ class RunList {
   std::unordered_map<std::string, std::size_t> places_;  // places in sets_, by the content of the set
   sweep::CircleFiles circle_files_;
 
+  /// Returns whether the run is added.
+  bool add(const sweep::Plan& plan, const sweep::RunRow& row);
   ParameterSet& set_of(const sweep::Plan& plan, const sweep::RunRow& run, std::vector<std::string> texts);
   sweep::Points points(const std::vector<std::size_t>& differing) const;
 };

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "clog/core/tools/error.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
 
@@ -15,6 +16,11 @@ namespace clog::results {
 /// circles, with the name of their file. @throws Error as store::read_sweep()
 store::SweepFile read_with_caution(const std::string& path);
 
+/// Prints one line about a part of a file that could not be read, for instance because another version of the
+/// program wrote it.
+/// @param consequence  what the program does without it
+void say_unread(const std::string& path, const std::string& consequence, const Error& why);
+
 /// Text of an attribute; empty if there is none.
 std::string attribute(const store::Provenance& provenance, const std::string& name);
 /// An empty text removes the attribute.
@@ -23,7 +29,8 @@ void set_attribute(store::Provenance& provenance, const std::string& name, const
 /// stored_plan()
 sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance);
 sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file);
-/// Columns of those keys for which the sweep's config has a list; empty if the config cannot be read.
+/// Columns of those keys for which the sweep's config has a list; empty, with a warning on stderr, if the
+/// config cannot be read.
 std::vector<std::string> listed_columns(const store::Provenance& provenance);
 /// Number of runs requested so far: with --until-precision the runs of the rounds so far, otherwise all runs
 /// of the plan.
@@ -40,8 +47,11 @@ struct RunCount {
 };
 RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);
 
-/// The row of a task to be replayed. Switches this process to the row's instruction set. @throws Error if
-/// there is no such row, if its task is not over, or if this program would give another result
+/// The row of a task that can be replayed; use_instruction_set_of() has to precede the replay. @throws Error
+/// if there is no such row, if its task is not over, or if this program would give another result
 sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& task);
+/// Switches this process to the instruction set of a row, if its model uses one. @throws Error if this
+/// processor lacks it
+void use_instruction_set_of(const sweep::RunRow& row);
 
 }  // namespace clog::results

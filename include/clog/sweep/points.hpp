@@ -12,12 +12,16 @@ struct Points {
   std::vector<std::string> keys;
   /// A text for every key; an empty one stands for the settings' text.
   std::vector<std::vector<std::string>> rows;
+  /// The file from which the points come, and the line of each point there, for messages; empty: none.
+  std::string file = {};
+  std::vector<int> lines = {};
 
   bool empty() const { return keys.empty(); }
   /// Drops all points, and sets the keys of the points that will be added. @throws Error if there is no name,
   /// or if a name is unknown or repeated
   void begin(const std::vector<std::string>& names);
-  /// @throws Error that names the point, if it lacks a text for a key, or has one that cannot be read
+  /// @throws Error that names the point or its line, if it lacks a text for a key, or has one that cannot be
+  /// read
   void add(const std::vector<std::string>& texts);
 };
 

@@ -22,6 +22,12 @@ std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
 std::vector<std::string> expand_values(std::string_view text, ValueKind kind,
                                        const std::vector<std::string>& words);
 
+/// The items of a list without blanks around them: commas outside parentheses separate them.
+std::vector<std::string_view> split_list(std::string_view list);
+/// The numbers of a list as they are written, in order, perhaps with units: its items; of lin(a,b,n) and
+/// log(a,b,n) a and b.
+std::vector<std::string_view> numbers_in(std::string_view list);
+
 using clog::shortest;
 
 /// `1 run`, `2 runs`.
