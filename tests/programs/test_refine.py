@@ -171,14 +171,6 @@ class Values(unittest.TestCase):
         self.assertTrue(all(value == float(f"{value:.3g}") for value in values))
         self.assertEqual(choice.spread(values, 7), [0.3, 0.442, 0.649, 0.953, 1.4, 2.05, 3])
 
-<<<<<<< HEAD
-    def test_lists_are_read_as_clogsweep_reads_them(self):
-        self.assertEqual(lists.numbers("0.2, 1..3,1..8:3,log(1,100,3),lin(0,1,3)"),
-                         [0.2, 1, 2, 3, 1, 4, 7, 1, 10, 100, 0, 0.5, 1])
-        self.assertTrue(math.isnan(lists.numbers("20%")[0]))
-
-=======
->>>>>>> lists
 
 class Choice(unittest.TestCase):
     """Tests the choice of blocks of seeds for 41 places. The errors of neighbouring places are correlated."""
