@@ -24,9 +24,11 @@ HERE = pathlib.Path(__file__).resolve().parent
 PICTURES = HERE.parent / "pictures"
 TABLE = HERE / "pictures.csv"
 THUMBNAIL = (280, 160)
+PARAMETERS = HERE.parents[1] / "include/clog/core/parameters/parameters.hpp"
+MODEL_VERSION = int(re.search(r"int model_version = (\d+);", PARAMETERS.read_text())[1])
 
 
-def line(name, programs, folder):
+def line(name, programs):
     """The figure's line in pictures.csv: what was run for it."""
     sweeps = [config for config in CATALOGUE[name].configs if config in finished.names_in()]
     read = [finished.read(config) for config in sweeps]
@@ -40,13 +42,8 @@ def line(name, programs, folder):
             "max-time": " to ".join(f"{time:g}" for time in dict.fromkeys([times[0], times[-1]])) if times else "",
             "core-hours": f"{sum(sweep.core_hours for sweep in read):.2f}" if read else "",
             "git": re.search(r"git (?:\S*-g)?([0-9a-f]{7})", sources[0]["clogsweep"] if sources else version)[1],
-            "model version": max([source["model_version"] for source in sources], default=model_version(folder)),
+            "model version": max([source["model_version"] for source in sources], default=MODEL_VERSION),
             "date": datetime.date.today().isoformat(), "note": ""}
-
-
-def model_version(folder):
-    from clogsweep.reading import stored
-    return max(int(stored.read_rows(file)["model_version"].max()) for file in (folder / "full" / "sweeps").glob("*.h5"))
 
 
 def keep(name, folder):
@@ -74,7 +71,7 @@ def main(programs, *names):
             if subprocess.run([sys.executable, "-m", "clogsweep", "figures", name, *options]).returncode:
                 continue
             keep(name, folder)
-            fresh = line(name, programs, folder)
+            fresh = line(name, programs)
             table.loc[name] = [str(fresh[column]) for column in table.columns]
     order = [name for name in [*figures.ORDER, *table.index] if name in table.index]
     table.loc[list(dict.fromkeys(order))].to_csv(TABLE, index=False)
