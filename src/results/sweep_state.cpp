@@ -201,6 +201,11 @@ sweep::Start SweepState::start(std::int64_t task, int rank) {
   return start;
 }
 
+void SweepState::restarted(std::int64_t task) {
+  if (activity_) activity_->restarted();
+  past_[task].instruction_set.clear();
+}
+
 void SweepState::report(const sweep::Report& report) {
   Entry* const run = entry(report.row.task);
   if (!run || sweep::identity(report.row) != sweep::identity(run->row))

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <ratio>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "clog/console/exit_codes.hpp"
@@ -47,7 +48,7 @@ class Driver {
   scheduler::SweepEvents events() {
     scheduler::SweepEvents events;
     events.started = [this](std::int64_t task, int rank) { return start(task, rank); };
-    events.progressed = [this](const sweep::Report& report) { state_.report(report); };
+    events.progressed = [this](sweep::Report report) { store(report); };
     events.ended = [this](const sweep::Report& report) { end(report); };
     events.tries_again = [this](const sweep::RunRow& failed) { return state_.tries_again(failed); };
     events.failure_withdrawn = [this](std::int64_t task, const std::string& machine) {
@@ -85,13 +86,28 @@ class Driver {
   Log log_;
   double max_hours_;
   bool was_interrupted_ = false;
+  std::unordered_set<std::int64_t> restarted_;  // running tasks that could not use their snapshots
   Clock::time_point begin_ = Clock::now();
 
   sweep::Start start(std::int64_t task, int rank) {
     progress_.started(task);
+    restarted_.erase(task);
     sweep::Start start = state_.start(task, rank);
     log_.started(state_.row(task), start.snapshot.empty() ? Log::From::release : Log::From::snapshot);
     return start;
+  }
+
+  /// Stores a report without the reason for a restart, which goes to the log (see sweep::Job::row()).
+  void store(sweep::Report& report) {
+    sweep::RunRow& row = report.row;
+    if (row.status != RunStatus::failed && !row.message.empty()) {
+      if (restarted_.insert(row.task).second) {
+        log_.restarted(row);
+        state_.restarted(row.task);
+      }
+      row.message.clear();
+    }
+    state_.report(report);
   }
 
   void end(sweep::Report report) {
@@ -104,7 +120,7 @@ class Driver {
       // The state of the sweep adds the earlier cost.
       report.row.wall_seconds = report.row.processor_seconds = 0;
     }
-    state_.report(report);
+    store(report);
     if (report.row.status == RunStatus::failed && state_.tries_again(report.row)) {
       progress_.tried(report.row.task);
       log_.failed(report.row, Log::Then::tried_again);

@@ -77,6 +77,11 @@ void Log::started(const sweep::RunRow& row, From from) {
       (row.attempt > 1 ? fmt::format(", attempt {}", row.attempt) : "") + what(row));
 }
 
+void Log::restarted(const sweep::RunRow& row) {
+  if (level_ < Level::normal) return;
+  say(fmt::format("{}restarts at the release (its checkpoint cannot be used: {})", who(row), row.message));
+}
+
 void Log::ended(const sweep::RunRow& row) {
   if (row.status == RunStatus::failed) {
     failed(row, Then::over);

@@ -30,6 +30,8 @@ class Log {
   Log(results::Progress& progress, Level level) : progress_(progress), level_(level) {}
 
   void started(const sweep::RunRow& row, From from);
+  /// @param row  its message says why the task cannot use its snapshot
+  void restarted(const sweep::RunRow& row);
   /// Call this when a task has ended, failed or not, or was interrupted.
   void ended(const sweep::RunRow& row);
   void failed(const sweep::RunRow& row, Then then);
