@@ -114,7 +114,7 @@ int clogsweep_status(int argc, const char* const* argv) {
         path, is_first ? results::read_with_caution(path) : store::read_sweep(path), confidence);
     if (line.has("watch") && format == "text" && isatty(STDOUT_FILENO)) std::cout << clear_screen;
     std::cout << (format == "json"
-                      ? results::to_json(status, confidence)
+                      ? results::to_json(status)
                       : results::to_text(path, status, confidence, shared) + law_of_speed(status))
               << std::flush;
     if (!line.has("watch") || !status.is_alive) return console::exit_success;

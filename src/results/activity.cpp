@@ -70,7 +70,8 @@ std::string Activity::line(const std::string& start_time, double now) const {
       {"busy", busy},
       {"idle_seconds", to_milliseconds(std::max(0.0, num_ranks_ * now - all.busy_seconds_))},
       {"tail_seconds",
-       to_milliseconds(std::max(0.0, num_ranks_ * (now - last_start_) - all.tail_busy_seconds_))}};
+       to_milliseconds(std::max(0.0, num_ranks_ * (now - last_start_) - all.tail_busy_seconds_))},
+      {"restarts", num_restarts_}};
   return console::json_text(line, -1);
 }
 

@@ -117,11 +117,14 @@ std::string to_csv(const std::vector<Group>& groups) {
   return csv_table(rows);
 }
 
+Json groups_json(const std::vector<Group>& groups) {
+  Json list = Json::array();
+  for (const Group& group : groups) list.push_back(group_json(group, have_laboratory(groups)));
+  return list;
+}
+
 std::string to_json(const std::vector<Group>& groups, double confidence, const store::Provenance& provenance,
                     const Mixture* mixture) {
-  const bool with_laboratory = have_laboratory(groups);
-  Json list = Json::array();
-  for (const Group& group : groups) list.push_back(group_json(group, with_laboratory));
   Json sentences;
   for (const DoubtText& doubt : doubt_texts) sentences[doubt.word] = doubt.sentence;
   Json columns = Json::array();
@@ -138,7 +141,7 @@ std::string to_json(const std::vector<Group>& groups, double confidence, const s
                    {"columns", columns},
                    {"lists", listed_columns(provenance)},
                    {"sweep", origin},
-                   {"groups", list}};
+                   {"groups", groups_json(groups)}};
   // If all groups have the same scale, the document has it once, otherwise each group has its own.
   for (const Group& group : groups)
     if (const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
@@ -29,19 +30,26 @@ std::int64_t clogs_for(double precision) {
   return enough;
 }
 
+/// The columns in which parameter sets differ.
+std::set<const sweep::Column*> differing_columns(const sweep::Plan& plan) {
+  const sweep::RunRow first = sweep::describe(plan.task(0));
+  std::set<const sweep::Column*> differing;
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
+    const sweep::RunRow row = sweep::describe(plan.task(group));
+    for (const sweep::Column* column : group_columns())
+      if (column->get(row) != column->get(first)) differing.insert(column);
+  }
+  return differing;
+}
+
 /// The keys by which a parameter set differs from the others, with their values.
-std::string name_of(std::int64_t group, const sweep::Plan& plan) {
+std::string name_of(std::int64_t group, const sweep::Plan& plan,
+                    const std::set<const sweep::Column*>& differing) {
   const sweep::RunRow row = sweep::describe(plan.task(group));
   std::vector<std::string> words;
-  for (const sweep::Column* column : group_columns()) {
-    const auto differs = [&](std::int64_t other) {
-      return column->get(sweep::describe(plan.task(other))) != column->get(row);
-    };
-    bool varies = false;
-    for (std::int64_t other = 0; other < plan.num_groups() && !varies; ++other) varies = differs(other);
-    if (varies && !column->may_be_automatic(row.parameters))
+  for (const sweep::Column* column : group_columns())
+    if (differing.contains(column) && !column->may_be_automatic(row.parameters))
       words.push_back(column->name + '=' + sweep::text_of(column->get(row)));
-  }
   return words.empty() ? "the only one" : joined(words, " ");
 }
 
@@ -95,10 +103,11 @@ std::string outcome(const SeedRule& rule, const sweep::Plan& plan) {
   std::string reached = fmt::format("{} of {} reached --until-precision", rule.num_reached(), sets);
   if (rule.unreached().empty()) return reached;
   constexpr std::size_t most_named = 4;
+  const std::set<const sweep::Column*> differing = differing_columns(plan);
   std::vector<std::string> named;
   for (const SeedRule::Unreached& one : rule.unreached()) {
     if (named.size() == most_named) break;
-    named.push_back(fmt::format("{} with {} of {} seeds{}", name_of(one.group, plan),
+    named.push_back(fmt::format("{} with {} of {} seeds{}", name_of(one.group, plan, differing),
                                 sweep::counted(one.num_clogs, "clog"), one.num_seeds,
                                 one.num_failed > 0 ? fmt::format(", {} failed", one.num_failed) : ""));
   }

@@ -12,6 +12,7 @@
 #include "clog/store/journal.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "value_json.hpp"
 
 namespace clog::results {
 namespace {
@@ -84,7 +85,7 @@ std::string to_text(const std::string& path, const Status& status, double confid
   return text;
 }
 
-std::string to_json(const Status& status, double confidence) {
+std::string to_json(const Status& status) {
   nlohmann::ordered_json all;
   all["runs"] = status.runs.num_runs;
   all["runs_beyond_lists"] = status.runs.num_beyond;
@@ -100,9 +101,7 @@ std::string to_json(const Status& status, double confidence) {
                             ? nlohmann::ordered_json{status.left.shortest, status.left.longest}
                             : nlohmann::ordered_json();
   if (!status.stopping_rule.empty()) all["stopping_rule"] = status.stopping_rule;
-  all["groups"] = status.groups.empty()
-                      ? nlohmann::ordered_json::array()
-                      : nlohmann::ordered_json::parse(to_json(status.groups, confidence, {})).at("groups");
+  all["groups"] = groups_json(status.groups);
   return console::json_text(all);
 }
 

@@ -201,6 +201,11 @@ sweep::Start SweepState::start(std::int64_t task, int rank) {
   return start;
 }
 
+void SweepState::restarted(std::int64_t task) {
+  if (activity_) activity_->restarted();
+  past_[task].instruction_set.clear();
+}
+
 void SweepState::report(const sweep::Report& report) {
   Entry* const run = entry(report.row.task);
   if (!run || sweep::identity(report.row) != sweep::identity(run->row))
@@ -317,13 +322,14 @@ void SweepState::begin_publication() {
     set_attribute(provenance_, "activity",
                   with_session(earlier_activity_, activity_->line(session_time_, seconds_so_far())));
   is_published_ = true;
-  publication_ = std::async([this, all = entries(), provenance = provenance_, end = journal_.num_bytes(),
-                             is_long = journal_.is_to_be_rewritten()] {
-    journal_.flush();
-    std::optional<std::string> stamp = publish_to(place_, stamp_, all, provenance);
-    if (stamp && is_long) prepare_journal(all, end);
-    return stamp;
-  });
+  publication_ =
+      std::async(std::launch::async, [this, all = entries(), provenance = provenance_,
+                                      end = journal_.num_bytes(), is_long = journal_.is_to_be_rewritten()] {
+        journal_.flush();
+        std::optional<std::string> stamp = publish_to(place_, stamp_, all, provenance);
+        if (stamp && is_long) prepare_journal(all, end);
+        return stamp;
+      });
   if (has_journal) return;
   end_publication();
   throw Error(

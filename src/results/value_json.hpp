@@ -13,6 +13,8 @@ namespace clog::results {
 inline Value finite_value(double number) { return std::isfinite(number) ? Value(number) : Value(); }
 /// @returns null for an unset value and for a number that is not finite
 nlohmann::ordered_json json_of(const sweep::Value& value);
+/// The groups with all their fields and curves.
+nlohmann::ordered_json groups_json(const std::vector<Group>& groups);
 /// A step of a survival or incidence curve as JSON. @param name  key of the number of ends
 template <class Step>
 nlohmann::ordered_json step_json(const Step& step, const char* name, int num_ends) {

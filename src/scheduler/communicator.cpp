@@ -1,13 +1,17 @@
 #include "clog/scheduler/communicator.hpp"
 
+#include <fmt/core.h>
 #include <mpi.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 #include <string_view>
 #include <thread>
+
+#include "clog/core/tools/error.hpp"
 
 namespace clog::scheduler {
 namespace {
@@ -24,6 +28,17 @@ void stand_alone_without_launcher() {
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   setenv("HOME", "/", 0);  // Open MPI 5 does not start without it; it looks for settings there
+}
+
+/// The length of a message as MPI takes it.
+int count_of(std::size_t num_bytes) {
+  constexpr int most = std::numeric_limits<int>::max();
+  if (num_bytes > std::size_t{most})
+    throw Error(
+        fmt::format("cannot send {} bytes to another rank (MPI takes at most {} at once); give fewer "
+                    "obstacles",
+                    num_bytes, most));
+  return static_cast<int>(num_bytes);
 }
 
 }  // namespace
@@ -65,10 +80,9 @@ std::string Communicator::host_name() {
 }
 
 std::string Communicator::broadcast(std::string text) const {
-  unsigned long long length = text.size();
-  MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
-  text.resize(length);
-  MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, 0, MPI_COMM_WORLD);
+  const int length = broadcast(rank_ == 0 ? count_of(text.size()) : 0);
+  text.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(text.data(), length, MPI_CHAR, 0, MPI_COMM_WORLD);
   return text;
 }
 
@@ -78,9 +92,10 @@ int Communicator::broadcast(int number) const {
 }
 
 std::vector<std::string> Communicator::gather(const std::string& text) const {
-  const int length = static_cast<int>(text.size());
+  const int length = count_of(text.size());
   std::vector<int> lengths(size_);
   MPI_Gather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, 0, MPI_COMM_WORLD);
+  count_of(std::accumulate(lengths.begin(), lengths.end(), std::size_t{0}));
   std::vector<int> starts(size_);
   std::exclusive_scan(lengths.begin(), lengths.end(), starts.begin(), 0);
   std::string all(starts.back() + lengths.back(), '\0');
@@ -104,7 +119,7 @@ void Communicator::wait_for_all() const {
 }
 
 void Communicator::send(int destination, int tag, std::span<const std::byte> bytes) const {
-  MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, destination, tag, MPI_COMM_WORLD);
+  MPI_Send(bytes.data(), count_of(bytes.size()), MPI_BYTE, destination, tag, MPI_COMM_WORLD);
 }
 
 std::optional<Communicator::Envelope> Communicator::probe(int source, int tag) const {

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <ratio>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "clog/console/exit_codes.hpp"
@@ -47,11 +48,13 @@ class Driver {
   scheduler::SweepEvents events() {
     scheduler::SweepEvents events;
     events.started = [this](std::int64_t task, int rank) { return start(task, rank); };
-    events.progressed = [this](const sweep::Report& report) { state_.report(report); };
+    events.progressed = [this](sweep::Report report) { store(report); };
     events.ended = [this](const sweep::Report& report) { end(report); };
     events.tries_again = [this](const sweep::RunRow& failed) { return state_.tries_again(failed); };
-    events.failure_withdrawn = [this](std::int64_t task) { withdraw_failure(task); };
-    events.set_aside = [this](const sweep::RunRow& failed) { log_.set_aside(failed); };
+    events.failure_withdrawn = [this](std::int64_t task, const std::string& machine) {
+      withdraw_failure(task, machine);
+    };
+    events.set_aside = [this](const MachineTrust::Suspect& machine) { log_.set_aside(machine); };
     events.idle = [this] {
       state_.tick();
       progress_.tick();
@@ -83,13 +86,28 @@ class Driver {
   Log log_;
   double max_hours_;
   bool was_interrupted_ = false;
+  std::unordered_set<std::int64_t> restarted_;  // running tasks that could not use their snapshots
   Clock::time_point begin_ = Clock::now();
 
   sweep::Start start(std::int64_t task, int rank) {
     progress_.started(task);
+    restarted_.erase(task);
     sweep::Start start = state_.start(task, rank);
     log_.started(state_.row(task), start.snapshot.empty() ? Log::From::release : Log::From::snapshot);
     return start;
+  }
+
+  /// Stores a report without the reason for a restart, which goes to the log (see sweep::Job::row()).
+  void store(sweep::Report& report) {
+    sweep::RunRow& row = report.row;
+    if (row.status != RunStatus::failed && !row.message.empty()) {
+      if (restarted_.insert(row.task).second) {
+        log_.restarted(row);
+        state_.restarted(row.task);
+      }
+      row.message.clear();
+    }
+    state_.report(report);
   }
 
   void end(sweep::Report report) {
@@ -102,7 +120,7 @@ class Driver {
       // The state of the sweep adds the earlier cost.
       report.row.wall_seconds = report.row.processor_seconds = 0;
     }
-    state_.report(report);
+    store(report);
     if (report.row.status == RunStatus::failed && state_.tries_again(report.row)) {
       progress_.tried(report.row.task);
       log_.failed(report.row, Log::Then::tried_again);
@@ -113,10 +131,10 @@ class Driver {
     was_interrupted_ = was_interrupted_ || report.row.status == RunStatus::interrupted;
   }
 
-  void withdraw_failure(std::int64_t task) {
+  void withdraw_failure(std::int64_t task, const std::string& machine) {
     if (!state_.tries_again(state_.row(task))) progress_.not_ended(state_.row(task));
     state_.withdraw_failure(task);
-    log_.failure_withdrawn(state_.row(task));
+    log_.failure_withdrawn(state_.row(task), machine);
   }
 };
 
@@ -142,7 +160,7 @@ int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& optio
   const sweep::GroupOf group_of = [&plan](std::int64_t task) { return plan.group_of(task); };
   Driver driver(options, group_of, state, computing_ranks);
   state.watch_ranks(computing_ranks);
-  scheduler::Schedule schedule(scheduler::TaskOrder(group_of), ranks.size(), computes);
+  scheduler::Schedule schedule(scheduler::TaskOrder(group_of), ranks.gather(ranks.host_name()), computes);
   scheduler::SweepEnd end = scheduler::SweepEnd::complete;
   bool is_complete = true;
   while (true) {
@@ -162,17 +180,17 @@ int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& optio
     return console::exit_internal_fault;
   }
   if (is_complete) return console::exit_success;
-  const bool no_rank_left = end == scheduler::SweepEnd::no_rank_left;
+  const bool no_machine_left = end == scheduler::SweepEnd::no_machine_left;
   console::say(fmt::format("clogsweep: {}; the same command resumes the sweep. Results so far are in {}",
-                           no_rank_left ? "every rank was set aside, see above: check these machines"
-                                        : fmt::format("stopped by {}", driver.reason_to_stop()),
+                           no_machine_left ? "every machine was set aside, see above: check these machines"
+                                           : fmt::format("stopped by {}", driver.reason_to_stop()),
                            options.output));
-  return no_rank_left ? console::exit_internal_fault : console::exit_incomplete;
+  return no_machine_left ? console::exit_internal_fault : console::exit_incomplete;
 }
 
 void follow_sweep(const scheduler::Communicator& ranks, const sweep::JobFactory& make_job,
                   std::chrono::milliseconds report_interval) {
-  scheduler::Schedule none(scheduler::TaskOrder({}), ranks.size(), false);
+  scheduler::Schedule none(scheduler::TaskOrder({}), ranks.gather(ranks.host_name()), false);
   do {
     scheduler::run_tasks(ranks, none, make_job, {}, report_interval);
   } while (AfterRound{ranks.broadcast(0)} == AfterRound::another);

@@ -77,6 +77,11 @@ void Log::started(const sweep::RunRow& row, From from) {
       (row.attempt > 1 ? fmt::format(", attempt {}", row.attempt) : "") + what(row));
 }
 
+void Log::restarted(const sweep::RunRow& row) {
+  if (level_ < Level::normal) return;
+  say(fmt::format("{}restarts at the release (its checkpoint cannot be used: {})", who(row), row.message));
+}
+
 void Log::ended(const sweep::RunRow& row) {
   if (row.status == RunStatus::failed) {
     failed(row, Then::over);
@@ -92,15 +97,15 @@ void Log::failed(const sweep::RunRow& row, Then then) {
                   then == Then::tried_again ? ", will be tried again" : "", row.message, what(row)));
 }
 
-void Log::failure_withdrawn(const sweep::RunRow& row) {
+void Log::failure_withdrawn(const sweep::RunRow& row, const std::string& machine) {
   if (level_ < Level::normal) return;
-  say(fmt::format("{}the rank itself may be at fault; attempt {} does not count{}", who(row), row.attempt,
+  say(fmt::format("{}{} itself may be at fault; attempt {} does not count{}", who(row), machine, row.attempt,
                   what(row)));
 }
 
-void Log::set_aside(const sweep::RunRow& failed) {
-  say(fmt::format("rank {} on {} is set aside: tasks fail there that succeed elsewhere; last message: {}",
-                  failed.rank, failed.host, failed.message));
+void Log::set_aside(const MachineTrust::Suspect& machine) {
+  say(fmt::format("{} is set aside: tasks fail there that succeed elsewhere; last message: {}", machine.name,
+                  machine.message));
 }
 
 void Log::stopping(const std::string& reason) {

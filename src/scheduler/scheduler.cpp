@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <set>
+#include <string>
 #include <thread>
 #include <unordered_map>
 #include <unordered_set>
@@ -111,7 +111,7 @@ class Master {
         backoff.sleep();
     }
     if (!has_tasks()) return SweepEnd::complete;
-    return stopping_ ? SweepEnd::stopped : SweepEnd::no_rank_left;
+    return stopping_ ? SweepEnd::stopped : SweepEnd::no_machine_left;
   }
 
  private:
@@ -139,7 +139,7 @@ class Master {
     return running_.empty() && (stopping_ || !has_tasks() || schedule_.trust.num_in_service() == 0);
   }
 
-  /// Whether tasks remain while every rank is on hold or waits for a rank on hold.
+  /// Whether tasks remain while every machine is on hold or waits for one on hold.
   bool nobody_can_work() const {
     const bool all_wait = static_cast<int>(waiting_.size()) + num_dismissed_ == ranks_.size() - 1;
     return running_.empty() && all_wait && !is_over();
@@ -186,29 +186,25 @@ class Master {
     if (report.row.status == RunStatus::interrupted) return;
     // Runs that diverge or cross themselves do so on every rank.
     if (!sweep::may_succeed_later(report.row)) {
-      set_aside(schedule_.trust.succeeded(ended, rank));
+      for (const auto& suspect : schedule_.trust.succeeded(ended, rank)) doubt(suspect);
       return;
     }
     events_.ended(report);
     if (events_.tries_again(report.row)) failed_tasks_.push_back(ended);
-    schedule_.last_failures[rank] = report.row;
-    set_aside(schedule_.trust.failed(ended, rank));
-    for (const std::int64_t task : schedule_.trust.tasks_in_doubt(rank)) withdraw_failure(task);
+    if (const auto suspect = schedule_.trust.failed(ended, rank, report.row.message)) doubt(*suspect);
   }
 
-  void set_aside(const std::vector<int>& ranks) {
-    for (const int rank : ranks) {
-      events_.set_aside(schedule_.last_failures.at(rank));
-      for (const std::int64_t task : schedule_.trust.unsettled_tasks(rank)) withdraw_failure(task);
-    }
+  void doubt(const MachineTrust::Suspect& machine) {
+    if (machine.is_set_aside) events_.set_aside(machine);
+    for (const std::int64_t task : machine.tasks) withdraw_failure(task, machine.name);
   }
 
-  void withdraw_failure(std::int64_t task) {
+  void withdraw_failure(std::int64_t task, const std::string& machine) {
     if (running_.contains(task) || !withdrawn_.insert(task).second)
-      return;  // another rank tries the task, now or later
+      return;  // another machine tries the task, now or later
     if (std::find(failed_tasks_.begin(), failed_tasks_.end(), task) == failed_tasks_.end())
       failed_tasks_.push_back(task);
-    events_.failure_withdrawn(task);
+    events_.failure_withdrawn(task, machine);
   }
 
   /// Receives all waiting messages. Returns whether there was any.
@@ -327,17 +323,10 @@ class Worker {
   }
 };
 
-std::vector<int> computing_ranks(int num_ranks, bool with_master) {
-  std::vector<int> ranks(num_ranks);
-  std::iota(ranks.begin(), ranks.end(), 0);
-  if (!with_master) ranks.erase(ranks.begin());
-  return ranks;
-}
-
 }  // namespace
 
-Schedule::Schedule(TaskOrder first, int num_ranks, bool with_master)
-    : tasks(std::move(first)), master_computes(with_master), trust(computing_ranks(num_ranks, with_master)) {}
+Schedule::Schedule(TaskOrder first, const std::vector<std::string>& hosts, bool with_master)
+    : tasks(std::move(first)), master_computes(with_master), trust(hosts, with_master ? 0 : 1) {}
 
 bool computes(int num_ranks, MasterComputes choice) {
   constexpr int most_ranks = 16;

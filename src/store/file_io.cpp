@@ -32,12 +32,6 @@ std::string file_fault(FileAction action, const std::string& path, std::error_co
   return what + " (" + reason.message() + "); check the disk and the permissions";
 }
 
-/// The user's value of the variable, before prepare_library() changes it.
-const bool are_locks_optional = [] {
-  const char* use = std::getenv("HDF5_USE_FILE_LOCKING");
-  return use && std::string_view(use) == "FALSE";
-}();
-
 }  // namespace
 
 FileError::FileError(FileAction action, const std::string& path, std::error_code reason)
@@ -51,7 +45,8 @@ bool try_lock(int descriptor, const std::string& path) {
   if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return true;
   const std::error_code reason = last_error();
   if (reason == std::errc::operation_would_block) return false;
-  if (are_locks_optional) return true;
+  const char* const use = std::getenv("HDF5_USE_FILE_LOCKING");
+  if (use && std::string_view(use) == "FALSE") return true;
   throw Error("cannot lock " + path + " (" + reason.message() +
               "); use a folder whose file system has locks (flock), or, if no other sweep writes to this "
               "file, set HDF5_USE_FILE_LOCKING=FALSE");

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -22,12 +21,9 @@
 namespace clog::store {
 
 void prepare_library() {
-  static const bool is_prepared = [] {
-    H5dont_atexit();  // first of all, because even querying the version initialises the library
-    setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
-    return true;
-  }();
-  if (is_prepared) H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the error stack of this thread
+  // First of all, because even querying the version initialises the library.
+  static const herr_t is_prepared = H5dont_atexit();
+  if (is_prepared >= 0) H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the error stack of this thread
 }
 
 void require_memory_of_file(const std::string& purpose, std::size_t size, int copies) {

@@ -45,10 +45,9 @@ using Attribute = Handle<H5Aclose>;
 using PropertyList = Handle<H5Pclose>;
 using Group = Handle<H5Gclose>;
 
-/// Call this before the first use of the library. It turns off three functions of the library. The clean-up
-/// at exit crashes after a failed write. The error stack on the screen is not needed, because we print one
-/// line of our own. File locks would make a write fail while a reader has the file open, and they also fail
-/// on many cluster file systems.
+/// Call this before the first use of the library. It turns off two functions of the library. The clean-up at
+/// exit crashes after a failed write. The error stack on the screen is not needed, because we print one line
+/// of our own. The library locks no file, because it has all files in memory.
 void prepare_library();
 
 /// Checks the memory for a file that the library reads or writes in memory: the library may crash without it.

@@ -25,21 +25,6 @@ void record_interrupted(const DropletRun& run, RunRow& row) {
   record(result, row);
 }
 
-/// Restores a run from the snapshot, if a run with these parameters can have written it. Otherwise, for
-/// instance if another version has written the snapshot, the run restarts, with the same result.
-/// @param row  of the run, without results
-DropletRun start(const RunParameters& run, RunRow row, std::span<const std::byte> snapshot,
-                 ObstacleArrays& arrays) {
-  const std::shared_ptr<const ObstacleArray> obstacles = arrays.get(run);
-  if (!snapshot.empty()) try {
-      DropletRun resumed = DropletRun::resume(run, obstacles, snapshot);
-      record_interrupted(resumed, row);
-      if (fault_of(row).empty()) return resumed;
-    } catch (const Error&) {
-    }
-  return {run, obstacles};
-}
-
 }  // namespace
 
 RunJob::RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> snapshot,
@@ -51,11 +36,27 @@ RunJob::RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> 
   row_.task = task;
 }
 
+/// Restores the run from the snapshot, if a run with these parameters can have written it. Otherwise, for
+/// instance if another version has written the snapshot, the run restarts, with the same result.
+DropletRun RunJob::start() {
+  const std::shared_ptr<const ObstacleArray> obstacles = arrays_->get(run_parameters_);
+  if (!snapshot_.empty()) try {
+      DropletRun resumed = DropletRun::resume(run_parameters_, obstacles, snapshot_);
+      RunRow row = row_;
+      record_interrupted(resumed, row);
+      why_restarted_ = fault_of(row);
+      if (why_restarted_.empty()) return resumed;
+    } catch (const Error& error) {
+      why_restarted_ = error.what();
+    }
+  return {run_parameters_, obstacles};
+}
+
 bool RunJob::advance() {
   const Clock::time_point begin = Clock::now();
   const double processor_begin = processor_seconds();
   try {
-    if (!run_) run_ = std::make_unique<DropletRun>(start(run_parameters_, row_, snapshot_, *arrays_));
+    if (!run_) run_ = std::make_unique<DropletRun>(start());
     while (!over_ && Clock::now() - begin < slice) over_ = run_->advance(checks_per_look_at_the_clock);
   } catch (const std::exception& error) {
     over_ = true;
@@ -80,6 +81,7 @@ RunRow RunJob::row() const {
     if (run_) result = run_->result();
     if (!over_) result.status = RunStatus::interrupted;
     record(result, row);
+    if (row.status != RunStatus::failed) row.message = why_restarted_;
   }
   row.wall_seconds = wall_seconds_;
   row.processor_seconds = processor_seconds_;

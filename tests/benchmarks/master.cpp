@@ -177,7 +177,8 @@ int main(int argc, char** argv) {
   }
   const Clock::time_point begin = Clock::now();
   const double cpu_before = cpu_seconds();
-  scheduler::Schedule schedule(scheduler::order_of(plan.size(), plan.num_groups()), ranks.size(), false);
+  scheduler::Schedule schedule(scheduler::order_of(plan.size(), plan.num_groups()),
+                               ranks.gather(ranks.host_name()), false);
   scheduler::run_tasks(
       ranks, schedule,
       [&](std::int64_t task, std::span<const std::byte>) {

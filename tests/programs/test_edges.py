@@ -291,7 +291,8 @@ class Refusals(SweepTest):
                  "use a folder whose file system has locks", "HDF5_USE_FILE_LOCKING=FALSE"]
         self.refuse("clogsweep", *FINISHED, "--output", "s.h5", env=self.where("locks"), words=words)
         self.succeed_where("locks", *FINISHED, "--output", "s.h5", HDF5_USE_FILE_LOCKING="FALSE")
-        self.assertIn("4 rows of 4 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        done = self.succeed_where("locks", "verify", "s.h5", HDF5_USE_FILE_LOCKING="TRUE")
+        self.assertIn("4 rows of 4 runs, all undamaged", done.stdout)
 
     def test_a_journal_whose_state_cannot_be_read_ends_the_sweep(self):
         done = self.run_program("clogsweep", *FINISHED, "--output", "s.h5", env=self.where("state"))

@@ -2,11 +2,14 @@
 
 import contextlib
 import os
+import re
 import signal
 import subprocess
 import unittest
 
-from support import LONGEST, ROOT, SLOW, SweepTest, table, undisturbed
+import pandas
+
+from support import LONGEST, ROOT, SLOW, SWEEP, TIMING, SweepTest, table, undisturbed
 
 TWO_HOSTS = ROOT / "tests" / "two_hosts.sh"
 
@@ -62,6 +65,29 @@ class TwoHosts(SweepTest):
         process = self.start_on_both()
         self.ended(process)
         self.check_equal("s.h5", undisturbed(SLOW))
+
+    def test_a_host_on_which_every_task_fails_gets_no_more_tasks(self):
+        # Starts itself on both hosts. On the second host, where the last two ranks are, it kills the processes that the
+        # helpers of these ranks start.
+        launcher = self.folder / self.write("launcher.sh", f"""#!/bin/sh
+            if [ -z "$OMPI_COMM_WORLD_RANK" ]; then
+              num_ranks=$1
+              shift
+              exec {TWO_HOSTS} "$num_ranks" "$0" "$@"
+            fi
+            [ "$OMPI_COMM_WORLD_RANK" -lt 2 ] || while kill -0 $$; do
+              for helper in $(pgrep --parent $$ clogsweep); do pkill -KILL --parent "$helper"; done
+              sleep 0.02
+            done >/dev/null 2>&1 &
+            exec "$@"
+            """)
+        launcher.chmod(0o755)
+        error = self.ended(self.start(*SWEEP, ranks=2, launcher=launcher))
+        rows, whole = (table(path).drop(columns=[*TIMING, "attempt"])
+                       for path in (self.folder / "s.h5", undisturbed(SWEEP)))
+        pandas.testing.assert_frame_equal(rows, whole, check_exact=True)
+        names = ["host host2"] if "namespaces" in error else [f"rank {rank} on {os.uname().nodename}" for rank in (2, 3)]
+        self.assertEqual(sorted(re.findall(r" (\S+ \S+(?: on \S+)?) is set aside: tasks fail there", error)), names)
 
 
 if __name__ == "__main__":

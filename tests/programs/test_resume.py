@@ -9,7 +9,9 @@ import signal
 import struct
 import subprocess
 import unittest
+import zlib
 
+import h5py
 import numpy as np
 import stored_rows
 from support import (BIN, BLOCKED, ENDLESS, FEW_LONG, LONGEST, MPI, QUICK, ROOT, SLOW, STEPS_PER_SNAPSHOT, SWEEP,
@@ -260,6 +262,30 @@ class Resumed(SweepTest):
         self.assertIn("s.h5.journal: 1 record is damaged; its run resumes from an earlier record or restarts\n",
                       done.stderr)
         self.check_equal("s.h5", undisturbed(SLOW))
+
+    def test_a_checkpoint_that_cannot_be_used_is_reported(self):
+        self.stop_with_unfinished_runs(FEW_LONG)
+        _, num_snapshots = self.journal()
+        with h5py.File(self.folder / "s.h5") as file:
+            row_size = file["runs"].dtype.itemsize
+        path = self.folder / "s.h5.journal"
+        content = bytearray(path.read_bytes())
+        record = struct.Struct("<QI4x")  # the size and the checksum of a row and a snapshot
+        begin = 24 + record.size
+        while begin <= len(content):
+            size, _ = record.unpack_from(content, begin - record.size)
+            if size > row_size:
+                content[begin + row_size] ^= 1  # the first byte of a snapshot, which names its version
+                struct.pack_into("<I", content, begin - 8, zlib.crc32(content[begin:begin + size]))
+            begin += size + record.size
+        path.write_bytes(content)
+        done = self.succeed("clogsweep", *FEW_LONG, ranks=2)
+        self.assertEqual(len(re.findall(r"task \d rank \d: restarts at the release \(its checkpoint cannot be used: "
+                                        r"the snapshot is of another version\)\n", done.stderr)), num_snapshots)
+        self.check_equal("s.h5", undisturbed(FEW_LONG))
+        with h5py.File(self.folder / "s.h5") as file:
+            sessions = file.attrs["activity"].decode().splitlines()
+        self.assertEqual([json.loads(line)["restarts"] for line in sessions[-2:]], [0, num_snapshots])
 
     def test_a_link_is_followed(self):
         (self.folder / "scratch").mkdir()

@@ -45,6 +45,14 @@ TEST(Activity, KeepsTheSumWhenStretchesGetLonger) {
   EXPECT_NEAR(line["idle_seconds"], 3 * now - busy, 0.01);
 }
 
+TEST(Activity, CountsRestarts) {
+  Activity activity(1);
+  activity.started(0);
+  EXPECT_EQ(told(activity, 1)["restarts"], 0);
+  activity.restarted();
+  EXPECT_EQ(told(activity, 1)["restarts"], 1);
+}
+
 TEST(Activity, KeepsTheLatestSessions) {
   std::string lines;
   for (int i = 0; i < 60; ++i) lines = with_session(lines, std::to_string(i) + "\n");

@@ -112,6 +112,26 @@ TEST_F(SweepStateTest, GoesOnFromTheSnapshotOfARunWhoseFailureWasWithdrawn) {
   EXPECT_EQ(state.row(0).distance, 3.5);
 }
 
+TEST_F(SweepStateTest, GivesARestartedRunTheInstructionSetOfItsNewStart) {
+  const auto report_under = [&](SweepState& state, const char* instruction_set, RunStatus status,
+                                const std::vector<std::byte>& snapshot) {
+    sweep::Report report = this->report(state, 0, status, 3.5, snapshot);
+    report.row.instruction_set = instruction_set;
+    state.report(report);
+    return state.row(0).instruction_set;
+  };
+  {
+    SweepState state = open();
+    state.start(0, 1);
+    report_under(state, "avx2", RunStatus::running, snapshot_);
+  }
+  SweepState state = open();
+  state.start(0, 1);
+  EXPECT_EQ(report_under(state, "baseline", RunStatus::running, snapshot_), "mixed");
+  state.restarted(0);
+  EXPECT_EQ(report_under(state, "baseline", RunStatus::clogged, {}), "baseline");
+}
+
 TEST_F(SweepStateTest, TakesNoDistanceFromAnAttemptThatDoesNotCount) {
   SweepState state = open();
   state.start(0, 1);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <numeric>
 #include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -105,6 +106,7 @@ class FailingJob final : public sweep::Job {
     row.task = task_;
     row.status = fails_ ? RunStatus::failed : RunStatus::clogged;
     row.failed_by = fails_ ? cause_ : FailedBy::none;
+    if (fails_) row.message = "broken";
     return row;
   }
 
@@ -148,8 +150,10 @@ void what_fails_everywhere_is_tried_once(const scheduler::Communicator& ranks) {
   std::map<std::int64_t, int> starts, ends;
   scheduler::SweepEvents events;
   events.started = [&](std::int64_t task, int) { return scheduler::Start{{}, ++starts[task]}; };
-  events.set_aside = [](const sweep::RunRow&) { expect(false, "no rank is at fault"); };
-  events.failure_withdrawn = [](std::int64_t) { expect(false, "no failure is in doubt"); };
+  events.set_aside = [](const scheduler::MachineTrust::Suspect&) { expect(false, "no host is at fault"); };
+  events.failure_withdrawn = [](std::int64_t, const std::string&) {
+    expect(false, "no failure is in doubt");
+  };
   events.ended = [&](const scheduler::Report& report) { ++ends[report.row.task]; };
   const scheduler::SweepEnd end = run_once(ranks, scheduler::order_of(40, 4), make_job, events, true);
   if (ranks.rank() != 0) return;
@@ -176,31 +180,38 @@ struct Outcome {
   std::map<std::int64_t, std::string> status;     // by task
   std::map<std::int64_t, std::int64_t> attempts;  // Attempts that count, by task.
   std::map<std::int64_t, int> starts;
-  std::set<int> set_aside;
+  std::set<int> set_aside;  // numbers of hosts
 };
 
+/// The number of a host, see hosts_of_ranks().
+int number_of(const scheduler::MachineTrust::Suspect& machine) {
+  expect(machine.name.starts_with("host "), "hosts are set aside");
+  return std::stoi(machine.name.substr(5));
+}
+
 Outcome sweep(const scheduler::Communicator& ranks, std::int64_t num_tasks, std::int64_t most_attempts,
-              const sweep::JobFactory& make_job) {
+              const sweep::JobFactory& make_job, int ranks_per_host = 1) {
   Outcome outcome;
   scheduler::SweepEvents events;
   events.started = [&](std::int64_t task, int rank) {
-    expect(!outcome.set_aside.contains(rank), "who was set aside gets no task");
+    expect(!outcome.set_aside.contains(rank / ranks_per_host), "who was set aside gets no task");
     ++outcome.starts[task];
     return scheduler::Start{{}, ++outcome.attempts[task]};
   };
   events.tries_again = [&](const sweep::RunRow& failed) { return failed.attempt < most_attempts; };
-  events.failure_withdrawn = [&](std::int64_t task) {
+  events.failure_withdrawn = [&](std::int64_t task, const std::string&) {
     expect(outcome.status[task] == "failed", "a failure that is withdrawn was told of");
     --outcome.attempts[task];
   };
-  events.set_aside = [&](const sweep::RunRow& failed) {
-    expect(failed.status == RunStatus::failed && !failed.host.empty(), "the rank's failure comes along");
-    expect(outcome.set_aside.insert(static_cast<int>(failed.rank)).second, "nobody is set aside twice");
+  events.set_aside = [&](const scheduler::MachineTrust::Suspect& machine) {
+    expect(machine.message == "broken", "the host's last failure comes along");
+    expect(outcome.set_aside.insert(number_of(machine)).second, "nobody is set aside twice");
   };
   events.ended = [&](const scheduler::Report& report) {
     outcome.status[report.row.task] = name(report.row.status);
   };
-  outcome.end = run_once(ranks, scheduler::order_of(num_tasks, 5), make_job, events, true);
+  outcome.end = run_once(ranks, scheduler::order_of(num_tasks, 5), make_job, events, true,
+                         std::chrono::seconds(10), ranks_per_host);
   return outcome;
 }
 
@@ -221,6 +232,20 @@ void a_broken_rank_is_set_aside_and_its_tasks_done_elsewhere(const scheduler::Co
     expect(attempts <= most_attempts, "attempts are limited");
 }
 
+void a_broken_host_is_set_aside_with_all_its_ranks(const scheduler::Communicator& ranks,
+                                                   std::int64_t most_attempts) {
+  const int ranks_per_host = ranks.size() / 2;
+  const auto make_job = failing_on(
+      ranks, [=](int rank) { return rank >= ranks_per_host; }, never);
+  const Outcome outcome = sweep(ranks, 60, most_attempts, make_job, ranks_per_host);
+  if (ranks.rank() != 0) return;
+  expect(outcome.end == scheduler::SweepEnd::complete, "the sweep goes on without the host");
+  expect(outcome.set_aside == std::set<int>{1}, "the broken host, and no other, is set aside");
+  expect(outcome.status.size() == 60, "every task has a row");
+  for (const auto& [task, status] : outcome.status) expect(status == "clogged", "tasks succeed elsewhere");
+  for (const auto& [task, starts] : outcome.starts) expect(starts <= 2, "a retry goes to the other host");
+}
+
 void who_was_set_aside_stays_so_in_the_next_round(const scheduler::Communicator& ranks) {
   const int broken = ranks.size() - 1;
   const auto make_job = failing_on(
@@ -231,8 +256,8 @@ void who_was_set_aside_stays_so_in_the_next_round(const scheduler::Communicator&
     expect(!set_aside.contains(rank), "who was set aside gets no task in any round");
     return scheduler::Start();
   };
-  events.set_aside = [&](const sweep::RunRow& failed) { set_aside.insert(static_cast<int>(failed.rank)); };
-  scheduler::Schedule schedule(scheduler::order_of(0, 5), ranks.size(), true);
+  events.set_aside = [&](const auto& machine) { set_aside.insert(number_of(machine)); };
+  scheduler::Schedule schedule(scheduler::order_of(0, 5), hosts_of_ranks(ranks.size(), 1), true);
   for (std::int64_t round = 0; round < 3; ++round) {
     std::vector<std::int64_t> tasks(30);
     std::iota(tasks.begin(), tasks.end(), 30 * round);
@@ -267,8 +292,8 @@ void impossible_tasks_are_no_rank_to_blame(const scheduler::Communicator& ranks)
     for (const auto& [task, status] : outcome.status)
       expect(status == (is_impossible(task) ? "failed" : "clogged"), "what can succeed does");
     for (const auto& [task, starts] : outcome.starts)
-      expect(starts <= (is_impossible(task) ? 2 + ranks.size() : 1),
-             "no more attempts than needed, in doubt one more on each rank");
+      expect(starts <= (is_impossible(task) ? 2 + 2 * ranks.size() : 1),
+             "no more attempts than needed, in doubt two more on each rank");
   }
 }
 
@@ -279,7 +304,7 @@ void a_sweep_without_a_rank_that_works_ends(const scheduler::Communicator& ranks
       ranks, [&](int rank) { return rank > 0 || ++num_done > 60; }, never);
   const Outcome outcome = sweep(ranks, 200, 2, make_job);
   if (ranks.rank() != 0) return;
-  expect(outcome.end == scheduler::SweepEnd::no_rank_left, "a sweep that no rank can do ends");
+  expect(outcome.end == scheduler::SweepEnd::no_machine_left, "a sweep that no rank can do ends");
   expect(outcome.set_aside.size() == static_cast<std::size_t>(ranks.size()), "all are set aside");
 }
 
@@ -305,6 +330,8 @@ int main(int argc, char** argv) {
   if (ranks.size() > 1) {
     a_broken_rank_is_set_aside_and_its_tasks_done_elsewhere(ranks, 1);
     a_broken_rank_is_set_aside_and_its_tasks_done_elsewhere(ranks, 2);
+    for (const std::int64_t most_attempts : {1, 2})
+      a_broken_host_is_set_aside_with_all_its_ranks(ranks, most_attempts);
     who_was_set_aside_stays_so_in_the_next_round(ranks);
     most_ranks_may_be_broken(ranks);
     a_sweep_without_a_rank_that_works_ends(ranks);

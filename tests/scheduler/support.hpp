@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <memory>
 #include <span>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -56,12 +57,20 @@ inline const sweep::JobFactory make_synthetic_job = [](std::int64_t task,
   return std::make_unique<SyntheticJob>(task, snapshot);
 };
 
-/// A sweep of one round.
+/// Names for the hosts of ranks: "0" has the first `ranks_per_host` ranks.
+inline std::vector<std::string> hosts_of_ranks(int num_ranks, int ranks_per_host) {
+  std::vector<std::string> hosts;
+  for (int rank = 0; rank < num_ranks; ++rank) hosts.push_back(std::to_string(rank / ranks_per_host));
+  return hosts;
+}
+
+/// A sweep of one round, with so many ranks on each host.
 inline scheduler::SweepEnd run_once(const scheduler::Communicator& ranks, const scheduler::TaskOrder& tasks,
                                     const sweep::JobFactory& make_job, const scheduler::SweepEvents& events,
                                     bool master_computes,
-                                    std::chrono::milliseconds report_interval = std::chrono::seconds(10)) {
-  scheduler::Schedule schedule(tasks, ranks.size(), master_computes);
+                                    std::chrono::milliseconds report_interval = std::chrono::seconds(10),
+                                    int ranks_per_host = 1) {
+  scheduler::Schedule schedule(tasks, hosts_of_ranks(ranks.size(), ranks_per_host), master_computes);
   return scheduler::run_tasks(ranks, schedule, make_job, events, report_interval);
 }
 

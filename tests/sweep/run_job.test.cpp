@@ -122,9 +122,24 @@ TEST(RunJob, BeginsAnewIfNoRunCanHaveComeToItsSnapshot) {
   const auto snapshot = changed_snapshot(run, [](auto& dwells) { dwells[0] = dwells[1] = dwells[2] = 0; });
   RunRow row = finished(RunJob(run, 0, snapshot)), undisturbed = finished(RunJob(run, 0));
   EXPECT_EQ(fault_of(row), "");
+  EXPECT_NE(row.message, "") << "the reason";
+  row.message.clear();
   row.wall_seconds = undisturbed.wall_seconds;
   row.processor_seconds = undisturbed.processor_seconds;
   EXPECT_EQ(packed(row), packed(undisturbed));
+}
+
+TEST(RunJob, SaysWhyItCannotUseItsSnapshot) {
+  const RunParameters run = long_run();
+  auto snapshot = changed_snapshot(run, [](auto&) {});
+  RunJob usual(run, 0, snapshot);
+  usual.advance();
+  EXPECT_EQ(usual.row().message, "");
+  snapshot[0] ^= std::byte{1};
+  RunJob job(run, 0, snapshot);
+  job.advance();
+  EXPECT_EQ(job.row().message, "the snapshot is of another version");
+  EXPECT_EQ(job.row().status, RunStatus::interrupted);
 }
 
 }  // namespace

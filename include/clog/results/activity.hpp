@@ -16,6 +16,8 @@ class Activity {
   /// @param now  time since the session began, never less than before [s]
   void started(double now);
   void ended(double now);
+  /// Call this when a task starts at its release because its snapshot cannot be used.
+  void restarted() { ++num_restarts_; }
 
   /// One line of JSON. `idle_seconds` is the sum over all ranks. `tail_seconds` is the part of this sum after
   /// the last start of a task: then ranks without work wait for the last tasks to end.
@@ -25,6 +27,7 @@ class Activity {
  private:
   int num_ranks_;
   int num_busy_ = 0;
+  int num_restarts_ = 0;
   double stretch_ = 1;        // [s]
   std::vector<double> busy_;  // busy time of all ranks in each stretch [s]
   double last_ = 0;

@@ -43,6 +43,6 @@ Status status_of(const std::string& path, const store::SweepFile& file, double c
 /// The status as printed text.
 std::string to_text(const std::string& path, const Status& status, double confidence,
                     SharedParameters shared);
-std::string to_json(const Status& status, double confidence);
+std::string to_json(const Status& status);
 
 }  // namespace clog::results

@@ -63,6 +63,8 @@ class SweepState {
   /// A rank has ended its task, whatever the outcome.
   void rank_is_free();
   sweep::Start start(std::int64_t task, int rank);
+  /// A started task does not use its snapshot, but restarts.
+  void restarted(std::int64_t task);
   void report(const sweep::Report& report);
   /// Row of a run that has begun.
   const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task)->row; }

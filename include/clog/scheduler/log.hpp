@@ -4,6 +4,7 @@
 
 #include "clog/results/progress.hpp"
 #include "clog/results/sweep_state.hpp"
+#include "clog/scheduler/machine_trust.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_row.hpp"
 
@@ -18,7 +19,7 @@ void announce(const std::string& output, const sweep::Plan& plan, const results:
 class Log {
  public:
   enum class Level {
-    quiet,   ///< only events that need action, such as a rank that is set aside
+    quiet,   ///< only events that need action, such as a machine that is set aside
     normal,  ///< also failures and the reason for a stop
     verbose  ///< also every task that starts or ends
   };
@@ -29,12 +30,13 @@ class Log {
   Log(results::Progress& progress, Level level) : progress_(progress), level_(level) {}
 
   void started(const sweep::RunRow& row, From from);
+  /// @param row  its message says why the task cannot use its snapshot
+  void restarted(const sweep::RunRow& row);
   /// Call this when a task has ended, failed or not, or was interrupted.
   void ended(const sweep::RunRow& row);
   void failed(const sweep::RunRow& row, Then then);
-  void failure_withdrawn(const sweep::RunRow& row);
-  /// @param failed  the last task that failed on the rank
-  void set_aside(const sweep::RunRow& failed);
+  void failure_withdrawn(const sweep::RunRow& row, const std::string& machine);
+  void set_aside(const MachineTrust::Suspect& machine);
   void stopping(const std::string& reason);
 
  private:

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <unordered_map>
+#include <string>
 #include <vector>
 
 #include "clog/scheduler/communicator.hpp"
-#include "clog/scheduler/rank_trust.hpp"
+#include "clog/scheduler/machine_trust.hpp"
 #include "clog/scheduler/task_order.hpp"
 #include "clog/sweep/job.hpp"
 #include "clog/sweep/messages.hpp"
@@ -30,12 +30,12 @@ struct SweepEvents {
   std::function<void(const Report&)> ended = [](const Report&) {};
   /// Whether a task that ended as `failed` should be tried again.
   std::function<bool(const sweep::RunRow&)> tries_again = [](const sweep::RunRow&) { return false; };
-  /// Called for a task that `failed` when the rank may be at fault (see RankTrust): the attempt does not
-  /// count, and the task is tried once more whatever tries_again() returned.
-  std::function<void(std::int64_t task)> failure_withdrawn = [](std::int64_t) {};
-  /// Called when a rank is set aside: it is at fault for its failures (see RankTrust) and gets no more tasks.
-  /// The row is that of the last task that failed on this rank, with rank and host.
-  std::function<void(const sweep::RunRow& failed)> set_aside = [](const sweep::RunRow&) {};
+  /// Called for a task that `failed` when this machine may be at fault (see MachineTrust): the attempt does
+  /// not count, and the task is tried once more whatever tries_again() returned.
+  std::function<void(std::int64_t task, const std::string& machine)> failure_withdrawn =
+      [](std::int64_t, const std::string&) {};
+  /// Called when a machine is set aside: it is at fault for its failures and gets no more tasks.
+  std::function<void(const MachineTrust::Suspect&)> set_aside = [](const MachineTrust::Suspect&) {};
   /// Called about every 0.1 s, but less often while rank 0 samples an array or releases a droplet, which
   /// takes a second in large boxes.
   std::function<void()> idle = [] {};
@@ -48,32 +48,32 @@ struct SweepEvents {
 /// little, and its slices delay the next task of every worker.
 bool computes(int num_ranks, MasterComputes choice);
 
-/// Rank 0's state of a sweep's tasks and ranks, kept over all rounds: ranks that were set aside stay set
-/// aside, and measured run times remain in use.
+/// Rank 0's state of a sweep's tasks and machines, kept over all rounds: machines that were set aside stay
+/// set aside, and measured run times remain in use.
 struct Schedule {
   /// @param first  tasks of the first round
-  Schedule(TaskOrder first, int num_ranks, bool with_master);
+  /// @param hosts  hosts of all ranks, by rank; on ranks other than 0, an empty list
+  Schedule(TaskOrder first, const std::vector<std::string>& hosts, bool with_master);
 
   TaskOrder tasks;
   bool master_computes;
-  RankTrust trust;
-  std::unordered_map<int, sweep::RunRow> last_failures;  ///< the last failure on each rank, by rank
+  MachineTrust trust;
 };
 
 enum class SweepEnd {
-  complete,      ///< all tasks were handed out
-  stopped,       ///< stop_requested() returned true
-  no_rank_left,  ///< every rank was set aside
+  complete,         ///< all tasks were handed out
+  stopped,          ///< stop_requested() returned true
+  no_machine_left,  ///< every machine was set aside
 };
 
 /// Works through all tasks of a round with all ranks; every rank must call this.
 ///
 /// Rank 0 hands out one task at a time, since tasks differ a thousandfold in length, and gathers the rows.
-/// Rows do not depend on the order of the tasks. A task that failed is tried again on another rank, if there
-/// is one, before new tasks start. A rank on which everything fails is set aside: see RankTrust. If rank 0
-/// computes, it does so in slices between two polls for messages. No rank spins: an idle rank sleeps, with a
-/// backoff of up to a few milliseconds. A stopped task has two seconds to report its progress; otherwise its
-/// previous report is used.
+/// Rows do not depend on the order of the tasks. A task that failed is tried again on another machine, if
+/// there is one, before new tasks start. A machine on which everything fails is set aside: see MachineTrust.
+/// If rank 0 computes, it does so in slices between two polls for messages. No rank spins: an idle rank
+/// sleeps, with a backoff of up to a few milliseconds. A stopped task has two seconds to report its progress;
+/// otherwise its previous report is used.
 /// @param schedule  used on rank 0 only
 /// @param make_job  called on the rank that works on the task
 /// @param report_interval  time between two reports of a running task

@@ -22,7 +22,9 @@ class Job {
   /// computes the job, a first call sends this process a request and returns false; after advance() has
   /// received the answer, one call returns true.
   virtual bool refresh() { return true; }
-  /// The task's row. As long as the task is not over, the row has the status `interrupted`.
+  /// The task's row. As long as the task is not over, the row has the status `interrupted`. If the task could
+  /// not use its snapshot and restarted, the message says why, unless it says why the task failed. Rank 0
+  /// stores only the latter.
   virtual RunRow row() const = 0;
   /// A snapshot from which another job of this task can resume; empty if there is none yet.
   virtual std::vector<std::byte> snapshot() const { return {}; }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/sweep/job.hpp"
@@ -13,7 +14,7 @@ namespace clog::sweep {
 class RunJob final : public Job {
  public:
   /// @param run       resolved
-  /// @param snapshot  a snapshot of the same task; if it cannot be read, the run restarts
+  /// @param snapshot  a snapshot of the same task; if it cannot be used, the run restarts
   /// @param arrays    from which the run's obstacles come
   RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> snapshot = {},
          std::shared_ptr<ObstacleArrays> arrays = std::make_shared<ObstacleArrays>());
@@ -28,8 +29,11 @@ class RunJob final : public Job {
   std::shared_ptr<ObstacleArrays> arrays_;
   std::unique_ptr<DropletRun> run_;  // made at the first advance(), because the release may fail
   RunRow row_;
+  std::string why_restarted_;  // why the snapshot cannot be used; empty if it can
   double wall_seconds_ = 0, processor_seconds_ = 0;
   bool over_ = false;
+
+  DropletRun start();
 };
 
 /// @param plan  must outlive the jobs

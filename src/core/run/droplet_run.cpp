@@ -187,9 +187,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     resumed.snapshot_.assign(snapshot.begin(), snapshot.end());
     return resumed;
   } catch (const std::out_of_range&) {
-    throw Error("cannot resume the run (the snapshot is torn); start it anew");
-  } catch (const Error& error) {
-    throw Error(std::string("cannot resume the run (") + error.what() + "); start it anew");
+    throw Error("the snapshot is torn");
   }
 }
 
