@@ -84,18 +84,19 @@ std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::
   driver_options(line);
   attempts(line);
   assignment(line, line.settings());
+  const results::PreviewFormat format = preview_format(line);
   const std::optional<results::GrowingSweep> growing = growing_sweep(line);
   sweep::Plan plan(line.settings());
   if (line.has("print-config")) results::print_config(line.settings(), plan);
   if (line.has("dry-run")) {
-    results::print_tasks(plan);
+    results::print_tasks(plan, format);
     console::flush_output();
     if (console::stop_signalled()) return console::exit_incomplete;
-    results::print_limits(plan);
     // The process that was forked before MPI started runs these jobs.
     const sweep::JobFactory jobs =
         isolated.jobs(assignment(line, line.settings()).text(), sweep::run_jobs(plan));
-    return results::print_cost(plan, driver_options(line).output, growing ? &growing->rule : nullptr, jobs);
+    return results::print_cost(plan, driver_options(line).output, growing ? &growing->rule : nullptr, jobs,
+                               format);
   }
   if (line.has("print-config")) return console::exit_success;
   line.require("output");

@@ -27,7 +27,7 @@ from clogsweep.curves.model import Curve  # noqa: E402
 from clogsweep.refinement import choice, critical_angle, curve_search, driver, goals  # noqa: E402
 from clogsweep.refinement.curve_search import CurveSearch, Options, combinations  # noqa: E402
 from clogsweep.refinement.goals import Goal  # noqa: E402
-from clogsweep.refinement.membership import Membership, tasks_of  # noqa: E402
+from clogsweep.refinement.membership import Membership  # noqa: E402
 from clogsweep.tools import lists  # noqa: E402
 from clogsweep.tools.errors import UserError  # noqa: E402
 
@@ -80,7 +80,7 @@ class EveryKey(ProgramTest):
     def tasks_of_points(self, points, *settings):
         self.write("points.csv", points)
         words = [word.replace("posts.csv", str(self.folder / "posts.csv")) for word in settings]
-        return tasks_of(refine.printed_tasks(BIN / "clogsweep", *words, "--points", self.folder / "points.csv"))
+        return refine.planned_tasks(BIN / "clogsweep", *words, "--points", self.folder / "points.csv")
 
     def tasks(self, keys, settings, values):
         return self.tasks_of_points(driver.points_text(keys, [(one, (1, 1)) for one in values]), *settings)
@@ -95,9 +95,9 @@ class EveryKey(ProgramTest):
             if column["kind"] in ("word", "text"):
                 rows[column["name"]] = ""
             if column["name"] in tasks:
-                texts = list(tasks[column["name"]]) * copies
-                rows[column["name"]] = ["" if text == "-" else text for text in texts] if column["kind"] in ("word", "text") else [
-                    math.nan if text == "-" else float(text) for text in texts]
+                values = list(tasks[column["name"]]) * copies
+                rows[column["name"]] = [value or "" for value in values] if column["kind"] in ("word", "text") else [
+                    math.nan if value is None else float(value) for value in values]
         return rows.assign(task=range(len(rows)), seed=range(1, len(rows) + 1), model="dp", vertices=64.0)
 
     def check_membership(self, keys, settings, values):

@@ -17,7 +17,6 @@ import json
 import math
 import os
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
@@ -116,23 +115,18 @@ def changing_density(keys: Sequence[str], config: dict[str, str]) -> str:
             "a number, such as obstacle-density=0.2, keeps it")
 
 
-def printed_tasks(*command: object) -> str:
-    """The tasks that a dry run prints. The dry run is stopped before it estimates their cost. @throws UserError"""
-    words = [*map(str, command), "--dry-run"]
-    lines: list[str] = []
+def planned_tasks(*command: object) -> pandas.DataFrame:
+    """The tasks of a dry run, which is stopped before it estimates their cost. @throws UserError"""
+    words = [*map(str, command), "--dry-run", "--format", "json"]
     with tempfile.TemporaryFile("w+", encoding="utf-8", errors="backslashreplace") as errors:
         with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, encoding="utf-8", errors="backslashreplace", env=_alone()) as process:
-            for line in process.stdout or ():
-                lines.append(line)
-                if re.match(r"# \d+ tasks?:", line):
-                    process.terminate()
-                    break
-            else:
-                lines.clear()
+            plan = process.stdout.readline() if process.stdout else ""
+            if plan:
+                process.terminate()
         errors.seek(0)
         reason = programs.reason(errors.read())
-    if lines:
-        return "".join(lines)
+    if plan:
+        return tasks_of(json.loads(plan))
     if process.returncode == command_line.USER_FAULT:
         raise UserError(reason.removeprefix("clogsweep: "))
     raise ProgramFailed(reason, process.returncode)
@@ -181,7 +175,7 @@ def body() -> int:
             draft = folder / "points.csv"
             first = int(numbers(values["seeds"])[0])
             driver.store(draft, driver.points_text(keys, [(one, (first, 1)) for one in asked]))
-            return tasks_of(printed_tasks(clogsweep, "--config", folder / "settings.cfg", "--points", draft))
+            return planned_tasks(clogsweep, "--config", folder / "settings.cfg", "--points", draft)
 
         members = Membership(keys, schema, search.candidates, resolve)
         driver.store(settings, config)
@@ -190,11 +184,10 @@ def body() -> int:
             return driver.refine(search, members, launcher, options, points, arguments.output, arguments.max_hours)
         driver.store(points, driver.points_text(keys, search.first_round()))
         there = ["--output", arguments.output] if arguments.output and arguments.output.exists() else []
-        told = programs.run_program(clogsweep, *options, "--points", points, "--dry-run", *there)
-        print(told, end="")
-        hours = re.search(r"expected ([\d.e+-]+) core-hours|which took ([\d.e+-]+) core-hours", told)
-        number = re.search(r"^# (\d+) tasks?:", told, re.MULTILINE)
-        each = float(hours[1] or hours[2]) / int(number[1]) if hours and number else math.nan
+        told = programs.run_program(clogsweep, *options, "--points", points, "--dry-run", "--format", "json", *there)
+        plan, cost = map(json.loads, told.rstrip("\n").split("\n"))
+        print(plan["text"], cost["text"], sep="", end="")
+        each = cost.get("expected", cost["spent"]) / plan["number_of_tasks"]
         print("".join(f"# {line}\n" for line in search.costs(each)), end="")
         return 0
 

@@ -166,7 +166,7 @@ class AngleSearch:
             num_failed and f"{num_failed} of {counted(len(runs), 'run')} failed and do not count"]))
 
     def costs(self, hours_per_run: float) -> list[str]:
-        """States the cost of the rounds, for --dry-run. @param hours_per_run  of the first round, or NaN if unknown"""
+        """States the cost of the rounds, for --dry-run. @param hours_per_run  of the first round"""
         words = ["this is the first round; each of the others has up to three angles where droplets begin to leave the rows"]
         if math.isfinite(self._budget):
             words.append(f"all rounds: about {self._budget:.2g} core-hours at most (--budget)")
