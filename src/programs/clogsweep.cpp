@@ -74,6 +74,14 @@ store::Provenance provenance(const cli::CommandLine& line,
   return all;
 }
 
+/// @throws Refusal, which it prints as JSON if this is the format
+sweep::Plan planned(const sweep::Settings& settings, results::PreviewFormat format) try {
+  return sweep::Plan(settings);
+} catch (const Refusal& refusal) {
+  if (format == results::PreviewFormat::json) results::print_refusal(refusal);
+  throw;
+}
+
 /// Rank 0's work before the sweep: it finds all errors of the user before any rank computes. Returns the exit
 /// code if there is nothing to run, otherwise the plan.
 std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::IsolatedJobs& isolated) {
@@ -86,7 +94,7 @@ std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::
   assignment(line, line.settings());
   const results::PreviewFormat format = preview_format(line);
   const std::optional<results::GrowingSweep> growing = growing_sweep(line);
-  sweep::Plan plan(line.settings());
+  sweep::Plan plan = planned(line.settings(), format);
   if (line.has("print-config")) results::print_config(line.settings(), plan);
   if (line.has("dry-run")) {
     results::print_tasks(plan, format);

@@ -341,8 +341,15 @@ void add_lattices(Part& part, const sweep::Plan& plan) {
   for (std::int64_t group = 0; group < plan.num_groups() && lines.size() <= most_lines; ++group) {
     const ObstacleParameters obstacles = plan.group(group).obstacles;
     if (obstacles.layout != ObstacleLayout::lattice) continue;
-    if (std::string line = lattice_text(obstacles); std::ranges::find(lines, line) == lines.end())
-      lines.push_back(std::move(line));
+    std::string line = lattice_text(obstacles);
+    if (std::ranges::find(lines, line) != lines.end()) continue;
+    lines.push_back(std::move(line));
+    if (lines.size() <= most_lines)
+      part.json["lattices"].push_back({{"pitch", obstacles.spacing()},
+                                       {"row_spacing", row_spacing(obstacles)},
+                                       {"angle", obstacles.lattice_angle},
+                                       {"length", obstacles.period().along()},
+                                       {"box", obstacles.box}});
   }
   if (lines.size() > most_lines) lines.back() = "more lattices: not listed";
   for (const std::string& line : lines) part.line("# {}", line);
@@ -387,6 +394,13 @@ void print_tasks(const sweep::Plan& plan, PreviewFormat format) {
               number == 1 ? "is computed" : "are computed");
   add_lattices(part, plan);
   print(std::move(part), format);
+}
+
+void print_refusal(const Refusal& refusal) {
+  const Refusal::About& about = refusal.about();
+  Json json = {{"refused", about.key.empty() ? about.excluded.front() : about.key}, {"text", refusal.what()}};
+  if (!about.nearest.empty()) json["nearest"] = about.nearest;
+  std::cout << console::json_text(json, -1);
 }
 
 int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule,

@@ -22,7 +22,9 @@ MOST_TASKS = 1000  # Largest number of tasks that clogsweep prints.
 
 def tasks_of(plan: dict[str, Any]) -> pandas.DataFrame:
     """The columns in which the tasks of a plan differ. @param plan  first line of `clogsweep --dry-run --format json`
-    @throws UserError  if the line does not have all tasks"""
+    @throws UserError  if clogsweep refuses the values, or if the line does not have all tasks"""
+    if "refused" in plan:
+        raise UserError(plan["text"])
     if len(plan["tasks"]) < plan["number_of_tasks"]:
         raise UserError("cannot refine over more than 1000 combinations of values; give every other key one value")
     return pandas.DataFrame(plan["tasks"])

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "clog/core/parameters/refusal.hpp"
 #include "clog/results/seed_rule.hpp"
 #include "clog/sweep/job.hpp"
 #include "clog/sweep/plan.hpp"
@@ -16,6 +17,8 @@ enum class PreviewFormat { text, json };
 
 /// Prints the tasks and their number; of more than a thousand tasks, only the first and the last ones.
 void print_tasks(const sweep::Plan& plan, PreviewFormat format);
+/// Prints a refusal of the sweep's settings as a line of JSON.
+void print_refusal(const Refusal& refusal);
 /// Prints known limits of the results, such as an array that repeats. Then prints an upper bound of the
 /// sweep's duration, for which every run lasts to max-time, and an estimate (sweep_cost()). The estimate uses
 /// the runs in `output` or, if these are few, short trial runs. Then prints the finished and the remaining
