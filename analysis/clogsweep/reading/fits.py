@@ -13,7 +13,13 @@ from . import programs, stored
 
 def told(clogfit: pathlib.Path, *words: object) -> dict[str, Any]:
     """The answer of clogfit for these sweeps and options. @throws ProgramFailed  with clogfit's reason"""
-    return json.loads(programs.run_program(clogfit, *words, "--format", "json"))
+    return json.loads(programs.run_program(clogfit, *map(as_file, words), "--format", "json"))
+
+
+def as_file(word: object) -> object:
+    """A path in a form that no program takes for one of its commands, such as clogfit curve. Paths of Python drop the
+    ./ of ./curve."""
+    return f"./{word}" if isinstance(word, pathlib.PurePath) and len(word.parts) == 1 and not word.suffix else word
 
 
 PLACES = {"channel": "channels", "wall": "a flat wall"}  # where droplets have no clogging length, by obstacle_filling
