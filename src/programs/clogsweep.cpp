@@ -74,6 +74,14 @@ store::Provenance provenance(const cli::CommandLine& line,
   return all;
 }
 
+/// @throws Refusal, which it prints as JSON if this is the format
+sweep::Plan planned(const sweep::Settings& settings, results::PreviewFormat format) try {
+  return sweep::Plan(settings);
+} catch (const Refusal& refusal) {
+  if (format == results::PreviewFormat::json) results::print_refusal(refusal);
+  throw;
+}
+
 /// Rank 0's work before the sweep: it finds all errors of the user before any rank computes. Returns the exit
 /// code if there is nothing to run, otherwise the plan.
 std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::IsolatedJobs& isolated) {
@@ -84,18 +92,19 @@ std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::
   driver_options(line);
   attempts(line);
   assignment(line, line.settings());
+  const results::PreviewFormat format = preview_format(line);
   const std::optional<results::GrowingSweep> growing = growing_sweep(line);
-  sweep::Plan plan(line.settings());
+  sweep::Plan plan = planned(line.settings(), format);
   if (line.has("print-config")) results::print_config(line.settings(), plan);
   if (line.has("dry-run")) {
-    results::print_tasks(plan);
+    results::print_tasks(plan, format);
     console::flush_output();
     if (console::stop_signalled()) return console::exit_incomplete;
-    results::print_limits(plan);
     // The process that was forked before MPI started runs these jobs.
     const sweep::JobFactory jobs =
         isolated.jobs(assignment(line, line.settings()).text(), sweep::run_jobs(plan));
-    return results::print_cost(plan, driver_options(line).output, growing ? &growing->rule : nullptr, jobs);
+    return results::print_cost(plan, driver_options(line).output, growing ? &growing->rule : nullptr, jobs,
+                               format);
   }
   if (line.has("print-config")) return console::exit_success;
   line.require("output");

@@ -148,6 +148,8 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
           "file that describes the laboratory, see clogfit units; determines terminal-speed and line-tension "
           "or\nwall-stiffness unless these keys are set; clogfit then prints laboratory units, too")
       .flag("dry-run", "print the tasks, the number of tasks and their cost, run nothing")
+      .option("format",
+              "format of --dry-run: text, or json for a line with the tasks and a line with the cost")
       .flag("print-config", "print the settings, run nothing")
       .flag("schema", "print all keys and columns as JSON: meaning, unit, range, default; run nothing")
       .option("master-computes", "whether rank 0 also runs tasks: auto (with up to 16 ranks), yes, no",
@@ -206,6 +208,14 @@ scheduler::Assignment assignment(const cli::CommandLine& line, const sweep::Sett
           .instruction_set = line.has("instruction-set") ? line.get("instruction-set") : "auto",
           .is_isolated = line.get_word("isolate", {"yes", "no"}) == "yes",
           .settings = settings.packed()};
+}
+
+results::PreviewFormat preview_format(const cli::CommandLine& line) {
+  if (!line.has("format")) return results::PreviewFormat::text;
+  if (!line.has("dry-run")) throw Error("--format needs --dry-run");
+  if (line.get_word("format", {"text", "json"}) == "text") return results::PreviewFormat::text;
+  if (line.has("print-config")) throw Error("--print-config prints no JSON; leave out --format json");
+  return results::PreviewFormat::json;
 }
 
 std::int64_t attempts(const cli::CommandLine& line) { return line.get_whole("attempts", 2, 1, 1000); }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "clog/cli/command_line.hpp"
+#include "clog/results/preview.hpp"
 #include "clog/results/seed_rule.hpp"
 #include "clog/scheduler/assignment.hpp"
 #include "clog/scheduler/driver.hpp"
@@ -17,6 +18,8 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
 /// The options of the driver, checked except for the output's name.
 scheduler::DriverOptions driver_options(const cli::CommandLine& line);
 scheduler::Assignment assignment(const cli::CommandLine& line, const sweep::Settings& settings);
+/// --format of --dry-run.
+results::PreviewFormat preview_format(const cli::CommandLine& line);
 std::int64_t attempts(const cli::CommandLine& line);
 /// The rule of --until-precision and --most-seeds; nullopt if the sweep does not grow.
 std::optional<results::GrowingSweep> growing_sweep(const cli::CommandLine& line);

@@ -15,7 +15,8 @@ bool may_grow_along(const sweep::Key& key) {
   return key.parameter && key.kind != ValueKind::word && key.parameter->role != ParameterRole::numerics;
 }
 
-bool is_automatic(const sweep::Key& key, const sweep::Settings& settings) {
+/// Whether a text of the key, such as `auto`, leaves its value to other keys.
+bool has_automatic_text(const sweep::Key& key, const sweep::Settings& settings) {
   return key.kind != ValueKind::word &&
          std::ranges::any_of(settings.values(key.name), [&](const std::string& value) {
            return std::ranges::find(key.words, value) != key.words.end();
@@ -56,7 +57,8 @@ std::string differing_keys(const sweep::Settings& there, const sweep::Settings& 
 
 FixedValues::FixedValues(const sweep::Plan& plan, sweep::Settings settings) : settings_(std::move(settings)) {
   for (const sweep::Key& key : sweep::keys())
-    if (key.parameter && !may_grow_along(key) && !is_automatic(key, settings_)) keys_.push_back({&key, {}});
+    if (key.parameter && !may_grow_along(key) && !has_automatic_text(key, settings_))
+      keys_.push_back({&key, {}});
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunParameters run = plan.group(group);
     for (auto& [key, values] : keys_) values.insert(key->parameter->get(run));

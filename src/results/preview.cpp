@@ -6,12 +6,16 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "clog/console/exit_codes.hpp"
+#include "clog/console/json_text.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
@@ -25,11 +29,35 @@
 #include "clog/sweep/row_limits.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "value_json.hpp"
 
 namespace clog::results {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
+
+/// One part of the preview, as text and as numbers.
+struct Part {
+  std::string text;
+  Json json;
+
+  template <class... Values>
+  void line(fmt::format_string<Values...> format, Values&&... values) {
+    fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
+    text += '\n';
+  }
+};
+
+void print(Part part, PreviewFormat format) {
+  part.json["text"] = part.text;
+  std::cout << (format == PreviewFormat::json ? console::json_text(part.json, -1) : part.text);
+}
+
+/// Prints the text of a part that a signal or a failure ended early.
+void print_incomplete(const Part& part, PreviewFormat format) {
+  if (format == PreviewFormat::text) std::cout << part.text;
+}
 
 /// The columns that differ between tasks.
 std::vector<const sweep::Column*> varying_columns(const sweep::Plan& plan) {
@@ -51,15 +79,19 @@ std::vector<const sweep::Column*> varying_columns(const sweep::Plan& plan) {
   return varying;
 }
 
-void print_task(const sweep::Plan& plan, std::int64_t task,
-                const std::vector<const sweep::Column*>& columns) {
+void add_task(Part& part, const sweep::Plan& plan, std::int64_t task,
+              const std::vector<const sweep::Column*>& columns) {
   const sweep::RunRow row = sweep::describe(plan.task(task));
-  std::cout << task;
+  std::string line = std::to_string(task);
+  Json json = {{"task", task}};
   for (const sweep::Column* column : columns) {
-    const std::string text = sweep::text_of(column->get(row));
-    std::cout << ' ' << (text.empty() ? "-" : text);
+    const Value value = column->get(row);
+    const std::string text = sweep::text_of(value);
+    line += ' ' + (text.empty() ? "-" : text);
+    json[column->name] = json_of(value);
   }
-  std::cout << '\n';
+  part.line("{}", line);
+  part.json["tasks"].push_back(std::move(json));
 }
 
 double work_per_step(const RunParameters& run) { return model_of(run).num_points(run); }
@@ -223,80 +255,104 @@ SweepCost with_expected(SweepCost trials, const SweepCost& stored) {
   return trials;
 }
 
-void print_expected(const sweep::Plan& plan, const Sample& sample, const SweepCost& cost) {
+Json hours_json(const SweepCost& cost) {
+  return {{"expected", cost.expected / hour}, {"lower", cost.lower / hour}, {"upper", cost.upper / hour}};
+}
+
+void add_expected(Part& part, const sweep::Plan& plan, const Sample& sample, const SweepCost& cost) {
   const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
-  fmt::print(
-      std::cout,
-      "# at most {:.3g} core-hours on this machine, {:.3g} us per step measured; runs that clog end sooner\n",
+  part.line(
+      "# at most {:.3g} core-hours on this machine, {:.3g} us per step measured; runs that clog end sooner",
       cost.bound / hour, us_per_step);
   const auto num_finished =
       std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
   const auto num_runs = static_cast<std::int64_t>(sample.costs.size());
-  fmt::print(std::cout,
-             "# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them ended\n",
-             cost.expected / hour, cost.lower / hour, cost.upper / hour, sweep::counted(num_runs, "run"),
-             sample.source, num_finished);
+  part.line("# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them ended",
+            cost.expected / hour, cost.lower / hour, cost.upper / hour, sweep::counted(num_runs, "run"),
+            sample.source, num_finished);
+  part.json["at_most"] = cost.bound / hour;
+  part.json["us_per_step"] = us_per_step;
+  part.json.update(hours_json(cost));
+  part.json["sample"] = {{"runs", num_runs}, {"ended", num_finished}, {"source", sample.source}};
 }
 
 /// @param cost  of the whole plan
-void print_left(const sweep::Plan& plan, const std::string& output, const Stored& stored,
-                const SweepCost& cost) {
+void add_left(Part& part, const sweep::Plan& plan, const std::string& output, const Stored& stored,
+              const SweepCost& cost) {
   const SweepCost left = plus(cost, -stored.seconds);
-  fmt::print(std::cout,
-             "# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})\n",
-             console::printable(output), stored.num_done, sweep::counted(plan.num_runs(), "run"),
-             plan.num_runs() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
+  part.line("# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})",
+            console::printable(output), stored.num_done, sweep::counted(plan.num_runs(), "run"),
+            plan.num_runs() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
+  part.json["left"] = hours_json(left);
 }
 
 /// Warns before the runs about clogging lengths below an obstacle spacing, which clogfit would doubt (`v`).
-void print_short_lengths(const Sample& sample) {
+void add_short_lengths(Part& part, const Sample& sample) {
   constexpr std::int64_t fewest = 3;
   constexpr std::int64_t one_in =
       4;  // with a clogging length of five spacings, one distance in six would be below one spacing
   if (sample.num_short < fewest || one_in * sample.num_short < sample.num_clogged) return;
-  fmt::print(std::cout,
-             "# {} of {} clogged within one obstacle spacing ({:.3g} sigma) of their release: such lengths "
-             "reflect the release void, not clogging (v); {}\n",
-             sample.num_short, sweep::counted(sample.num_clogged, "run"), sample.spacing,
-             sample.has_own_circles ? "the share of droplets that got past says more"
-                                    : "give fewer obstacles, e.g. the default obstacle-density");
+  part.line(
+      "# {} of {} clogged within one obstacle spacing ({:.3g} sigma) of their release: such lengths "
+      "reflect the release void, not clogging (v); {}",
+      sample.num_short, sweep::counted(sample.num_clogged, "run"), sample.spacing,
+      sample.has_own_circles ? "the share of droplets that got past says more"
+                             : "give fewer obstacles, e.g. the default obstacle-density");
+  part.json["short_lengths"] = {
+      {"runs", sample.num_short}, {"clogged", sample.num_clogged}, {"obstacle_spacing", sample.spacing}};
+}
+
+SweepCost times(SweepCost cost, double factor) {
+  for (double* part : {&cost.bound, &cost.expected, &cost.lower, &cost.upper}) *part *= factor;
+  return cost;
 }
 
 /// Limits of the cost of a sweep that adds seeds.
 /// @param cost  of the sweep's first round
-void print_rounds(const SeedRule& rule, std::int64_t first_seeds, const SweepCost& cost) {
-  const std::int64_t needed = rule.clogs_needed();
-  fmt::print(std::cout, "# this is the first round: +-{} % needs {} per parameter set\n",
-             sweep::shortest(100 * rule.precision()), sweep::counted(needed, "clog"));
-  if (rule.most_seeds() < needed)
-    fmt::print(std::cout, "# --most-seeds={} ends it before that; give {} or more\n", rule.most_seeds(),
-               needed);
-  const auto hours = [&](double seconds, std::int64_t num_seeds) {
-    return seconds / hour * static_cast<double>(num_seeds) / static_cast<double>(first_seeds);
+void add_rounds(Part& part, const SeedRule& rule, std::int64_t first_seeds, const SweepCost& cost) {
+  const std::int64_t needed = rule.clogs_needed(), most = rule.most_seeds();
+  part.line("# this is the first round: +-{} % needs {} per parameter set",
+            sweep::shortest(100 * rule.precision()), sweep::counted(needed, "clog"));
+  if (most < needed) part.line("# --most-seeds={} ends it before that; give {} or more", most, needed);
+  const auto of_rounds = [&](std::int64_t num_seeds) {
+    return times(cost, static_cast<double>(num_seeds) / static_cast<double>(first_seeds));
   };
-  const auto expected = [&](std::int64_t num_seeds) {
-    return fmt::format("expected {:.2g} core-hours (95 %: {:.2g} to {:.2g})", hours(cost.expected, num_seeds),
-                       hours(cost.lower, num_seeds), hours(cost.upper, num_seeds));
+  const auto expected = [](const SweepCost& all) {
+    return fmt::format("expected {:.2g} core-hours (95 %: {:.2g} to {:.2g})", all.expected / hour,
+                       all.lower / hour, all.upper / hour);
   };
-  const std::int64_t fewest = std::clamp(needed, first_seeds, rule.most_seeds());
-  fmt::print(
-      std::cout,
-      "# all rounds: {} each if every run clogs, {}; {} each (--most-seeds) if few do, {}, at most {:.3g}\n",
-      sweep::counted(fewest, "seed"), expected(fewest), sweep::counted(rule.most_seeds(), "seed"),
-      expected(rule.most_seeds()), hours(cost.bound, rule.most_seeds()));
+  const std::int64_t fewest = std::clamp(needed, first_seeds, most);
+  const SweepCost least = of_rounds(fewest), largest = of_rounds(most);
+  part.line(
+      "# all rounds: {} each if every run clogs, {}; {} each (--most-seeds) if few do, {}, at most {:.3g}",
+      sweep::counted(fewest, "seed"), expected(least), sweep::counted(most, "seed"), expected(largest),
+      largest.bound / hour);
+  Json if_all_clog = hours_json(least), if_few_clog = hours_json(largest);
+  if_all_clog["seeds"] = fewest;
+  if_few_clog["seeds"] = most;
+  if_few_clog["at_most"] = largest.bound / hour;
+  part.json["all_rounds"] = {
+      {"clogs_needed", needed}, {"if_all_clog", if_all_clog}, {"if_few_clog", if_few_clog}};
 }
 
-void print_lattices(const sweep::Plan& plan) {
+void add_lattices(Part& part, const sweep::Plan& plan) {
   constexpr std::size_t most_lines = 10;
   std::vector<std::string> lines;
   for (std::int64_t group = 0; group < plan.num_groups() && lines.size() <= most_lines; ++group) {
     const ObstacleParameters obstacles = plan.group(group).obstacles;
     if (obstacles.layout != ObstacleLayout::lattice) continue;
-    if (std::string line = lattice_text(obstacles); std::ranges::find(lines, line) == lines.end())
-      lines.push_back(std::move(line));
+    std::string line = lattice_text(obstacles);
+    if (std::ranges::find(lines, line) != lines.end()) continue;
+    lines.push_back(std::move(line));
+    if (lines.size() <= most_lines)
+      part.json["lattices"].push_back({{"pitch", obstacles.spacing()},
+                                       {"row_spacing", row_spacing(obstacles)},
+                                       {"angle", obstacles.lattice_angle},
+                                       {"length", obstacles.period().along()},
+                                       {"box", obstacles.box}});
   }
   if (lines.size() > most_lines) lines.back() = "more lattices: not listed";
-  for (const std::string& line : lines) std::cout << "# " << line << '\n';
+  for (const std::string& line : lines) part.line("# {}", line);
 }
 
 std::string seeds_in_words(const sweep::Plan& plan) {
@@ -310,58 +366,72 @@ std::string seeds_in_words(const sweep::Plan& plan) {
 
 }  // namespace
 
-void print_tasks(const sweep::Plan& plan) {
+void print_tasks(const sweep::Plan& plan, PreviewFormat format) {
   constexpr std::int64_t most_lines = 1000;
   constexpr std::int64_t lines_at_an_end = 20;
   const std::int64_t num_skipped = plan.size() > most_lines ? plan.size() - 2 * lines_at_an_end : 0;
   const std::vector<const sweep::Column*> columns = varying_columns(plan);
-  std::cout << "# task";
-  for (const sweep::Column* column : columns) std::cout << ' ' << column->name;
-  std::cout << '\n';
-  for (std::int64_t task = 0; task < plan.size() && !console::stop_signalled(); ++task) {
+  Part part{.text = "# task",
+            .json = {{"number_of_tasks", plan.size()},
+                     {"parameter_sets", plan.num_groups()},
+                     {"runs", plan.num_runs()},
+                     {"tasks", Json::array()}}};
+  for (const sweep::Column* column : columns) part.text += ' ' + column->name;
+  part.text += '\n';
+  for (std::int64_t task = 0; task < plan.size(); ++task) {
+    if (console::stop_signalled()) return print_incomplete(part, format);
     if (num_skipped > 0 && task == lines_at_an_end) {
-      fmt::print(std::cout, "# ... {} more ...\n", num_skipped);
+      part.line("# ... {} more ...", num_skipped);
       task += num_skipped;
     }
-    print_task(plan, task, columns);
+    add_task(part, plan, task, columns);
   }
-  if (console::stop_signalled()) return;
-  fmt::print(std::cout, "# {}: {}, {} each\n", sweep::counted(plan.size(), "task"),
-             sweep::counted(plan.num_groups(), "parameter set"), seeds_in_words(plan));
+  part.line("# {}: {}, {} each", sweep::counted(plan.size(), "task"),
+            sweep::counted(plan.num_groups(), "parameter set"), seeds_in_words(plan));
   if (const std::int64_t number = plan.size() - plan.num_runs(); number > 0)
-    fmt::print(std::cout, "# {} the same {} in another laboratory, which {} once\n",
-               number == 1 ? "1 task is" : fmt::format("{} tasks are", number), number == 1 ? "run" : "runs",
-               number == 1 ? "is computed" : "are computed");
-  print_lattices(plan);
+    part.line("# {} the same {} in another laboratory, which {} once",
+              number == 1 ? "1 task is" : fmt::format("{} tasks are", number), number == 1 ? "run" : "runs",
+              number == 1 ? "is computed" : "are computed");
+  add_lattices(part, plan);
+  print(std::move(part), format);
 }
 
-void print_limits(const sweep::Plan& plan) {
-  for (const std::string& words : sweep::limits_of_results(plan))
-    std::cout << "# " << console::printable(words) << '\n';
+void print_refusal(const Refusal& refusal) {
+  const Refusal::About& about = refusal.about();
+  Json json = {{"refused", about.key.empty() ? about.excluded.front() : about.key}, {"text", refusal.what()}};
+  if (!about.nearest.empty()) json["nearest"] = about.nearest;
+  std::cout << console::json_text(json, -1);
 }
 
 int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule,
-               const sweep::JobFactory& jobs) {
+               const sweep::JobFactory& jobs, PreviewFormat format) {
+  Part part;
+  for (const std::string& words : sweep::limits_of_results(plan))
+    part.line("# {}", console::printable(words));
   const Stored stored = stored_runs(plan, output);
   const bool is_done = stored.num_done == plan.num_runs();
+  part.json = {{"runs", plan.num_runs()}, {"finished", stored.num_done}, {"spent", stored.seconds / hour}};
   if (is_done)
-    fmt::print(std::cout, "# {} has all {}, which took {:.2g} core-hours{}\n", console::printable(output),
-               sweep::counted(plan.num_runs(), "run"), stored.seconds / hour,
-               rule ? "" : "; nothing is left to do");
-  if (is_done && !rule) return console::exit_success;
-  const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan, jobs);
-  if (console::stop_signalled()) return console::exit_incomplete;
-  if (sample.costs.empty()) {
-    console::say("clogsweep: no trial run can start; the first one: " + sample.failure);
-    return console::exit_internal_fault;
+    part.line("# {} has all {}, which took {:.2g} core-hours{}", console::printable(output),
+              sweep::counted(plan.num_runs(), "run"), stored.seconds / hour,
+              rule ? "" : "; nothing is left to do");
+  if (!is_done || rule) {
+    const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan, jobs);
+    if (console::stop_signalled() || sample.costs.empty()) print_incomplete(part, format);
+    if (console::stop_signalled()) return console::exit_incomplete;
+    if (sample.costs.empty()) {
+      console::say("clogsweep: no trial run can start; the first one: " + sample.failure);
+      return console::exit_internal_fault;
+    }
+    const SweepCost of_trials = tried_cost(plan, sample);
+    const SweepCost cost =
+        stored.knows_enough() ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : of_trials;
+    if (!is_done) add_short_lengths(part, sample);
+    if (!is_done) add_expected(part, plan, sample, cost);
+    if (!is_done && stored.seconds > 0) add_left(part, plan, output, stored, cost);
+    if (rule) add_rounds(part, *rule, plan.size() / plan.num_groups(), with_expected(of_trials, cost));
   }
-  const SweepCost of_trials = tried_cost(plan, sample);
-  const SweepCost cost =
-      stored.knows_enough() ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : of_trials;
-  if (!is_done) print_short_lengths(sample);
-  if (!is_done) print_expected(plan, sample, cost);
-  if (!is_done && stored.seconds > 0) print_left(plan, output, stored, cost);
-  if (rule) print_rounds(*rule, plan.size() / plan.num_groups(), with_expected(of_trials, cost));
+  print(std::move(part), format);
   return console::exit_success;
 }
 

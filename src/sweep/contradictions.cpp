@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "clog/core/parameters/refusal.hpp"
 #include "clog/core/scene/scene.hpp"
-#include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -31,24 +31,27 @@ bool has_point_of_entrance(const Settings& settings) {
   });
 }
 
+/// @throws Refusal, because a key excludes another one that is given as well
+[[noreturn]] void refuse_one_of(const Settings& settings, const std::string& key, const std::string& other) {
+  throw Refusal({.key = key, .excluded = {other}}, settings.text(key),
+                fmt::format("{}={} is given as well", other, settings.text(other)), "leave one of them out");
+}
+
 /// Refuses keys of the interface that have no effect because of another key.
 void refuse_interface_keys(const Settings& settings) {
   if (settings.text("model") == "sp") {
     if (settings.text("preset") != find_key("preset").default_text)
-      throw Error("invalid preset=" + settings.text("preset") +
-                  " (model=sp has no interface) leave it out, or use model=dp");
+      throw Refusal({.key = "preset", .named = {"model"}}, settings.text("preset"),
+                    "model=sp has no interface", "leave it out, or use model=dp");
     return;
   }
   const std::string ratio = "perimeter-stiffness-ratio";
   if (!is_changed(settings, ratio)) return;
   if (settings.text("perimeter-spring") != "rest")
-    throw Error(
-        fmt::format("invalid {}={} (it belongs to perimeter-spring=rest, not to {}) give "
-                    "perimeter-stiffness, or add perimeter-spring=rest",
-                    ratio, settings.text(ratio), settings.text("perimeter-spring")));
-  if (settings.text("perimeter-stiffness") != "auto")
-    throw Error(fmt::format("invalid {}={} (perimeter-stiffness={} is given as well) leave one of them out",
-                            ratio, settings.text(ratio), settings.text("perimeter-stiffness")));
+    throw Refusal({.key = ratio, .named = {"perimeter-spring"}}, settings.text(ratio),
+                  "it belongs to perimeter-spring=rest, not to " + settings.text("perimeter-spring"),
+                  "give perimeter-stiffness, or add perimeter-spring=rest");
+  if (settings.text("perimeter-stiffness") != "auto") refuse_one_of(settings, ratio, "perimeter-stiffness");
 }
 
 }  // namespace
@@ -56,38 +59,37 @@ void refuse_interface_keys(const Settings& settings) {
 void refuse_contradictions(const Settings& settings) {
   refuse_interface_keys(settings);
   if (const std::vector<std::string> missing = settings.missing_files(); !missing.empty())
-    throw Error("invalid obstacles=" + missing.front() + " (the file has not been read)");
+    throw Refusal({.key = circles_key}, missing.front(), "the file has not been read", "");
   if (is_changed(settings, "pitch") && is_changed(settings, "obstacle-gap"))
-    throw Error(fmt::format("invalid pitch={} (obstacle-gap={} is given as well) leave one of them out",
-                            settings.text("pitch"), settings.text("obstacle-gap")));
+    refuse_one_of(settings, "pitch", "obstacle-gap");
   const std::string& layout = settings.text("obstacle-layout");
   if (layout != "file" && settings.text(circles_key) != "none")
-    throw Error("obstacles and obstacle-layout=" + layout + " contradict each other; leave one of them out");
+    throw Refusal({.excluded = {"obstacle-layout"}}, "obstacles and obstacle-layout=" + layout +
+                                                         " contradict each other; leave one of them out");
   const Scene* scene = settings.scene();
   if (scene && scene->walls_from == WallsFrom::droplet && settings.text("seeds") != "1")
-    throw Error(fmt::format("invalid seeds={} (nothing is random with obstacle-layout={}) leave it out",
-                            settings.text("seeds"), layout));
+    throw Refusal({.key = "seeds", .named = {"obstacle-layout"}}, settings.text("seeds"),
+                  "nothing is random with obstacle-layout=" + layout, "leave it out");
   if (layout != "file") return;
   if (!settings.is_given("box"))
-    throw Error("invalid obstacles=" + settings.text(circles_key) +
-                " (nothing says how wide their array is) give box, the width after which it repeats");
+    throw Refusal({.key = circles_key}, settings.text(circles_key), "nothing says how wide their array is",
+                  "give box, the width after which it repeats");
   for (const char* key : {"obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "lattice-angle"})
     if (is_changed(settings, key))
-      throw Error(
+      throw Refusal(
+          {.excluded = {key}},
           fmt::format("obstacles and {0}={1} contradict each other (the file's own gap, density and layout "
                       "count); leave it out, or give {0}={2}",
                       key, settings.text(key), find_key(key).default_text));
   if (settings.values("seeds").size() > 1 && settings.text("release") == "centre")
-    throw Error(
-        fmt::format("invalid seeds={} (the droplet starts at the centre of your circles, whatever the seed) "
-                    "add release=anywhere or release=entrance, or give one seed",
-                    settings.text("seeds")));
+    throw Refusal({.key = "seeds", .added = "release"}, settings.text("seeds"),
+                  "the droplet starts at the centre of your circles, whatever the seed",
+                  "add release=anywhere or release=entrance, or give one seed");
   if (settings.values("seeds").size() > 1 && settings.text("release") == "entrance" &&
       has_point_of_entrance(settings))
-    throw Error(
-        fmt::format("invalid seeds={} (entrance-from and entrance-to are equal: the droplet starts there, "
-                    "whatever the seed) give an entrance of some width, or one seed",
-                    settings.text("seeds")));
+    throw Refusal({.key = "seeds"}, settings.text("seeds"),
+                  "entrance-from and entrance-to are equal: the droplet starts there, whatever the seed",
+                  "give an entrance of some width, or one seed");
 }
 
 std::string why_nothing_is_random(const RunParameters& run) {

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "clog/core/parameters/refusal.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
@@ -23,39 +24,40 @@ namespace {
 
 constexpr std::int64_t largest_sweep = 100'000'000;
 
-/// Why a check refused a value of this key although the user may have meant something possible: another list,
-/// or a decimal instead of a list. Empty if neither.
+bool contains(const std::vector<std::string>& all, const std::string& one) {
+  return std::ranges::find(all, one) != all.end();
+}
+
+/// Why a check refused a value although the user may have meant something possible: another list, or a
+/// decimal instead of a list. Empty if neither.
 /// @param lists  all lists of the sweep, of which a branch has one value if they are words
-std::string hint_at_list(const Settings& branch, const Settings& lists, const Key& key,
-                         const std::string& message) {
-  const bool is_list = branch.values(key.name).size() > 1;
+std::string hint_at_list(const Settings& branch, const Settings& lists, const Refusal& refusal) {
+  const std::string& key = refusal.about().key;
+  if (std::ranges::find(keys(), key, &Key::name) == keys().end()) return "";
+  const bool is_list = branch.values(key).size() > 1;
   for (const Key& other : keys())
-    if (other.name != key.name && message.find(other.name + "=") != std::string::npos &&
-        lists.values(other.name).size() > 1)
+    if (other.name != key && refusal.names(other.name) && lists.values(other.name).size() > 1)
       return (is_list ? "; each value of a list meets all of the other"
                       : fmt::format("; it meets each value of {}", other.name)) +
              "; to pair values, see clogsweep --points";
   if (!is_list) return "";
   constexpr std::size_t most_digits = 2;  // before a comma that may be a decimal one
-  const std::string& list = branch.text(key.name);
+  const std::string& list = branch.text(key);
   const std::string meant = with_decimal_point(list);
   return meant.find('.') <= most_digits ? fmt::format("; {} are two values: did you mean {}?", list, meant)
                                         : "";
 }
 
-/// The key that a message refuses although the point does not set it: it is given for all points.
+/// The refused key if the point does not set it: it is given for all points.
 /// @param common  settings with the points
-const Key* refused_for_point(const Settings& common, std::size_t point, const std::string& message) {
+const Key* refused_for_point(const Settings& common, std::size_t point, const Refusal::About& refused) {
   const Points& points = common.points();
   for (const Key& key : keys()) {
     if (!common.is_given(key.name)) continue;
     const auto column =
         static_cast<std::size_t>(std::ranges::find(points.keys, key.name) - points.keys.begin());
     if (column < points.keys.size() && !points.rows[point][column].empty()) continue;
-    const std::string given = fmt::format("{}={} ", key.name, common.text(key.name));
-    for (const std::string& part :
-         {fmt::format("invalid {}=", key.name), "(" + given + "is given", "and " + given + "contradict"})
-      if (message.find(part) != std::string::npos) return &key;
+    if (key.name == refused.key || contains(refused.excluded, key.name)) return &key;
   }
   return nullptr;
 }
@@ -63,20 +65,17 @@ const Key* refused_for_point(const Settings& common, std::size_t point, const st
 /// The refusal of a point. If it is about a key that is given for all points, the remedy is a column of it,
 /// in place of a value that other points have.
 /// @param common  settings with the points
-std::string refusal_of_point(const Settings& common, std::size_t point, std::string message) {
+std::string refusal_of_point(const Settings& common, std::size_t point, const Refusal& refusal) {
   const Points& points = common.points();
-  const Key* const key = refused_for_point(common, point, message);
-  if (!key || points.rows.size() == 1) return message;
-  const bool is_column = std::ranges::find(points.keys, key->name) != points.keys.end();
-  const auto remedy = message.find(") add ");
-  const bool has_value =
-      remedy != std::string::npos && std::ranges::any_of(points.keys, [&](const auto& other) {
-        return message.compare(remedy, other.size() + 7, ") add " + other + "=") == 0;
-      });
-  if (has_value) message.resize(remedy + 1);
-  return fmt::format("{}{}to give {} for some points, {}", message, has_value ? " " : "; ", key->name,
-                     is_column ? "leave it out elsewhere and write it in their cells of the points file"
-                               : "make it a column of the points file, with empty cells for the others");
+  const Key* const key = refused_for_point(common, point, refusal.about());
+  if (!key || points.rows.size() == 1) return refusal.what();
+  const bool has_value = contains(points.keys, refusal.about().added);
+  return fmt::format("{}to give {} for some points, {}",
+                     has_value ? refusal.without_remedy() + ' ' : std::string(refusal.what()) + "; ",
+                     key->name,
+                     contains(points.keys, key->name)
+                         ? "leave it out elsewhere and write it in their cells of the points file"
+                         : "make it a column of the points file, with empty cells for the others");
 }
 
 /// Calls check() for one branch of the settings, and returns its result. If a list may be the reason why the
@@ -86,12 +85,10 @@ template <class Check>
 auto checked(const Settings& branch, const Settings& lists, const std::string& where,
              const Check& check) try {
   return check();
+} catch (const Refusal& refusal) {
+  throw refusal.between(where, hint_at_list(branch, lists, refusal));
 } catch (const Error& error) {
-  std::string message = error.what();
-  for (const Key& key : keys())
-    if (message.starts_with("invalid " + key.name + "="))
-      message += hint_at_list(branch, lists, key, message);
-  throw Error(where + message);
+  throw Error(where + error.what());
 }
 
 std::vector<std::uint32_t> seeds_of(const Settings& settings) {
@@ -154,8 +151,8 @@ class Plan::Builder {
   /// @param common  settings with the points
   void add_point(const Settings& branch, const Settings& common, std::int64_t point) try {
     add_branch(branch, branch, fmt::format("point {}", point + 1));
-  } catch (const Error& error) {
-    throw Error(refusal_of_point(common, static_cast<std::size_t>(point), error.what()));
+  } catch (const Refusal& refusal) {
+    throw Refusal(refusal.about(), refusal_of_point(common, static_cast<std::size_t>(point), refusal));
   }
 
   /// @param lists  as in hint_at_list(); @param name  of the branch, for messages
@@ -205,10 +202,11 @@ class Plan::Builder {
       box = std::max(box, box_that_fits(obstacles));
     }
     if (angles.size() > 1)
-      throw Error(
-          fmt::format("{}invalid lattice-angle={} (no lattice within {:.3g} degrees of any of these has "
-                      "so short a period) use box={} or more, or leave them out",
-                      where, joined(angles, ","), largest_angle_error, box));
+      throw Refusal({.key = "lattice-angle"}, joined(angles, ","),
+                    fmt::format("no lattice within {:.3g} degrees of any of these has so short a period",
+                                largest_angle_error),
+                    fmt::format("use box={} or more, or leave them out", box))
+          .between(where, "");
   }
 
   /// The number of groups. It excludes the seeds, which are counted only to check the largest number of runs.

@@ -271,6 +271,40 @@ class Sweep(ProgramTest):
                     self.assertEqual(tasks, [*range(20), *range(num_tasks - 20, num_tasks)])
                     self.assertIn(f"# ... {num_tasks - 40} more ...", told)
 
+    def test_a_dry_run_as_json_has_a_line_with_the_tasks_then_one_with_the_cost(self):
+        sweep = [*QUICK, "line-tension=0.5,1", "--output", "s.h5"]
+        self.succeed("clogsweep", *sweep, "seeds=1..3")  # runs enough for an estimate, so all dry runs print the same numbers
+        for more, fields in [(["seeds=1..3"], []), (["seeds=1..30"], ["sample", "left"]), (["seeds=1..501"], ["sample", "left"]),
+                             (["seeds=1..12", "--until-precision=20%", "--most-seeds=40"], ["sample", "left", "all_rounds"])]:
+            with self.subTest(more=more):
+                text = self.succeed("clogsweep", *sweep, *more, "--dry-run", "--format", "text").stdout
+                plan, cost = map(json.loads, self.succeed("clogsweep", *sweep, *more, "--dry-run", "--format=json").stdout.splitlines())
+                self.assertEqual(plan["text"] + cost["text"], text)
+                names = text.splitlines()[0].removeprefix("# ").split()
+                lines = [[float(word) for word in line.split()] for line in text.splitlines() if line[0].isdigit()]
+                self.assertEqual([[task[name] for name in names] for task in plan["tasks"]], lines)
+                self.assertIn(f"# {plan['number_of_tasks']} tasks: {plan['parameter_sets']} parameter sets, ", text)
+                self.assertEqual((cost["runs"], cost["finished"], [name for name in ("sample", "left", "all_rounds") if name in cost]),
+                                 (plan["number_of_tasks"], 6, fields))
+                hours = [f"{of['expected']:.2g} core-hours (95 %: {of['lower']:.2g} to {of['upper']:.2g})" for of in self.estimates(cost)]
+                more_hours = [words.replace(" more", "") for words in re.findall(r"expected (\S+ core-hours(?: more)? \([^)]+\))", text)]
+                self.assertEqual(hours, more_hours)
+                if fields:
+                    self.assertIn(f"at most {cost['at_most']:.3g} core-hours on this machine, {cost['us_per_step']:.3g} us per step", text)
+                    self.assertIn(f"from {cost['sample']['runs']} runs {cost['sample']['source']}, {cost['sample']['ended']} of them ended", text)
+                else:
+                    self.assertIn(f"which took {cost['spent']:.2g} core-hours", text)
+
+    def estimates(self, cost):
+        """The estimates of a dry run's cost, in the order of the text."""
+        rounds = cost.get("all_rounds", {})
+        return [of for of in (cost, cost.get("left"), rounds.get("if_all_clog"), rounds.get("if_few_clog")) if of and "expected" in of]
+
+    def test_a_format_is_only_for_dry_runs(self):
+        for words, reason in [(["--format=json"], "--format needs --dry-run"), (["--format=csv", "--dry-run"], "is not one of text, json"),
+                              (["--format=json", "--dry-run", "--print-config"], "--print-config prints no JSON")]:
+            self.refuse("clogsweep", *QUICK, *words, words=[reason])
+
     def test_a_dry_run_within_the_box_and_the_tested_range_has_nothing_to_add(self):
         told = self.succeed("clogsweep", *QUICK, "--dry-run").stdout
         self.assertNotIn("box", told)

@@ -70,6 +70,13 @@ class Curve(ProgramTest):
         self.assertLess(up["line_tension_lower"], up["line_tension"])
         self.assertTrue(0.03 < up["line_tension"] < 0.1 and 1 < down["line_tension"] < 3)
 
+    def test_a_sweep_may_have_the_name_of_a_command(self):
+        self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
+        told = self.succeed("clogfit", "curve", "sweep.h5").stdout
+        for name in ("curve", "units"):  # a command in Python, and one in C++
+            (self.folder / name).write_bytes((self.folder / "sweep.h5").read_bytes())
+            self.assertEqual(self.succeed("clogfit", "curve", f"./{name}").stdout, told)
+
     def test_text_and_csv_say_the_same(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
         text = self.succeed("clogfit", "curve", "sweep.h5", "--crossing=0.5,1e5").stdout

@@ -138,14 +138,14 @@ def column(name, role="physics", **more):
 
 
 COLUMNS = [column("line_tension", unit="g rho sigma^2"), column("obstacle_gap", shapes_array=True), column("friction"), column("inertia", "numerics"),
-           column("time_step", "numerics", automatic_in="all"), {"name": "obstacle_density", "unit": "", "kind": "number", "shapes_array": True},
+           column("time_step", "numerics"), {"name": "obstacle_density", "unit": "", "kind": "number", "shapes_array": True},
            {"name": "preset", "unit": "", "kind": "word", "shapes_array": False}]
 TENSIONS = (0.1, 0.3, 1.0, 3.0)
 
 
 def group(line_tension, **more):
     usual = {"model": "dp", "obstacle_filling": "saturated", "obstacle_density": 1.0, "obstacle_gap": 0.2, "obstacle_diameter": 0.3, "friction": 0.0,
-             "inertia": 1.0, "time_step": line_tension, "preset": "robust", "exit": 0.0, "runs": 6, "clogs": 6, "total_distance": 12.0,
+             "inertia": 1.0, "time_step": line_tension, "automatic": ["time_step", "obstacle_density"], "preset": "robust", "exit": 0.0, "runs": 6, "clogs": 6, "total_distance": 12.0,
              "clogging_length": 2.0, "clogging_length_lower": 1.0, "clogging_length_upper": 4.0, "wrapped": 6, "squeezed": 0,
              "hybrid": 0, "other": 0, "broken": 0}
     return usual | {"line_tension": line_tension} | more

@@ -80,7 +80,7 @@ class EveryKey(ProgramTest):
     def tasks_of_points(self, points, *settings):
         self.write("points.csv", points)
         words = [word.replace("posts.csv", str(self.folder / "posts.csv")) for word in settings]
-        return tasks_of(refine.printed_tasks(BIN / "clogsweep", *words, "--points", self.folder / "points.csv"))
+        return tasks_of(refine.planned(BIN / "clogsweep", *words, "--points", self.folder / "points.csv"))
 
     def tasks(self, keys, settings, values):
         return self.tasks_of_points(driver.points_text(keys, [(one, (1, 1)) for one in values]), *settings)
@@ -96,9 +96,9 @@ class EveryKey(ProgramTest):
             if column["kind"] in ("word", "text"):
                 rows[column["name"]] = ""
             if column["name"] in tasks:
-                texts = list(tasks[column["name"]]) * copies
-                rows[column["name"]] = ["" if text == "-" else text for text in texts] if column["kind"] in ("word", "text") else [
-                    math.nan if text == "-" else float(text) for text in texts]
+                values = list(tasks[column["name"]]) * copies
+                rows[column["name"]] = [value or "" for value in values] if column["kind"] in ("word", "text") else [
+                    math.nan if value is None else float(value) for value in values]
         return rows.assign(task=range(len(rows)), seed=range(1, len(rows) + 1), model="dp", vertices=64.0)
 
     def check_membership(self, keys, settings, values):
@@ -426,14 +426,30 @@ class CriticalAngle(RefineTest):
         self.assertIn("critical-angle=0.5 is reached", finer.stderr)
         self.assertGreater(len(table(self.folder / "s.h5")), len(rows))
 
-    def test_lattices_of_every_kind_are_those_that_clogsweep_takes(self):
-        for kind in ("square", "triangular", "rhombic"):
-            for wanted in (8, 13.3, 21):
-                told = self.succeed("clogsweep", "obstacle-layout=lattice", f"lattice={kind}", "pitch=3",
-                                    "obstacle-diameter=1", "box=200", "seeds=1", f"lattice-angle={wanted}",
-                                    "max-time=1", "--dry-run").stdout
-                angle = critical_angle.nearest_lattice(3, wanted, 200, kind)
+    def test_the_lattice_nearest_to_an_angle_is_that_of_clogsweep(self):
+        lattice = ["obstacle-layout=lattice", "pitch=3", "obstacle-diameter=1", "seeds=1", "max-time=1"]
+        for words, wanted in [(["box=200"], 13.3), (["box=200", "lattice=triangular"], 21),
+                              (["box=200", "lattice=rhombic"], 8),
+                              (["box=20"], 13.3), (["box=20"], 24), (["box=200", "lattice=rhombic", "length=13"], 8)]:
+            with self.subTest(words=words, wanted=wanted):
+                planned = refine.planned(BIN / "clogsweep", *lattice, *words, f"lattice-angle={wanted}")
+                angle = critical_angle.nearest_angle(planned, wanted)
+                told = self.succeed("clogsweep", *lattice, *words, f"lattice-angle={angle}", "--dry-run").stdout
                 self.assertIn(f"at {angle:.4g} degrees (tan", told)
+                if words == ["box=20"]:  # no lattice is within the 0.1 degrees that clogsweep allows
+                    tilts = [math.degrees(math.atan2(q, p)) for p in range(1, 7) for q in range(p) if 4 <= p * p + q * q <= (20 / 3)**2]
+                    self.assertAlmostEqual(angle, min(tilts, key=lambda tilt: abs(tilt - wanted)))
+                elif "length=13" in words:  # four columns, each shifted by q/4 of the pitch
+                    self.assertAlmostEqual(angle, math.degrees(math.atan(1 / 4)))
+        self.assertIsNone(critical_angle.nearest_angle(refine.planned(BIN / "clogsweep", *lattice, "box=5.2", "lattice-angle=8"), 8))
+
+    def test_a_lattice_of_a_given_length_is_searched_among_lattices_of_this_length(self):
+        words = ["obstacle-layout=lattice", "lattice=rhombic", "obstacle-gap=2", "obstacle-diameter=1", "vertices=64", "terminal-speed=0.1", "box=100", "length=30"]
+        told = self.refine("lattice-angle", *words, "seeds=1", "lattice-angle=11.31,45", "max-time=10", "--budget=1h", "--dry-run").stdout
+        angles = [float(line.split("at ")[1].split()[0]) for line in told.splitlines() if "rhombic lattice" in line]
+        self.assertEqual(len(angles), 5)
+        for angle in angles:
+            self.assertTrue(any(abs(math.tan(math.radians(angle)) * p - round(math.tan(math.radians(angle)) * p)) < 1e-3 for p in range(2, 11)), angle)
 
     def test_what_does_not_bracket_it_is_said(self):
         for angles, max_time, words in [("32.5,35,40", 1000,

@@ -200,7 +200,7 @@ TEST_P(EveryKey, MakesTwoLinesOfADryRun) {
   if (GetParam().kind == ValueKind::word) return;  // sweeps have no lists of words
   const sweep::Plan plan = plan_of_both(GetParam());
   testing::internal::CaptureStdout();
-  print_tasks(plan);
+  print_tasks(plan, PreviewFormat::text);
   std::istringstream lines(testing::internal::GetCapturedStdout());
   std::string header, one, other;
   std::getline(lines, header);

@@ -17,14 +17,13 @@ import json
 import math
 import os
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
-import pandas
 
 from ..reading import programs, stored
 from ..refinement import critical_angle, curve_search, driver, goals
@@ -76,8 +75,9 @@ def require_keys(keys: Sequence[str], config: dict[str, str], schema: dict[str, 
                         "values in a sweep")
 
 
-def search_of(arguments: argparse.Namespace, keys: list[str], config: dict[str, str]) -> driver.Search:
-    """@throws UserError"""
+def search_of(arguments: argparse.Namespace, keys: list[str], config: dict[str, str],
+              plan_of: Callable[[Sequence[Values]], dict[str, Any]]) -> driver.Search:
+    """@param plan_of  see planned(). @throws UserError"""
     if not (arguments.until or arguments.budget):
         raise UserError("refine needs an end; try --until curve=20%, or --budget 10h")
     budget = goals.parse_budget(arguments.budget) if arguments.budget else math.inf
@@ -91,7 +91,8 @@ def search_of(arguments: argparse.Namespace, keys: list[str], config: dict[str, 
         if arguments.same_seeds or arguments.most_seeds:
             raise UserError("invalid --same-seeds or --most-seeds (each angle gets the seeds of `seeds`); leave them out")
         critical_angle.require_angles(config[critical_angle.KEY], lists[0], config["lattice"])
-        return critical_angle.AngleSearch(lists[0], config, len(seeds), goal.precision, budget)
+        return critical_angle.AngleSearch(lists[0], float(config["box"]), len(seeds), goal.precision, budget,
+                                          lambda angle: critical_angle.nearest_angle(plan_of([(angle,)]), angle))
     if goal.kind == "critical-angle":
         raise UserError(f"invalid --until={arguments.until} (is found over the angle of a lattice) try refine lattice-angle")
     if goal.kind == "crossing" and len(keys) > 1:
@@ -116,23 +117,18 @@ def changing_density(keys: Sequence[str], config: dict[str, str]) -> str:
             "a number, such as obstacle-density=0.2, keeps it")
 
 
-def printed_tasks(*command: object) -> str:
-    """The tasks that a dry run prints. The dry run is stopped before it estimates their cost. @throws UserError"""
-    words = [*map(str, command), "--dry-run"]
-    lines: list[str] = []
+def planned(*command: object) -> dict[str, Any]:
+    """The first line of a dry run, which is stopped before it estimates the cost. @throws UserError"""
+    words = [*map(str, command), "--dry-run", "--format", "json"]
     with tempfile.TemporaryFile("w+", encoding="utf-8", errors="backslashreplace") as errors:
         with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, encoding="utf-8", errors="backslashreplace", env=_alone()) as process:
-            for line in process.stdout or ():
-                lines.append(line)
-                if re.match(r"# \d+ tasks?:", line):
-                    process.terminate()
-                    break
-            else:
-                lines.clear()
+            plan = process.stdout.readline() if process.stdout else ""
+            if plan:
+                process.terminate()
         errors.seek(0)
         reason = programs.reason(errors.read())
-    if lines:
-        return "".join(lines)
+    if plan:
+        return json.loads(plan)
     if process.returncode == command_line.USER_FAULT:
         raise UserError(reason.removeprefix("clogsweep: "))
     raise ProgramFailed(reason, process.returncode)
@@ -160,12 +156,19 @@ def body() -> int:
     schema = json.loads(programs.run_program(clogsweep, "--schema"))
     values = stored.settings(config)
     require_keys(keys, values, schema)
-    search = search_of(arguments, keys, values)
-    if (note := changing_density(keys, values)) and not arguments.quiet:
-        print(f"python3 -m clogsweep refine: {note}", file=sys.stderr)
-
     with tempfile.TemporaryDirectory(prefix="clogsweep-refine-") as temporary:
         folder = pathlib.Path(temporary)
+        driver.store(folder / "settings.cfg", config)
+
+        def plan_of(asked: Sequence[Values]) -> dict[str, Any]:
+            draft = folder / "points.csv"
+            first = int(numbers(values["seeds"])[0])
+            driver.store(draft, driver.points_text(keys, [(one, (first, 1)) for one in asked]))
+            return planned(clogsweep, "--config", folder / "settings.cfg", "--points", draft)
+
+        search = search_of(arguments, keys, values, plan_of)
+        if (note := changing_density(keys, values)) and not arguments.quiet:
+            print(f"python3 -m clogsweep refine: {note}", file=sys.stderr)
         # Searches with the same settings and the same first round share their files, even if their goals differ,
         # because they can use the same rounds.
         content = config + driver.points_text(keys, search.first_round()) + _circles(values["obstacles"])
@@ -175,26 +178,17 @@ def body() -> int:
         options = ["--config", settings, *(f"--{name}={value}" for name in PASSED_ON if name != "lab"
                                            and (value := getattr(arguments, name.replace("-", "_")))),
                    *(f"--{name}" for name in ("verbose", "quiet") if getattr(arguments, name))]
-        driver.store(folder / "settings.cfg", config)
-
-        def resolve(asked: Sequence[Values]) -> pandas.DataFrame:
-            draft = folder / "points.csv"
-            first = int(numbers(values["seeds"])[0])
-            driver.store(draft, driver.points_text(keys, [(one, (first, 1)) for one in asked]))
-            return tasks_of(printed_tasks(clogsweep, "--config", folder / "settings.cfg", "--points", draft))
-
-        members = Membership(keys, schema, search.candidates, resolve)
+        members = Membership(keys, schema, search.candidates, lambda asked: tasks_of(plan_of(asked)))
         driver.store(settings, config)
         if not arguments.dry_run:
             launcher = driver.Launcher([*starter, clogsweep])
             return driver.refine(search, members, launcher, options, points, arguments.output, arguments.max_hours)
         driver.store(points, driver.points_text(keys, search.first_round()))
         there = ["--output", arguments.output] if arguments.output and arguments.output.exists() else []
-        told = programs.run_program(clogsweep, *options, "--points", points, "--dry-run", *there)
-        print(told, end="")
-        hours = re.search(r"expected ([\d.e+-]+) core-hours|which took ([\d.e+-]+) core-hours", told)
-        number = re.search(r"^# (\d+) tasks?:", told, re.MULTILINE)
-        each = float(hours[1] or hours[2]) / int(number[1]) if hours and number else math.nan
+        told = programs.run_program(clogsweep, *options, "--points", points, "--dry-run", "--format", "json", *there)
+        plan, cost = map(json.loads, told.rstrip("\n").split("\n"))
+        print(plan["text"], cost["text"], sep="", end="")
+        each = cost.get("expected", cost["spent"]) / plan["number_of_tasks"]
         print("".join(f"# {line}\n" for line in search.costs(each)), end="")
         return 0
 

@@ -52,7 +52,8 @@ def place_of(group: Group, keys: Iterable[Column]) -> list[float]:
 def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
     """Whether the parameter's value follows from other parameters. A value that the sweep itself lists never follows
     from others."""
-    return column.get("automatic_in") in ("all", group["model"]) and column["name"] not in fit["lists"]
+    name = column["name"]
+    return name not in fit["lists"] and (name in group["automatic"] or name in fit.get("following", ()))
 
 
 def may_be_key(fit: Fit, column: Column) -> bool:

@@ -151,8 +151,7 @@ class Groups:
             return True  # Gap and density follow from the circles and the length of their array.
         if name in self.lists or self._is_given_number(name):
             return False
-        of_filling = fillings <= {"saturated", *LATTICES} or bool(self._share_of_saturated())
-        from_array = (name == "obstacle_density" and of_filling) or (name in ("box", "length") and self.are_lattices)
+        from_array = (name == "obstacle_density" and bool(self._share_of_saturated())) or (name in ("box", "length") and self.are_lattices)
         return from_array or all(name in group["automatic"] for group in self.members)
 
     def _is_of_preset(self, name: str) -> bool:

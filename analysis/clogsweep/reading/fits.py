@@ -13,7 +13,13 @@ from . import programs, stored
 
 def told(clogfit: pathlib.Path, *words: object) -> dict[str, Any]:
     """The answer of clogfit for these sweeps and options. @throws ProgramFailed  with clogfit's reason"""
-    return json.loads(programs.run_program(clogfit, *words, "--format", "json"))
+    return json.loads(programs.run_program(clogfit, *map(as_file, words), "--format", "json"))
+
+
+def as_file(word: object) -> object:
+    """A path in a form that no program takes for one of its commands, such as clogfit curve. Paths of Python drop the
+    ./ of ./curve."""
+    return f"./{word}" if isinstance(word, pathlib.PurePath) and len(word.parts) == 1 and not word.suffix else word
 
 
 PLACES = {"channel": "channels", "wall": "a flat wall"}  # where droplets have no clogging length, by obstacle_filling
@@ -46,7 +52,8 @@ def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
     """Converts a fit of several droplets in a laboratory. The diameter and the tilt become parameters, and lengths are
     converted to mm. In droplet diameters the same array would have other lengths for each droplet. Lattices
     have the angle that was asked for, because the possible angles differ between the droplets. "in_table" of a group
-    contains its values as they are in the sweep's table. Any other fit stays unchanged."""
+    contains its values as they are in the sweep's table, and "following" names the parameters whose values follow from
+    the droplet. Any other fit stays unchanged."""
     groups = fit["groups"]
     if "laboratory" in fit or "in_mm" in fit or not groups or not all(group.get("diameter_mm") for group in groups):
         return fit
@@ -60,10 +67,10 @@ def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
         return group | {"in_table": group} | lengths | nominal
 
     groups = [scaled(group) for group in groups]
-    columns = [column | ({"unit": column["unit"].replace("sigma", "mm")} if powers[column["name"]] else {}) |
-               ({"automatic_in": "all"} if follows(groups, column["name"], DROPLETS) else {}) for column in fit["columns"]]
-    names = [column["name"] for column in columns if column.get("automatic_in") != "all"]
-    return fit | {"groups": groups, "columns": [*droplet_columns().values(), *columns], "lists": [*DROPLETS, *(name for name in fit["lists"] if name in names)], "in_mm": True}
+    columns = [column | ({"unit": column["unit"].replace("sigma", "mm")} if powers[column["name"]] else {}) for column in fit["columns"]]
+    following = [name for name in powers if follows(groups, name, DROPLETS)]
+    return fit | {"groups": groups, "columns": [*droplet_columns().values(), *columns], "in_mm": True, "following": following,
+                  "lists": [*DROPLETS, *(name for name in fit["lists"] if name not in following)]}
 
 
 def droplet_columns() -> dict[str, Column]:

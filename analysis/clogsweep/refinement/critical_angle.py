@@ -1,10 +1,10 @@
 """Searches for the critical angle of a lattice. Up to this angle droplets follow the rows, and beyond it they leave the
 rows."""
 
-import functools
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import pandas
@@ -16,8 +16,6 @@ from .membership import Membership, Values
 
 KEY = "lattice-angle"
 FOLLOWING = ("lattice_angle", "length", "box")  # The angle, and parameters that follow from it.
-SMALLEST_BOX = 5.0  # Smallest side of a box [sigma]. A box also has at least two spacings.
-ROUNDING = 1e-9
 DECIMALS = 6  # Decimals to which an angle is rounded. Angles of different lattices differ by far more.
 MOST_ROWS_OFF = 1.0  # A droplet follows the rows if it comes no farther off its row than this many row spacings.
 # A run can show that droplets follow the rows only if a straight path of its length would cross at least this many
@@ -74,24 +72,11 @@ def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFr
     return pandas.DataFrame(lines, columns=[*varying, "lower", "upper", "runs"])
 
 
-def nearest_lattice(spacing: float, angle: float, box: float, kind: str = "square") -> float | None:
-    """The angle nearest to `angle` for which the lattice has periods of at most `box`. Such angles have tan(angle) =
-    q/p, or sqrt(3) q/p for triangular lattices, with whole numbers p and q."""
-    unit = math.sqrt(3) if kind == "triangular" else 1
-    p = np.arange(1, int(box * (1 + ROUNDING) / spacing * (2 if kind == "triangular" else 1)) + 1)
-    q = np.floor(p * math.tan(math.radians(angle)) / unit).astype(int)
-    p, q = np.concatenate([p, p]), np.concatenate([q, q + 1])
-    if kind == "square":
-        periods = [spacing * np.hypot(p, q)]
-    else:
-        p, q = p // np.gcd(p, q), q // np.gcd(p, q)
-        along = p if kind == "rhombic" else np.hypot(p, unit * q) * np.where((p - q) % 2, 1, 0.5)
-        across = np.ones_like(p) if kind == "rhombic" else unit * along / np.where(p % 3, 1, 3)
-        # The longest multiples of the periods that fit into the box.
-        periods = [period * np.floor(box * (1 + ROUNDING) / period) for period in (spacing * along, spacing * across)]
-    fits = [(period >= max(SMALLEST_BOX, 2 * spacing) * (1 - ROUNDING)) & (period <= box * (1 + ROUNDING)) for period in periods]
-    angles = np.degrees(np.arctan2(unit * q, p))[np.all(fits, axis=0)]
-    return float(angles[np.argmin(abs(angles - angle))]) if angles.size else None
+def nearest_angle(plan: dict[str, Any], angle: float) -> float | None:
+    """The angle nearest to `angle` for which the lattice has a period in its box. @param plan  first line of `clogsweep
+    --dry-run --format json` with this `lattice-angle`, which clogsweep takes if such an angle is near"""
+    angles = plan.get("nearest", []) if "refused" in plan else [lattice["angle"] for lattice in plan["lattices"]]
+    return min(angles, key=lambda one: abs(one - angle), default=None)
 
 
 class AngleSearch:
@@ -100,13 +85,13 @@ class AngleSearch:
 
     keys: Sequence[str] = (KEY,)
 
-    def __init__(self, given: Sequence[float], config: dict[str, str], num_seeds: int, width: float, budget: float) -> None:
-        """@param given  angles, increasing; @param config  settings by key
-        @param width  width of the bracket at which the search ends; 0 if only the budget ends the search"""
+    def __init__(self, given: Sequence[float], box: float, num_seeds: int, width: float, budget: float,
+                 nearest: Callable[[float], float | None]) -> None:
+        """@param given  angles, increasing
+        @param width  width of the bracket at which the search ends; 0 if only the budget ends the search
+        @param nearest  the nearest angle at which there is a lattice, see nearest_angle()"""
         self.end = ""
-        spacing = float(config["pitch"]) or float(config["obstacle-gap"]) + float(config["obstacle-diameter"])
-        self._width, self._budget, self._box, self._num_seeds = width, budget, float(config["box"]), num_seeds
-        self._lattice = functools.partial(nearest_lattice, spacing, box=self._box, kind=config["lattice"])
+        self._width, self._budget, self._box, self._num_seeds, self._nearest = width, budget, box, num_seeds, nearest
         inner = self._within(given[0], given[-1], given) if len(given) == 2 else []
         self.candidates: list[Values] = [(angle,) for angle in sorted([*given, *inner])]
 
@@ -115,7 +100,7 @@ class AngleSearch:
 
     def _within(self, lower: float, upper: float, tried: Sequence[float]) -> list[float]:
         """Up to three angles that have not been tried yet: the angles of the lattices nearest to the quarters of the bracket."""
-        nearest = [self._lattice(lower + part * (upper - lower) / 4) for part in (1, 2, 3)]
+        nearest = [self._nearest(lower + part * (upper - lower) / 4) for part in (1, 2, 3)]
         rounded = {round(angle, DECIMALS) for angle in nearest if angle is not None and lower < angle < upper}
         return sorted(rounded - {round(angle, DECIMALS) for angle in tried})
 
@@ -166,7 +151,7 @@ class AngleSearch:
             num_failed and f"{num_failed} of {counted(len(runs), 'run')} failed and do not count"]))
 
     def costs(self, hours_per_run: float) -> list[str]:
-        """States the cost of the rounds, for --dry-run. @param hours_per_run  of the first round, or NaN if unknown"""
+        """States the cost of the rounds, for --dry-run. @param hours_per_run  of the first round"""
         words = ["this is the first round; each of the others has up to three angles where droplets begin to leave the rows"]
         if math.isfinite(self._budget):
             words.append(f"all rounds: about {self._budget:.2g} core-hours at most (--budget)")

@@ -144,7 +144,7 @@ class CurveSearch:
         return " ".join(f"{key}={number_text(value)}" for key, value in zip(self.keys, values))
 
     def costs(self, hours_per_run: float) -> list[str]:
-        """States the cost of the rounds, for --dry-run. @param hours_per_run  of the first round, or NaN if unknown"""
+        """States the cost of the rounds, for --dry-run. @param hours_per_run  of the first round"""
         words = ["this is the first round; each of the others is to cost half of all before it"]
         if math.isfinite(self._options.budget):
             words.append(f"all rounds: {self._options.budget:.2g} core-hours at most (--budget)")

@@ -2,8 +2,8 @@
 
 A row does not store the parameters as they were given, but as clogsweep resolved them. For instance, the density of a
 saturated array follows from the gap, and the box of a lattice follows from its angle. So clogsweep itself resolves the
-values of the search: `--points ... --dry-run` prints the columns in which the tasks differ. A row belongs to a value if
-all its parameters are those that clogsweep gives to this value.
+values of the search: `--points ... --dry-run --format json` prints the columns in which the tasks differ. A row belongs
+to a value if all its parameters are those that clogsweep gives to this value.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,25 +20,21 @@ Resolve = Callable[[Sequence[Values]], pandas.DataFrame]
 MOST_TASKS = 1000  # Largest number of tasks that clogsweep prints.
 
 
-def tasks_of(printed: str) -> pandas.DataFrame:
-    """The tasks that `clogsweep --dry-run` printed, as texts of the columns in which they differ. `-` means a missing
-    value. @throws UserError  if clogsweep did not print all tasks"""
-    lines = printed.splitlines()
-    names = next((line[2:].split() for line in lines if line.startswith("# task ")), ["task"])
-    tasks = pandas.DataFrame([line.split() for line in lines if line[:1].isdecimal()], columns=names, dtype=str)
-    if any(line.endswith(" more ...") for line in lines):
+def tasks_of(plan: dict[str, Any]) -> pandas.DataFrame:
+    """The columns in which the tasks of a plan differ. @param plan  first line of `clogsweep --dry-run --format json`
+    @throws UserError  if clogsweep refuses the values, or if the line does not have all tasks"""
+    if "refused" in plan:
+        raise UserError(plan["text"])
+    if len(plan["tasks"]) < plan["number_of_tasks"]:
         raise UserError("cannot refine over more than 1000 combinations of values; give every other key one value")
-    return tasks
+    return pandas.DataFrame(plan["tasks"])
 
 
 def like(tasks: pandas.DataFrame, rows: pandas.DataFrame) -> pandas.DataFrame:
-    """Converts the texts of tasks to the types of the columns of `rows`."""
-    def column(name: str) -> Any:
-        if pandas.api.types.is_numeric_dtype(rows[name]):
-            return [float("nan" if text == "-" else text) for text in tasks[name]]
-        return tasks[name].replace("-", "")
-
-    return pandas.DataFrame({name: column(name) for name in tasks if name in rows})
+    """Converts tasks to the types of the columns of `rows`, in which a missing value is NaN or an empty text."""
+    are_numbers = pandas.api.types.is_numeric_dtype
+    return pandas.DataFrame({name: tasks[name].astype(float) if are_numbers(rows[name]) else tasks[name].fillna("")
+                             for name in tasks if name in rows})
 
 
 class Membership:
@@ -63,9 +59,8 @@ class Membership:
         # Columns of the keys. Runs of values other than the candidates can be identified only if these columns contain
         # the values as they were given.
         self._key_columns = [next(key["column"] for key in schema["keys"] if key["key"] == name) for name in keys]
-        self._shows_values = all(
-            column in tasks and [float(text) for text in tasks[column].replace("-", "nan")] == [values[i] for values in self._candidates]
-            for i, column in enumerate(self._key_columns))
+        self._shows_values = all(column in tasks and list(tasks[column]) == [values[i] for values in self._candidates]
+                                 for i, column in enumerate(self._key_columns))
 
     def of_curve(self, rows: pandas.DataFrame, deciding: Callable[[str], bool] = lambda _: True) -> pandas.DataFrame:
         """The rows that agree with the first run in all parameters that are the same for all candidates.

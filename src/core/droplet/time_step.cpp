@@ -38,11 +38,13 @@ void check_time_step(const RunParameters& run) {
           [&] { return fmt::format("shorter than one time-step) use at least {:.3g}", time_step); });
   require(run.max_time / time_step <= 1e15, "max-time", run.max_time,
           [&] { return fmt::format("more than 1e15 steps) use at most {:.3g}", 1e15 * time_step); });
-  require(time_step <= relaxation_time(run), "time-step", time_step, [&] {
-    return fmt::format("does not resolve the drag's relaxation time, {}={:.3g}) try {:.3g}",
-                       run.dp.inertia == 1 ? "terminal-speed" : "inertia*terminal-speed",
-                       relaxation_time(run), drag_time_step(run));
-  });
+  require(time_step <= relaxation_time(run), "time-step", time_step,
+          [&] {
+            return fmt::format("does not resolve the drag's relaxation time, {}={:.3g}) try {:.3g}",
+                               run.dp.inertia == 1 ? "terminal-speed" : "inertia*terminal-speed",
+                               relaxation_time(run), drag_time_step(run));
+          },
+          {"terminal-speed"});
 }
 
 }  // namespace clog

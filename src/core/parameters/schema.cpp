@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "clog/core/parameters/refusal.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/number_text.hpp"
 
@@ -783,9 +784,18 @@ std::string text_of(const ParameterValue& value) {
   return "auto";
 }
 
+/// What the refusal of a parameter that does not apply is about.
+Refusal::About about_scope(const Parameter& parameter) {
+  const ParameterScope* const scope = parameter.scope;
+  if (scope == &polygons) return {.key = parameter.key, .named = {"model"}};
+  if (scope == &own_circles || scope == &lengths) return {.key = parameter.key, .added = "obstacles"};
+  if (scope == &channels || scope == &lattices) return {.key = parameter.key, .added = "obstacle-layout"};
+  return {.key = parameter.key};
+}
+
 [[noreturn]] void refuse(const Parameter& parameter, const ParameterValue& value, const char* reason,
                          const char* remedy) {
-  throw Error(fmt::format("invalid {}={} ({}) {}", parameter.key, text_of(value), reason, remedy));
+  throw Refusal({.key = parameter.key}, text_of(value), reason, remedy);
 }
 
 bool is_beyond(const Bound& bound, double excess) { return bound.is_allowed ? excess < 0 : excess <= 0; }
@@ -812,7 +822,7 @@ void check_one(const Parameter& parameter, const RunParameters& run) {
   const ParameterValue value = parameter.get(run);
   if (!parameter.applies_to(run)) {
     if (value != parameter.get(defaults))
-      refuse(parameter, value, parameter.scope->reason, parameter.scope->remedy);
+      throw Refusal(about_scope(parameter), text_of(value), parameter.scope->reason, parameter.scope->remedy);
     return;
   }
   if (const std::optional<double> number = number_of(value, parameter.kind))

@@ -17,19 +17,25 @@ void check_break_up(const RunParameters& run) {
   const double neck = run.dp.break_up_neck;
   if (neck == 0) return;
   const bool repels = run.dp.self_contact == SelfContact::on;
-  require(!repels || neck > run.dp.self_contact_range, "break-up-neck", neck, [&] {
-    return fmt::format(
-        "no neck is thinner than self-contact-range={}, which keeps its sides apart) use more, or 0 for no "
-        "break-up",
-        shortest(run.dp.self_contact_range));
-  });
+  require(!repels || neck > run.dp.self_contact_range, "break-up-neck", neck,
+          [&] {
+            return fmt::format(
+                "no neck is thinner than self-contact-range={}, which keeps its sides apart) use more, or 0 "
+                "for no "
+                "break-up",
+                shortest(run.dp.self_contact_range));
+          },
+          {"self-contact-range"});
   const char* gap_key = scene_of(run).gap_key;
   if (!gap_key) return;
   const ParameterValue gap = parameter(gap_key).get(run);
   const double width = std::get<double>(gap);
-  require(neck < width, "break-up-neck", neck, [&] {
-    return fmt::format("all that pass {}={} have a neck as thin as that) use less", gap_key, shortest(width));
-  });
+  require(neck < width, "break-up-neck", neck,
+          [&] {
+            return fmt::format("all that pass {}={} have a neck as thin as that) use less", gap_key,
+                               shortest(width));
+          },
+          {gap_key});
 }
 
 }  // namespace

@@ -14,12 +14,20 @@
 namespace clog {
 namespace {
 
-std::string remedy(const ObstacleParameters& obstacles) {
-  std::string text = fmt::format("use box={} or more", box_that_fits(obstacles));
-  if (obstacles.length > 0) text += " without length";
-  for (const CommensurateLattice& lattice : neighbouring_lattices(obstacles))
-    text += fmt::format(", or {}", tilt_text(obstacles.lattice, lattice));
-  return text;
+/// @throws Refusal of an angle that no lattice in this box has
+[[noreturn]] void refuse_angle(const ObstacleParameters& obstacles) {
+  Refusal::About about = {.key = "lattice-angle", .named = {"box"}};
+  std::string remedy = fmt::format("use box={} or more", box_that_fits(obstacles));
+  if (obstacles.length > 0) remedy += " without length";
+  for (const CommensurateLattice& lattice : neighbouring_lattices(obstacles)) {
+    remedy += fmt::format(", or {}", tilt_text(obstacles.lattice, lattice));
+    about.nearest.push_back(lattice.angle);
+  }
+  throw Refusal(about, shortest(obstacles.lattice_angle),
+                fmt::format("no lattice of spacing {:.3g} within {:.3g} degrees of it has a period of "
+                            "box={:.3g} or less",
+                            obstacles.spacing(), largest_angle_error, obstacles.box),
+                remedy);
 }
 
 /// Replaces periods and angle of a lattice by those of the nearest periodic lattice.
@@ -28,22 +36,21 @@ void find_period(RunParameters& run) {
   const double angle = obstacles.lattice_angle;
   if (!obstacles.density.is_saturated() && obstacles.density != ObstacleParameters().density)
     refuse("obstacle-density", density_text(obstacles.density),
-           "a lattice has one that follows from its pitch) leave it out, or use obstacle-layout=random");
+           "a lattice has one that follows from its pitch) leave it out, or use obstacle-layout=random",
+           {"obstacle-layout"});
   require(obstacles.boxes == 1, "boxes", obstacles.boxes,
-          "a lattice repeats in each of them) leave it out, or use obstacle-layout=random");
+          "a lattice repeats in each of them) leave it out, or use obstacle-layout=random",
+          {"obstacle-layout"});
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
-          "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random");
+          "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random",
+          {"obstacle-layout"});
   const double largest = largest_tilt(obstacles.lattice);
   require(std::abs(angle) <= largest + 1e-9, "lattice-angle", angle, [&] {
     return fmt::format("a {} lattice turned by {} degrees is the same) use -{}..{}", name(obstacles.lattice),
                        2 * largest, largest, largest);
   });
   const auto lattice = fitting_lattice(obstacles);
-  if (!lattice)
-    refuse("lattice-angle", angle,
-           fmt::format("no lattice of spacing {:.3g} within {:.3g} degrees of it has a period of box={:.3g} "
-                       "or less) {}",
-                       obstacles.spacing(), largest_angle_error, obstacles.box, remedy(obstacles)));
+  if (!lattice) refuse_angle(obstacles);
   obstacles.box = lattice->box;
   obstacles.length = lattice->length;
   obstacles.lattice_angle = lattice->angle;

@@ -25,8 +25,9 @@
 namespace clog {
 namespace {
 
-[[noreturn]] void refuse_circles(const OwnCircles& circles, const std::string& reason_and_remedy) {
-  throw Error("invalid obstacles=" + circles.source() + " (" + reason_and_remedy);
+[[noreturn]] void refuse_circles(const OwnCircles& circles, const std::string& reason_and_remedy,
+                                 Named named = {}) {
+  refuse("obstacles", circles.source(), reason_and_remedy, named);
 }
 
 std::string place_of(const Obstacle& circle) { return fmt::format("x={:.6g}, y={:.6g}", circle.x, circle.y); }
@@ -64,7 +65,8 @@ void check_place(const Obstacle& circle, const ObstacleParameters& obstacles) {
             "the one at {} lies outside the array) x is at least 0 and less than {}={}, y than box={}; other "
             "units than droplet diameters need a first line such as # units=um droplet=200um",
             place_of(circle), obstacles.length > 0 ? "length" : "boxes*box", shortest(period.along()),
-            shortest(period.box)));
+            shortest(period.box)),
+        {obstacles.length > 0 ? "length" : "box", "box"});
   if (2 * circle.radius >= std::min(period.along(), period.across()))
     refuse_circles(*obstacles.own, fmt::format("the one at {} meets its own periodic image) use a box larger "
                                                "than its diameter",
@@ -155,8 +157,9 @@ void check_ways(const ObstacleParameters& obstacles) {
     for (const auto& [key, value] :
          {std::pair("entrance", obstacles.entrance), std::pair("entrance-from", obstacles.entrance_from),
           std::pair("entrance-to", obstacles.entrance_to)})
-      require(value == 0, key, value,
-              "the droplet is not released on a line) add release=entrance, or leave this key out");
+      if (value != 0)
+        throw Refusal({.key = key, .added = "release"}, shortest(value),
+                      "the droplet is not released on a line", "add release=entrance, or leave this key out");
   require(obstacles.entrance < length, "entrance", obstacles.entrance,
           [&] { return fmt::format("lies outside the device) use 0 to less than {:.6g}", length); });
   const double to = obstacles.entrance_to > 0 ? obstacles.entrance_to : box;
@@ -165,8 +168,9 @@ void check_ways(const ObstacleParameters& obstacles) {
   require(obstacles.entrance_from <= to, "entrance-from", obstacles.entrance_from,
           [&] { return fmt::format("is beyond the end of the line) use at most {:.6g}", to); });
   if (obstacles.exit == 0) return;
-  require(obstacles.release != Release::anywhere, "exit", obstacles.exit,
-          "droplets that are released anywhere may start behind it) add release=entrance");
+  if (obstacles.release == Release::anywhere)
+    throw Refusal({.key = "exit", .added = "release"}, shortest(obstacles.exit),
+                  "droplets that are released anywhere may start behind it", "add release=entrance");
   const double start = obstacles.release == Release::entrance ? obstacles.entrance : length / 2;
   require(obstacles.exit > start, "exit", obstacles.exit,
           [&] { return fmt::format("must lie downstream of the release) use more than {:.6g}", start); });
@@ -184,7 +188,8 @@ std::string overlap_of(double gap) {
 void check_circles(const RunParameters& run) {
   const ObstacleParameters& obstacles = run.obstacles;
   if (!obstacles.own)
-    throw Error("invalid obstacle-layout=file (there are no circles) name their file: obstacles=FILE.csv");
+    throw Refusal({.key = "obstacle-layout", .named = {"obstacles"}}, "file", "there are no circles",
+                  "name their file: obstacles=FILE.csv");
   if (obstacles.own->circles().empty())
     refuse_circles(*obstacles.own, "there are none) lines are x,y[,diameter]");
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,

@@ -27,7 +27,8 @@ void find_density(RunParameters& run) {
            fmt::format(
                "more than every seed finds room for, with obstacle-gap={:.3g} and box={:.3g}) use at most "
                "{:.4g}, or saturated: as many as fit",
-               obstacles.gap, obstacles.box, rounded_down(largest, 4)));
+               obstacles.gap, obstacles.box, rounded_down(largest, 4)),
+           {"obstacle-gap", "box"});
   obstacles.density = *density;
 }
 

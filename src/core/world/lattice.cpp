@@ -248,9 +248,12 @@ std::vector<CommensurateLattice> neighbouring_lattices(const ObstacleParameters&
 
 void use_pitch(ObstacleParameters& obstacles) {
   if (obstacles.pitch == 0) return;
-  require(obstacles.pitch > obstacles.diameter, "pitch", obstacles.pitch, [&] {
-    return fmt::format("posts of obstacle-diameter={} would touch) use more", shortest(obstacles.diameter));
-  });
+  require(obstacles.pitch > obstacles.diameter, "pitch", obstacles.pitch,
+          [&] {
+            return fmt::format("posts of obstacle-diameter={} would touch) use more",
+                               shortest(obstacles.diameter));
+          },
+          {"obstacle-diameter"});
   obstacles.gap = obstacles.pitch - obstacles.diameter;
   obstacles.pitch = 0;
 }

@@ -66,12 +66,14 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
   const double softest_per_tension = 1 / (units::droplet_diameter / 2) / (largest * units::rest_area);
   const double softest = dp.line_tension * softest_per_tension;
   if (automatic_area)
-    require(*dp.area_stiffness >= softest, "line-tension", dp.line_tension, [&] {
-      return fmt::format(
-          "would compress the droplet by more than 5 %, with the stiffest automatic area-stiffness) "
-          "use at most {:.3g} (from {} on droplets are nearly rigid), or the soft disk, model=sp",
-          rounded_down(*dp.area_stiffness / softest_per_tension), nearly_rigid_tension);
-    });
+    require(*dp.area_stiffness >= softest, "line-tension", dp.line_tension,
+            [&] {
+              return fmt::format(
+                  "would compress the droplet by more than 5 %, with the stiffest automatic area-stiffness) "
+                  "use at most {:.3g} (from {} on droplets are nearly rigid), or the soft disk, model=sp",
+                  rounded_down(*dp.area_stiffness / softest_per_tension), nearly_rigid_tension);
+            },
+            {"model"});
   require(*dp.area_stiffness >= softest, "area-stiffness", *dp.area_stiffness, [&] {
     return fmt::format("the line tension would compress the droplet by more than 5 %) use at least {:.3g}",
                        softest);
@@ -95,7 +97,8 @@ void resolve_contact_angles(DpParameters& dp) {
            "Young's angle does not follow from it alone) give receding-angle, too, or wall-tension");
   if (dp.receding_angle && dp.advancing_angle && *dp.receding_angle > *dp.advancing_angle)
     refuse("receding-angle", *dp.receding_angle,
-           fmt::format("larger than advancing-angle={:.6g}) exchange them", *dp.advancing_angle));
+           fmt::format("larger than advancing-angle={:.6g}) exchange them", *dp.advancing_angle),
+           {"advancing-angle"});
   constexpr double smallest = 0.1;
   const double tension = wall_tension(dp), young = young_angle(dp);
   require(tension >= smallest, "receding-angle", dp.receding_angle.value_or(young), [&] {
@@ -210,12 +213,14 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
   const StiffModes modes = stiff_modes_of_circle(dp, *run.wall_stiffness);
   const double largest = automatic ? largest_step_with_automatic_contact(dp) : largest_stable_step(modes);
   const double stiffest_omega_dt = std::sqrt(modes.sum()) * time_step;
-  require(stable_steps(modes, 1, time_step, Pressure::present).num == 1, "time-step", time_step, [&] {
-    return fmt::format(
-        "contact, area, tension and spring modes together have omega*dt = {:.3g}, "
-        "wall-stiffness={:.3g}) try {:.3g}",
-        stiffest_omega_dt, *run.wall_stiffness, 0.99 * largest);
-  });
+  require(stable_steps(modes, 1, time_step, Pressure::present).num == 1, "time-step", time_step,
+          [&] {
+            return fmt::format(
+                "contact, area, tension and spring modes together have omega*dt = {:.3g}, "
+                "wall-stiffness={:.3g}) try {:.3g}",
+                stiffest_omega_dt, *run.wall_stiffness, 0.99 * largest);
+          },
+          {"wall-stiffness"});
   // A contact that is too soft to carry the droplet lets obstacles sink into it. So if the vertices of an
   // eighth of the circumference carry the weight M g, they must sink by less than half the contact range.
   const double softest = units::droplet_mass / (*dp.vertices / 8.0) / (vertex_diameter / 4);

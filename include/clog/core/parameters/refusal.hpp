@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "clog/core/tools/error.hpp"
+
+namespace clog {
+
+/// The error that refuses the value of a key. Callers that know more about the settings can extend the text.
+class Refusal : public Error {
+ public:
+  struct About {
+    std::string key = {};                    ///< key whose value is refused; empty: that of `excluded`
+    std::vector<std::string> named = {};     ///< other keys whose values the text contains
+    std::vector<std::string> excluded = {};  ///< keys that are given, too, and contradict the value
+    std::string added = {};                  ///< key that the remedy adds
+    std::vector<double> nearest = {};        ///< the possible values next to the refused one, if they are few
+  };
+
+  /// `invalid KEY=VALUE (REASON) REMEDY`
+  Refusal(const About& about, const std::string& value, const std::string& reason, const std::string& remedy);
+  /// @param text  the text up to the remedy
+  Refusal(About about, std::string text, const std::string& remedy = "");
+
+  const About& about() const { return about_; }
+  const std::string& without_remedy() const { return text_; }
+  /// Whether the text contains the value of this key beside that of the refused one.
+  bool names(std::string_view other) const;
+  /// The refusal with more text around it.
+  Refusal between(const std::string& before, const std::string& after) const;
+
+ private:
+  About about_;
+  std::string text_, remedy_;
+};
+
+}  // namespace clog
