@@ -331,6 +331,7 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
   if (sides.size() < 2) throw std::invalid_argument("a comparison has two sides or more");
   for (const Side& side : sides) require_lengths(side);
   Comparisons comparisons;
+  comparisons.confidence = confidence;
   comparisons.within = within.value_or(0);
   std::vector<std::pair<const RunRow*, const RunRow*>> compared;
   const Side& there = sides.front();
