@@ -173,8 +173,8 @@ int clogfit_compare(int argc, const char* const* argv) {
                                                   : compare_sweeps(line, paths, confidence, within);
   say_left_out(found);
   std::cout << (format == "csv"    ? results::to_csv(found)
-                : format == "json" ? results::to_json(found, confidence)
-                                   : results::to_text(found, confidence));
+                : format == "json" ? results::to_json(found)
+                                   : results::to_text(found));
   return console::exit_success;
 }
 

@@ -133,11 +133,11 @@ Comparison compare_sets(const ParameterSet& here, const ParameterSet& there, dou
     const fit::Pair pair{*one, *the_other};
     const bool have_both = pair.here.clogged && pair.there.clogged;
     const bool is_same_place = have_both && std::abs(row->distance - other.distance) <= within &&
-                               std::abs(row->lateral_displacement - other.lateral_displacement) <= within;
+                               std::abs(row->lateral - other.lateral) <= within;
     comparison.num_both_clogged += have_both;
     comparison.num_same_place += is_same_place;
     num_identical += pair.here.clogged == pair.there.clogged && row->distance == other.distance &&
-                     row->lateral_displacement == other.lateral_displacement;
+                     row->lateral == other.lateral;
     pairs.push_back(pair);
     pairs.back().is_alike = is_same_place || (!pair.here.clogged && !pair.there.clogged);
   }
@@ -331,6 +331,7 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
   if (sides.size() < 2) throw std::invalid_argument("a comparison has two sides or more");
   for (const Side& side : sides) require_lengths(side);
   Comparisons comparisons;
+  comparisons.confidence = confidence;
   comparisons.within = within.value_or(0);
   std::vector<std::pair<const RunRow*, const RunRow*>> compared;
   const Side& there = sides.front();

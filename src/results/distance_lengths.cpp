@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,7 +11,6 @@
 #include "clog/console/build_info.hpp"
 #include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
-#include "clog/console/table.hpp"
 #include "clog/fit/survival.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/groups.hpp"
@@ -63,36 +63,56 @@ std::vector<Unit> units_of(const DistanceTable& table, std::optional<double> sig
   return units;
 }
 
+std::array<std::string, 2> length_cells(const fit::CloggingLength& clogging, double factor) {
+  if (std::isnan(factor) || clogging.num_runs == 0) return {"-", "-"};
+  const double lower = factor * clogging.interval.lower, upper = factor * clogging.interval.upper;
+  if (clogging.num_clogs == 0) return {"> " + console::plain(lower), "-"};
+  const auto rounded = console::with_interval(factor * clogging.length, lower, upper);
+  return {rounded.value, rounded.lower + " .. " + rounded.upper};
+}
+
 std::vector<Field> fields_of(const DistanceTable& table, std::size_t group, const Lengths& lengths,
-                             const std::vector<Unit>& units) {
+                             const std::vector<Unit>& units, double confidence) {
   const fit::CloggingLength& clogging = lengths.clogging;
   std::vector<Field> fields;
   for (std::size_t i = 0; i < table.labels.size(); ++i)
-    fields.emplace_back(table.labels[i], table.groups[group].labels[i]);
-  fields.emplace_back("runs", std::int64_t{clogging.num_runs});
-  fields.emplace_back("clogs", std::int64_t{clogging.num_clogs});
-  for (const Unit& unit : units)
-    for (const auto& [name, length] : {std::pair{"total_distance", clogging.total_distance},
-                                       {"clogging_length", clogging.length},
-                                       {"clogging_length_lower", clogging.interval.lower},
-                                       {"clogging_length_upper", clogging.interval.upper},
-                                       {"clogging_length_profile_lower", clogging.profile.lower},
-                                       {"clogging_length_profile_upper", clogging.profile.upper},
-                                       {"clogging_length_least_squares", lengths.least_squares}})
-      fields.emplace_back(std::string(name) + unit.suffix, finite_value(unit.factors[group] * length));
-  fields.emplace_back("weibull_shape", finite_value(lengths.weibull.shape));
-  fields.emplace_back("weibull_p_value", finite_value(lengths.weibull.p_value));
-  fields.emplace_back("doubts", words_of(lengths.doubts));
+    fields.push_back({table.labels[i], table.groups[group].labels[i], "", table.labels[i]});
+  fields.push_back({"runs", std::int64_t{clogging.num_runs}, "", "runs"});
+  fields.push_back({"clogs", std::int64_t{clogging.num_clogs}, "", "clogs"});
+  for (const Unit& unit : units) {
+    const auto [length, interval] = length_cells(clogging, unit.factors[group]);
+    const auto add = [&](const std::string& name, double value, const std::string& head = "",
+                         const std::string& text = "") {
+      fields.push_back({name + unit.suffix, finite_value(unit.factors[group] * value), "", head, text});
+    };
+    add("total_distance", clogging.total_distance);
+    add("clogging_length", clogging.length, fmt::format("lambda/{}", unit.text), length);
+    add("clogging_length_lower", clogging.interval.lower, fmt::format("{:g} %", 100 * confidence), interval);
+    add("clogging_length_upper", clogging.interval.upper);
+    add("clogging_length_profile_lower", clogging.profile.lower);
+    add("clogging_length_profile_upper", clogging.profile.upper);
+    add("clogging_length_least_squares", lengths.least_squares);
+  }
+  fields.push_back({"weibull_shape", finite_value(lengths.weibull.shape)});
+  fields.push_back({"weibull_p_value", finite_value(lengths.weibull.p_value)});
+  fields.push_back({"doubts", words_of(lengths.doubts), "", "note", letters_of(lengths.doubts)});
   return fields;
 }
 
+std::vector<std::vector<Field>> rows_of(const DistanceTable& table, const std::vector<Lengths>& lengths,
+                                        std::optional<double> sigma_mm, double confidence) {
+  const std::vector<Unit> units = units_of(table, sigma_mm);
+  std::vector<std::vector<Field>> rows;
+  for (std::size_t i = 0; i < lengths.size(); ++i)
+    rows.push_back(fields_of(table, i, lengths[i], units, confidence));
+  return rows;
+}
+
 /// All of a group's fields, with its curve.
-nlohmann::ordered_json entry_of(const DistanceTable& table, std::size_t group, const Lengths& lengths,
-                                const std::vector<Unit>& units, double confidence) {
-  nlohmann::ordered_json entry;
-  for (const auto& [name, value] : fields_of(table, group, lengths, units)) entry[name] = json_of(value);
+nlohmann::ordered_json entry_of(const std::vector<Field>& fields, const std::vector<fit::Observation>& runs,
+                                double confidence) {
+  nlohmann::ordered_json entry = json_of(fields);
   entry["survival"] = entry["censored_distances"] = nlohmann::ordered_json::array();
-  const std::vector<fit::Observation>& runs = table.groups[group].runs;
   for (const fit::SurvivalStep& step : fit::survival_curve(runs, confidence))
     entry["survival"].push_back(step_json(step, "clogs", step.num_clogs));
   std::vector<double> censored;
@@ -101,14 +121,6 @@ nlohmann::ordered_json entry_of(const DistanceTable& table, std::size_t group, c
   std::ranges::sort(censored);
   entry["censored_distances"] = censored;
   return entry;
-}
-
-std::vector<std::string> length_cells(const fit::CloggingLength& clogging, double factor) {
-  if (std::isnan(factor) || clogging.num_runs == 0) return {"-", "-"};
-  const double lower = factor * clogging.interval.lower, upper = factor * clogging.interval.upper;
-  if (clogging.num_clogs == 0) return {"> " + console::plain(lower), "-"};
-  const auto rounded = console::with_interval(factor * clogging.length, lower, upper);
-  return {rounded.value, rounded.lower + " .. " + rounded.upper};
 }
 
 }  // namespace
@@ -135,65 +147,41 @@ std::vector<Flaws> flaws_of(const DistanceTable& table) {
 }
 
 std::string lengths_text(const DistanceTable& table, double confidence, std::optional<double> sigma_mm) {
-  const std::vector<Unit> units = units_of(table, sigma_mm);
   const std::vector<Lengths> lengths = lengths_of(table, confidence);
-  std::vector<std::vector<std::string>> lines = {table.labels};
-  lines[0].insert(lines[0].end(), {"runs", "clogs"});
-  for (const Unit& unit : units)
-    lines[0].insert(lines[0].end(),
-                    {fmt::format("lambda/{}", unit.text), fmt::format("{:g} %", 100 * confidence)});
-  lines[0].emplace_back("note");
-  const auto labels = label_texts(table.groups, &DistanceGroup::labels);
   std::vector<Doubt> doubts;
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
-    std::vector<std::string>& line = lines.emplace_back();
-    line = labels[i];
-    line.push_back(std::to_string(lengths[i].clogging.num_runs));
-    line.push_back(std::to_string(lengths[i].clogging.num_clogs));
-    for (const Unit& unit : units)
-      for (std::string& cell : length_cells(lengths[i].clogging, unit.factors[i]))
-        line.push_back(std::move(cell));
-    line.push_back(letters_of(lengths[i].doubts));
-    doubts.insert(doubts.end(), lengths[i].doubts.begin(), lengths[i].doubts.end());
-  }
   int num_runs = 0, num_clogs = 0;
   for (const Lengths& one : lengths) {
+    doubts.insert(doubts.end(), one.doubts.begin(), one.doubts.end());
     num_runs += one.clogging.num_runs;
     num_clogs += one.clogging.num_clogs;
   }
   // If a table marks censored droplets instead of clogged ones, these numbers show it.
-  return console::aligned(lines) + legend_of(doubts) +
+  return text_table(rows_of(table, lengths, sigma_mm, confidence)) + legend_of(doubts) +
          fmt::format(
              "\nread: of {}, {} clogged (clogged = 1) and {} still moved where last seen (clogged = 0)\n",
              sweep::counted(num_runs, "droplet"), num_clogs, num_runs - num_clogs);
 }
 
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm) {
-  const std::vector<Unit> units = units_of(table, sigma_mm);
-  const std::vector<Lengths> lengths = lengths_of(table, confidence);
-  std::vector<std::vector<Field>> rows;
-  rows.reserve(lengths.size());
-  for (std::size_t i = 0; i < lengths.size(); ++i) rows.push_back(fields_of(table, i, lengths[i], units));
-  return csv_table(rows);
+  return csv_table(rows_of(table, lengths_of(table, confidence), sigma_mm, confidence));
 }
 
 std::vector<std::string> names_of_lengths() {
   const DistanceTable one_group{.source = "", .unit = "mm", .labels = {}, .groups = {DistanceGroup()}};
   constexpr double any_confidence = 0.95;
-  const nlohmann::ordered_json entry = entry_of(one_group, 0, lengths_of(one_group, any_confidence).front(),
-                                                units_of(one_group, 1.0), any_confidence);
-  std::vector<std::string> names;
-  for (const auto& [name, value] : entry.items()) names.push_back(name);
+  std::vector<std::string> names = {"survival", "censored_distances"};
+  for (const Field& field : rows_of(one_group, lengths_of(one_group, any_confidence), 1, any_confidence)[0])
+    names.push_back(field.name);
   names.insert(names.end(), {"lambda", "note"});  // of the printed table
   return names;
 }
 
 std::string lengths_json(const DistanceTable& table, double confidence, std::optional<double> sigma_mm) {
-  const std::vector<Unit> units = units_of(table, sigma_mm);
-  const std::vector<Lengths> lengths = lengths_of(table, confidence);
+  const std::vector<std::vector<Field>> rows =
+      rows_of(table, lengths_of(table, confidence), sigma_mm, confidence);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < lengths.size(); ++i)
-    list.push_back(entry_of(table, i, lengths[i], units, confidence));
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    list.push_back(entry_of(rows[i], table.groups[i].runs, confidence));
   const console::BuildInfo build = console::build_info();
   return console::json_text({{"version", build.version},
                              {"git_describe", build.git_describe},

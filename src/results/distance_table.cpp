@@ -566,6 +566,7 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
       }))
     sigma_mm.reset();  // the groups have several sizes
   Comparisons comparisons;
+  comparisons.confidence = confidence;
   comparisons.unit = sigma_mm || !are_units_equal ? "sigma" : there.unit;
   comparisons.sigma_mm = sigma_mm;
   const auto runs_of = [&](const DistanceTable& table, const DistanceGroup& group) {

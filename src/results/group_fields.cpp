@@ -23,50 +23,20 @@ bool has_role(const sweep::Column& column, ParameterRole role) {
 /// unknown.
 void append_causes(const Group& group, std::vector<Field>& fields) {
   const bool are_known = !group.causes.empty();
-  const auto add = [&](const std::string& name, auto number) {
-    fields.emplace_back(name, are_known ? value_of(number) : Value());
+  const auto add = [&](const std::string& name, auto number, const char* unit) {
+    fields.push_back({name, are_known ? value_of(number) : Value(), unit});
   };
   for (std::size_t i = 0; i < std::size(cause_texts); ++i) {
     const fit::CloggingLength fit = are_known ? group.causes[i].ends : fit::CloggingLength();
     const std::string length = cause_texts[i].length;
-    add(cause_texts[i].count, fit.num_clogs);
-    add(length, fit.length);
-    add(length + "_lower", fit.interval.lower);
-    add(length + "_upper", fit.interval.upper);
+    add(cause_texts[i].count, fit.num_clogs, "");
+    add(length, fit.length, "sigma");
+    add(length + "_lower", fit.interval.lower, "sigma");
+    add(length + "_upper", fit.interval.upper, "sigma");
   }
 }
 
-constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
-    {"dwell", "t0"},
-    {"row_angle", "degrees"},
-    {"pitch", "sigma"},
-    {"row_spacing", "sigma"},
-    {"total_distance", "sigma"},
-    {"contacts_per_length", "1/sigma"},
-    {"failures_per_length", "1/sigma"},
-    {"relative_speed", "v_t"},
-    {"relative_speed_error", "v_t"},
-    {"relative_speed_all", "v_t"},
-    {"relative_speed_all_error", "v_t"},
-    {"relative_speed_pooled", "v_t"},
-    {"relative_speed_pooled_error", "v_t"},
-    {"relative_speed_steady", "v_t"},
-    {"relative_speed_steady_error", "v_t"}};
-
 }  // namespace
-
-std::string_view unit_of(std::string_view field) {
-  if (field.ends_with("_mm")) return "mm";
-  if (field.ends_with("_mN_per_m")) return "mN/m";
-  if (field.ends_with("_mm_per_s")) return "mm/s";
-  if (field == "time_to_clog_s") return "s";
-  if (field.starts_with("clogging_length") || field.starts_with("break_up_length")) return "sigma";
-  for (const auto& [name, unit] : units_of_results)
-    if (name == field) return unit;
-  for (const sweep::Column& column : sweep::columns())
-    if (column.name == field) return column.unit;
-  return "";
-}
 
 std::span<const sweep::Column* const> group_columns() {
   static const std::vector<const sweep::Column*> all = [] {
@@ -101,9 +71,7 @@ std::string outcome_of(const sweep::RunRow& row) {
 }
 
 std::vector<Field> result_fields(const Group& group) {
-  std::string doubts;
-  for (const Doubt doubt : group.doubts)
-    doubts += std::string(doubts.empty() ? "" : " ") + text_of(doubt).word;
+  const std::string doubts = words_of(group.doubts);
   std::vector<Field> fields;
   if (!has_clogging_length(group.first_row)) {
     fields = {{"interrupted", value_of(group.num_interrupted)},
@@ -115,7 +83,7 @@ std::vector<Field> result_fields(const Group& group) {
           "largest_relative_speed", "largest_relative_speed_at", "smallest_relative_speed",
           "smallest_relative_speed_at", "sag", "top_sag", "thinnest_neck", "thinnest_neck_at",
           "shape_parameter", "mean_speed"})
-      fields.emplace_back(name, sweep::column(name).get(group.first_row));
+      fields.push_back({name, sweep::column(name).get(group.first_row), sweep::column(name).unit});
     return fields;
   }
   const RunParameters& run = group.first_row.parameters;
@@ -129,48 +97,48 @@ std::vector<Field> result_fields(const Group& group) {
             {"failed", value_of(group.num_failed)},
             {"damaged", value_of(group.num_damaged)},
             {"failed_somewhere", value_of(group.num_failed_somewhere)},
-            {"failures_per_length", value_of(failures_per_length(group))},
+            {"failures_per_length", value_of(failures_per_length(group)), "1/sigma"},
             {"left_out", value_of(group.num_left_out)},
             {"repeated", value_of(group.num_repeated)},
-            {"dwell", is_dwell_possible(group) ? value_of(group.dwell) : Value()},
-            {"dwells_known_from", value_of(group.dwells_known_from)},
+            {"dwell", is_dwell_possible(group) ? value_of(group.dwell) : Value(), "t0"},
+            {"dwells_known_from", value_of(group.dwells_known_from), "t0"},
             {"repeating", value_of(group.num_repeating)},
             {"on_mesh", value_of(group.num_on_mesh)},
             {"stability_unknown", value_of(group.num_stability_unknown)},
             {"near_friction_limit", value_of(group.num_near_friction_limit)},
-            {"total_distance", value_of(group.clogging.total_distance)},
-            {"clogging_length", value_of(group.clogging.length)},
-            {"clogging_length_lower", value_of(group.clogging.interval.lower)},
-            {"clogging_length_upper", value_of(group.clogging.interval.upper)},
-            {"clogging_length_profile_lower", value_of(group.clogging.profile.lower)},
-            {"clogging_length_profile_upper", value_of(group.clogging.profile.upper)},
-            {"clogging_length_least_squares", value_of(group.least_squares_length)},
+            {"total_distance", value_of(group.clogging.total_distance), "sigma"},
+            {"clogging_length", value_of(group.clogging.length), "sigma"},
+            {"clogging_length_lower", value_of(group.clogging.interval.lower), "sigma"},
+            {"clogging_length_upper", value_of(group.clogging.interval.upper), "sigma"},
+            {"clogging_length_profile_lower", value_of(group.clogging.profile.lower), "sigma"},
+            {"clogging_length_profile_upper", value_of(group.clogging.profile.upper), "sigma"},
+            {"clogging_length_least_squares", value_of(group.least_squares_length), "sigma"},
             {"met_none", value_of(group.num_free)},
             {"displaced", value_of(static_cast<int>(group.displaced.size()))},
-            {"contacts_per_length", value_of(group.contacts_per_length)},
-            {"clogging_length_met", value_of(group.clogging_met.length)},
-            {"clogging_length_met_lower", value_of(group.clogging_met.interval.lower)},
-            {"clogging_length_met_upper", value_of(group.clogging_met.interval.upper)},
+            {"contacts_per_length", value_of(group.contacts_per_length), "1/sigma"},
+            {"clogging_length_met", value_of(group.clogging_met.length), "sigma"},
+            {"clogging_length_met_lower", value_of(group.clogging_met.interval.lower), "sigma"},
+            {"clogging_length_met_upper", value_of(group.clogging_met.interval.upper), "sigma"},
             {"weibull_shape", finite_value(group.weibull.shape)},
             {"weibull_p_value", value_of(group.weibull.p_value)},
-            {"relative_speed", value_of(group.relative_speed.mean)},
-            {"relative_speed_error", value_of(group.relative_speed.standard_error)},
+            {"relative_speed", value_of(group.relative_speed.mean), "v_t"},
+            {"relative_speed_error", value_of(group.relative_speed.standard_error), "v_t"},
             {"relative_speed_runs", value_of(group.relative_speed.num_runs)},
-            {"relative_speed_pooled", value_of(group.relative_speed_pooled.mean)},
-            {"relative_speed_pooled_error", value_of(group.relative_speed_pooled.standard_error)},
-            {"relative_speed_all", value_of(group.relative_speed_all.mean)},
-            {"relative_speed_all_error", value_of(group.relative_speed_all.standard_error)},
-            {"relative_speed_steady", value_of(group.relative_speed_steady.mean)},
-            {"relative_speed_steady_error", value_of(group.relative_speed_steady.standard_error)},
+            {"relative_speed_pooled", value_of(group.relative_speed_pooled.mean), "v_t"},
+            {"relative_speed_pooled_error", value_of(group.relative_speed_pooled.standard_error), "v_t"},
+            {"relative_speed_all", value_of(group.relative_speed_all.mean), "v_t"},
+            {"relative_speed_all_error", value_of(group.relative_speed_all.standard_error), "v_t"},
+            {"relative_speed_steady", value_of(group.relative_speed_steady.mean), "v_t"},
+            {"relative_speed_steady_error", value_of(group.relative_speed_steady.standard_error), "v_t"},
             {"relative_speed_steady_runs", value_of(group.relative_speed_steady.num_runs)},
             {"capillary_number", value_of(group.relative_speed.mean * units::droplet_mass / line_tension)},
             {"lateral_slope", value_of(group.migration.slope)},
             {"lateral_slope_error", value_of(group.migration.standard_error)},
-            {"row_angle", value_of(group.row_angle)},
+            {"row_angle", value_of(group.row_angle), "degrees"},
             {"row_share", value_of(share_along_rows(group).slope)},
             {"row_share_error", value_of(share_along_rows(group).standard_error)},
-            {"pitch", is_lattice ? value_of(run.obstacles.spacing()) : Value()},
-            {"row_spacing", is_lattice ? value_of(row_spacing(run.obstacles)) : Value()},
+            {"pitch", is_lattice ? value_of(run.obstacles.spacing()) : Value(), "sigma"},
+            {"row_spacing", is_lattice ? value_of(row_spacing(run.obstacles)) : Value(), "sigma"},
             {"doubts", doubts}};
   append_causes(group, fields);
   return fields;

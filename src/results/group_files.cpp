@@ -40,7 +40,8 @@ Json scale_json(const LaboratoryScale& scale) {
 std::vector<Field> all_fields(const Group& group, bool with_laboratory) {
   std::vector<Field> fields;
   const std::vector<Value> values = parameter_values(group.first_row);
-  for (std::size_t i = 0; i < values.size(); ++i) fields.emplace_back(group_columns()[i]->name, values[i]);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    fields.push_back({group_columns()[i]->name, values[i], group_columns()[i]->unit});
   for (Field& field : result_fields(group)) fields.push_back(std::move(field));
   if (with_laboratory && has_clogging_length(group.first_row))
     for (Field& field : laboratory_fields(group)) fields.push_back(std::move(field));
@@ -51,8 +52,8 @@ std::vector<Field> all_fields(const Group& group, bool with_laboratory) {
 Json field_units(const std::vector<Group>& groups) {
   Json all;
   for (const Group& group : groups)
-    for (const auto& [name, value] : all_fields(group, have_laboratory(groups)))
-      if (const std::string_view unit = unit_of(name); !unit.empty()) all[name] = unit;
+    for (const Field& field : all_fields(group, have_laboratory(groups)))
+      if (!field.unit.empty()) all[field.name] = field.unit;
   all["survival"] = all["incidence"] = {{"distance", "sigma"}};
   all["censored_distances"] = "sigma";
   return all;
@@ -60,8 +61,7 @@ Json field_units(const std::vector<Group>& groups) {
 
 /// All of a group's fields, with its curves.
 Json group_json(const Group& group, bool with_laboratory) {
-  Json entry;
-  for (const auto& [name, value] : all_fields(group, with_laboratory)) entry[name] = json_of(value);
+  Json entry = json_of(all_fields(group, with_laboratory));
   // Programs that draw groups need these names, because automatic values separate no curves.
   entry["automatic"] = Json::array();
   for (const sweep::Column* column : group_columns())

@@ -108,8 +108,8 @@ struct Ending {
 
 std::optional<Cause> cause_of(const sweep::RunRow& run) {
   if (run.status == RunStatus::broken) return Cause::broken;
-  if (run.status != RunStatus::clogged || !run.mechanism) return std::nullopt;
-  switch (*run.mechanism) {
+  if (run.status != RunStatus::clogged || !run.hold.mechanism) return std::nullopt;
+  switch (*run.hold.mechanism) {
     case ClogMechanism::wrapped:
       return Cause::wrapped;
     case ClogMechanism::squeezed:
@@ -144,8 +144,8 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
 /// See observation_of().
 std::optional<Ending> counted(const sweep::RunRow& run, Ending ending) {
   if (!is_device(run.parameters)) return ending;
-  if (run.contacts == 0) return std::nullopt;
-  if (run.contacts) ending.distance -= run.first_contact_at;
+  if (run.contacts.number == 0) return std::nullopt;
+  if (sweep::is_known(run.contacts.number)) ending.distance -= run.contacts.first_distance;
   return ending;
 }
 
@@ -219,12 +219,13 @@ struct Meetings {
   int num_free = 0;
 
   void count(const sweep::RunRow& run, const Ending& ending, double from_distance) {
-    if (!run.contacts) return;
-    num_contacts += *run.contacts;
+    if (!sweep::is_known(run.contacts.number)) return;
+    num_contacts += run.contacts.number;
     way += std::max(0.0, sweep::observed_distance(run).value());
-    num_free += run.contacts == 0 && run.status != RunStatus::failed;
-    const double begin = std::max(from_distance, run.first_contact_at);
-    if (*run.contacts > 0) from_first.push_back({std::max(0.0, ending.distance - begin), ending.is_clog});
+    num_free += run.contacts.number == 0 && run.status != RunStatus::failed;
+    const double begin = std::max(from_distance, run.contacts.first_distance);
+    if (run.contacts.number > 0)
+      from_first.push_back({std::max(0.0, ending.distance - begin), ending.is_clog});
   }
 };
 
@@ -303,17 +304,17 @@ void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Ta
   const std::optional<Ending> ending = counted(run, from_release);
   group.num_interrupted += sweep::is_unfinished(run.status) && !from_release.is_clog;
   if (is_device(run.parameters)) {
-    const double begin = beginning_of_way(run.parameters.obstacles, run.release_x);
+    const double begin = beginning_of_way(run.parameters.obstacles, run.release[0]);
     tally.arrivals.push_back(
         {begin, begin + from_release.distance, from_release.is_clog || from_release.cause.has_value()});
-    if (is_displaced(run.parameters, run.release_x, run.release_y)) group.displaced.push_back(begin);
+    if (is_displaced(run.parameters, run.release[0], run.release[1])) group.displaced.push_back(begin);
   }
   const bool is_too_short = ending && std::max(ending->distance, 0.0) < from_distance;
   group.num_left_out += is_too_short;
   if (!is_too_short) tally.meetings.count(run, from_release, from_distance);
   if (is_too_short || !ending) return;
   tally.endings.push_back(*ending);
-  if (ending->is_clog || run.contacts.value_or(0) > 0)
+  if (ending->is_clog || run.contacts.number > 0)
     (ending->is_clog ? tally.clogs : tally.others).push_back(ending->distance);
   group.seeds.push_back(run.parameters.seed);
   group.num_on_mesh += sweep::may_hang_on_mesh(run);
@@ -327,11 +328,11 @@ void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Ta
 }
 
 void add_motion(const sweep::RunRow& run, Group& group, Tally& tally) {
-  const double relative_speed = run.mean_speed / run.parameters.drag.terminal_speed;
+  const double relative_speed = run.speed.mean / run.parameters.drag.terminal_speed;
   tally.speeds.push_back(relative_speed);
-  tally.travels.push_back({relative_speed * run.travel_time, run.travel_time});
+  tally.travels.push_back({relative_speed * run.speed.time, run.speed.time});
   tally.steady_travels.push_back({run.steady.distance / run.parameters.drag.terminal_speed, run.steady.time});
-  tally.displacements.push_back({run.distance, run.lateral_displacement});
+  tally.displacements.push_back({run.distance, run.lateral});
   group.num_repeating += sweep::has_met_repetition(run);
   if (run.steps > 0) tally.travels_until_arrest.push_back(travel_until_arrest(run));
 }

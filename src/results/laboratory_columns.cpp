@@ -63,15 +63,15 @@ bool have_laboratory(const std::vector<Group>& groups) {
 std::vector<Field> laboratory_fields(const Group& group) {
   const LaboratoryScale scale = scale_of(group);
   const fit::CloggingLength clogging = clogging_in_mm(group);
-  return {{"diameter_mm", finite_value(twelve_digits(scale.length))},
+  return {{"diameter_mm", finite_value(twelve_digits(scale.length)), "mm"},
           {"angle_degrees", finite_value(scale.tilt)},
-          {"tension_mN_per_m", finite_value(tension_of(group))},
-          {"clogging_length_mm", finite_value(clogging.length)},
-          {"clogging_length_lower_mm", finite_value(clogging.interval.lower)},
-          {"clogging_length_upper_mm", finite_value(clogging.interval.upper)},
-          {"speed_mm_per_s", finite_value(speed_in_mm_per_s(group).mean)},
-          {"speed_error_mm_per_s", finite_value(speed_in_mm_per_s(group).standard_error)},
-          {"time_to_clog_s", finite_value(time_to_clog(group))}};
+          {"tension_mN_per_m", finite_value(tension_of(group)), "mN/m"},
+          {"clogging_length_mm", finite_value(clogging.length), "mm"},
+          {"clogging_length_lower_mm", finite_value(clogging.interval.lower), "mm"},
+          {"clogging_length_upper_mm", finite_value(clogging.interval.upper), "mm"},
+          {"speed_mm_per_s", finite_value(speed_in_mm_per_s(group).mean), "mm/s"},
+          {"speed_error_mm_per_s", finite_value(speed_in_mm_per_s(group).standard_error), "mm/s"},
+          {"time_to_clog_s", finite_value(time_to_clog(group)), "s"}};
 }
 
 std::vector<ResultColumn> droplet_columns(const std::vector<Group>& groups) {

@@ -160,27 +160,28 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
 }
 
 /// A number of the single run of a group without randomness.
-ResultColumn column_of_run(const char* name, double sweep::RunRow::*value) {
-  return {name, [=](const Group& group) { return console::plain(group.first_row.*value, 4); }};
+template <class Place>
+ResultColumn column_of_run(const char* name, Place number) {
+  return {name, [=](const Group& group) { return console::plain(number(group.first_row), 4); }};
 }
 
 std::vector<ResultColumn> columns_of_channels() {
-  using sweep::RunRow;
+  using Row = const sweep::RunRow&;
   return {{"outcome", [](const Group& group) { return outcome_of(group.first_row); }},
-          column_of_run("largest A", &RunRow::largest_shape_parameter),
-          column_of_run("at h", &RunRow::largest_shape_parameter_at),
-          column_of_run("least v/v_t", &RunRow::smallest_relative_speed),
-          column_of_run("at h", &RunRow::smallest_relative_speed_at),
-          column_of_run("most v/v_t", &RunRow::largest_relative_speed),
-          column_of_run("at h", &RunRow::largest_relative_speed_at)};
+          column_of_run("largest A", [](Row row) { return row.passage.largest_shape_parameter.value; }),
+          column_of_run("at h", [](Row row) { return row.passage.largest_shape_parameter.place; }),
+          column_of_run("least v/v_t", [](Row row) { return row.passage.smallest_speed.value; }),
+          column_of_run("at h", [](Row row) { return row.passage.smallest_speed.place; }),
+          column_of_run("most v/v_t", [](Row row) { return row.passage.largest_speed.value; }),
+          column_of_run("at h", [](Row row) { return row.passage.largest_speed.place; })};
 }
 
 std::vector<ResultColumn> columns_of_walls() {
-  using sweep::RunRow;
+  using Row = const sweep::RunRow&;
   return {{"outcome", [](const Group& group) { return outcome_of(group.first_row); }},
-          column_of_run("sag", &RunRow::sag),
-          column_of_run("top sag", &RunRow::top_sag),
-          column_of_run("A", &RunRow::shape_parameter)};
+          column_of_run("sag", [](Row row) { return row.sag.centre; }),
+          column_of_run("top sag", [](Row row) { return row.sag.top; }),
+          column_of_run("A", [](Row row) { return row.shape_parameter; })};
 }
 
 }  // namespace

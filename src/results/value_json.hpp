@@ -15,6 +15,8 @@ inline Value finite_value(double number) { return std::isfinite(number) ? Value(
 nlohmann::ordered_json json_of(const sweep::Value& value);
 /// The groups with all their fields and curves.
 nlohmann::ordered_json groups_json(const std::vector<Group>& groups);
+/// The values by their names.
+nlohmann::ordered_json json_of(const std::vector<Field>& row);
 /// A step of a survival or incidence curve as JSON. @param name  key of the number of ends
 template <class Step>
 nlohmann::ordered_json step_json(const Step& step, const char* name, int num_ends) {
@@ -42,24 +44,12 @@ int digits_in(const std::vector<Group>& groups, const ValueOf& value_of) {
   for (const Group& group : groups) values.push_back(value_of(group));
   return distinct_digits(values);
 }
-/// The short_text() of each label of each group, so that different labels have different texts.
-/// @param labels  member of a group; all groups have equally many labels
-template <class Group>
-std::vector<std::vector<std::string>> label_texts(const std::vector<Group>& groups,
-                                                  std::vector<Value> Group::*labels) {
-  std::vector<std::vector<std::string>> texts(groups.size());
-  for (std::size_t column = 0; !groups.empty() && column < (groups[0].*labels).size(); ++column) {
-    std::vector<Value> values;
-    values.reserve(groups.size());
-    for (const Group& group : groups) values.push_back((group.*labels)[column]);
-    const int digits = distinct_digits(values);
-    for (std::size_t i = 0; i < groups.size(); ++i) texts[i].push_back(short_text(values[i], digits));
-  }
-  return texts;
-}
 /// Text for CSV: all digits; quoted if a word contains a comma or a quote.
 std::string csv_cell(const sweep::Value& value);
 /// CSV with the names of the fields of all rows, then a line for each row. Fields that a row lacks are empty.
 std::string csv_table(const std::vector<std::vector<Field>>& rows);
+/// The fields with a head as an aligned table. Different values of a field have different texts.
+/// @param rows  not empty; all rows have the same fields
+std::string text_table(const std::vector<std::vector<Field>>& rows);
 
 }  // namespace clog::results

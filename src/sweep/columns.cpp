@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -16,7 +17,6 @@ namespace clog::sweep {
 namespace {
 
 constexpr std::size_t number_size = 8;
-constexpr std::int64_t no_count = -1;
 
 /// Size of a column of words: two sizes are enough.
 std::size_t text_size(std::size_t longest_word) { return longest_word < 8 ? 8 : 16; }
@@ -30,7 +30,7 @@ std::size_t longest(const std::vector<std::string>& words) {
 // These functions convert a member of RunRow to a value and back, by the type of the member.
 
 Value outside(double value) { return is_known(value) ? Value(value) : Value(); }
-Value outside(std::int64_t value) { return value; }
+Value outside(std::int64_t value) { return is_known(value) ? Value(value) : Value(); }
 Value outside(const std::string& value) { return value; }
 template <class Enum>
 requires std::is_enum_v<Enum> Value outside(Enum value) { return name(value); }
@@ -45,7 +45,7 @@ void take(const Value& value, double& member) {
 }
 void take(const Value& value, std::int64_t& member) {
   const std::int64_t* integer = std::get_if<std::int64_t>(&value);
-  member = integer ? *integer : no_count;
+  member = integer ? *integer : RunRow::not_counted;
 }
 void take(const Value& value, std::string& member) {
   const std::string* text = std::get_if<std::string>(&value);
@@ -62,48 +62,37 @@ void take(const Value& value, Enum& member) {
 template <class T>
 void take(const Value& value, std::optional<T>& member) {
   member.reset();
-  if (value != Value() && value != Value(no_count)) take(value, member.emplace());
+  if (value != Value()) take(value, member.emplace());
 }
 
 template <class T>
 constexpr ValueKind kind_of() {
   if constexpr (std::is_same_v<T, double>) return ValueKind::number;
-  if constexpr (std::is_same_v<T, std::int64_t> || std::is_same_v<T, std::optional<std::int64_t>>)
-    return ValueKind::integer;
+  if constexpr (std::is_same_v<T, std::int64_t>) return ValueKind::integer;
   return ValueKind::word;
 }
 
 /// A column that is a member of the row, or a part of a member.
-/// @param place  a function from a row (const or not) to a reference to the member or part
+/// @param place  pointer to the member, or a function from a row (const or not) to a reference to the part
 template <class Place>
-Column column_at(const std::string& name, Place place, ColumnRole role, const char* unit,
-                 const std::string& meaning, std::size_t size = number_size) {
+Column member(const std::string& name, Place place, ColumnRole role, const char* unit,
+              const std::string& meaning, std::size_t size = number_size) {
   return {.name = name,
           .symbol = "",
           .unit = unit,
           .meaning = meaning,
           .role = role,
-          .kind = kind_of<std::remove_cvref_t<decltype(place(std::declval<RunRow&>()))>>(),
+          .kind = kind_of<std::remove_cvref_t<decltype(std::invoke(place, std::declval<RunRow&>()))>>(),
           .size = size,
           .parameter = nullptr,
           .shapes_array = false,
-          .get = [=](const RunRow& row) { return outside(place(row)); },
-          .set = [=](RunRow& row, const Value& value) { take(value, place(row)); },
+          .get = [=](const RunRow& row) { return outside(std::invoke(place, row)); },
+          .set = [=](RunRow& row, const Value& value) { take(value, std::invoke(place, row)); },
           .set_unknown =
               [=](RunRow& row) {
                 const RunRow unknown{};
-                place(row) = place(unknown);
+                std::invoke(place, row) = std::invoke(place, unknown);
               }};
-}
-template <class T>
-Column member(const char* name, T RunRow::*place, ColumnRole role, const char* unit, const char* meaning,
-              std::size_t size = number_size) {
-  return column_at(
-      name, [=](auto& row) -> auto& { return row.*place; }, role, unit, meaning, size);
-}
-template <class Place>
-Column number_in(const std::string& name, Place place, const char* unit, const std::string& meaning) {
-  return column_at(name, place, ColumnRole::result, unit, meaning);
 }
 
 bool is_text(const Parameter& parameter) {
@@ -205,6 +194,7 @@ Column density_column() {
 }
 
 std::vector<Column> columns_of_dwells() {
+  using enum ColumnRole;
   std::vector<Column> all;
   for (std::size_t i = 0; i < Dwells::most; ++i) {
     const std::string name = dwell_column(i);
@@ -213,25 +203,25 @@ std::vector<Column> columns_of_dwells() {
                                       "dwell cut off by the end of the run counts, the clog does not; NaN: "
                                       "no dwell was longer than ten times dwell_length/V_t"
                                     : "longest dwell before " + dwell_column(i - 1) + "; NaN: there was none";
-    all.push_back(number_in(
-        name, [i](auto& row) -> auto& { return row.dwells.longest[i].length; }, "t0", meaning));
-    all.push_back(number_in(
-        name + "_at", [i](auto& row) -> auto& { return row.dwells.longest[i].distance; }, "sigma",
+    all.push_back(member(
+        name, [i](auto& row) -> auto& { return row.dwells.longest[i].length; }, result, "t0", meaning));
+    all.push_back(member(
+        name + "_at", [i](auto& row) -> auto& { return row.dwells.longest[i].distance; }, result, "sigma",
         "distance at which this dwell began"));
-    all.push_back(number_in(
-        name + "_from", [i](auto& row) -> auto& { return row.dwells.longest[i].begin; }, "t0",
+    all.push_back(member(
+        name + "_from", [i](auto& row) -> auto& { return row.dwells.longest[i].begin; }, result, "t0",
         "time at which this dwell began"));
   }
-  all.push_back(number_in(
-      "dwells_known_from", [](auto& row) -> auto& { return row.dwells.known_from; }, "t0",
+  all.push_back(member(
+      "dwells_known_from", [](auto& row) -> auto& { return row.dwells.known_from; }, result, "t0",
       "the dwell columns contain, for each duration above this value, the first dwell that was longer than "
       "the duration"));
-  all.push_back(number_in(
-      "last_dwell_at", [](auto& row) -> auto& { return row.dwells.last_distance; }, "sigma",
+  all.push_back(member(
+      "last_dwell_at", [](auto& row) -> auto& { return row.dwells.last_distance; }, result, "sigma",
       "distance at which the last dwell of any duration began, which is the clog or the dwell at the end of "
       "the run"));
-  all.push_back(number_in(
-      "last_dwell_from", [](auto& row) -> auto& { return row.dwells.last_begin; }, "t0",
+  all.push_back(member(
+      "last_dwell_from", [](auto& row) -> auto& { return row.dwells.last_begin; }, result, "t0",
       "time at which this dwell began"));
   return all;
 }
@@ -281,89 +271,116 @@ std::vector<Column> make_columns() {
       member("sound_distance", &RunRow::sound_distance, result, "sigma",
              "distance at the last check that found the droplet whole and not crossing itself, at which "
              "failed runs are censored; NaN: unknown"),
-      member("lateral_displacement", &RunRow::lateral_displacement, result, "sigma",
-             "displacement across the flow"),
+      member(
+          "lateral_displacement", [](auto& row) -> auto& { return row.lateral; }, result, "sigma",
+          "displacement across the flow"),
       member("time", &RunRow::time, result, "t0", "time since release"),
-      member("mean_speed", &RunRow::mean_speed, result, "sqrt(sigma g)",
-             "distance divided by time between transient and arrest; NaN if the droplet moved less than half "
-             "a diameter in that time, or if the transient took more than half of the run"),
-      member("mean_speed_error", &RunRow::mean_speed_error, result, "sqrt(sigma g)",
-             "standard error of mean_speed from its variation during the run; NaN if the run was too short"),
-      member("transient", &RunRow::transient, result, "t0", "time at which the transient ends"),
-      member("travel_time", &RunRow::travel_time, result, "t0",
-             "time from the end of the transient to the arrest, over which mean_speed is averaged"),
-      number_in(
-          "steady_distance", [](auto& row) -> auto& { return row.steady.distance; }, "sigma",
+      member(
+          "mean_speed", [](auto& row) -> auto& { return row.speed.mean; }, result, "sqrt(sigma g)",
+          "distance divided by time between transient and arrest; NaN if the droplet moved less than half "
+          "a diameter in that time, or if the transient took more than half of the run"),
+      member(
+          "mean_speed_error", [](auto& row) -> auto& { return row.speed.error; }, result, "sqrt(sigma g)",
+          "standard error of mean_speed from its variation during the run; NaN if the run was too short"),
+      member(
+          "transient", [](auto& row) -> auto& { return row.speed.transient; }, result, "t0",
+          "time at which the transient ends"),
+      member(
+          "travel_time", [](auto& row) -> auto& { return row.speed.time; }, result, "t0",
+          "time from the end of the transient to the arrest, over which mean_speed is averaged"),
+      member(
+          "steady_distance", [](auto& row) -> auto& { return row.steady.distance; }, result, "sigma",
           fmt::format(
               "displacement along the flow from the time {:g} sigma/V_t to the end of the run, or to the "
               "last dwell of a clogged run; NaN: the run, or the way to its clog, was shorter",
               SteadyRecord::free_fall)),
-      number_in(
-          "steady_time", [](auto& row) -> auto& { return row.steady.time; }, "t0",
+      member(
+          "steady_time", [](auto& row) -> auto& { return row.steady.time; }, result, "t0",
           "time in which the droplet went steady_distance"),
-      member("contacts", &RunRow::contacts, result, "",
-             "number of contacts with obstacles, checked every 64 steps; an obstacle counts again after a "
-             "separation of 0.1 sigma; -1: unknown"),
-      member("first_contact_at", &RunRow::first_contact_at, result, "sigma",
-             "distance of the first contact; NaN: none"),
+      member(
+          "contacts", [](auto& row) -> auto& { return row.contacts.number; }, result, "",
+          "number of contacts with obstacles, checked every 64 steps; an obstacle counts again after a "
+          "separation of 0.1 sigma; -1: unknown"),
+      member(
+          "first_contact_at", [](auto& row) -> auto& { return row.contacts.first_distance; }, result, "sigma",
+          "distance of the first contact; NaN: none"),
       member("kinetic_energy_ratio", &RunRow::kinetic_energy_ratio, result, "",
              "E_k/E_t at the end; E_t: kinetic energy at terminal speed"),
       member("shape_parameter", &RunRow::shape_parameter, result, "",
              "A = perimeter^2/(4 pi area) at the end; 1 for a circle"),
-      member("mechanism", &RunRow::mechanism, result, "",
-             "wrapped, squeezed or hybrid (docs/explanation/clogged.md); none: not clogged, or clogged by "
-             "another mechanism; empty: unknown",
-             16),
-      member("wrapped_support", &RunRow::wrapped_support, result, "",
-             "fraction of the upstream support that wrapped obstacles give; NaN unless the droplet is a "
-             "clogged polygon"),
-      member("num_wrapped", &RunRow::num_wrapped, result, "",
-             "number of touched obstacles over which the clogged polygon hangs, 0 for other droplets; -1: "
-             "unknown"),
-      member("num_gaps", &RunRow::num_gaps, result, "",
-             "number of gaps in front of the clogged polygon; at least one side of such a gap supports the "
-             "polygon; -1: unknown"),
-      member("num_arcs", &RunRow::num_arcs, result, "", "number of arcs of contact; -1: unknown"),
-      member("mesh_hold", &RunRow::mesh_hold, result, "",
-             "largest fraction of the weight that corners of the mesh can hold where a clogged polygon hangs "
-             "over obstacles; NaN for other droplets"),
-      member("friction_use", &RunRow::friction_use, result, "",
-             "moment of the wall's friction about a post's centre divided by the largest that friction could "
-             "bear in this direction, the largest over the posts over which a clogged polygon hangs and that "
-             "give at least a tenth of its support; NaN for other droplets"),
-      member("largest_shape_parameter", &RunRow::largest_shape_parameter, result, "",
-             "largest A in a channel; this and the next five columns are NaN for other runs"),
       member(
-          "largest_shape_parameter_at", &RunRow::largest_shape_parameter_at, result, "sigma",
+          "mechanism", [](auto& row) -> auto& { return row.hold.mechanism; }, result, "",
+          "wrapped, squeezed or hybrid (docs/explanation/clogged.md); none: not clogged, or clogged by "
+          "another mechanism; empty: unknown",
+          16),
+      member(
+          "wrapped_support", [](auto& row) -> auto& { return row.hold.geometry.wrapped_support; }, result, "",
+          "fraction of the upstream support that wrapped obstacles give; NaN unless the droplet is a "
+          "clogged polygon"),
+      member(
+          "num_wrapped", [](auto& row) -> auto& { return row.hold.geometry.num_wrapped; }, result, "",
+          "number of touched obstacles over which the clogged polygon hangs, 0 for other droplets; -1: "
+          "unknown"),
+      member(
+          "num_gaps", [](auto& row) -> auto& { return row.hold.geometry.num_gaps; }, result, "",
+          "number of gaps in front of the clogged polygon; at least one side of such a gap supports the "
+          "polygon; -1: unknown"),
+      member(
+          "num_arcs", [](auto& row) -> auto& { return row.hold.geometry.num_arcs; }, result, "",
+          "number of arcs of contact; -1: unknown"),
+      member(
+          "mesh_hold", [](auto& row) -> auto& { return row.hold.geometry.mesh_hold; }, result, "",
+          "largest fraction of the weight that corners of the mesh can hold where a clogged polygon hangs "
+          "over obstacles; NaN for other droplets"),
+      member(
+          "friction_use", [](auto& row) -> auto& { return row.hold.friction_use; }, result, "",
+          "moment of the wall's friction about a post's centre divided by the largest that friction could "
+          "bear in this direction, the largest over the posts over which a clogged polygon hangs and that "
+          "give at least a tenth of its support; NaN for other droplets"),
+      member(
+          "largest_shape_parameter",
+          [](auto& row) -> auto& { return row.passage.largest_shape_parameter.value; }, result, "",
+          "largest A in a channel; this and the next five columns are NaN for other runs"),
+      member(
+          "largest_shape_parameter_at",
+          [](auto& row) -> auto& { return row.passage.largest_shape_parameter.place; }, result, "sigma",
           "h at which A was largest; h counts from the line through the wedges' tips, positive downstream"),
-      member("largest_relative_speed", &RunRow::largest_relative_speed, result, "",
-             "largest v_g/v_t in a channel"),
-      member("largest_relative_speed_at", &RunRow::largest_relative_speed_at, result, "sigma",
-             "h at which the droplet had this speed"),
-      member("smallest_relative_speed", &RunRow::smallest_relative_speed, result, "",
-             "smallest v_g/v_t in a channel, after ten relaxation times V_t/g"),
-      member("smallest_relative_speed_at", &RunRow::smallest_relative_speed_at, result, "sigma",
-             "h at which the droplet had this speed"),
-      member("sag", &RunRow::sag, result, "sigma",
-             "delta_s, how far the centroid of a droplet on a flat wall has sunk; NaN for other runs"),
-      member("top_sag", &RunRow::top_sag, result, "sigma",
-             "how far the highest point of a droplet on a flat wall has sunk; NaN for other runs"),
-      number_in(
-          "thinnest_neck", [](auto& row) -> auto& { return row.neck.width; }, "sigma",
+      member(
+          "largest_relative_speed", [](auto& row) -> auto& { return row.passage.largest_speed.value; },
+          result, "", "largest v_g/v_t in a channel"),
+      member(
+          "largest_relative_speed_at", [](auto& row) -> auto& { return row.passage.largest_speed.place; },
+          result, "sigma", "h at which the droplet had this speed"),
+      member(
+          "smallest_relative_speed", [](auto& row) -> auto& { return row.passage.smallest_speed.value; },
+          result, "", "smallest v_g/v_t in a channel, after ten relaxation times V_t/g"),
+      member(
+          "smallest_relative_speed_at", [](auto& row) -> auto& { return row.passage.smallest_speed.place; },
+          result, "sigma", "h at which the droplet had this speed"),
+      member(
+          "sag", [](auto& row) -> auto& { return row.sag.centre; }, result, "sigma",
+          "delta_s, how far the centroid of a droplet on a flat wall has sunk; NaN for other runs"),
+      member(
+          "top_sag", [](auto& row) -> auto& { return row.sag.top; }, result, "sigma",
+          "how far the highest point of a droplet on a flat wall has sunk; NaN for other runs"),
+      member(
+          "thinnest_neck", [](auto& row) -> auto& { return row.neck.width; }, result, "sigma",
           "smallest width of a neck between two lobes during the run (docs/explanation/wrapped.md); NaN: no "
           "neck, or break_up_neck is 0"),
-      number_in(
-          "thinnest_neck_at", [](auto& row) -> auto& { return row.neck.distance; }, "sigma",
+      member(
+          "thinnest_neck_at", [](auto& row) -> auto& { return row.neck.distance; }, result, "sigma",
           "distance at which the droplet had this neck"),
       member("healed_crossings", &RunRow::healed_crossings, result, "",
              "number of times that a vertex passed through another part of the interface and was pushed "
              "back; -1: unknown"),
-      member("release_x", &RunRow::release_x, result, "sigma",
-             "place of release of the centre of mass in their array, in the coordinates of user-supplied "
-             "circles; "
-             "NaN for other obstacles"),
-      member("release_y", &RunRow::release_y, result, "sigma",
-             "place of release across the flow, in the same coordinates; NaN for other obstacles"),
+      member(
+          "release_x", [](auto& row) -> auto& { return row.release[0]; }, result, "sigma",
+          "place of release of the centre of mass in their array, in the coordinates of user-supplied "
+          "circles; "
+          "NaN for other obstacles"),
+      member(
+          "release_y", [](auto& row) -> auto& { return row.release[1]; }, result, "sigma",
+          "place of release across the flow, in the same coordinates; NaN for other obstacles"),
       member("steps", &RunRow::steps, result, "",
              "number of integrated steps; each sub-step counts as one step"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",
@@ -415,7 +432,7 @@ void Column::pack(const RunRow& row, std::byte* bytes) const {
     std::fill(bytes + length, bytes + size, std::byte{0});
   } else if (kind == ValueKind::integer) {
     const auto* integer = std::get_if<std::int64_t>(&value);
-    std::memcpy(bytes, integer ? integer : &no_count, number_size);
+    std::memcpy(bytes, integer ? integer : &RunRow::not_counted, number_size);
   } else {
     const auto* number = std::get_if<double>(&value);
     std::memcpy(bytes, number ? number : &RunRow::not_known, number_size);

@@ -116,22 +116,22 @@ std::string time_fault(const RunRow& row) {
 
 std::string motion_fault(const RunRow& row) {
   const double farthest = farthest_way(row);
-  if (!is_number_below(std::hypot(row.distance, row.lateral_displacement), farthest))
+  if (!is_number_below(std::hypot(row.distance, row.lateral), farthest))
     return fmt::format("{}, {}: no droplet gets farther than {} in {}", named("distance", row.distance),
-                       named("lateral_displacement", row.lateral_displacement), shortest(farthest),
+                       named("lateral_displacement", row.lateral), shortest(farthest),
                        named("time", row.time));
   const double slightly_more = (1 + round_off) * row.time;
-  if (is_known(row.transient) && !(row.transient >= 0 && row.transient <= slightly_more))
-    return named("transient", row.transient) + " is not within the run";
-  if (is_known(row.travel_time) && !(row.travel_time > 0 && row.travel_time <= slightly_more))
-    return named("travel_time", row.travel_time) + " is not within the run";
+  if (is_known(row.speed.transient) && !(row.speed.transient >= 0 && row.speed.transient <= slightly_more))
+    return named("transient", row.speed.transient) + " is not within the run";
+  if (is_known(row.speed.time) && !(row.speed.time > 0 && row.speed.time <= slightly_more))
+    return named("travel_time", row.speed.time) + " is not within the run";
   // An older file lacks the time over which the speed was taken; it was at least one step.
-  const double travel_time = is_known(row.travel_time) ? row.travel_time : time_step_of(row);
-  if (is_known(row.mean_speed) && !is_number_below(row.mean_speed * travel_time, 2 * farthest))
-    return named("mean_speed", row.mean_speed) + " is faster than a droplet can be";
+  const double travel_time = is_known(row.speed.time) ? row.speed.time : time_step_of(row);
+  if (is_known(row.speed.mean) && !is_number_below(row.speed.mean * travel_time, 2 * farthest))
+    return named("mean_speed", row.speed.mean) + " is faster than a droplet can be";
   const double fastest = std::sqrt(diverged_energy_ratio) * row.parameters.drag.terminal_speed;
-  if (is_known(row.mean_speed_error) && !(row.mean_speed_error >= 0 && row.mean_speed_error <= fastest))
-    return named("mean_speed_error", row.mean_speed_error) + " is no error";
+  if (is_known(row.speed.error) && !(row.speed.error >= 0 && row.speed.error <= fastest))
+    return named("mean_speed_error", row.speed.error) + " is no error";
   return "";
 }
 
@@ -205,7 +205,7 @@ std::string soundness_fault(const RunRow& row) {
     return named("sound_distance", row.sound_distance) + " is not on the droplet's way";
   if (row.status == RunStatus::failed && !is_number_below(*observed_distance(row), farthest_way(row)))
     return named("distance", row.distance) + " is not on the droplet's way";
-  if (row.healed_crossings.value_or(0) < 0) return "a negative number of healed crossings";
+  if (row.healed_crossings < RunRow::not_counted) return "a negative number of healed crossings";
   return "";
 }
 
@@ -220,12 +220,14 @@ std::string shape_fault(const RunRow& row) {
 }
 
 std::string contacts_fault(const RunRow& row) {
-  const std::int64_t contacts = row.contacts.value_or(0);
+  const std::int64_t contacts = is_known(row.contacts.number) ? row.contacts.number : 0;
   if (contacts < 0) return "a negative number of contacts";
-  if (is_known(row.first_contact_at) != (contacts > 0))
-    return fmt::format("{}, but contacts={}", named("first_contact_at", row.first_contact_at), contacts);
-  if (is_known(row.first_contact_at) && !is_number_below(row.first_contact_at, farthest_way(row)))
-    return named("first_contact_at", row.first_contact_at) + " is not on the droplet's way";
+  if (is_known(row.contacts.first_distance) != (contacts > 0))
+    return fmt::format("{}, but contacts={}", named("first_contact_at", row.contacts.first_distance),
+                       contacts);
+  if (is_known(row.contacts.first_distance) &&
+      !is_number_below(row.contacts.first_distance, farthest_way(row)))
+    return named("first_contact_at", row.contacts.first_distance) + " is not on the droplet's way";
   return "";
 }
 
@@ -247,19 +249,20 @@ std::string clog_fault(const RunRow& row) {
     if (row.clogged_by == FoundBy::certified && row.stability != Stability::stable)
       return "certified, but " + named("stability", name(*row.stability));
   }
-  if (!is_clogged && row.mechanism.value_or(ClogMechanism::none) != ClogMechanism::none)
-    return named("mechanism", name(*row.mechanism)) + ", but it is not clogged";
-  if (is_known(row.wrapped_support) &&
-      !(is_clogged && row.wrapped_support >= 0 && row.wrapped_support <= 1 + round_off))
-    return named("wrapped_support", row.wrapped_support) + " is no share of a clog's support";
-  if (is_known(row.mesh_hold) && !(is_clogged && row.mesh_hold >= 0 && row.mesh_hold <= most_mesh_hold))
-    return named("mesh_hold", row.mesh_hold) + " is no part of a clogged droplet's weight";
-  if (is_known(row.friction_use) &&
-      !(is_clogged && row.friction_use >= 0 && row.friction_use <= most_friction_use))
-    return named("friction_use", row.friction_use) + " is no fraction of what friction can bear";
+  if (!is_clogged && row.hold.mechanism.value_or(ClogMechanism::none) != ClogMechanism::none)
+    return named("mechanism", name(*row.hold.mechanism)) + ", but it is not clogged";
+  if (is_known(row.hold.geometry.wrapped_support) && !(is_clogged && row.hold.geometry.wrapped_support >= 0 &&
+                                                       row.hold.geometry.wrapped_support <= 1 + round_off))
+    return named("wrapped_support", row.hold.geometry.wrapped_support) + " is no share of a clog's support";
+  if (is_known(row.hold.geometry.mesh_hold) &&
+      !(is_clogged && row.hold.geometry.mesh_hold >= 0 && row.hold.geometry.mesh_hold <= most_mesh_hold))
+    return named("mesh_hold", row.hold.geometry.mesh_hold) + " is no part of a clogged droplet's weight";
+  if (is_known(row.hold.friction_use) &&
+      !(is_clogged && row.hold.friction_use >= 0 && row.hold.friction_use <= most_friction_use))
+    return named("friction_use", row.hold.friction_use) + " is no fraction of what friction can bear";
   const auto [fewest, most] =
-      std::minmax({row.num_wrapped.value_or(0), row.num_gaps.value_or(0), row.num_arcs.value_or(0)});
-  if (fewest < 0) return "a negative number of contacts";
+      std::minmax({row.hold.geometry.num_wrapped, row.hold.geometry.num_gaps, row.hold.geometry.num_arcs});
+  if (fewest < RunRow::not_counted) return "a negative number of contacts";
   if (most > most_contacts) return fmt::format("{} contacts are more than a droplet has", most);
   return "";
 }
@@ -277,14 +280,15 @@ std::string passage_fault(const RunRow& row) {
   };
   using enum Finding;
   for (const Place& place :
-       {Place{"largest_shape_parameter", row.largest_shape_parameter, passage, 1 - round_off, most_shape},
-        Place{"largest_shape_parameter_at", row.largest_shape_parameter_at, passage, -way, way},
-        Place{"largest_relative_speed", row.largest_relative_speed, passage, -fastest, fastest},
-        Place{"largest_relative_speed_at", row.largest_relative_speed_at, passage, -way, way},
-        Place{"smallest_relative_speed", row.smallest_relative_speed, passage, -fastest, fastest},
-        Place{"smallest_relative_speed_at", row.smallest_relative_speed_at, passage, -way, way},
-        Place{"sag", row.sag, Finding::sag, -units::droplet_diameter, farthest_way(row)},
-        Place{"top_sag", row.top_sag, Finding::sag, -units::droplet_diameter, farthest_way(row)}}) {
+       {Place{"largest_shape_parameter", row.passage.largest_shape_parameter.value, passage, 1 - round_off,
+              most_shape},
+        Place{"largest_shape_parameter_at", row.passage.largest_shape_parameter.place, passage, -way, way},
+        Place{"largest_relative_speed", row.passage.largest_speed.value, passage, -fastest, fastest},
+        Place{"largest_relative_speed_at", row.passage.largest_speed.place, passage, -way, way},
+        Place{"smallest_relative_speed", row.passage.smallest_speed.value, passage, -fastest, fastest},
+        Place{"smallest_relative_speed_at", row.passage.smallest_speed.place, passage, -way, way},
+        Place{"sag", row.sag.centre, Finding::sag, -units::droplet_diameter, farthest_way(row)},
+        Place{"top_sag", row.sag.top, Finding::sag, -units::droplet_diameter, farthest_way(row)}}) {
     if (!is_known(place.value)) continue;
     if (finding != place.finding)
       return named(place.column, place.value) + ", but there is no " +
@@ -292,9 +296,9 @@ std::string passage_fault(const RunRow& row) {
     if (!(place.value >= place.least && place.value <= place.most))
       return named(place.column, place.value) + " is that of no droplet";
   }
-  if (row.smallest_relative_speed > row.largest_relative_speed)
-    return named("smallest_relative_speed", row.smallest_relative_speed) + " is above " +
-           named("largest_relative_speed", row.largest_relative_speed);
+  if (row.passage.smallest_speed.value > row.passage.largest_speed.value)
+    return named("smallest_relative_speed", row.passage.smallest_speed.value) + " is above " +
+           named("largest_relative_speed", row.passage.largest_speed.value);
   return "";
 }
 
@@ -322,9 +326,9 @@ std::string neck_fault(const RunRow& row) {
 /// Those that started outside the first period of the shifted array (see the scene of user-supplied circles)
 /// have a wrong place and a wrong way to the exit: their place is half a period or more outside.
 std::string release_fault(const RunRow& row) {
-  if (!is_known(row.release_x) && !is_known(row.release_y)) return "";
+  if (!is_known(row.release[0]) && !is_known(row.release[1])) return "";
   const ObstacleParameters& obstacles = row.parameters.obstacles;
-  const std::string place = named("release_x", row.release_x) + ", " + named("release_y", row.release_y);
+  const std::string place = named("release_x", row.release[0]) + ", " + named("release_y", row.release[1]);
   if (obstacles.layout != ObstacleLayout::file) return place + ", but there are no user-supplied circles";
   const Period period = obstacles.period();
   constexpr std::int64_t first_model_with_places_inside = 12;
@@ -332,7 +336,7 @@ std::string release_fault(const RunRow& row) {
   const auto is_inside = [margin](double value, double edge) {
     return value >= -margin * edge && value < (1 + margin) * edge;
   };
-  if (is_inside(row.release_x, period.along()) && is_inside(row.release_y, period.across())) return "";
+  if (is_inside(row.release[0], period.along()) && is_inside(row.release[1], period.across())) return "";
   return margin == 0 ? place + " is not in the array"
                      : place +
                            " is a period away from where the droplet started, an error of clogsweep 1.0; "

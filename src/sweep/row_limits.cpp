@@ -242,14 +242,15 @@ std::vector<std::string> limits_of_results(const Plan& plan) {
 bool may_hang_on_mesh(const RunRow& row) {
   if (row.status != RunStatus::clogged || row.parameters.model != Model::dp) return false;
   const DpParameters& dp = row.parameters.dp;
-  const bool hangs = row.mechanism == ClogMechanism::wrapped || row.mechanism == ClogMechanism::hybrid;
-  if (!is_known(row.mesh_hold)) return hangs;
+  const bool hangs =
+      row.hold.mechanism == ClogMechanism::wrapped || row.hold.mechanism == ClogMechanism::hybrid;
+  if (!is_known(row.hold.geometry.mesh_hold)) return hangs;
   if (dp.friction > 0 && dp.film_friction == FilmFriction::off && hangs) return true;
-  return row.mesh_hold > std::max(tolerated_mesh_hold, weight_borne_by_friction(dp));
+  return row.hold.geometry.mesh_hold > std::max(tolerated_mesh_hold, weight_borne_by_friction(dp));
 }
 
 bool is_near_friction_limit(const RunRow& row) {
-  return row.friction_use > tolerated_friction_use && row.friction_use < arrested_friction_use;
+  return row.hold.friction_use > tolerated_friction_use && row.hold.friction_use < arrested_friction_use;
 }
 
 double obstacle_spacing(const RunRow& row) {

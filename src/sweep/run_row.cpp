@@ -10,14 +10,6 @@
 #include "clog/sweep/keys.hpp"
 
 namespace clog::sweep {
-namespace {
-
-FoundBy found_by(const std::optional<ClogDetection>& detection) {
-  if (!detection) return FoundBy::not_clogged;
-  return *detection == ClogDetection::certified ? FoundBy::certified : FoundBy::threshold;
-}
-
-}  // namespace
 
 std::string identity(const RunRow& row) {
   std::string bytes;
@@ -53,48 +45,6 @@ RunRow describe(const RunParameters& run) {
   row.instruction_set = run.model == Model::dp ? instruction_set() : "none";
   row.model_version = model_version;
   return row;
-}
-
-void record(const RunResult& result, RunRow& row) {
-  row.status = result.status;
-  row.clogged_by = found_by(result.clogged_by);
-  row.stability = result.stability;
-  row.failed_by = result.failed_by;
-  row.distance = result.distance;
-  row.sound_distance = result.sound_distance;
-  row.lateral_displacement = result.lateral;
-  row.time = result.time;
-  row.mean_speed = result.speed.mean;
-  row.mean_speed_error = result.speed.error;
-  row.transient = result.speed.transient;
-  row.travel_time = result.speed.time;
-  row.steady = result.steady;
-  row.dwells = result.dwells;
-  row.contacts = result.contacts.number;
-  row.first_contact_at = result.contacts.first_distance;
-  row.kinetic_energy_ratio = result.kinetic_energy_ratio;
-  row.shape_parameter = result.shape_parameter;
-  row.mechanism = result.hold.mechanism;
-  row.wrapped_support = result.hold.geometry.wrapped_support;
-  row.num_wrapped = result.hold.geometry.num_wrapped;
-  row.num_gaps = result.hold.geometry.num_gaps;
-  row.num_arcs = result.hold.geometry.num_arcs;
-  row.mesh_hold = result.hold.geometry.mesh_hold;
-  row.friction_use = result.hold.friction_use;
-  row.largest_shape_parameter = result.passage.largest_shape_parameter.value;
-  row.largest_shape_parameter_at = result.passage.largest_shape_parameter.place;
-  row.largest_relative_speed = result.passage.largest_speed.value;
-  row.largest_relative_speed_at = result.passage.largest_speed.place;
-  row.smallest_relative_speed = result.passage.smallest_speed.value;
-  row.smallest_relative_speed_at = result.passage.smallest_speed.place;
-  row.sag = result.sag.centre;
-  row.top_sag = result.sag.top;
-  row.neck = result.neck;
-  row.healed_crossings = result.healed_crossings;
-  row.release_x = result.release[0];
-  row.release_y = result.release[1];
-  row.steps = result.steps;
-  row.message = result.message;
 }
 
 std::optional<double> observed_distance(const RunRow& row) {

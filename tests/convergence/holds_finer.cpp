@@ -91,7 +91,7 @@ void try_finer(const sweep::RunRow& row) {
   const RunResult result = fine.result();
   fmt::print("{},{},{:g},{:g},{:g},{},{:.4g},{:.4g},{},{:.4g},{:.4g}\n", row.task, vertices,
              run.dp.line_tension, run.dp.friction, row.distance,
-             name(row.mechanism.value_or(ClogMechanism::none)), row.mesh_hold, way(result),
+             name(row.hold.mechanism.value_or(ClogMechanism::none)), row.hold.geometry.mesh_hold, way(result),
              name(result.status), result.time, way(same.result()));
   std::fflush(stdout);
 }

@@ -41,10 +41,10 @@ sweep::RunRow row(std::uint32_t seed, RunStatus status, double distance,
   sweep::RunRow row = sweep::describe(run);
   end_run(row, status, distance);
   row.task = seed;
-  row.release_x = entrance;
-  row.release_y = 5;
-  row.contacts = first_contact_at ? 1 : 0;
-  if (first_contact_at) row.first_contact_at = *first_contact_at;
+  row.release[0] = entrance;
+  row.release[1] = 5;
+  row.contacts.number = first_contact_at ? 1 : 0;
+  if (first_contact_at) row.contacts.first_distance = *first_contact_at;
   EXPECT_EQ(sweep::fault_of(row), "");
   return row;
 }
@@ -116,7 +116,7 @@ TEST(Passages, LengthsOfADeviceCountFromTheFirstObstacle) {
 TEST(Passages, LengthsOfADisplacedReleaseCountFromThere) {
   std::vector<sweep::RunRow> rows = {row(1, RunStatus::clogged, 1.5, 1.2),
                                      row(2, RunStatus::clogged, 2.5, 0.5)};
-  rows[1].release_x = entrance + 3;
+  rows[1].release[0] = entrance + 3;
   EXPECT_EQ(sweep::fault_of(rows[1]), "");
   const Group group = group_runs(rows, 0.95).at(0);
   ASSERT_FALSE(group.displaced.empty());

@@ -18,8 +18,8 @@ sweep::RunRow known_row() {
   row.distance = 3;
   row.dwells.known_from = 2;
   row.dwells.last_distance = row.dwells.last_begin = 0;
-  row.contacts = 1;
-  row.first_contact_at = 0.5;
+  row.contacts.number = 1;
+  row.contacts.first_distance = 0.5;
   return row;
 }
 

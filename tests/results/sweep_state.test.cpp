@@ -84,7 +84,7 @@ class SweepStateTest : public testing::Test {
     row.time = static_cast<double>(row.steps) * *row.parameters.time_step;
     row.shape_parameter = 1.2;
     if (row.status == RunStatus::clogged) {
-      row.clogged_by = sweep::FoundBy::certified;
+      row.clogged_by = FoundBy::certified;
       row.stability = Stability::stable;
     }
     if (row.status == RunStatus::failed) {
@@ -412,8 +412,8 @@ TEST_F(SweepStateTest, RefusesAJournalOfRunsWithOtherSettings) {
     sweep::RunRow row = sweep::describe(sweep::Plan(settings).task(0));
     row.task = 0;
     row.model_version = version;
-    row.clogged_by = sweep::FoundBy::not_clogged;
-    row.mechanism = ClogMechanism::none;
+    row.clogged_by = FoundBy::not_clogged;
+    row.hold.mechanism = ClogMechanism::none;
     other.add(row, {});
     return std::filesystem::file_size(journal);
   };
@@ -462,8 +462,8 @@ TEST_F(SweepStateTest, SalvagesNoRecordOfAnotherSweep) {
   store::Journal other{store::OutputPath::resolve(store::journal_path(path()))};
   sweep::RunRow row = sweep::describe(sweep::Plan(settings).task(0));
   row.task = 0;
-  row.clogged_by = sweep::FoundBy::not_clogged;
-  row.mechanism = ClogMechanism::none;
+  row.clogged_by = FoundBy::not_clogged;
+  row.hold.mechanism = ClogMechanism::none;
   other.add(row, {});
   const Salvage found = salvage(path());
   EXPECT_TRUE(found.table.rows.empty());

@@ -78,7 +78,7 @@ class CrashingJob final : public SyntheticJob {
   }
   sweep::RunRow row() const override {
     sweep::RunRow row = SyntheticJob::row();
-    row.num_arcs = getpid();
+    row.hold.geometry.num_arcs = getpid();
     row.time = oom_score_adj();
     return row;
   }
@@ -104,7 +104,7 @@ void a_crash_fails_its_task_and_no_other(const scheduler::Communicator& ranks,
   events.ended = [&](const scheduler::Report& report) {
     rows[report.row.task] = report.row;
     if (report.row.status == RunStatus::clogged)
-      processes[report.row.rank].insert(report.row.num_arcs.value());
+      processes[report.row.rank].insert(report.row.hold.geometry.num_arcs);
   };
   const scheduler::SweepEnd end = run_once(ranks, scheduler::order_of(num_tasks, 7), make_job, events, true);
   if (ranks.rank() != 0) return;
@@ -215,7 +215,7 @@ void a_rank_goes_on_without_its_helper(const scheduler::Communicator& ranks,
       expect(report.row.message == "the helper process of its rank was killed or stopped",
              "the row says what happened");
     } else if (report.row.rank == 0) {
-      expect(report.row.num_arcs == rank_pid, "the rank does the work itself");
+      expect(report.row.hold.geometry.num_arcs == rank_pid, "the rank does the work itself");
     }
   };
   const scheduler::SweepEnd end = run_once(ranks, scheduler::order_of(tasks, 1), make_job, events, true);

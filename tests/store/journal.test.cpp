@@ -99,7 +99,7 @@ TEST_F(JournalTest, CountsARecordWithAWordThatNoColumnCanHold) {
     Journal journal(place());
     add_entries(journal, 0, 2);
     sweep::RunRow row = journal_row(2);
-    row.mechanism = ClogMechanism{99};
+    row.hold.mechanism = ClogMechanism{99};
     journal.add(row, {});
   }
   Journal journal(place());

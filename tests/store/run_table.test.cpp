@@ -35,7 +35,7 @@ sweep::RunRow some_row(std::int64_t task) {
   row.task = task;
   row.status = RunStatus::clogged;
   row.distance = 1.0 / 3 + static_cast<double>(task);
-  row.mean_speed = std::nan("");
+  row.speed.mean = std::nan("");
   row.message = "some words";
   row.host = "node7";
   return row;

@@ -353,7 +353,7 @@ TEST(RunJob, GivesTheSameRowInASharedArray) {
   while (!run.advance(100)) {
   }
   EXPECT_EQ(job.row().distance, run.result().distance);
-  EXPECT_EQ(job.row().lateral_displacement, run.result().lateral);
+  EXPECT_EQ(job.row().lateral, run.result().lateral);
   EXPECT_EQ(job.row().steps, run.result().steps);
   EXPECT_GT(run.result().distance, 1);
   EXPECT_GT(std::abs(run.result().lateral), 0.01);

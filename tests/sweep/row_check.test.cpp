@@ -137,11 +137,11 @@ TEST(FaultOf, NamesPlacesOfReleaseThatVersion10GotWrong) {
   RunRow row = row_in(ObstacleLayout::wall);
   row.parameters.obstacles.layout = ObstacleLayout::file;
   row.parameters.obstacles.box = 5;
-  row.sag = row.top_sag = RunRow::not_known;
-  row.release_y = 4;
+  row.sag.centre = row.sag.top = RunRow::not_known;
+  row.release[1] = 4;
   const auto fault_at = [&](std::int64_t model, double x) {
     row.model_version = model;
-    row.release_x = x;
+    row.release[0] = x;
     return fault_of(row);
   };
   // Places of a sweep of 1.0: circle 2.5,2.5,2 in box=5 with release=anywhere.
@@ -165,11 +165,11 @@ TEST(FaultOf, NoRunInAnyScene) {
 
 TEST(FaultOf, NamesWhatBelongsToAnotherScene) {
   RunRow row = clogged();
-  row.sag = 0.1;
+  row.sag.centre = 0.1;
   EXPECT_EQ(fault_of(row), "sag=0.1, but there is no wall");
   row = row_in(ObstacleLayout::channel);
-  EXPECT_GE(row.largest_shape_parameter, 1);
-  row.largest_shape_parameter = 0.5;
+  EXPECT_GE(row.passage.largest_shape_parameter.value, 1);
+  row.passage.largest_shape_parameter.value = 0.5;
   EXPECT_EQ(fault_of(row), "largest_shape_parameter=0.5 is that of no droplet");
   row = row_in(ObstacleLayout::channel);
   row.parameters.channel.orifice = 1e-3;
@@ -311,15 +311,15 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
       {"obstacle_density=", [](RunRow& row) { row.obstacle_density *= 16; }},
       {"no droplet gets farther", [](RunRow& row) { row.distance = 1e308; }},
       {"no droplet gets farther", [](RunRow& row) { row.distance = -1e3; }},
-      {"no droplet gets farther", [](RunRow& row) { row.lateral_displacement = 1e3; }},
+      {"no droplet gets farther", [](RunRow& row) { row.lateral = 1e3; }},
       {"is not between 0", [](RunRow& row) { row.time = 2 * row.parameters.max_time; }},
       {"is before", [](RunRow& row) { row.status = RunStatus::flowing; }},
       {"steps do not make", [](RunRow& row) { row.steps = 10; }},
       {"steps do not make", [](RunRow& row) { row.steps = -row.steps; }},
-      {"transient=", [](RunRow& row) { row.transient = 2 * row.time; }},
-      {"travel_time=", [](RunRow& row) { row.travel_time = -1; }},
-      {"mean_speed=", [](RunRow& row) { row.mean_speed = 1e3, row.travel_time = row.time / 2; }},
-      {"mean_speed_error=", [](RunRow& row) { row.mean_speed_error = -1e-3; }},
+      {"transient=", [](RunRow& row) { row.speed.transient = 2 * row.time; }},
+      {"travel_time=", [](RunRow& row) { row.speed.time = -1; }},
+      {"mean_speed=", [](RunRow& row) { row.speed.mean = 1e3, row.speed.time = row.time / 2; }},
+      {"mean_speed_error=", [](RunRow& row) { row.speed.error = -1e-3; }},
       {"steady_time=", [](RunRow& row) { row.steady = {.distance = 1, .time = row.time}; }},
       {"steady_time=", [](RunRow& row) { row.steady = {.distance = 1, .time = 0}; }},
       {"only one is known", [](RunRow& row) { row.steady = {.distance = 1}; }},
@@ -331,18 +331,19 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
       {"clog_detection='threshold'",
        [](RunRow& row) { row.parameters.clog_detection = ClogDetection::threshold; }},
       {"kinetic_energy_ratio=", [](RunRow& row) { row.clogged_by = FoundBy::threshold; }},
-      {"wrapped_support=", [](RunRow& row) { row.wrapped_support = 1.5; }},
-      {"mesh_hold=", [](RunRow& row) { row.mesh_hold = -0.1; }},
-      {"friction_use=", [](RunRow& row) { row.friction_use = 1.1; }},
+      {"wrapped_support=", [](RunRow& row) { row.hold.geometry.wrapped_support = 1.5; }},
+      {"mesh_hold=", [](RunRow& row) { row.hold.geometry.mesh_hold = -0.1; }},
+      {"friction_use=", [](RunRow& row) { row.hold.friction_use = 1.1; }},
       {"not clogged",
        [](RunRow& row) {
-         row.friction_use = 0.5, row.status = RunStatus::interrupted, row.clogged_by = {}, row.stability = {};
+         row.hold.friction_use = 0.5, row.status = RunStatus::interrupted, row.clogged_by = {},
+         row.stability = {};
        }},
       {"failed_by='crossing'", [](RunRow& row) { row.failed_by = FailedBy::crossing; }},
       {"sound_distance=", [](RunRow& row) { row.sound_distance = 1e3; }},
       {"healed crossings", [](RunRow& row) { row.healed_crossings = -2; }},
-      {"number of contacts", [](RunRow& row) { row.num_gaps = -2; }},
-      {"more than a droplet has", [](RunRow& row) { row.num_wrapped = std::int64_t{1} << 62; }},
+      {"number of contacts", [](RunRow& row) { row.hold.geometry.num_gaps = -2; }},
+      {"more than a droplet has", [](RunRow& row) { row.hold.geometry.num_wrapped = std::int64_t{1} << 62; }},
       {"model_version=", [](RunRow& row) { row.model_version = -1; }}};
   for (const auto& [words, damage] : damages) {
     RunRow row = clogged();
@@ -417,13 +418,14 @@ TEST(FaultOf, NamesNecksThatCannotBe) {
 
 TEST(FaultOf, NamesContactsThatCannotBe) {
   RunRow met = row_of({{"max-time", "5"}});
-  met.contacts = 2, met.first_contact_at = met.distance / 2;
+  met.contacts.number = 2, met.contacts.first_distance = met.distance / 2;
   ASSERT_EQ(fault_of(met), "");
   const std::vector<std::pair<const char*, std::function<void(RunRow&)>>> damages = {
-      {"a negative number", [](RunRow& row) { row.contacts = -2; }},
-      {", but contacts=0", [](RunRow& row) { row.contacts = 0; }},
-      {"first_contact_at=nan, but contacts=2", [](RunRow& row) { row.first_contact_at = std::nan(""); }},
-      {"first_contact_at=1000 is not on", [](RunRow& row) { row.first_contact_at = 1e3; }}};
+      {"a negative number", [](RunRow& row) { row.contacts.number = -2; }},
+      {", but contacts=0", [](RunRow& row) { row.contacts.number = 0; }},
+      {"first_contact_at=nan, but contacts=2",
+       [](RunRow& row) { row.contacts.first_distance = std::nan(""); }},
+      {"first_contact_at=1000 is not on", [](RunRow& row) { row.contacts.first_distance = 1e3; }}};
   for (const auto& [words, damage] : damages) {
     RunRow row = met;
     damage(row);

@@ -89,7 +89,7 @@ TEST(Repetition, BeginsAfterAllBoxes) {
   RunRow row = limits_row({{"box", "20"}, {"boxes", "3"}});
   EXPECT_EQ(repetition_length(row), 60);
   row.distance = 59;
-  row.lateral_displacement = 30;
+  row.lateral = 30;
   EXPECT_FALSE(has_met_repetition(row));
   row.distance = 61;
   EXPECT_TRUE(has_met_repetition(row));
@@ -204,8 +204,8 @@ RunRow wrapped_clog(double friction, FilmFriction films, double mesh_hold) {
   row.parameters.dp.friction = friction;
   row.parameters.dp.film_friction = films;
   row.status = RunStatus::clogged;
-  row.mechanism = ClogMechanism::wrapped;
-  row.mesh_hold = mesh_hold;
+  row.hold.mechanism = ClogMechanism::wrapped;
+  row.hold.geometry.mesh_hold = mesh_hold;
   return row;
 }
 
@@ -226,7 +226,7 @@ TEST(MayHangOnMesh, WithoutFrictionAboveOnePercent) {
 TEST(MayHangOnMesh, IfFrictionActsOnOneInterfaceOnly) {
   RunRow row = wrapped_clog(1, FilmFriction::off, 0.001);
   EXPECT_TRUE(may_hang_on_mesh(row));
-  row.mechanism = ClogMechanism::squeezed;
+  row.hold.mechanism = ClogMechanism::squeezed;
   EXPECT_FALSE(may_hang_on_mesh(row));
 }
 

@@ -69,6 +69,7 @@ struct LeftOut {
   std::string example;  ///< the first of them, as `label=value, label=value`
 };
 struct Comparisons {
+  double confidence = 0;               ///< of the intervals
   std::vector<std::string> columns;    ///< listed columns with a value that both sides have; the values in
                                        ///< these columns name a comparison
   std::vector<std::string> differing;  ///< columns whose values here and there differ
@@ -116,9 +117,9 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
 Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within,
                     const Scales& scales = {});
 
-std::string to_text(const Comparisons& comparisons, double confidence);
+std::string to_text(const Comparisons& comparisons);
 std::string to_csv(const Comparisons& comparisons);
-std::string to_json(const Comparisons& comparisons, double confidence);
+std::string to_json(const Comparisons& comparisons);
 /// Names of all results that these functions print beside Comparisons::columns.
 std::vector<std::string> names_of_comparisons();
 

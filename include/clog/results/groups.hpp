@@ -244,7 +244,14 @@ fit::Migration share_along_rows(const Group& group);
 bool is_dwell_possible(const Group& group);
 
 using sweep::Value;
-using Field = std::pair<std::string, Value>;
+/// A named value: a column of a CSV file, an entry of a JSON document and, with a head, a printed column.
+struct Field {
+  std::string name;
+  Value value;
+  std::string_view unit = "";            ///< e.g. "sigma"; empty for counts, words and pure numbers
+  std::string head = "";                 ///< of the printed column
+  std::optional<std::string> text = {};  ///< printed in place of the value
+};
 /// Columns that define a group: all parameters except the seed. Physical parameters come first, and the first
 /// of these are the parameters that shape the array.
 std::span<const sweep::Column* const> group_columns();
@@ -261,9 +268,6 @@ bool has_clogging_length(const sweep::RunRow& row);
 inline constexpr const char* outcome_at_rest = "at rest";
 /// How a run ended: the status in words. A droplet that stops on a bare wall is at rest, not clogged.
 std::string outcome_of(const sweep::RunRow& row);
-/// The results of a group, by name.
 std::vector<Field> result_fields(const Group& group);
-/// The unit of one of these fields, e.g. "sigma"; empty for counts, words and numbers without a unit.
-std::string_view unit_of(std::string_view field);
 
 }  // namespace clog::results

@@ -12,7 +12,7 @@
 
 /// Every column of the table of runs is described once. The columns of the parameters follow from
 /// parameter_schema(); the columns of results are listed in columns.cpp. A new result needs a member of
-/// RunRow, an entry in columns.cpp, and a line of record() that fills the member.
+/// RunResult and an entry in columns.cpp.
 namespace clog::sweep {
 
 /// The kind of information in a column.

@@ -15,28 +15,23 @@
 
 namespace clog::sweep {
 
-/// How a clog was found.
-enum class FoundBy { not_clogged, threshold, certified };
-
-}  // namespace clog::sweep
-
-template <>
-struct clog::Words<clog::sweep::FoundBy> {
-  static constexpr Worded<sweep::FoundBy> all[] = {{sweep::FoundBy::certified, "certified"},
-                                                   {sweep::FoundBy::threshold, "threshold"},
-                                                   {sweep::FoundBy::not_clogged, "none"}};
-};
-
-namespace clog::sweep {
-
 /// RunRow::instruction_set of a run that resumed from a snapshot of another instruction set.
 inline constexpr const char* mixed_instruction_sets = "mixed";
 
 /// One row of the table of runs: parameters, results, circumstances. Its columns, their units and meanings
-/// are listed in columns.cpp. An unknown count or word is an empty optional, an unknown number is NaN: an
-/// optional number would have two unknown values.
-struct RunRow {
+/// are listed in columns.cpp. An unknown word is an empty optional, an unknown number is NaN, an unknown
+/// count is -1: optional ones would have two unknown values.
+struct RunRow : RunResult {
   static constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+  static constexpr std::int64_t not_counted = -1;
+
+  /// The results that files of older formats may lack are unknown.
+  RunRow() {
+    clogged_by.reset(), stability.reset(), failed_by.reset(), hold.mechanism.reset();
+    sound_distance = not_known;
+    contacts.number = healed_crossings = not_counted;
+    hold.geometry.num_wrapped = hold.geometry.num_gaps = hold.geometry.num_arcs = not_counted;
+  }
 
   std::int64_t task = -1;
 
@@ -46,44 +41,6 @@ struct RunRow {
   std::string preset;              ///< the preset with this interface, "custom", or "none" for sp
   std::int64_t model_version = 0;  ///< see parameters.hpp
 
-  RunStatus status = RunStatus::running;
-  std::optional<FoundBy> clogged_by;
-  std::optional<Stability> stability;
-  std::optional<FailedBy> failed_by;
-  double distance = 0;
-  double sound_distance = not_known;
-  double lateral_displacement = 0;
-  double time = 0;
-  double mean_speed = not_known;
-  double mean_speed_error = not_known;
-  double transient = not_known;
-  double travel_time = not_known;
-  SteadyTravel steady;
-  Dwells dwells;
-  std::optional<std::int64_t> contacts;
-  double first_contact_at = not_known;
-  double kinetic_energy_ratio = 0;
-  double shape_parameter = 0;
-  std::optional<ClogMechanism> mechanism;
-  double wrapped_support = not_known;
-  std::optional<std::int64_t> num_wrapped, num_gaps, num_arcs;
-  double mesh_hold = not_known;
-  double friction_use = not_known;
-  /// For a passage through a channel, like the next five members.
-  double largest_shape_parameter = not_known;
-  double largest_shape_parameter_at = not_known;
-  double largest_relative_speed = not_known;
-  double largest_relative_speed_at = not_known;
-  double smallest_relative_speed = not_known;
-  double smallest_relative_speed_at = not_known;
-  double sag = not_known;  ///< for a droplet on a flat wall
-  double top_sag = not_known;
-  ThinnestNeck neck;
-  std::optional<std::int64_t> healed_crossings;
-  double release_x = not_known;  ///< place in the coordinates of user-supplied circles
-  double release_y = not_known;
-  std::int64_t steps = 0;
-
   double wall_seconds = 0;
   double processor_seconds = not_known;
   std::int64_t rank = 0;
@@ -91,11 +48,11 @@ struct RunRow {
   std::string instruction_set;
   std::string host;
   std::int64_t attempt = 1;
-  std::string message;
 };
 
 /// Whether this number of a row is known.
 inline bool is_known(double number) { return !std::isnan(number); }
+inline bool is_known(std::int64_t count) { return count != RunRow::not_counted; }
 
 /// Whether the run is over, so that it has a result.
 inline bool is_result(RunStatus status) {
@@ -137,7 +94,7 @@ std::string identity_in_any_version(RunRow row);
 /// The columns of parameters. @param run  resolved
 RunRow describe(const RunParameters& run);
 /// Fills the columns of results.
-void record(const RunResult& result, RunRow& row);
+inline void record(const RunResult& result, RunRow& row) { static_cast<RunResult&>(row) = result; }
 
 /// The row as bytes, one column after the other, as it is stored and sent to other processes of this version.
 std::size_t packed_size();

@@ -229,10 +229,10 @@ void DropletRun::check() {
     return;
   }
   if (has_stopped(energy_ratio))
-    clogged_by_ = ClogDetection::threshold;
+    clogged_by_ = FoundBy::threshold;
   else if (run_.clog_detection == ClogDetection::certified && finds_rest(energy_ratio))
-    clogged_by_ = ClogDetection::certified;
-  if (clogged_by_)
+    clogged_by_ = FoundBy::certified;
+  if (clogged_by_ != FoundBy::not_clogged)
     status_ = RunStatus::clogged;
   else if (sunk >= end_)
     status_ = RunStatus::passed;

@@ -92,8 +92,8 @@ TEST_P(Certified, ADropletInAGapClogsWhereItComesToRest) {
   const RunResult certified = finished(falls_onto(run, narrow_gap));
   ASSERT_EQ(waited.status, RunStatus::clogged);
   ASSERT_EQ(certified.status, RunStatus::clogged);
-  EXPECT_EQ(waited.clogged_by, ClogDetection::threshold);
-  EXPECT_EQ(certified.clogged_by, ClogDetection::certified);
+  EXPECT_EQ(waited.clogged_by, FoundBy::threshold);
+  EXPECT_EQ(certified.clogged_by, FoundBy::certified);
   EXPECT_EQ(waited.stability, Stability::stable);
   EXPECT_EQ(certified.stability, Stability::stable);
   EXPECT_NEAR(certified.distance, waited.distance, 1e-3);
@@ -175,7 +175,7 @@ TEST_P(Certified, ADropletOnAFlatWallCouldDriftAside) {
   run.clog_detection = ClogDetection::certified;
   const RunResult result = finished(DropletRun(test::onto_wall(run)));
   EXPECT_EQ(result.status, RunStatus::clogged);
-  EXPECT_EQ(result.clogged_by, ClogDetection::threshold);
+  EXPECT_EQ(result.clogged_by, FoundBy::threshold);
   EXPECT_EQ(result.stability, Stability::unknown);
 }
 
@@ -290,7 +290,7 @@ TEST(Equilibrium, IsFoundAtTheFirstSearchEvenIfItsFirstStepsLeadAstray) {
     run.max_time = 6000;
     run.seed = seed;
     const RunResult result = finished(DropletRun(resolve(run)));
-    EXPECT_EQ(result.clogged_by, ClogDetection::certified);
+    EXPECT_EQ(result.clogged_by, FoundBy::certified);
     constexpr double second_search = 1e-5;
     if (result.kinetic_energy_ratio > second_search) ++num_early;
   }
@@ -366,8 +366,8 @@ TEST(Equilibrium, IsNotSeenByADropletThatCreepsThroughAnOrifice) {
 TEST(Equilibrium, IsSeenByOneThatIsHeldThere) {
   const RunResult certified = finished(through_orifice(1.27, ClogDetection::certified));
   const RunResult waited = finished(through_orifice(1.27, ClogDetection::threshold));
-  EXPECT_EQ(certified.clogged_by, ClogDetection::certified);
-  EXPECT_EQ(waited.clogged_by, ClogDetection::threshold);
+  EXPECT_EQ(certified.clogged_by, FoundBy::certified);
+  EXPECT_EQ(waited.clogged_by, FoundBy::threshold);
   EXPECT_NEAR(certified.distance, waited.distance, 1e-3);
 }
 

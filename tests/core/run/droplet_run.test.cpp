@@ -494,7 +494,7 @@ TEST(BreakUp, ComesBeforeACertifiedClog) {
   run = resolve(run);
   DropletRun hung(run);
   while (!hung.advance(1000)) continue;
-  ASSERT_EQ(hung.result().clogged_by, ClogDetection::certified);
+  ASSERT_EQ(hung.result().clogged_by, FoundBy::certified);
   const DropletState state = hung.droplet().state();
   const std::optional<DropletState> rest = model_of(run).equilibrium(run, hung.obstacles(), state);
   ASSERT_TRUE(rest);

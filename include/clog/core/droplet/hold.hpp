@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "clog/core/parameters/circles.hpp"
@@ -24,12 +26,13 @@ struct ClogGeometry {
   /// Fraction of the support that wrapped obstacles give; NaN without support. The support is the force of
   /// the obstacles on the droplet against the flow.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
-  int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
+  std::int64_t num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
   /// Number of gaps in front of the droplet. Two successive arcs (see num_arcs) on different obstacles have a
   /// gap between them if the chord from arc to arc faces downstream and at least one of the two obstacles
   /// supports the droplet.
-  int num_gaps = 0;
-  int num_arcs = 0;  ///< number of arcs; an arc is a chain of edges that touch one obstacle (post or wall)
+  std::int64_t num_gaps = 0;
+  std::int64_t num_arcs =
+      0;  ///< number of arcs; an arc is a chain of edges that touch one obstacle (post or wall)
   /// Largest part of the weight that the corners of the polygon can hold. Each wrapped obstacle contributes
   /// its part of the support times x^2/16, with x the length of the longest edge on the obstacle divided by
   /// the radius at which this edge lies. NaN without support.
@@ -45,7 +48,7 @@ struct ClogGeometry {
 
 /// The mechanism that holds a droplet, and the geometry from which it follows.
 struct Hold {
-  ClogMechanism mechanism = ClogMechanism::none;
+  std::optional<ClogMechanism> mechanism = ClogMechanism::none;
   ClogGeometry geometry;  ///< geometry of a polygon; unset for a soft disk
   /// See WallFriction::use(), of the carriers; NaN without carriers or friction.
   double friction_use = std::numeric_limits<double>::quiet_NaN();

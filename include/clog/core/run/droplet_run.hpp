@@ -42,6 +42,14 @@ struct Words<FailedBy> {
                                              {FailedBy::crash, "crash"}};
 };
 
+/// How a clog was found.
+enum class FoundBy { not_clogged, threshold, certified };
+template <>
+struct Words<FoundBy> {
+  static constexpr Worded<FoundBy> all[] = {
+      {FoundBy::certified, "certified"}, {FoundBy::threshold, "threshold"}, {FoundBy::not_clogged, "none"}};
+};
+
 /// E_k/E_t above which the integration has failed: a free fall without drag over a whole box stays below this
 /// ratio.
 inline constexpr double diverged_energy_ratio = 1e8;
@@ -64,12 +72,12 @@ struct ThinnestNeck {
 };
 
 /// The results of one run. If a clog is certified, values with the note "certified: at rest" are those of the
-/// equilibrium.
+/// equilibrium. An empty word is unknown: no result of this version has one, but rows of older files may.
 struct RunResult {
   RunStatus status = RunStatus::running;
-  std::optional<ClogDetection> clogged_by;  ///< how a clog was found; empty unless clogged
-  Stability stability = Stability::none;    ///< of a clogged droplet: stable or unknown
-  FailedBy failed_by = FailedBy::none;
+  std::optional<FoundBy> clogged_by = FoundBy::not_clogged;
+  std::optional<Stability> stability = Stability::none;  ///< of a clogged droplet: stable or unknown
+  std::optional<FailedBy> failed_by = FailedBy::none;
   double distance = 0;  ///< displacement along the flow since release, certified: at rest [sigma]
   /// `distance` at the last check that found the droplet whole and, with self-contact, not crossing itself
   /// [sigma].
@@ -167,7 +175,7 @@ class DropletRun {
   // E_k/E_t at the last look at the droplet's stability, NaN if it moves since
   double balanced_at_ = std::numeric_limits<double>::quiet_NaN();
   RunStatus status_ = RunStatus::running;
-  std::optional<ClogDetection> clogged_by_;
+  FoundBy clogged_by_ = FoundBy::not_clogged;
   Stability stability_ = Stability::none;
   FailedBy failed_by_ = FailedBy::none;
   double sound_distance_ = 0;

@@ -396,8 +396,8 @@ TEST(WallFriction, HoldsADropletThatHangsOverADisc) {
   EXPECT_EQ(ended(falls_on_disc(0, ClogDetection::certified, quiet)).status, RunStatus::passed);
   const RunResult certified = ended(falls_on_disc(0.1, ClogDetection::certified, quiet));
   const RunResult waited = ended(falls_on_disc(0.1, ClogDetection::threshold, quiet));
-  ASSERT_EQ(certified.clogged_by, ClogDetection::certified);
-  ASSERT_EQ(waited.clogged_by, ClogDetection::threshold);
+  ASSERT_EQ(certified.clogged_by, FoundBy::certified);
+  ASSERT_EQ(waited.clogged_by, FoundBy::threshold);
   EXPECT_NEAR(certified.distance, waited.distance, 1e-6);
   EXPECT_NEAR(certified.lateral, waited.lateral, 1e-6);
   EXPECT_LT(certified.kinetic_energy_ratio, 1e-10);

@@ -125,7 +125,7 @@ TEST_P(OnAnIncline, ADropSticksBelowWhatFurmidgeAllowsAndSlidesAbove) {
     while (!held.advance(100)) {
     }
     EXPECT_EQ(held.result().status, RunStatus::clogged) << vertices;
-    EXPECT_EQ(held.result().clogged_by, ClogDetection::certified) << vertices;
+    EXPECT_EQ(held.result().clogged_by, FoundBy::certified) << vertices;
 
     constexpr double share = 1.02;
     DropletRun sliding = drop(share, vertices);
@@ -174,7 +174,7 @@ TEST_P(OnADisc, CarriesTheTorqueOfADropsWeight) {
     while (!run.advance(100)) {
     }
     const RunResult result = run.result();
-    ASSERT_EQ(result.clogged_by, ClogDetection::certified);
+    ASSERT_EQ(result.clogged_by, FoundBy::certified);
     const double beside = aside + result.lateral;
     const auto rest =
         model_of(run.parameters()).equilibrium(run.parameters(), run.obstacles(), run.droplet().state());
