@@ -76,7 +76,7 @@ def nearest_angle(plan: dict[str, Any], angle: float) -> float | None:
     """The angle nearest to `angle` for which the lattice has a period in its box. @param plan  first line of `clogsweep
     --dry-run --format json` with this `lattice-angle`, which clogsweep takes if such an angle is near"""
     angles = plan.get("nearest", []) if "refused" in plan else [lattice["angle"] for lattice in plan["lattices"]]
-    return min(angles, key=lambda one: abs(one - angle), default=None)
+    return min(angles, key=lambda one: abs(one - angle)) if angles else None
 
 
 class AngleSearch:
