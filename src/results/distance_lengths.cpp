@@ -170,8 +170,8 @@ std::vector<std::string> names_of_lengths() {
   const DistanceTable one_group{.source = "", .unit = "mm", .labels = {}, .groups = {DistanceGroup()}};
   constexpr double any_confidence = 0.95;
   std::vector<std::string> names = {"survival", "censored_distances"};
-  for (const Field& field : rows_of(one_group, lengths_of(one_group, any_confidence), 1, any_confidence)[0])
-    names.push_back(field.name);
+  const auto rows = rows_of(one_group, lengths_of(one_group, any_confidence), 1, any_confidence);
+  for (const Field& field : rows.front()) names.push_back(field.name);
   names.insert(names.end(), {"lambda", "note"});  // of the printed table
   return names;
 }

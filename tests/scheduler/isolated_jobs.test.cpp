@@ -100,7 +100,7 @@ void a_crash_fails_its_task_and_no_other(const scheduler::Communicator& ranks,
   scheduler::SweepEvents events;
   events.started = [&](std::int64_t task, int) { return scheduler::Start{{}, ++attempts[task]}; };
   events.tries_again = [](const sweep::RunRow& failed) { return failed.attempt < 2; };
-  events.failure_withdrawn = [&](std::int64_t task) { --attempts[task]; };
+  events.failure_withdrawn = [&](std::int64_t task, const std::string&) { --attempts[task]; };
   events.ended = [&](const scheduler::Report& report) {
     rows[report.row.task] = report.row;
     if (report.row.status == RunStatus::clogged)
