@@ -58,7 +58,8 @@ def keep(name, folder):
     if not set(CATALOGUE[name].configs) & set(finished.names_in()):
         series = HERE / "rows" / "figures" / f"{name}.csv.gz"
         series.parent.mkdir(exist_ok=True)
-        series.write_bytes(gzip.compress(pathlib.Path(f"{drawn}.csv").read_bytes(), 9, mtime=0))
+        numbers = pandas.read_csv(f"{drawn}.csv").to_csv(index=False, float_format="%.6g")
+        series.write_bytes(gzip.compress(numbers.encode(), 9, mtime=0))
 
 
 def main(programs, *names):

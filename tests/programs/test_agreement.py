@@ -17,7 +17,7 @@ from clogsweep.agreement import evidence, frames, lengths, passages
 from clogsweep.agreement.statements import STATEMENTS
 from clogsweep.agreement.verdicts import (AGREES, BY_MESH, DOES_NOT, FITTED, FORCED, IN_KIND, NOT_KNOWN, NOT_RUN,
                                           Finding, the_version, with_variants)
-from clogsweep.paper import dilute
+from clogsweep.paper import dilute, outlines
 from clogsweep.tools.errors import UserError
 
 FACTOR = 1.5  # Ratio of the upper end of a confidence interval to the value, and of the value to the lower end.
@@ -112,7 +112,7 @@ class Frames(unittest.TestCase):
         return np.concatenate([inner, ends[0], outer, ends[1]], axis=1)
 
     def test_the_angle_of_contact_is_that_of_the_arc(self):
-        angle, none = frames.touched_angles(self.outline(), np.array([self.POST, (3.0, 3.0, 0.3)]))
+        angle, none = outlines.touched_angles(self.outline(), np.array([self.POST, (3.0, 3.0, 0.3)]))
         self.assertAlmostEqual(angle, 160, delta=20)
         self.assertEqual(none, 0)
 
@@ -123,11 +123,11 @@ class Frames(unittest.TestCase):
         gap = np.array([[2.0, 0.36, 0.3], [2.0, -0.36, 0.3]])
         ring = 0.16 * np.array([np.cos(circle), np.sin(circle)]) + [[1.0], [0.0]]
         wrapping = np.concatenate([droplet, ring], axis=1)
-        self.assertTrue(frames.is_hybrid(wrapping, np.concatenate([inside, gap])))
-        self.assertFalse(frames.is_hybrid(wrapping, inside))
-        self.assertFalse(frames.is_hybrid(droplet, gap))
+        self.assertTrue(outlines.is_hybrid(wrapping, np.concatenate([inside, gap])))
+        self.assertFalse(outlines.is_hybrid(wrapping, inside))
+        self.assertFalse(outlines.is_hybrid(droplet, gap))
         upstream = np.array([[1.0, 0.36, 0.3], [1.0, -0.36, 0.3]]) - [[0.1, 0.05, 0]]
-        self.assertFalse(frames.is_hybrid(wrapping, np.concatenate([inside, upstream])))
+        self.assertFalse(outlines.is_hybrid(wrapping, np.concatenate([inside, upstream])))
 
     def test_a_droplet_unwraps_if_one_end_rises(self):
         def run(*ends):

@@ -227,11 +227,11 @@ def overshoot(shop: Workshop) -> Plate:
     for axes, (orifice, drag), origin in zip(panels, OVERSHOOTS.items(),
                                              ("parameters of the article", "not published, for comparison")):
         for index, (line_tension, run) in enumerate(overshooting(shop, orifice).items()):
-            label = rf"$\Gamma = {line_tension:g}$, $V_t = {run.row['terminal_speed']:g}$" + ending(run)
-            draw_profile(axes, run, "speed_ratio", index, label)
+            draw_profile(axes, run, "speed_ratio", index, rf"$\Gamma = {line_tension:g}$" + ending(run))
             data += profile_rows(run, f"w={orifice} b_0={drag:g} Gamma={line_tension:g}")
         finish(axes, "profile")
         style.caption(axes, rf"{origin}: $w = {orifice}\sigma$, $b_0/b_\infty = {drag:g}$" "\n"
+                      rf"$V_t = {', '.join(f'{terminal_speed(tilt):g}' for tilt in TILTS.values())}$, "
                       rf"$N_v = {run.row['vertices']}$, {interface_of(run.word('preset'))}")
     draw_measured(shop.profiles, panels[0], "v")
     for axes in panels:
