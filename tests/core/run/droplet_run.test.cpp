@@ -443,7 +443,7 @@ TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
     EXPECT_EQ(broken.status, RunStatus::broken) << vertices;
     EXPECT_LT(broken.neck.width, 0.03);
     EXPECT_EQ(broken.neck.distance, broken.distance);
-    EXPECT_FALSE(broken.clogged_by);
+    EXPECT_EQ(broken.clogged_by, FoundBy::not_clogged);
     const RunResult whole = result_of(falls_onto_a_circle(0.4, 0, vertices), 100);
     EXPECT_EQ(whole.status, RunStatus::flowing) << vertices;
     EXPECT_LT(whole.distance, 3) << "it lies on the obstacle";
