@@ -134,9 +134,11 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
   if (is_spaced(item)) return expand_spaced(item, kind);
   if (const auto dots = item.find(".."); dots != std::string_view::npos) {
     if (kind == ValueKind::integer) return expand_range(item, dots);
+    const std::string_view first = item.substr(0, dots), rest = item.substr(dots + 2);
+    const std::string_view last = rest.substr(0, rest.find(':'));
     refuse(item, fmt::format(
                      "is a range of integers, but the key takes any number; give how many, e.g. lin({},{},5)",
-                     item.substr(0, dots), item.substr(dots + 2)));
+                     first, last));
   }
   if (kind == ValueKind::integer) refuse_other_notations(item);
   if (kind == ValueKind::integer) return {std::to_string(to_integer(item))};

@@ -114,11 +114,13 @@ TEST(Lists, TakeSharesWhereTheKeyDoes) {
 }
 
 TEST(Lists, OfAnyNumbersHaveNoRanges) {
-  try {
-    expand_list("0.1..0.5", ValueKind::number, {});
-    FAIL() << "a range was taken";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("lin(0.1,0.5,5)"), std::string::npos) << error.what();
+  for (const char* range : {"0.1..0.5", "0.1..0.5:0.1"}) {
+    try {
+      expand_list(range, ValueKind::number, {});
+      FAIL() << range << " was taken";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("lin(0.1,0.5,5)"), std::string::npos) << error.what();
+    }
   }
 }
 

@@ -75,7 +75,7 @@ inline std::optional<std::string> publish_sweep(const OutputPath& place, const s
   return publish_sweep(place, stamp, Rows::of(content.rows), content.provenance, content.circles);
 }
 
-/// Reads a file of format version 9 or 10. Missing columns get Parameter::before, or are unknown. @throws
+/// Reads a file of format version 9 to 11. Missing columns get Parameter::before, or are unknown. @throws
 /// Error if the file is missing, not HDF5, not ours, of another format version, or damaged
 SweepFile read_sweep(const std::string& path);
 /// If a file has no valid seal, tries to read it in a child process. Then a later read_sweep() of the same
