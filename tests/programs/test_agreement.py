@@ -1,8 +1,10 @@
 """Tests the verdicts on the article's statements with artificial curves whose verdicts are known."""
 
+import contextlib
 import csv
 import io
 import math
+import sys
 import unittest
 import unittest.mock
 
@@ -13,10 +15,11 @@ import stored_rows
 from drawing import Analysis
 from support import BIN
 
-from clogsweep.agreement import evidence, frames, lengths, passages
+from clogsweep.agreement import evidence, frames, lengths, passages, statements
 from clogsweep.agreement.statements import FORMULA, NOTHING, STATEMENTS
 from clogsweep.agreement.verdicts import (AGREES, BY_MESH, DOES_NOT, FITTED, FORCED, IN_KIND, NOT_KNOWN, NOT_RUN,
                                           Finding, the_version, with_variants)
+from clogsweep.commands import agreement
 from clogsweep.paper import dilute, outlines
 from clogsweep.tools.errors import UserError
 
@@ -202,6 +205,15 @@ class Table(Analysis):
         self.assertIn("No sweep has been run.", text)
         self.assertNotIn("model version", text)
         self.assertEqual(text.count(f"**{NOT_RUN}**"), sum(one.model not in (FORMULA, NOTHING) for one in STATEMENTS))
+
+    def test_runs_are_announced_beside_the_table(self):
+        one = next(one for one in STATEMENTS if one.figures == ("C1",))
+        command = ["agreement", "--run", "--output", str(self.folder), "--programs", str(BIN), "--format", "csv"]
+        with unittest.mock.patch.object(statements, "STATEMENTS", [one]), unittest.mock.patch.object(sys, "argv", command):
+            with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as errors:
+                self.assertEqual(agreement.body(), 0)
+        self.assertEqual([row["statement"] for row in csv.DictReader(io.StringIO(out.getvalue()))], [one.text])
+        self.assertIn("sweep energy:", errors.getvalue())
 
     def test_the_table_is_made_from_the_sweeps_that_are_there(self):
         self.draw("figures", "7a", "--output", ".", "--programs", BIN,

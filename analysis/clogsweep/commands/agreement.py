@@ -10,7 +10,9 @@ rows must have the same model version.
 """
 
 import argparse
+import contextlib
 import pathlib
+import sys
 
 from .. import agreement
 from ..paper import finished
@@ -41,5 +43,7 @@ def body() -> int:
     size = "full" if arguments.from_rows else arguments.size
     shop = Workshop(size=size, ranks=arguments.ranks, folder=arguments.output / size, programs=programs.programs_in(arguments.programs), overrides=[],
                     draw_only=not (arguments.run or arguments.from_rows), rows_folder=arguments.from_rows)
-    print(agreement.WRITERS[arguments.format](*agreement.judge_all(shop)), end="")
+    with contextlib.redirect_stdout(sys.stderr):  # what is run; the output is the table alone
+        judged = agreement.judge_all(shop)
+    print(agreement.WRITERS[arguments.format](*judged), end="")
     return 0
