@@ -109,6 +109,7 @@ int clogsweep_status(int argc, const char* const* argv) {
     throw Error("--follow and --watch exclude each other; give one");
   if (line.has("follow") && format != "json") throw Error("--follow prints lines of JSON; add --format json");
   if (line.has("follow")) return follow(path);
+  store::Journal::is_open(store::journal_path(path));  // refuses other kinds of files in one line
   for (bool is_first = true;; is_first = false) {
     const Status status = results::status_of(
         path, is_first ? results::read_with_caution(path) : store::read_sweep(path), confidence);
