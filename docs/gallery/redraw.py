@@ -6,6 +6,7 @@ Sweeps come from the folder rows; runs of single droplets are made now, and thei
 whose sweep is not in the folder are not drawn.
 """
 
+import csv
 import datetime
 import gzip
 import pathlib
@@ -28,7 +29,7 @@ PARAMETERS = HERE.parents[1] / "include/clog/core/parameters/parameters.hpp"
 MODEL_VERSION = int(re.search(r"int model_version = (\d+);", PARAMETERS.read_text())[1])
 
 
-def line(name, programs):
+def line_of(name, programs):
     """The figure's line in pictures.csv: what was run for it."""
     sweeps = [config for config in CATALOGUE[name].configs if config in finished.names_in()]
     read = [finished.read(config) for config in sweeps]
@@ -64,7 +65,8 @@ def keep(name, folder):
 
 def main(programs, *names):
     programs = pathlib.Path(programs).resolve()
-    table = pandas.read_csv(TABLE, dtype=str, keep_default_na=False).set_index("picture", drop=False)
+    with open(TABLE, newline="") as file:
+        table = {line["picture"]: line for line in csv.DictReader(file)}
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         for name in names:
@@ -72,10 +74,12 @@ def main(programs, *names):
             if subprocess.run([sys.executable, "-m", "clogsweep", "figures", name, *options]).returncode:
                 continue
             keep(name, folder)
-            fresh = line(name, programs)
-            table.loc[name] = [str(fresh[column]) for column in table.columns]
-    order = [name for name in [*figures.ORDER, *table.index] if name in table.index]
-    table.loc[list(dict.fromkeys(order))].to_csv(TABLE, index=False)
+            table[name] = line_of(name, programs)
+    order = dict.fromkeys(name for name in [*figures.ORDER, *table] if name in table)
+    with open(TABLE, "w", newline="") as file:
+        writer = csv.DictWriter(file, list(table[names[0]]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(table[name] for name in order)
 
 
 main(*sys.argv[1:])

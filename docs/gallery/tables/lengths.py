@@ -1,6 +1,6 @@
 """Writes a table of this folder: the lengths and speeds of finished sweeps, and where they came from.
 
-    docs/gallery/tables/lengths.py figure-7a-full.csv SWEEP.h5...
+    docs/gallery/tables/lengths.py figure-6c-full.csv SWEEP.h5...
 
 A parameter set of which runs are missing is left out. Lengths are in droplet diameters, with 95 % intervals; speeds in units of v_t.
 """
