@@ -214,7 +214,7 @@ results::PreviewFormat preview_format(const cli::CommandLine& line) {
   if (!line.has("format")) return results::PreviewFormat::text;
   if (!line.has("dry-run")) throw Error("--format needs --dry-run");
   if (line.get_word("format", {"text", "json"}) == "text") return results::PreviewFormat::text;
-  if (line.has("print-config")) throw Error("--print-config prints no JSON; leave out --format json");
+  if (line.has("print-config")) throw Error("--print-config prints no JSON; drop --format json");
   return results::PreviewFormat::json;
 }
 

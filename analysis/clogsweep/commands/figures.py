@@ -56,9 +56,9 @@ def body() -> int:
             raise UserError(f"no figure {name}; {command_line.name()} list names them")
     if arguments.from_rows and arguments.draw_only:
         raise UserError("invalid --from-rows with --draw-only (single runs are repeated, which takes seconds); "
-                        "leave out --draw-only")
+                        "drop --draw-only")
     if arguments.from_rows and arguments.set:
-        raise UserError("invalid --from-rows with --set (the rows are of the full configs); leave out one of them")
+        raise UserError("invalid --from-rows with --set (the rows are of the full configs); drop one of them")
     size = "full" if arguments.from_rows else arguments.size
     shop = Workshop(size=size, ranks=arguments.ranks, folder=arguments.output / size, rows_folder=arguments.from_rows,
                     programs=programs.programs_in(arguments.programs),

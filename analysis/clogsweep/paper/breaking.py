@@ -1,5 +1,5 @@
 """Draws the line tension at which droplets break up on one obstacle against the symmetry of the collision, beside the
-scaling of Meer et al., Soft Matter 2026, doi 10.1039/D5SM01266J."""
+scaling of Meer et al., Soft Matter 2026, https://doi.org/10.1039/D5SM01266J."""
 
 import math
 from collections.abc import Sequence

@@ -207,7 +207,7 @@ class Workshop:
         if missing := [values for values in wanted if values not in known]:
             which = ", ".join(map("=".join, zip(lists, missing[0])))
             raise NotThere(f"{self.sweep_file(name)} holds no run of {which}; "
-                           "leave out --draw-only, or give another --output")
+                           "drop --draw-only, or give another --output")
         found = [known[values] for values in wanted]
         for row in found:
             if row["status"] == b"failed":
