@@ -39,7 +39,8 @@ def faults():
         if picture["size"] not in FULL and not waits:
             yield f"{name} is not of full size, and no sweep of rows/queue.csv will change that; run it, or list it"
         if version != VERSION and not waits and name not in same_now(NOTE.search(note), picture["date"]):
-            yield f"{name} has rows of model version {version}, and no note found the same with {VERSION}; draw it anew, or recompute a part"
+            yield (f"{name} has rows of model version {version}, and no note found the same with {VERSION}; "
+                   "draw it anew, or recompute a part")
     listed = {picture["picture"] for picture in pictures}
     shown = {name for page in GALLERY.glob("*.md") for name in re.findall(r"pictures/(?:figure-)?([\w-]+)\.png", page.read_text())} | {"density"}
     yield from (f"{name} is missing in pictures.csv, or in the gallery" for name in sorted(shown ^ listed))

@@ -209,7 +209,8 @@ class Table(Analysis):
     def test_runs_are_announced_beside_the_table(self):
         one = next(one for one in STATEMENTS if one.figures == ("C1",))
         command = ["agreement", "--run", "--output", str(self.folder), "--programs", str(BIN), "--format", "csv"]
-        with unittest.mock.patch.object(statements, "STATEMENTS", [one]), unittest.mock.patch.object(sys, "argv", command):
+        patch = unittest.mock.patch.object
+        with patch(statements, "STATEMENTS", [one]), patch(sys, "argv", command):
             with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as errors:
                 self.assertEqual(agreement.body(), 0)
         self.assertEqual([row["statement"] for row in csv.DictReader(io.StringIO(out.getvalue()))], [one.text])

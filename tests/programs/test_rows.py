@@ -5,11 +5,12 @@ import subprocess
 import unittest
 
 import numpy as np
-from clogsweep.paper import finished
-from clogsweep.tools.errors import NotThere
 
 import test_figures
 from support import BIN, ROOT
+
+from clogsweep.paper import finished
+from clogsweep.tools.errors import NotThere
 
 LARGEST = 300_000  # bytes of the two files of a sweep
 DISK = ["model=sp", "wall-stiffness=1,100", "box=45", "max-time=300", "seeds=1..6", "obstacle-density=0.35"]

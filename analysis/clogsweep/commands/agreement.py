@@ -28,7 +28,8 @@ def parse() -> argparse.Namespace:
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"),
                         help="folder that python3 -m clogsweep figures wrote (results/figures)")
     parser.add_argument("--from-rows", type=pathlib.Path, nargs="?", const=finished.FOLDER, metavar="FOLDER",
-                        help="judge by the full sweeps in docs/gallery/rows of the sources, and repeat single runs only")
+                        help="judge by the full sweeps in docs/gallery/rows of the sources, "
+                             "and repeat single runs only")
     parser.add_argument("--run", action="store_true",
                         help="first run the missing sweeps, which takes an hour in reduced size")
     parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="MPI ranks of the sweeps (2)")
@@ -41,7 +42,8 @@ def parse() -> argparse.Namespace:
 def body() -> int:
     arguments = parse()
     size = "full" if arguments.from_rows else arguments.size
-    shop = Workshop(size=size, ranks=arguments.ranks, folder=arguments.output / size, programs=programs.programs_in(arguments.programs), overrides=[],
+    shop = Workshop(size=size, ranks=arguments.ranks, folder=arguments.output / size,
+                    programs=programs.programs_in(arguments.programs), overrides=[],
                     draw_only=not (arguments.run or arguments.from_rows), rows_folder=arguments.from_rows)
     with contextlib.redirect_stdout(sys.stderr):  # what is run; the output is the table alone
         judged = agreement.judge_all(shop)
