@@ -248,8 +248,8 @@ using sweep::Value;
 struct Field {
   std::string name;
   Value value;
-  std::string_view unit = "";            ///< e.g. "sigma"; empty for counts, words and pure numbers
-  std::string head = "";                 ///< of the printed column
+  std::string_view unit = {};            ///< e.g. "sigma"; empty for counts, words and pure numbers
+  std::string head = {};                 ///< of the printed column
   std::optional<std::string> text = {};  ///< printed in place of the value
 };
 /// Columns that define a group: all parameters except the seed. Physical parameters come first, and the first
