@@ -160,7 +160,8 @@ int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& optio
   const sweep::GroupOf group_of = [&plan](std::int64_t task) { return plan.group_of(task); };
   Driver driver(options, group_of, state, computing_ranks);
   state.watch_ranks(computing_ranks);
-  scheduler::Schedule schedule(scheduler::TaskOrder(group_of), ranks.gather(ranks.host_name()), computes);
+  scheduler::Schedule schedule(scheduler::TaskOrder(group_of),
+                               ranks.gather(scheduler::Communicator::host_name()), computes);
   scheduler::SweepEnd end = scheduler::SweepEnd::complete;
   bool is_complete = true;
   while (true) {
@@ -190,7 +191,8 @@ int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& optio
 
 void follow_sweep(const scheduler::Communicator& ranks, const sweep::JobFactory& make_job,
                   std::chrono::milliseconds report_interval) {
-  scheduler::Schedule none(scheduler::TaskOrder({}), ranks.gather(ranks.host_name()), false);
+  scheduler::Schedule none(scheduler::TaskOrder({}), ranks.gather(scheduler::Communicator::host_name()),
+                           false);
   do {
     scheduler::run_tasks(ranks, none, make_job, {}, report_interval);
   } while (AfterRound{ranks.broadcast(0)} == AfterRound::another);
