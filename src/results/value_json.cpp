@@ -79,6 +79,7 @@ std::string text_table(const std::vector<std::vector<Field>>& rows) {
     if (rows.front()[place].head.empty()) continue;
     lines.front().push_back(rows.front()[place].head);
     std::vector<Value> values;
+    values.reserve(rows.size());
     for (const std::vector<Field>& row : rows) values.push_back(row[place].value);
     const int digits = distinct_digits(values);
     for (std::size_t i = 0; i < rows.size(); ++i)
