@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <thread>
@@ -109,7 +110,8 @@ int clogsweep_status(int argc, const char* const* argv) {
     throw Error("--follow and --watch exclude each other; give one");
   if (line.has("follow") && format != "json") throw Error("--follow prints lines of JSON; add --format json");
   if (line.has("follow")) return follow(path);
-  store::Journal::is_open(store::journal_path(path));  // refuses other kinds of files in one line
+  // Refuses other kinds of files in one line. A missing table is reported by the reader.
+  if (std::filesystem::exists(path)) store::Journal::is_open(store::journal_path(path));
   for (bool is_first = true;; is_first = false) {
     const Status status = results::status_of(
         path, is_first ? results::read_with_caution(path) : store::read_sweep(path), confidence);
