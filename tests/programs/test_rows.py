@@ -93,6 +93,12 @@ class Parts(test_figures.Drawn):
         for option in ("--draw-only", "--set=seeds=1"):
             self.refuse_analysis("figures", "7a", *options, option, words=["--from-rows", option.split("=")[0]])
 
+    def test_a_failed_run_is_not_counted_twice(self):
+        # clogfit counts failed runs that are censored among `runs`.
+        group = {"runs": 49, "failed": 1, "planned": 50, "interrupted": 0}
+        self.assertFalse(finished.is_complete(group))
+        self.assertTrue(finished.is_complete(group | {"runs": 50}))
+
     def test_damaged_files_get_one_line(self):
         rows = self.folder / "rows"
         rows.mkdir()

@@ -344,7 +344,7 @@ STATEMENTS = [
     Statement(
         "4.3, figure 9a", "the speed of soft disks grows with the gap",
         DISK,
-        "faster in the widest gap than in the narrowest by two standard errors, at every stiffness; at most"
+        "faster in the widest gap than in the narrowest by two standard errors, at every stiffness; at some"
         " qualitatively",
         speeds.disks_are_faster_in_wide_gaps, ("9a",)),
     Statement(

@@ -62,7 +62,7 @@ class Finished:
 
 
 def is_complete(group: Group) -> bool:
-    return bool(group["runs"] + group["failed"] >= group["planned"] and group["interrupted"] == 0)
+    return bool(group["runs"] >= group["planned"] and group["interrupted"] == 0)
 
 
 def words_of(group: Group) -> str:
@@ -71,7 +71,7 @@ def words_of(group: Group) -> str:
     where = ", ".join(f"{name}={group[name]:g}" for name in names if group[name] is not None)
     counts = ("clogs", "flowing", "passed", "failed", "interrupted")
     ended = ", ".join(f"{group[name]} {name}" for name in counts if group[name])
-    return f"{where}: {group['runs'] + group['failed']} of {group['planned']} runs ({ended or 'none'})"
+    return f"{where}: {group['runs']} of {group['planned']} runs ({ended or 'none'})"
 
 
 def files_of(name: str, folder: pathlib.Path) -> tuple[pathlib.Path, pathlib.Path]:
