@@ -82,7 +82,7 @@ Scene horseshoe_with_lobes_in_gaps() {
   return scene;
 }
 
-void expect_counts(const ClogGeometry& geometry, int wrapped, int gaps, int arcs) {
+void expect_counts(const ClogGeometry& geometry, std::int64_t wrapped, std::int64_t gaps, std::int64_t arcs) {
   EXPECT_EQ(geometry.num_wrapped, wrapped);
   EXPECT_EQ(geometry.num_gaps, gaps);
   EXPECT_EQ(geometry.num_arcs, arcs);
