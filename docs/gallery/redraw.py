@@ -1,6 +1,6 @@
 """Draws figures of the gallery at their full size, and notes in pictures.csv from which runs they were drawn.
 
-    docs/gallery/redraw.py PROGRAMS FIGURE...        such as: build/release/bin 6c 7a
+    python3 docs/gallery/redraw.py PROGRAMS FIGURE...        such as: build/release/bin 6c 7a
 
 Sweeps come from the folder rows; runs of single droplets are made now, and their numbers go to rows/figures. Figures
 whose sweep is not in the folder are not drawn.
@@ -55,7 +55,9 @@ def keep(name, folder):
     small = picture.copy()
     small.thumbnail(THUMBNAIL, Image.Resampling.LANCZOS)
     for one, target in ((picture, PICTURES), (small, PICTURES / "thumbnails")):
-        one.quantize(256).save(target / f"figure-{name}.png", optimize=True)
+        place = target / f"figure-{name}.png"
+        if target == PICTURES or place.exists():  # the gallery's first page shows some thumbnails
+            one.quantize(256).save(place, optimize=True)
     if not set(CATALOGUE[name].configs) & set(finished.names_in()):
         series = HERE / "rows" / "figures" / f"{name}.csv.gz"
         series.parent.mkdir(exist_ok=True)

@@ -1,6 +1,6 @@
 """Adds finished sweeps to this folder.
 
-    docs/gallery/rows/add.py PROGRAMS NAME SWEEP.h5...       NAME: a config in jobs/figures
+    python3 docs/gallery/rows/add.py PROGRAMS NAME SWEEP.h5...       NAME: a config in jobs/figures
 
 python3 -m clogsweep figures all --from-rows draws from the files.
 """
