@@ -155,15 +155,7 @@ std::int64_t SweepState::num_resumed() const {
 }
 
 sweep::RunRow SweepState::new_row(std::int64_t task) const {
-  sweep::RunRow row = sweep::describe(plan_->task(task));
-  row.task = task;
-  row.clogged_by = FoundBy::not_clogged;
-  row.stability = Stability::none;
-  row.failed_by = FailedBy::none;
-  row.sound_distance = 0;
-  row.healed_crossings = 0;
-  row.hold.mechanism = ClogMechanism::none;
-  return row;
+  return sweep::begun_row(plan_->task(task), task);
 }
 
 void SweepState::watch_ranks(int num_ranks) {
