@@ -39,7 +39,7 @@ std::string value_of(const sweep::Key& key, const std::string& cell, char separa
   const bool is_number = key.kind == ValueKind::number || key.kind == ValueKind::number_or_share;
   const auto commas = std::ranges::count(cell, ',');
   // A comma in a list of seeds is never decimal: the list may end with 0.
-  const bool may_be_decimal = separator != ',' && commas == 1 && key.name != "seeds";
+  const bool may_be_decimal = separator != ',' && commas == 1 && !key.is_ensemble();
   const auto with_point = [&](const std::string& number) {
     return decimal_commas.with_point(key.name, number, separator);
   };

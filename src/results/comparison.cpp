@@ -278,7 +278,7 @@ void correct_tests(Comparisons& all) {
 bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
                           const Scales& scales) {
   const bool is_scaled = !column.unit.empty() && column.unit != "degrees";
-  if (!is_scaled && column.name != "laboratory" && column.name != "obstacles") return false;
+  if (!is_scaled && !column.holds_check_sum()) return false;
   std::map<std::pair<double, double>, Value> known;
   return std::ranges::all_of(rows, [&](const RunRow* row) {
     const Value value = separating_value(column, *row);

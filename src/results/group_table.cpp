@@ -262,12 +262,13 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
         (varies[shown.size()] && !is_automatic_everywhere && !group_of_only_model(*column, groups)) ||
         (column->get(first) != Value() && is_of(scene_of(run).gap_key)) || is_stiffness);
   }
-  // The number of vertices comes first, then the time step, because other automatic values follow from both.
+  // Columns from which automatic values follow come first.
   std::vector<std::size_t> order(shown.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, [](std::size_t i) {
-    const std::string& name = group_columns()[i]->name;
-    return name == "vertices" ? 0 : name == "time_step" ? 1 : 2;
+    const Parameter* parameter = group_columns()[i]->parameter;
+    const int place = parameter ? parameter->automatic_order : 0;
+    return std::pair(place == 0, place);
   });
   for (const std::size_t i : order)
     shown[i] = shown[i] || (varies[i] && !group_of_only_model(*group_columns()[i], groups) &&

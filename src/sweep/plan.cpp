@@ -179,7 +179,7 @@ class Plan::Builder {
     OwnLists& own = plan_.products_.emplace_back();
     const bool is_first = plan_.axes_.empty();
     for (const Key& key : keys())
-      if (is_first && key.name != "seeds") plan_.axes_.push_back({&key, branch.values(key.name)});
+      if (is_first && !key.is_ensemble()) plan_.axes_.push_back({&key, branch.values(key.name)});
     for (std::size_t axis = 0; axis < plan_.axes_.size(); ++axis)
       if (const auto& values = branch.values(plan_.axes_[axis].key->name); values != plan_.axes_[axis].values)
         own[axis] = values;
@@ -376,8 +376,7 @@ std::vector<std::string> Plan::texts(std::int64_t group) const {
   const Group& one = groups_[static_cast<std::size_t>(group)];
   std::vector<std::string> all;
   for (const std::string* text : texts(one.product, one.place)) all.push_back(*text);
-  const auto seeds = std::ranges::find(keys(), "seeds", &Key::name);
-  all.insert(all.begin() + std::distance(keys().begin(), seeds), "");
+  all.insert(all.begin() + static_cast<std::ptrdiff_t>(place_of_key("seeds")), "");
   return all;
 }
 
