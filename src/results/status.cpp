@@ -26,9 +26,7 @@ std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep
   std::vector<SetTimes> sets(static_cast<std::size_t>(plan.num_groups()));
   for (const RunRow& row : rows) {
     if (row.task < 0 || row.task >= plan.size()) continue;
-    SetTimes& set = sets[static_cast<std::size_t>(plan.group_of(row.task))];
-    ++(sweep::is_unfinished(row.status) ? set.num_running : set.num_finished);
-    set.seconds += sweep::cost_seconds(row);
+    sets[static_cast<std::size_t>(plan.group_of(row.task))].count(row);
   }
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     SetTimes& set = sets[static_cast<std::size_t>(group)];
