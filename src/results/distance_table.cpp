@@ -486,8 +486,8 @@ std::vector<DistanceTable> tables_of_values(const DistanceTable& table, const st
   return all;
 }
 
-DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked,
-                           double confidence) {
+DistanceTable distances_of(const Side& side, const ScalesByLaboratory& scales,
+                           const std::vector<std::string>& asked, double confidence) {
   require_lengths(side);
   const bool is_in_mm =
       scales.size() > 1 || (!scales.empty() && (has_label(asked, "diameter") || has_label(asked, "angle")));

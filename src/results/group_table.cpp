@@ -204,7 +204,7 @@ std::vector<bool> varying_columns(const std::vector<Group>& groups) {
 
 /// Whether groups with equal other values always have equal values, too.
 template <class Value, class Others>
-bool follows(const std::vector<Group>& groups, const Value& value_of, const Others& others_of) {
+bool is_determined_by(const std::vector<Group>& groups, const Value& value_of, const Others& others_of) {
   std::map<decltype(others_of(groups.front())), decltype(value_of(groups.front()))> known;
   return std::ranges::all_of(groups, [&](const Group& group) {
     return known.try_emplace(others_of(group), value_of(group)).first->second == value_of(group);
@@ -219,7 +219,7 @@ bool follows_from_shown(std::size_t place, const std::vector<bool>& shown, const
       if (shown[i]) values.push_back(group_columns()[i]->get(group.first_row));
     return values;
   };
-  return follows(
+  return is_determined_by(
       groups, [&](const Group& group) { return group_columns()[place]->get(group.first_row); }, shown_values);
 }
 
@@ -341,7 +341,7 @@ ParameterColumns parameter_columns(const std::vector<Group>& groups, const std::
     const auto cell = [&groups, &column, digits](const Group& group) {
       return rounded_text(group, groups, column, digits) + star_of(column, group.first_row);
     };
-    if (columns.droplets.empty() || !follows(groups, cell, droplet_of))
+    if (columns.droplets.empty() || !is_determined_by(groups, cell, droplet_of))
       columns.others.push_back({column.name, cell});
     else if (column.name != "laboratory")
       columns.following.push_back({column.name, cell});
