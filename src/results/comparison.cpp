@@ -17,6 +17,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/fit/holm.hpp"
 #include "clog/fit/log_rank.hpp"
 #include "clog/results/selection.hpp"
@@ -25,7 +26,6 @@
 #include "clog/sweep/columns.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::results {
 namespace {
@@ -310,7 +310,7 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
   if (std::ranges::none_of(columns, [&](const sweep::Column* one) { return one->name == column; })) {
     std::vector<std::string> names;
     for (const sweep::Column* one : columns) names.push_back(one->name);
-    const std::string meant = sweep::did_you_mean(column, names);
+    const std::string meant = did_you_mean(column, names);
     throw Error(fmt::format("invalid --by={} (no parameter of a run){}", name, hint_at_column(name, meant)));
   }
   std::map<Value, std::vector<RunRow>> rows;

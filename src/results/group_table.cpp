@@ -19,9 +19,9 @@
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/usual_parameters.hpp"
 #include "clog/sweep/keys.hpp"
-#include "clog/sweep/value_list.hpp"
 #include "result_columns.hpp"
 #include "value_json.hpp"
 
@@ -134,7 +134,7 @@ std::string note_of_rest(const std::vector<Group>& groups) {
   }
   if (num_resting == 0 || !has_clogging_length(groups.front().first_row)) return "";
   std::string text = fmt::format("   {} ended by max-time with the droplet at rest for {} t0 or longer",
-                                 sweep::counted(num_resting, "run"), console::plain(shortest_rest));
+                                 count_text(num_resting, "run"), console::plain(shortest_rest));
   if (const double dwell = shorter_dwell(shortest_rest); dwell >= known_from)
     text +=
         fmt::format(": --dwell={} counts {} as clogged", shortest(dwell), num_resting == 1 ? "it" : "them");
@@ -170,15 +170,15 @@ std::string left_out(const std::vector<Group>& groups) {
     text += fmt::format(
         "   {} ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all "
         "runs\n",
-        sweep::counted(num_left_out, "run"));
+        count_text(num_left_out, "run"));
   if (num_interrupted > 0)
     text += fmt::format(
         "   {} {} unfinished: lambda holds for the distances reached so far, and the clogs so far are the "
         "early ones\n",
-        sweep::counted(num_interrupted, "run"), num_interrupted == 1 ? "is" : "are");
+        count_text(num_interrupted, "run"), num_interrupted == 1 ? "is" : "are");
   if (num_repeated > 0)
     text += fmt::format("   {} repeat droplets of longer runs and do not count (--pool)\n",
-                        sweep::counted(num_repeated, "run"));
+                        count_text(num_repeated, "run"));
   if (num_failed > 0) {
     text += fmt::format("   {} failed; the column `message` says why", num_failed);
     if (has_clogging_length(groups.front().first_row))

@@ -20,6 +20,7 @@
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
 #include "clog/core/tools/split.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/selection.hpp"
 #include "clog/results/usual_parameters.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -75,7 +76,7 @@ class Key {
     }
     if (!column_)
       refuse(text, fmt::format("'{}' is no parameter of a run", name),
-             "give diameter or a parameter" + hint_at_column(name, sweep::did_you_mean(name_, names)));
+             "give diameter or a parameter" + hint_at_column(name, did_you_mean(name_, names)));
   }
 
   const std::string& name() const { return name_; }

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/settings.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::results {
 namespace {
@@ -64,7 +64,7 @@ SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::S
   if (!has_table && !entries.empty())
     throw Error(
         "cannot resume " + path_ + " (its table is gone, but " + store::journal_path(path_) + " holds " +
-        sweep::counted(static_cast<std::int64_t>(entries.size()), "record") +
+        count_text(static_cast<std::int64_t>(entries.size()), "record") +
         " of an earlier sweep, maybe of finished runs); put the table back, or give another --output");
   Known known = recognise(std::move(rows), std::move(entries), settings);
   set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));

@@ -15,6 +15,7 @@
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/core/world/lattice.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -270,7 +271,7 @@ class Plan::Builder {
     }
     if (groups.empty())
       throw Error(fmt::format("part {} of the sweep is empty: the whole sweep has only {}", shard.text(),
-                              counted(num_runs_, "run")));
+                              count_text(num_runs_, "run")));
     plan_.groups_ = std::move(groups);
   }
 
