@@ -9,10 +9,10 @@
 
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/growth.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/row_check.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::results {
 namespace {
@@ -36,7 +36,7 @@ std::vector<store::Journal::Entry> records_of(const std::string& path, Salvage& 
     records = contents->entries;
     if (contents->num_unreadable > 0)
       found.damage.push_back(
-          fmt::format("damaged in its journal: {}", sweep::counted(contents->num_unreadable, "record")));
+          fmt::format("damaged in its journal: {}", count_text(contents->num_unreadable, "record")));
   } catch (const Error& error) {
     found.damage.push_back(fmt::format("its journal was not used: {}", error.what()));
     return {};
@@ -48,7 +48,7 @@ std::vector<store::Journal::Entry> records_of(const std::string& path, Salvage& 
   });
   if (num_foreign > 0)
     found.damage.push_back(fmt::format("of another sweep in its journal: {}",
-                                       sweep::counted(static_cast<std::int64_t>(num_foreign), "record")));
+                                       count_text(static_cast<std::int64_t>(num_foreign), "record")));
   return records;
 }
 

@@ -12,6 +12,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/split.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/merger.hpp"
 #include "clog/results/run_list.hpp"
 #include "clog/results/stored_sweep.hpp"
@@ -28,7 +29,7 @@ const sweep::Column& find_column(const std::string& name, const std::string& con
   for (const sweep::Column& column : columns) names.push_back(column.name);
   std::string meant = name;
   std::ranges::replace(meant, '-', '_');
-  if (std::ranges::find(names, meant) == names.end()) meant = sweep::did_you_mean(meant, names);
+  if (std::ranges::find(names, meant) == names.end()) meant = did_you_mean(meant, names);
   throw Error(fmt::format("invalid condition '{}' (the table has no column '{}'){}", condition, name,
                           hint_at_column(name, meant)));
 }

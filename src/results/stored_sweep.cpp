@@ -9,6 +9,7 @@
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -96,7 +97,7 @@ store::SweepFile read_with_caution(const std::string& path) {
     console::say(
         fmt::format("{}: {} ended that only the journal of the stopped sweep has; the sweep's own "
                     "command adds {}",
-                    path, sweep::counted(number, "run"), number == 1 ? "it" : "them"));
+                    path, count_text(number, "run"), number == 1 ? "it" : "them"));
   for (const store::CircleFile& one : file.circles) {
     const OwnCircles named(one.circles.circles(), one.name);
     for (sweep::RunRow& row : file.rows)

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/settings.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::results {
 namespace {
@@ -64,7 +64,7 @@ SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::S
   if (!has_table && !entries.empty())
     throw Error(
         "cannot resume " + path_ + " (its table is gone, but " + store::journal_path(path_) + " holds " +
-        sweep::counted(static_cast<std::int64_t>(entries.size()), "record") +
+        count_text(static_cast<std::int64_t>(entries.size()), "record") +
         " of an earlier sweep, maybe of finished runs); put the table back, or give another --output");
   Known known = recognise(std::move(rows), std::move(entries), settings);
   set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
@@ -155,15 +155,7 @@ std::int64_t SweepState::num_resumed() const {
 }
 
 sweep::RunRow SweepState::new_row(std::int64_t task) const {
-  sweep::RunRow row = sweep::describe(plan_->task(task));
-  row.task = task;
-  row.clogged_by = FoundBy::not_clogged;
-  row.stability = Stability::none;
-  row.failed_by = FailedBy::none;
-  row.sound_distance = 0;
-  row.healed_crossings = 0;
-  row.hold.mechanism = ClogMechanism::none;
-  return row;
+  return sweep::begun_row(plan_->task(task), task);
 }
 
 void SweepState::watch_ranks(int num_ranks) {

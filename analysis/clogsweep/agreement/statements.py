@@ -1,13 +1,13 @@
 """The statements of the article in its order: the place of each, its text, and how it is judged.
 
-A judge gets the workshop with the sweeps of the figures. for_families() and for_walls() repeat it for each law of the
+A judge gets the runner with the sweeps of the figures. for_families() and for_walls() repeat it for each law of the
 walls. A reason belongs to a verdict and is printed with it.
 """
 
 from functools import partial
 
 from ..paper.dilute import FAMILIES, MAPS, Family
-from ..paper.workshop import Workshop
+from ..paper.runner import Runner
 from . import frames, lengths, passages, speeds
 from .lengths import SLIDES
 from .verdicts import (DOES_NOT, FITTED, IN_KIND, NOT_KNOWN, Judged, Statement, for_contacts, for_families, for_walls,
@@ -383,9 +383,9 @@ STATEMENTS = [
 ]
 
 
-def judge_all(shop: Workshop) -> tuple[list[Judged], int | None]:
+def judge_all(runner: Runner) -> tuple[list[Judged], int | None]:
     """Judges all statements.
-    @param shop  a workshop that runs nothing
+    @param runner  a runner that runs nothing
     @return the judged statements, and the model version of the sweeps, None without sweeps
     @throws UserError  if the sweeps have several model versions"""
-    return [judge(shop, one) for one in STATEMENTS], the_version(shop.model_versions())
+    return [judge(runner, one) for one in STATEMENTS], the_version(runner.model_versions())

@@ -71,7 +71,7 @@ class Override:
 
 
 @dataclasses.dataclass
-class Workshop:
+class Runner:
     """@param rows_folder  a folder of finished sweeps: they are read, and no sweep is run"""
 
     size: str
