@@ -1,5 +1,3 @@
-#include "resumption.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "clog/results/growth.hpp"
 #include "clog/results/latest_rows.hpp"
 #include "clog/results/stored_sweep.hpp"
+#include "clog/results/sweep_runs.hpp"
 #include "clog/sweep/row_check.hpp"
 
 namespace clog::results {
@@ -115,11 +114,11 @@ std::int64_t adopt(const Resumption& sweep, store::SweepFile table, std::vector<
                    SweepRuns& runs) {
   refuse_other_sweep(sweep, table);
   const auto is_usual = [&](const sweep::RunRow& row) { return is_of_its_task(row, sweep.plan); };
-  const RunKey key =
-      std::ranges::all_of(table.rows, is_usual) && std::ranges::all_of(records, is_usual, &Entry::row)
-          ? RunKey::task
-          : RunKey::identity;
-  const std::vector<LatestRow> latest = latest_rows(table.rows, records, key);
+  const bool are_usual =
+      std::ranges::all_of(table.rows, is_usual) && std::ranges::all_of(records, is_usual, &Entry::row);
+  const std::vector<LatestRow> latest =
+      are_usual ? latest_rows(table.rows, records, [](const sweep::RunRow& row) { return row.task; })
+                : latest_rows(table.rows, records);
   refuse_foreign_records(sweep, latest);
   Known known;
   std::int64_t num_faulty = 0;
@@ -130,7 +129,7 @@ std::int64_t adopt(const Resumption& sweep, store::SweepFile table, std::vector<
       ++num_faulty;
       continue;
     }
-    std::unique_ptr<Entry>& run = key == RunKey::task ? runs.place_of(row.task) : known[sweep::identity(row)];
+    std::unique_ptr<Entry>& run = are_usual ? runs.place_of(row.task) : known[sweep::identity(row)];
     // Rows are moved, because a large sweep has memory for each row just once.
     if (!run) run = std::make_unique<Entry>(one.record ? std::move(*one.record) : Entry{std::move(row), {}});
   }

@@ -51,12 +51,6 @@ store::SweepFile SweepFiles::read_table() {
                 " (it was replaced or moved while it was read); try again when it stays in place");
   store::refuse_foreign_objects(path(), table);
   caution_ = store::caution(path(), table);
-  keep_description(table);
-  return table;
-}
-
-/// Keeps the provenance of earlier sessions, and the circles of runs outside this plan.
-void SweepFiles::keep_description(const store::SweepFile& table) {
   store::Provenance all = table.provenance;
   for (const char* name : {"config", "stopping_rule", "num_wanted"})
     set_attribute(all, name, attribute(provenance_, name));
@@ -65,7 +59,8 @@ void SweepFiles::keep_description(const store::SweepFile& table) {
   provenance_ = std::move(all);
   for (const store::CircleFile& one : table.circles)
     if (std::ranges::none_of(circles_, [&](const auto& known) { return known.circles == one.circles; }))
-      circles_.push_back({"", one.circles});
+      circles_.push_back({"", one.circles});  // of runs outside this plan
+  return table;
 }
 
 std::vector<SweepFiles::Entry> SweepFiles::take_records() {
@@ -103,14 +98,6 @@ void SweepFiles::rank_is_busy() {
   is_published_ = false;
 }
 
-void SweepFiles::rank_is_free() {
-  if (activity_) activity_->ended(seconds_so_far());
-}
-
-void SweepFiles::restarted() {
-  if (activity_) activity_->restarted();
-}
-
 void SweepFiles::write_down(const Entry& entry) {
   if (!journal_.is_there()) publish();
   journal_.add(entry.row, entry.snapshot);
@@ -135,13 +122,22 @@ void SweepFiles::tick() {
   begin_publication();
 }
 
+/// The row that readers see: a run that will be tried again is not failed yet, and its failed attempt has no
+/// distance.
+sweep::RunRow SweepFiles::published(sweep::RunRow row) const {
+  if (!runs_.tries_again(row)) return row;
+  restart(row);
+  ++row.attempt;
+  return row;
+}
+
 /// Publishes all rows, also of runs outside the plan.
 std::optional<std::string> SweepFiles::publish_to(const store::OutputPath& place, const std::string& stamp,
                                                   const std::vector<const Entry*>& all,
                                                   const store::Provenance& provenance) const {
   const auto row = [&](std::size_t i) {
     const std::lock_guard lock(runs_.changing);
-    return runs_.published(all[i]->row);
+    return published(all[i]->row);
   };
   return store::publish_sweep(place, stamp, {all.size(), row}, provenance, circles_);
 }

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
-#include "resumption.hpp"
 
 namespace clog::results {
 

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <string>
+#include <type_traits>
+#include <unordered_map>
 #include <vector>
 
 #include "clog/store/journal.hpp"
@@ -16,16 +20,30 @@ struct LatestRow {
   bool was_final() const { return in_table && sweep::is_final(*in_table); }
 };
 
-/// The column by which runs are recognised. Task numbers need less memory, but identify a run only while the
-/// plan is unchanged.
-enum class RunKey { identity, task };
-
 /// Joins the rows of a table with the records of its journal, oldest first. A record replaces the known row
 /// of its run, unless that row is final and the record is not: then the journal has lost the run's last
 /// record. The result has the rows in their order, followed by the runs that only the journal has. If the
 /// table repeats a run, records replace its first row.
+/// @param key  of a row, by which runs are recognised
+template <class Key = std::string (*)(const sweep::RunRow&)>
 std::vector<LatestRow> latest_rows(std::span<sweep::RunRow> rows, std::span<store::Journal::Entry> records,
-                                   RunKey key = RunKey::identity);
+                                   Key key = sweep::identity) {
+  std::vector<LatestRow> runs;
+  runs.reserve(rows.size());
+  std::unordered_map<std::invoke_result_t<Key, const sweep::RunRow&>, std::size_t> places;
+  for (sweep::RunRow& row : rows) {
+    if (!records.empty()) places.emplace(key(row), runs.size());
+    runs.push_back({&row});
+  }
+  for (store::Journal::Entry& record : records) {
+    const auto [place, is_new] = places.emplace(key(record.row), runs.size());
+    if (is_new)
+      runs.push_back({nullptr, &record});
+    else if (LatestRow& run = runs[place->second]; sweep::is_final(record.row) || !sweep::is_final(run.row()))
+      run.record = &record;
+  }
+  return runs;
+}
 
 /// No run is running in a file to which no sweep writes.
 inline void interrupt_if_running(sweep::RunRow& row) {

@@ -44,8 +44,12 @@ class SweepFiles {
   /// These functions record how many ranks are busy (Activity).
   void watch_ranks(int num_ranks);
   void rank_is_busy();
-  void rank_is_free();
-  void restarted();
+  void rank_is_free() {
+    if (activity_) activity_->ended(seconds_so_far());
+  }
+  void restarted() {
+    if (activity_) activity_->restarted();
+  }
 
   /// Adds the run to the journal.
   void write_down(const Entry& entry);
@@ -77,7 +81,7 @@ class SweepFiles {
   std::future<std::optional<std::string>> publication_;
 
   double seconds_so_far() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
-  void keep_description(const store::SweepFile& table);
+  sweep::RunRow published(sweep::RunRow row) const;
   std::optional<std::string> publish_to(const store::OutputPath& place, const std::string& stamp,
                                         const std::vector<const Entry*>& all,
                                         const store::Provenance& provenance) const;
