@@ -145,7 +145,9 @@ def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) 
     alike = [f"{place:g}" for place, verdict in verdicts.items() if verdict == NOT_KNOWN]
     if alike:
         words.append(f"no clear difference at {', '.join(alike)}")
-    return Finding(overall(list(verdicts.values())), "; ".join(words))
+    found = set(verdicts.values())
+    verdict = IN_KIND if len(found) > 1 and AGREES in found else overall(list(verdicts.values()))
+    return Finding(verdict, "; ".join(words))
 
 
 def longer_in_wide_gaps(groups: list[Group]) -> Finding:
