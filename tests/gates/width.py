@@ -7,7 +7,7 @@ import sys
 import known
 
 MOST = 120
-LONG_PYTHON_LINES = 748
+LONG_PYTHON_LINES = 747
 
 
 def prose(text):

@@ -60,7 +60,7 @@ class Lengths(ProgramTest):
     def test_droplets_that_were_pushed_back_come_first_in_survival(self):
         # Two of four droplets clog upstream of their release, so P falls to 3/4 at -2 and to 1/2 at -1.
         steps = [{"distance": way, "at_risk": 4 - i, "clogs": 1, "probability": (3 - i) / 4, "standard_error": 0.2, "lower": 0.1, "upper": 0.9} for i, way in enumerate((-2.0, -1.0, 3.0))]
-        fitted = unittest.mock.Mock(told={"groups": [{"runs": 4, "survival": steps, "censored_distances": [5.0]}]})
+        fitted = unittest.mock.Mock(output={"groups": [{"runs": 4, "survival": steps, "censored_distances": [5.0]}]})
         table = fit.Fit.survival(fitted, 0)
         self.assertEqual(table["distance"].tolist(), [-2, -2, -1, 3, 5])
         self.assertEqual(table["probability"].tolist(), [1, 0.75, 0.5, 0.25, 0.25])
@@ -88,7 +88,7 @@ class Lengths(ProgramTest):
         # The table of the Python module. The expected values come from R's summary(..., times=161), and from the last
         # step of the other group, for which R gives no bounds either.
         groups = [*told["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
-        known = types.SimpleNamespace(told={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
+        known = types.SimpleNamespace(output={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
         end, not_censored, none = (fit.Fit.survival(known, group).iloc[-1].to_dict() for group in range(3))
         for name, expected in [("distance", 161), ("at_risk", 1), ("clogs", 0), ("probability", 0.184090909091),
                                ("standard_error", 0.1534927457863), ("lower", 0.0117384801232),

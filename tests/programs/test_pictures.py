@@ -339,8 +339,8 @@ class Looks(Analysis):
         self.succeed("clogsweep", "--points", "arrays.csv", "vertices=32", "box=20", "max-time=30", "seeds=1..2",
                      "--output", "s.h5")
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
-        self.assertEqual(groups.said("lattice_angle", None), "no lattice angle")
-        self.assertIn("saturated", groups.said("obstacle_density", None))
+        self.assertEqual(groups.parameter_label("lattice_angle", None), "no lattice angle")
+        self.assertIn("saturated", groups.parameter_label("obstacle_density", None))
 
     def test_a_caption_names_what_its_model_has(self):
         disk = self.fit("model=sp", "wall-stiffness=30", "box=20", "max-time=60", "seeds=1")

@@ -43,8 +43,8 @@ def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Grou
             r = group["clogging_length"] * np.logspace(-2, 1, 100)
             axes.plot(r, np.exp(-r / group["clogging_length"]), color=colour, linewidth=0.8, linestyle="--",
                       gid=style.mark("curve", [group]))
-        label = groups.parameter_label(groups.abscissa, group[groups.abscissa])
-        survival_curve.draw(axes, group, colour, label, begin=begin)
+        survival_curve.draw(axes, group, colour, groups.parameter_label(groups.abscissa, group[groups.abscissa]),
+                            begin=begin)
     axes.set_xscale("log")
     axes.set_ylim(0, 1.02)
     style.label(axes, r"displacement along the flow $r/\sigma$", "$P(r)$, not yet clogged")
